@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void give_up(const fs::path& temporary, const fs::path& file, const char* act) {
+    const int reason = errno;
+    ::unlink(temporary.c_str());
+    fail(ExitCode::output, "{}: cannot {}: {}", file.string(), act, std::strerror(reason));
+}
+
+}  // namespace
+
+fs::path temporary_for(const fs::path& file) {
+    // The extension stays last: programs such as ffmpeg choose the format by it.
+    return file.parent_path() /
+           fmt::format(".{}.part{}{}", file.stem().string(), ::getpid(), file.extension().string());
+}
+
+void publish(const fs::path& temporary, const fs::path& file) {
+    const int handle = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+    if (handle < 0) give_up(temporary, file, "be written");
+    const bool flushed = ::fsync(handle) == 0;
+    ::close(handle);
+    if (!flushed) give_up(temporary, file, "be flushed to disk");
+    if (std::rename(temporary.c_str(), file.c_str()) != 0) give_up(temporary, file, "be renamed");
+}
+
+void write_file_whole(const fs::path& file, std::string_view bytes) {
+    const fs::path temporary = temporary_for(file);
+    const int handle = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (handle < 0) give_up(temporary, file, "be created");
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(handle, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) {
+            ::close(handle);
+            give_up(temporary, file, "be written");
+        }
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    ::close(handle);
+    publish(temporary, file);
+}
+
+}  // namespace swage

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors, rotations and rigid poses used everywhere. SI units; radians.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+namespace swage {
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Vec3i = Eigen::Vector3i;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;
+
+inline constexpr double kPi = std::numbers::pi;
+
+// A rigid placement: `world_from_tool * point_in_tool` is a point in the world.
+struct Pose {
+    Quat rotation = Quat::Identity();
+    Vec3 translation = Vec3::Zero();
+
+    Vec3 operator*(const Vec3& point) const { return rotation * point + translation; }
+    Pose operator*(const Pose& inner) const {
+        return {(rotation * inner.rotation).normalized(), rotation * inner.translation + translation};
+    }
+    Vec3 turn(const Vec3& direction) const { return rotation * direction; }
+    Pose inverse() const {
+        const Quat back = rotation.conjugate();
+        return {back, -(back * translation)};
+    }
+};
+
+// The pose a share `s` (0 to 1) of the way from one pose to another: straight line, shortest turn.
+inline Pose between(const Pose& from, const Pose& to, double s) {
+    return {from.rotation.slerp(s, to.rotation),
+            (1 - s) * from.translation + s * to.translation};
+}
+
+}  // namespace swage

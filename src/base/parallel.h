@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parallel loops whose results do not depend on the number of threads: the caller cuts the work
+// into chunks by its size alone, never by the number of threads, and sums chunk results in order.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace swage {
+
+// Threads that later loops may use; 0 asks for as many as there are cores.
+void set_thread_count(int count);
+int thread_count();
+
+// Calls body(0) ... body(count - 1), each exactly once, in no fixed order. Exceptions reach the
+// caller. With one thread, or one chunk, it is a plain loop.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
+
+// The sum over chunks of partial(chunk), added in the order of the chunks.
+template <typename Partial>
+double ordered_sum(std::size_t chunk_count, const Partial& partial) {
+    std::vector<double> part(chunk_count, 0.0);
+    parallel_for(chunk_count, [&](std::size_t chunk) { part[chunk] = partial(chunk); });
+    double sum = 0;
+    for (double p : part) sum += p;
+    return sum;
+}
+
+}  // namespace swage

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Axis-aligned boxes.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "base/math.h"
+
+namespace swage {
+
+struct Box {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+    bool empty() const { return !(low.array() <= high.array()).all(); }
+    Vec3 size() const { return high - low; }
+    Vec3 center() const { return 0.5 * (low + high); }
+    void grow(const Vec3& point) {
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+    }
+};
+
+inline Box box_of(const std::vector<Vec3>& points) {
+    Box box;
+    for (const Vec3& p : points) box.grow(p);
+    return box;
+}
+
+}  // namespace swage

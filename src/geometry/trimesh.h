@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A surface of triangles over welded positions. Attributes that may jump across an edge (texture
+// coordinates, smoothing) belong to triangle corners and are kept apart from the positions, so
+// that a texture seam never opens the surface.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "geometry/box.h"
+
+namespace swage {
+
+using Corners = std::array<int, 3>;
+
+// How a part of a surface looks. Colours are linear RGB, 0 to 1.
+struct SurfaceMaterial {
+    std::string name;
+    Vec3 color = {0.8, 0.8, 0.8};
+    double roughness = 0.55;
+    double metallic = 0.0;
+    std::filesystem::path texture;  // absolute; empty for none. Multiplies `color`.
+};
+
+struct TriMesh {
+    std::vector<Vec3> position;     // [m], welded: one entry for each place
+    std::vector<Corners> triangle;  // ids into position, counter-clockwise from outside
+
+    // Each of the following is either empty or as long as said.
+    std::vector<Eigen::Vector3f> position_color;  // one a position, linear RGB
+    std::vector<Vec2> uv;                         // values that triangle_uv points at
+    std::vector<Corners> triangle_uv;             // one a triangle; -1 where a corner has none
+    int smooth_group_count = 0;                   // corners of one group share a shading normal
+    std::vector<Corners> triangle_smooth;         // one a triangle: ids of smooth groups
+    std::vector<int> triangle_polygon;  // one a triangle: triangles of one polygon (a quad, say) are
+                                        // consecutive and share the number
+    std::vector<int> triangle_material;  // one a triangle, into material
+    std::vector<int> triangle_part;      // one a triangle, into part_name
+    std::vector<SurfaceMaterial> material;
+    std::vector<std::string> part_name;
+};
+
+// Enclosed volume [m3] by the divergence theorem, about the box centre. Exact for closed surfaces.
+double signed_volume(const TriMesh& mesh);
+double surface_area(const TriMesh& mesh);
+
+// Parts of the surface connected through shared positions; component[t] for each triangle.
+struct Components {
+    int count = 0;
+    std::vector<int> triangle_component;
+};
+Components surface_components(const TriMesh& mesh);
+
+// Fills smooth_group_count and triangle_smooth: corners at one position share a group when the
+// faces meet at less than `crease_angle` [rad].
+void smooth_by_crease_angle(TriMesh& mesh, double crease_angle);
+
+// One unit normal a smooth group, weighted by corner angle, for the given positions (as many as
+// mesh.position). Groups must be present.
+std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& position);
+
+}  // namespace swage

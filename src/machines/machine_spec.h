@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A machine as its file says it: plain data and expressions, nothing evaluated.
+//
+// Expressions see the machine's parameters, and of the work-piece: length, height, width (its box
+// along the work frame's x, y, z) and spacing (of the lattice); motions also t, 0 at the start of
+// the stage and 1 at its end, and ramp(t, a, b): 0 before a, 1 after b, smooth between.
+//
+// The work frame stands at the centre of the work-piece's box: x along its length, y the way the
+// machine calls up, z across.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+
+namespace swage {
+
+using Expression = std::string;
+using Expression3 = std::array<Expression, 3>;
+
+enum class Quantity { number, length, angle, time, speed, stress, density, mass, force, acceleration,
+                      toughness };
+
+struct ParameterSpec {
+    std::string name;
+    Quantity quantity = Quantity::number;
+    Expression default_value;  // may use box variables and earlier parameters
+    Expression low, high;      // allowed range, same variables; empty: unbounded
+    std::string unit;          // as shown to the user ("deg", "m", "")
+    std::string help;
+};
+
+// Pose over time in the work frame: first turned by `turn` about `axis` through `pivot`, then moved.
+struct MotionSpec {
+    Expression3 move = {"0", "0", "0"};  // [m]
+    Expression turn = "0";               // [rad]
+    Vec3 axis = Vec3::UnitZ();
+    Expression3 pivot = {"0", "0", "0"}; // [m]; in the work frame
+};
+
+struct ToolSpec {
+    std::string name;
+    std::string shape;               // "cylinder", "box", "sphere", "mesh"
+    Expression radius = "0";         // cylinder, sphere
+    Expression length = "0";         // cylinder
+    Expression3 size = {"0", "0", "0"};  // box
+    Expression rounding = "0";       // box
+    std::filesystem::path mesh;      // mesh: absolute; scaled so that its longest side is `length`
+    Vec3 axis = Vec3::UnitZ();       // the shape's z axis, in the work frame
+    Expression3 at = {"0", "0", "0"};    // centre at the start, in the work frame
+    // Slides the tool along this direction (from far outside) until it just touches; zero: stays.
+    Vec3 touch = Vec3::Zero();
+    Expression gap = "0";            // left between tool and work-piece by `touch`
+    Expression friction;             // empty: the material's
+    MotionSpec motion;
+};
+
+// Surface points whose position in the work frame lies in the box [from, to] are held.
+struct GripSpec {
+    std::string name;
+    Expression3 from, to;
+    MotionSpec motion;
+};
+
+struct BladeSpec {
+    std::string name;
+    std::vector<Expression3> edge;  // in the work frame at the start
+    Expression thickness = "0.02*height";  // of the drawn body
+    MotionSpec motion;
+};
+
+struct MachineSpec {
+    std::string name;
+    std::string help;
+    std::filesystem::path file;
+    std::vector<ParameterSpec> parameter;
+    std::vector<ToolSpec> tool;
+    std::vector<GripSpec> grip;
+    std::vector<BladeSpec> blade;
+};
+
+}  // namespace swage

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a machine is made of once it stands at the work-piece (Apparatus), and what it asks for at
+// one time (Drive). Made by `machines`, read by `sim`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "geometry/shape.h"
+
+namespace swage {
+
+// A tool presses by contact with its smooth surface.
+struct Tool {
+    std::string name;
+    Shape shape;
+    double friction;      // Coulomb, >= 0
+    Vec3 color = {0.35, 0.38, 0.42};
+};
+
+// A grip holds points of the work-piece's true surface to its frame, by stiff springs.
+struct Grip {
+    std::string name;
+    std::vector<int> point;    // into Aggregate::surface
+    std::vector<Vec3> anchor;  // where it holds each, in the grip's frame
+    TriMesh jaw;               // for drawing, in the grip's frame; may be empty
+    Vec3 color = {0.42, 0.36, 0.30};
+};
+
+// A blade severs the connections that its edge sweeps through.
+struct Blade {
+    std::string name;
+    std::vector<Vec3> edge;  // polyline in the blade's frame, two points or more
+    TriMesh body;            // for drawing, in the blade's frame
+    Vec3 color = {0.75, 0.76, 0.78};
+};
+
+struct Apparatus {
+    std::string name;
+    std::vector<Tool> tool;
+    std::vector<Grip> grip;
+    std::vector<Blade> blade;
+};
+
+// Poses at one time, in the order of the apparatus.
+struct Drive {
+    double time = 0;  // [s] since the stage began
+    std::vector<Pose> world_from_tool;
+    std::vector<Pose> world_from_grip;
+    std::vector<Pose> world_from_blade;
+};
+
+}  // namespace swage

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Molding (S2.12, S2.16): a mesh becomes an aggregate that fills it.
+#pragma once
+
+#include <optional>
+
+#include "geometry/trimesh.h"
+#include "matter/aggregate.h"
+
+namespace swage {
+
+enum class MoldKind { shape, block };
+
+struct MoldSettings {
+    MoldKind kind = MoldKind::shape;
+    // One of the two. `across`: cells over the thinnest side of the box, 1 or more; start with 6.
+    std::optional<int> across;
+    std::optional<double> spacing;  // [m]
+    std::size_t cell_limit = 50'000'000;  // of the box; more is refused with exit code 7
+};
+
+struct MoldEstimate {
+    double spacing;       // [m]
+    Vec3i cell_count;     // of the box
+    double active_cells;  // about
+    double particles;     // about
+    double connections;   // about
+    double bytes;         // about
+};
+
+double spacing_for(const TriMesh& mesh, const MoldSettings& settings);
+MoldEstimate estimate_mold(const TriMesh& mesh, const MoldSettings& settings);
+
+// Volume and mass equal the mesh's to 1e-6 at any spacing. Throws Error(mesh) when the mesh
+// encloses nothing, Error(resources) above the limit.
+Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings);
+
+}  // namespace swage

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene as its file says it, checked, in SI, with every default filled in.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "machines/machine_spec.h"
+#include "matter/material.h"
+#include "mold/mold.h"
+#include "render/settings.h"
+#include "sim/settings.h"
+#include "skin/settings.h"
+
+namespace swage {
+
+struct MeshSpec {
+    std::filesystem::path file;          // absolute
+    std::optional<double> length;        // [m] of the longest side of the box; none: file's own
+};
+
+struct StageSpec {
+    std::string name;          // "1-bend": number and machine, or the user's own; a file name
+    MachineSpec machine;
+    std::map<std::string, double> parameter;  // only those that the scene gives, SI
+    std::string axis = "auto"; // work frame's x: "auto" (longest side of the box), "x", "y", "z"
+    std::string up = "auto";   // work frame's y: "auto", or "x", "-x", "y", ...
+    int frames = 60;           // >= 1
+    double duration = 0;       // [s] of machine time; 0: frames / frames_per_second
+    bool remold = false;       // mold the deformed mesh anew before this stage
+    SimSettings sim;
+};
+
+struct OutputSpec {
+    bool meshes_per_frame = false;
+};
+
+struct SceneSpec {
+    std::filesystem::path file;  // absolute
+    std::string name;            // stem of the file
+    MeshSpec mesh;
+    Material material;
+    MoldSettings mold;
+    SkinSettings skin;
+    std::vector<StageSpec> stage;
+    RenderSettings render;
+    OutputSpec output;
+    std::vector<std::filesystem::path> inputs;  // every file that was read, scene and machines
+};
+
+}  // namespace swage

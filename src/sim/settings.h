@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the matter is moved on. Defaults are those measured in 120 random bends and twists.
+#pragma once
+
+#include "base/math.h"
+
+namespace swage {
+
+enum class Solver {
+    quasistatic,    // each frame is an equilibrium, found by relaxation; no inertia
+    explicit_steps, // symplectic Euler with real masses and damping
+};
+
+struct SimSettings {
+    Solver solver = Solver::quasistatic;
+
+    // Quasi-static relaxation.
+    double tolerance = 1e-2;       // residual (1-norm) over the largest tool force; 1e-4 to 0.1
+    int iteration_limit = 6000;    // a sub-increment that needs more is halved; 100 to 1e6
+    int halving_limit = 4;         // 0 to 8
+    double contact_stiffness = 2;  // k_n = this * E * area / spacing; 0.5 to 100
+    double grip_stiffness = 20;    // the same for gripped points; 1 to 100
+
+    // Explicit steps.
+    double step_safety = 0.8;      // share of the stable step, 0 to 1
+
+    Vec3 gravity = Vec3::Zero();   // [m/s2]
+};
+
+}  // namespace swage

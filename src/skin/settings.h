@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace swage {
+
+enum class SkinKind {
+    mount,     // trilinear weights with half frames: smooth, second order (the default)
+    frame4,    // the paper's frame of four particles (S2.11)
+    boundary,  // made anew from voxels over the particles (S1.12, S1.13)
+};
+
+struct SkinSettings {
+    SkinKind kind = SkinKind::mount;
+};
+
+}  // namespace swage
