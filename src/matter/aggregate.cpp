@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "matter/aggregate.h"
+
+#include <numeric>
+
+#include "base/hash.h"
+
+namespace swage {
+
+std::size_t Aggregate::connection_count() const {
+    std::size_t count = 0;
+    for (const ConnectionArrays& direction : connection) {
+        for (float weight : direction.weight) count += weight > 0;
+    }
+    return count;
+}
+
+double Aggregate::volume() const {
+    double cells = 0;
+    for (float fill : cell_fill) cells += fill;
+    return cells * lattice.spacing * lattice.spacing * lattice.spacing;
+}
+
+double Aggregate::mass() const {
+    double sum = 0;
+    for (double m : particle_mass) sum += m;
+    return sum;
+}
+
+Vec3 Aggregate::surface_position(std::size_t point) const {
+    Vec3 x = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) {
+        const double weight = surface.weight[point][c];
+        if (weight != 0) x += weight * particle_position.at(surface.corner[point][c]);
+    }
+    return x;
+}
+
+namespace {
+template <typename T>
+std::size_t bytes_of(const std::vector<T>& values) {
+    return values.capacity() * sizeof(T);
+}
+std::size_t bytes_of(const Vec3Array& a) { return bytes_of(a.x) + bytes_of(a.y) + bytes_of(a.z); }
+}  // namespace
+
+std::size_t Aggregate::bytes() const {
+    std::size_t sum = bytes_of(lattice.particle_run) + bytes_of(lattice.span) +
+                      bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
+                      bytes_of(particle_reference) + bytes_of(particle_position) +
+                      bytes_of(particle_velocity) + bytes_of(particle_mass) + bytes_of(cell_fill) +
+                      bytes_of(cell_centroid) + bytes_of(surface.corner) +
+                      bytes_of(surface.weight) + bytes_of(surface.area) +
+                      bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
+    for (const ConnectionArrays& direction : connection) {
+        sum += bytes_of(direction.weight) + bytes_of(direction.plastic);
+    }
+    return sum;
+}
+
+Pieces find_pieces(const Aggregate& matter) {
+    // Union-find whose root is always the lowest particle, so the numbering is canonical.
+    std::vector<int> parent(matter.particle_count());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int p) {
+        while (parent[p] != p) p = parent[p] = parent[parent[p]];
+        return p;
+    };
+    for (const Span& span : matter.lattice.span) {
+        const std::vector<float>& weight = matter.connection[span.direction].weight;
+        for (int n = 0; n < span.count; ++n) {
+            if (weight[span.lower + n] <= 0) continue;
+            const int a = root(span.lower + n), b = root(span.upper + n);
+            if (a < b) parent[b] = a;
+            if (b < a) parent[a] = b;
+        }
+    }
+    Pieces pieces;
+    pieces.particle_piece.resize(parent.size());
+    for (std::size_t p = 0; p < parent.size(); ++p) {
+        const int r = root(static_cast<int>(p));
+        pieces.particle_piece[p] =
+            r == static_cast<int>(p) ? pieces.count++ : pieces.particle_piece[r];
+    }
+    return pieces;
+}
+
+std::uint64_t state_hash(const Aggregate& matter) {
+    Hasher hasher;
+    const auto add = [&](const Vec3Array& a) {
+        hasher.add(std::span<const double>(a.x));
+        hasher.add(std::span<const double>(a.y));
+        hasher.add(std::span<const double>(a.z));
+    };
+    add(matter.particle_reference);
+    add(matter.particle_position);
+    add(matter.particle_velocity);
+    hasher.add(std::span<const double>(matter.particle_mass));
+    for (const ConnectionArrays& direction : matter.connection) {
+        hasher.add(std::span<const float>(direction.weight));
+        hasher.add(std::span<const float>(direction.plastic));
+    }
+    return hasher.value();
+}
+
+}  // namespace swage
