@@ -33,10 +33,30 @@ struct Pose {
     }
 };
 
-// The pose a share `s` (0 to 1) of the way from one pose to another: straight line, shortest turn.
+inline Mat3 cross_matrix(const Vec3& v) {
+    Mat3 m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+}
+
+// The pose a share `s` (0 to 1) of the way along the screw motion from one pose to another, so
+// that a turn about a distant pivot stays on its arc. The turn is the shorter way round.
 inline Pose between(const Pose& from, const Pose& to, double s) {
-    return {from.rotation.slerp(s, to.rotation),
-            (1 - s) * from.translation + s * to.translation};
+    const Pose change = to * from.inverse();
+    const Eigen::AngleAxisd turn(change.rotation.normalized());
+    double angle = turn.angle();
+    if (angle > kPi) angle -= 2 * kPi;
+    // Left Jacobian of the rotation group, which maps the twist's velocity to the translation.
+    const auto jacobian = [&](double theta) -> Mat3 {
+        const Mat3 k = cross_matrix(turn.axis());
+        if (std::abs(theta) < 1e-6) return Mat3::Identity() + 0.5 * theta * k;
+        return Mat3::Identity() + (1 - std::cos(theta)) / theta * k +
+               (theta - std::sin(theta)) / theta * k * k;
+    };
+    const Vec3 velocity = jacobian(angle).inverse() * change.translation;
+    const Pose part{Quat(Eigen::AngleAxisd(s * angle, turn.axis())),
+                    jacobian(s * angle) * (s * velocity)};
+    return part * from;
 }
 
 }  // namespace swage

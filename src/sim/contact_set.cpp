@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/contact_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "laws/contact.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kPointsPerChunk = 4096;
+
+// The distance is the tool's, the normal is turned into the world.
+Distance world_distance(const Tool& tool, const Pose& world_from_tool, const Vec3& point) {
+    Distance d = distance_to(tool.shape, world_from_tool.inverse() * point);
+    d.normal = world_from_tool.turn(d.normal);
+    return d;
+}
+
+// The farthest that any corner of the tool's bounds moves.
+double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
+    const Box box = bounds_of(tool.shape);
+    double farthest = 0;
+    for (int c = 0; c < 8; ++c) {
+        const Vec3 corner(c & 1 ? box.high.x() : box.low.x(), c & 2 ? box.high.y() : box.low.y(),
+                          c & 4 ? box.high.z() : box.low.z());
+        farthest = std::max(farthest, (to * corner - from * corner).norm());
+    }
+    return farthest;
+}
+
+}  // namespace
+
+ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
+                       const SimSettings& settings)
+    : apparatus_(apparatus),
+      settings_(settings),
+      spacing_(matter.lattice.spacing),
+      young_modulus_(matter.material.young_modulus) {}
+
+double ContactSet::point_stiffness(double area) const {
+    return young_modulus_ * area / spacing_;
+}
+
+void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
+    start_position_.resize(matter.surface.size());
+    for (std::size_t p = 0; p < start_position_.size(); ++p) {
+        start_position_[p] = matter.surface_position(p);
+    }
+    tool_from_world_at_start_.clear();
+    for (const Pose& pose : from.world_from_tool) tool_from_world_at_start_.push_back(pose.inverse());
+}
+
+void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
+    const std::size_t points = matter.surface.size();
+    const std::size_t chunks = (points + kPointsPerChunk - 1) / kPointsPerChunk;
+    std::vector<Pair> found;
+    auto old = pair_.begin();
+    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
+        const Tool& tool = apparatus_.tool[t];
+        const Pose tool_from_world = now.world_from_tool[t].inverse();
+        Box reach = bounds_of(tool.shape);
+        reach.low.array() -= spacing_;
+        reach.high.array() += spacing_;
+        std::vector<std::vector<int>> near(chunks);
+        parallel_for(chunks, [&](std::size_t chunk) {
+            const std::size_t end = std::min(points, (chunk + 1) * kPointsPerChunk);
+            for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
+                const Vec3 local = tool_from_world * matter.surface_position(p);
+                if ((local.array() < reach.low.array()).any() ||
+                    (local.array() > reach.high.array()).any()) {
+                    continue;
+                }
+                if (distance_to(tool.shape, local).value < spacing_) {
+                    near[chunk].push_back(static_cast<int>(p));
+                }
+            }
+        });
+        const int tool_id = static_cast<int>(t);
+        for (const std::vector<int>& part : near) {
+            for (int p : part) {
+                for (; old != pair_.end() && std::pair(old->tool, old->point) < std::pair(tool_id, p);
+                     ++old) {
+                    if (old->stuck) found.push_back(*old);
+                }
+                if (old != pair_.end() && old->tool == tool_id && old->point == p) {
+                    found.push_back(*old++);
+                } else {
+                    found.push_back({tool_id, p, false, Vec3::Zero()});
+                }
+            }
+        }
+    }
+    for (; old != pair_.end(); ++old) {
+        if (old->stuck) found.push_back(*old);
+    }
+    pair_ = std::move(found);
+}
+
+void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
+    const SurfacePoints& surface = matter.surface;
+    const auto add = [&](int point, double k) {
+        for (int c = 0; c < 8; ++c) {
+            stiffness[surface.corner[point][c]] += std::abs(surface.weight[point][c]) * k;
+        }
+    };
+    // Normal and tangential stiffness are equal, so each point pulls with k in every direction.
+    for (const Pair& pair : pair_) {
+        add(pair.point, settings_.contact_stiffness * point_stiffness(surface.area[pair.point]));
+    }
+    for (const Grip& grip : apparatus_.grip) {
+        for (int point : grip.point) {
+            add(point, settings_.grip_stiffness * point_stiffness(surface.area[point]));
+        }
+    }
+}
+
+Vec3 ContactSet::anchor_of(const Pair& pair) const {
+    return pair.stuck ? pair.anchor
+                      : tool_from_world_at_start_[pair.tool] * start_position_[pair.point];
+}
+
+template <typename Act>
+void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const {
+    for (std::size_t n = 0; n < pair_.size(); ++n) {
+        const Pair& pair = pair_[n];
+        const Tool& tool = apparatus_.tool[pair.tool];
+        const Pose& pose = now.world_from_tool[pair.tool];
+        const Vec3 x = matter.surface_position(pair.point);
+        const Distance d = world_distance(tool, pose, x);
+        if (d.value >= 0) continue;
+        const double k =
+            settings_.contact_stiffness * point_stiffness(matter.surface.area[pair.point]);
+        act(n, x, d, k,
+            contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k, tool.friction));
+    }
+}
+
+void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
+    const SurfacePoints& surface = matter.surface;
+    const auto spread = [&](int point, const Vec3& f) {
+        for (int c = 0; c < 8; ++c) {
+            force.add(surface.corner[point][c], double(surface.weight[point][c]) * f);
+        }
+    };
+    for_each_touch(matter, now, [&](std::size_t n, const Vec3&, const Distance&, double,
+                                    const ContactForce& contact) {
+        spread(pair_[n].point, contact.force);
+    });
+    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
+        const Grip& grip = apparatus_.grip[g];
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const int point = grip.point[n];
+            const Vec3 reach =
+                now.world_from_grip[g] * grip.anchor[n] - matter.surface_position(point);
+            spread(point, settings_.grip_stiffness * point_stiffness(surface.area[point]) * reach);
+        }
+    }
+}
+
+std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now) const {
+    std::vector<LoadSum> sums(apparatus_.tool.size() + apparatus_.grip.size());
+    for_each_touch(matter, now, [&](std::size_t n, const Vec3& x, const Distance& d, double,
+                                    const ContactForce& contact) {
+        LoadSum& sum = sums[pair_[n].tool];
+        const Vec3 arm = x - now.world_from_tool[pair_[n].tool].translation;
+        sum.force += contact.force;
+        sum.torque += arm.cross(contact.force);
+        sum.size += contact.force.norm();
+        sum.penetration = std::max(sum.penetration, -d.value);
+        ++sum.contacts;
+        sum.sliding += contact.slips;
+    });
+    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
+        const Grip& grip = apparatus_.grip[g];
+        LoadSum& sum = sums[apparatus_.tool.size() + g];
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const Vec3 x = matter.surface_position(grip.point[n]);
+            const Vec3 f = settings_.grip_stiffness *
+                           point_stiffness(matter.surface.area[grip.point[n]]) *
+                           (now.world_from_grip[g] * grip.anchor[n] - x);
+            sum.force += f;
+            sum.torque += (x - now.world_from_grip[g].translation).cross(f);
+            sum.size += f.norm();
+            ++sum.contacts;
+        }
+    }
+    return sums;
+}
+
+void ContactSet::commit(const Aggregate& matter, const Drive& now) {
+    std::vector<char> touches(pair_.size(), 0);
+    for_each_touch(matter, now, [&](std::size_t n, const Vec3& x, const Distance& d, double k,
+                                    const ContactForce& contact) {
+        Pair& pair = pair_[n];
+        touches[n] = 1;
+        pair.anchor = now.world_from_tool[pair.tool].inverse() *
+                      dragged_anchor(contact, d.normal, x, k);
+    });
+    for (std::size_t n = 0; n < pair_.size(); ++n) pair_[n].stuck = touches[n];
+}
+
+double ContactSet::travel(const Aggregate& matter, const Drive& from, const Drive& to) const {
+    double farthest = 0;
+    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
+        const Tool& tool = apparatus_.tool[t];
+        const double most = bounds_travel(tool, from.world_from_tool[t], to.world_from_tool[t]);
+        if (most <= spacing_) {
+            farthest = std::max(farthest, most);
+            continue;
+        }
+        const Pose tool_from_world = from.world_from_tool[t].inverse();
+        for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+            const Vec3 x = matter.surface_position(p);
+            const Vec3 local = tool_from_world * x;
+            if (distance_to(tool.shape, local).value > most + 2 * spacing_) continue;
+            farthest = std::max(farthest, (to.world_from_tool[t] * local - x).norm());
+        }
+    }
+    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
+        for (const Vec3& anchor : apparatus_.grip[g].anchor) {
+            farthest = std::max(
+                farthest, (to.world_from_grip[g] * anchor - from.world_from_grip[g] * anchor).norm());
+        }
+    }
+    return farthest;
+}
+
+double ContactSet::pressing(const Aggregate& matter, std::size_t tool, const Drive& from,
+                            const Drive& to) const {
+    double sum = 0;
+    int count = 0;
+    for_each_touch(matter, from, [&](std::size_t n, const Vec3& x, const Distance& d, double,
+                                     const ContactForce&) {
+        if (pair_[n].tool != static_cast<int>(tool)) return;
+        const Vec3 local = from.world_from_tool[tool].inverse() * x;
+        sum += d.normal.dot(to.world_from_tool[tool] * local - x);
+        ++count;
+    });
+    return count > 0 ? sum / count : 0;
+}
+
+std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {
+    double hardest = -1;
+    std::string text = "no tool in contact";
+    for_each_touch(matter, now, [&](std::size_t n, const Vec3& x, const Distance&, double,
+                                    const ContactForce& contact) {
+        if (contact.force.norm() <= hardest) return;
+        hardest = contact.force.norm();
+        text = fmt::format("hardest contact: {} at ({:.4g}, {:.4g}, {:.4g}) m with {:.3g} N",
+                           apparatus_.tool[pair_[n].tool].name, x.x(), x.y(), x.z(), hardest);
+    });
+    return text;
+}
+
+}  // namespace swage

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points of the body's true surface against tools and in grips. Forces act on the particles that
+// carry a point, with the point's own weights, so that force and moment are kept exactly.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+#include "sim/settings.h"
+
+namespace swage {
+
+// Sums over one tool or grip; forces are those it exerts on the matter.
+struct LoadSum {
+    Vec3 force = Vec3::Zero();   // [N]
+    Vec3 torque = Vec3::Zero();  // about the origin of its pose [N m]
+    double size = 0;             // sum of the points' force magnitudes [N]
+    double penetration = 0;      // deepest [m]
+    int contacts = 0;
+    int sliding = 0;
+};
+
+class ContactSet {
+  public:
+    ContactSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
+
+    // A move of the drive begins; points touched anew stick where they are now.
+    void begin_move(const Aggregate& matter, const Drive& from);
+
+    // Pairs within one spacing of a tool; pairs with an anchor always stay.
+    void find_candidates(const Aggregate& matter, const Drive& now);
+
+    // Adds to `stiffness` what the present candidates and grips can add to each particle [N/m].
+    void add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const;
+
+    // Adds all contact and grip forces.
+    void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;
+
+    // Sums by tool, then by grip, for the present state.
+    std::vector<LoadSum> loads(const Aggregate& matter, const Drive& now) const;
+
+    // Remembers where each touching point sticks; forgets those that have left.
+    void commit(const Aggregate& matter, const Drive& now);
+
+    // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
+    double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
+
+    // Mean way [m] that the tool's surface moves against the points that touch it now; > 0 presses.
+    double pressing(const Aggregate& matter, std::size_t tool, const Drive& from,
+                    const Drive& to) const;
+
+    // The point with the largest force, for error messages: "tool at (x, y, z)".
+    std::string hardest_point(const Aggregate& matter, const Drive& now) const;
+
+  private:
+    struct Pair {
+        int tool, point;
+        bool stuck;          // has a committed anchor
+        Vec3 anchor;         // in the tool's frame
+    };
+    double point_stiffness(double area) const;  // E A / a [N/m]
+    Vec3 anchor_of(const Pair& pair) const;     // in the tool's frame
+    // Calls act(pair, position, distance, stiffness, contact) for each point inside a tool.
+    template <typename Act>
+    void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const;
+
+    const Apparatus& apparatus_;
+    const SimSettings& settings_;
+    double spacing_, young_modulus_;
+    std::vector<Pair> pair_;           // sorted by tool, then point
+    std::vector<Vec3> start_position_; // of every surface point when the move began
+    std::vector<Pose> tool_from_world_at_start_;
+};
+
+}  // namespace swage

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/lattice_sweep.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "laws/spring_damper.h"
+#include "laws/yield.h"
+
+// One binary for every x86-64: the widest vectors are chosen when it starts. All kernels do the
+// same exact operations lane by lane, so they give the same bytes.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define SWAGE_VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define SWAGE_VECTOR_CLONES
+#endif
+
+namespace swage {
+
+namespace {
+
+constexpr int kBlock = 128;  // connections at a time, so that forces stay in the nearest cache
+constexpr std::size_t kSlabParticles = 8192;
+
+struct SpanArrays {
+    const double *x, *y, *z;     // positions of the lower ends
+    const double *ux, *uy, *uz;  // of the upper ends
+    const float *weight, *plastic;
+    double inverse_reference;
+    double force_scale;  // stiffness * reference_length
+    double yield_strain;
+};
+
+// Force on the lower end of `count` connections.
+SWAGE_VECTOR_CLONES
+void spring_block(const SpanArrays& s, int count, double* __restrict fx, double* __restrict fy,
+                  double* __restrict fz) {
+    for (int n = 0; n < count; ++n) {
+        const double dx = s.ux[n] - s.x[n], dy = s.uy[n] - s.y[n], dz = s.uz[n] - s.z[n];
+        const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+        const double strain = distance * s.inverse_reference - 1.0 - s.plastic[n];
+        const double low = strain < -s.yield_strain ? -s.yield_strain : strain;
+        const double elastic = low > s.yield_strain ? s.yield_strain : low;
+        // Coincident ends have no direction and get no force.
+        const double pull = s.force_scale * s.weight[n] * elastic / (distance + 1e-300);
+        fx[n] = pull * dx;
+        fy[n] = pull * dy;
+        fz[n] = pull * dz;
+    }
+}
+
+// The dashpots' share (S2.4): the part of the relative velocity along the connection.
+SWAGE_VECTOR_CLONES
+void dashpot_block(const SpanArrays& s, const SpanArrays& v, double damping, int count,
+                   double* __restrict fx, double* __restrict fy, double* __restrict fz) {
+    for (int n = 0; n < count; ++n) {
+        const double dx = s.ux[n] - s.x[n], dy = s.uy[n] - s.y[n], dz = s.uz[n] - s.z[n];
+        const double vx = v.ux[n] - v.x[n], vy = v.uy[n] - v.y[n], vz = v.uz[n] - v.z[n];
+        const double square = dx * dx + dy * dy + dz * dz;
+        const double pull =
+            damping * s.weight[n] * (vx * dx + vy * dy + vz * dz) / (square + 1e-300);
+        fx[n] += pull * dx;
+        fy[n] += pull * dy;
+        fz[n] += pull * dz;
+    }
+}
+
+SWAGE_VECTOR_CLONES
+void add_block(const double* __restrict f, int count, double* __restrict lower) {
+    for (int n = 0; n < count; ++n) lower[n] += f[n];
+}
+SWAGE_VECTOR_CLONES
+void subtract_block(const double* __restrict f, int count, double* __restrict upper) {
+    for (int n = 0; n < count; ++n) upper[n] -= f[n];
+}
+
+SpanArrays arrays_at(const Vec3Array& a, ParticleId lower, ParticleId upper) {
+    SpanArrays s{};
+    s.x = a.x.data() + lower, s.y = a.y.data() + lower, s.z = a.z.data() + lower;
+    s.ux = a.x.data() + upper, s.uy = a.y.data() + upper, s.uz = a.z.data() + upper;
+    return s;
+}
+
+double yield_strain_of(const LatticeLaw& law, int direction) {
+    return direction < kEdgeCount ? law.yield_strain_edge : law.yield_strain_diagonal;
+}
+
+}  // namespace
+
+LatticeLaw lattice_law(const Aggregate& matter) {
+    LatticeLaw law;
+    law.stiffness = lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing);
+    if (std::isfinite(matter.material.yield_stress)) {
+        law.yield_strain_edge = matter.material.yield_stress / matter.material.young_modulus;
+        law.yield_strain_diagonal = kDiagonalYieldShare * law.yield_strain_edge;
+    }
+    return law;
+}
+
+LatticeSweep::LatticeSweep(const Aggregate& matter) {
+    const std::vector<Span>& spans = matter.lattice.span;
+    const std::size_t particles = matter.particle_count();
+    const std::size_t slabs = std::clamp<std::size_t>(particles / kSlabParticles, 1, 64);
+    std::size_t s = 0;
+    for (std::size_t n = 0; n < slabs; ++n) {
+        Slab slab{};
+        slab.span_begin = s;
+        slab.begin = s < spans.size() ? spans[s].lower : static_cast<ParticleId>(particles);
+        slab.reach = slab.begin;
+        const std::size_t stop = particles * (n + 1) / slabs;
+        while (s < spans.size() &&
+               (n + 1 == slabs || static_cast<std::size_t>(spans[s].lower) < stop)) {
+            slab.begin = std::min(slab.begin, spans[s].lower);
+            slab.reach = std::max(slab.reach, spans[s].upper + spans[s].count);
+            ++s;
+        }
+        slab.span_end = s;
+        if (slab.span_end == slab.span_begin) continue;
+        slab.part.resize(static_cast<std::size_t>(slab.reach - slab.begin));
+        slab_.push_back(std::move(slab));
+    }
+}
+
+void LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3Array& force) {
+    const std::size_t particles = matter.particle_count();
+    force.resize(particles);
+    parallel_for(slab_.size(), [&](std::size_t index) {
+        Slab& slab = slab_[index];
+        std::fill(slab.part.x.begin(), slab.part.x.end(), 0.0);
+        std::fill(slab.part.y.begin(), slab.part.y.end(), 0.0);
+        std::fill(slab.part.z.begin(), slab.part.z.end(), 0.0);
+        alignas(64) double fx[kBlock], fy[kBlock], fz[kBlock];
+        for (std::size_t n = slab.span_begin; n < slab.span_end; ++n) {
+            const Span& span = matter.lattice.span[n];
+            const ConnectionArrays& history = matter.connection[span.direction];
+            const double reference = reference_length(matter.lattice, span.direction);
+            for (int at = 0; at < span.count; at += kBlock) {
+                const int count = std::min(kBlock, span.count - at);
+                const ParticleId lower = span.lower + at, upper = span.upper + at;
+                SpanArrays s = arrays_at(matter.particle_position, lower, upper);
+                s.weight = history.weight.data() + lower;
+                s.plastic = history.plastic.data() + lower;
+                s.inverse_reference = 1.0 / reference;
+                s.force_scale = law.stiffness * reference;
+                s.yield_strain = yield_strain_of(law, span.direction);
+                spring_block(s, count, fx, fy, fz);
+                if (law.damping > 0) {
+                    const SpanArrays v = arrays_at(matter.particle_velocity, lower, upper);
+                    dashpot_block(s, v, law.damping, count, fx, fy, fz);
+                }
+                const std::size_t l = lower - slab.begin, u = upper - slab.begin;
+                add_block(fx, count, slab.part.x.data() + l);
+                add_block(fy, count, slab.part.y.data() + l);
+                add_block(fz, count, slab.part.z.data() + l);
+                subtract_block(fx, count, slab.part.x.data() + u);
+                subtract_block(fy, count, slab.part.y.data() + u);
+                subtract_block(fz, count, slab.part.z.data() + u);
+            }
+        }
+    });
+    // Each particle adds what the slabs that reach it found, in the order of the slabs.
+    const std::size_t chunks = std::max<std::size_t>(1, slab_.size());
+    parallel_for(chunks, [&](std::size_t chunk) {
+        const std::size_t begin = particles * chunk / chunks;
+        const std::size_t end = particles * (chunk + 1) / chunks;
+        std::fill(force.x.begin() + begin, force.x.begin() + end, 0.0);
+        std::fill(force.y.begin() + begin, force.y.begin() + end, 0.0);
+        std::fill(force.z.begin() + begin, force.z.begin() + end, 0.0);
+        for (const Slab& slab : slab_) {
+            const std::size_t from = std::max<std::size_t>(begin, slab.begin);
+            const std::size_t to = std::min<std::size_t>(end, slab.reach);
+            if (from >= to) continue;
+            const int count = static_cast<int>(to - from);
+            add_block(slab.part.x.data() + (from - slab.begin), count, force.x.data() + from);
+            add_block(slab.part.y.data() + (from - slab.begin), count, force.y.data() + from);
+            add_block(slab.part.z.data() + (from - slab.begin), count, force.z.data() + from);
+        }
+    });
+}
+
+namespace {
+
+// Calls act(direction, lower, upper, reference_length, distance) for each unsevered connection.
+template <typename Act>
+void for_each_connection(const Aggregate& matter, const Act& act) {
+    for (const Span& span : matter.lattice.span) {
+        const std::vector<float>& weight = matter.connection[span.direction].weight;
+        const double reference = reference_length(matter.lattice, span.direction);
+        for (int n = 0; n < span.count; ++n) {
+            if (weight[span.lower + n] <= 0) continue;
+            const Vec3 reach = matter.particle_position.at(span.upper + n) -
+                               matter.particle_position.at(span.lower + n);
+            act(span.direction, span.lower + n, span.upper + n, reference, reach.norm());
+        }
+    }
+}
+
+}  // namespace
+
+double commit_plastic(Aggregate& matter, const LatticeLaw& law) {
+    if (!law.yields()) return 0;
+    double lost = 0;
+    for_each_connection(matter, [&](int d, ParticleId lower, ParticleId, double reference,
+                                    double distance) {
+        const double limit = yield_strain_of(law, d);
+        float& plastic = matter.connection[d].plastic[lower];
+        const double strain = distance / reference - 1;
+        const double after = committed_plastic_strain(strain, double(plastic), limit);
+        lost += law.stiffness * matter.connection[d].weight[lower] * reference * reference *
+                plastic_work(plastic, after, limit);
+        plastic = static_cast<float>(after);
+    });
+    return lost;
+}
+
+double elastic_energy(const Aggregate& matter, const LatticeLaw& law) {
+    double sum = 0;
+    for_each_connection(matter, [&](int d, ParticleId lower, ParticleId, double reference,
+                                    double distance) {
+        const double strain = returned_strain(
+            distance / reference - 1, double(matter.connection[d].plastic[lower]),
+            yield_strain_of(law, d));
+        sum += 0.5 * law.stiffness * matter.connection[d].weight[lower] * reference * reference *
+               strain * strain;
+    });
+    return sum;
+}
+
+std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law) {
+    // A spring's energy k (n.(u1 - u2))^2 / 2 is at most k ((n.u1)^2 + (n.u2)^2): each end may be
+    // given the matrix 2 k n n^T of its own. Bounded by the row sums of their sum.
+    std::vector<Mat3> block(matter.particle_count(), Mat3::Zero());
+    for (const Span& span : matter.lattice.span) {
+        const auto& f = kForward[span.direction];
+        const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
+        const Mat3 dyad = n * n.transpose();
+        const std::vector<float>& weight = matter.connection[span.direction].weight;
+        for (int i = 0; i < span.count; ++i) {
+            const double k = law.stiffness * weight[span.lower + i];
+            block[span.lower + i] += 2 * k * dyad;
+            block[span.upper + i] += 2 * k * dyad;
+        }
+    }
+    std::vector<double> bound(block.size());
+    for (std::size_t p = 0; p < block.size(); ++p) {
+        bound[p] = block[p].cwiseAbs().rowwise().sum().maxCoeff();
+    }
+    return bound;
+}
+
+}  // namespace swage
