@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where two faces are equally near (an axis, the middle of a box), one of them is taken, always the
+// same, so that every point has a normal.
+#include "geometry/shape.h"
+
+#include <algorithm>
+
+#include "geometry/distance_field.h"
+
+namespace swage {
+
+namespace {
+
+double sign_of(double value) { return value < 0 ? -1.0 : 1.0; }
+
+Distance distance(const CylinderShape& cylinder, const Vec3& p) {
+    const double from_axis = std::hypot(p.x(), p.y());
+    const Vec3 radial =
+        from_axis > 0 ? Vec3(p.x() / from_axis, p.y() / from_axis, 0) : Vec3::UnitX();
+    const Vec3 axial(0, 0, sign_of(p.z()));
+    const double beyond_side = from_axis - cylinder.radius;
+    const double beyond_end = std::abs(p.z()) - 0.5 * cylinder.length;
+    if (beyond_side > 0 && beyond_end > 0) {
+        const double value = std::hypot(beyond_side, beyond_end);
+        return {value, (beyond_side * radial + beyond_end * axial) / value};
+    }
+    return beyond_side >= beyond_end ? Distance{beyond_side, radial} : Distance{beyond_end, axial};
+}
+
+Distance distance(const BoxShape& box, const Vec3& p) {
+    // A smaller sharp box, grown by the rounding.
+    const double rounding = std::clamp(box.rounding, 0.0, 0.5 * box.size.minCoeff());
+    const Vec3 beyond = p.cwiseAbs() - (0.5 * box.size - Vec3::Constant(rounding));
+    const Vec3 outside = beyond.cwiseMax(0.0);
+    const double length = outside.norm();
+    if (length > 0) {
+        Vec3 normal = outside / length;
+        for (int axis = 0; axis < 3; ++axis) normal[axis] *= sign_of(p[axis]);
+        return {length - rounding, normal};
+    }
+    int axis = 0;
+    const double nearest = beyond.maxCoeff(&axis);
+    return {nearest - rounding, sign_of(p[axis]) * Vec3::Unit(axis)};
+}
+
+Distance distance(const SphereShape& sphere, const Vec3& p) {
+    const double length = p.norm();
+    return {length - sphere.radius, length > 0 ? Vec3(p / length) : Vec3::UnitX()};
+}
+
+Distance distance(const MeshShape& mesh, const Vec3& p) { return mesh.field->at(p); }
+
+Box centred(const Vec3& size) { return {-0.5 * size, 0.5 * size}; }
+Box bounds(const CylinderShape& cylinder) {
+    return centred({2 * cylinder.radius, 2 * cylinder.radius, cylinder.length});
+}
+Box bounds(const BoxShape& box) { return centred(box.size); }
+Box bounds(const SphereShape& sphere) { return centred(Vec3::Constant(2 * sphere.radius)); }
+Box bounds(const MeshShape& mesh) { return box_of(mesh.mesh->position); }
+
+}  // namespace
+
+Distance distance_to(const Shape& shape, const Vec3& point) {
+    return std::visit([&](const auto& one) { return distance(one, point); }, shape);
+}
+
+Box bounds_of(const Shape& shape) {
+    return std::visit([](const auto& one) { return bounds(one); }, shape);
+}
+
+}  // namespace swage
