@@ -26,8 +26,15 @@ using CellId = std::int32_t;
 inline constexpr int kForwardCount = 9;
 inline constexpr int kEdgeCount = 3;
 inline constexpr std::array<std::array<int, 3>, kForwardCount> kForward = {{
-    {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
-    {1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1},
+    {1, 0, 0},
+    {0, 1, 0},
+    {0, 0, 1},
+    {1, 1, 0},
+    {-1, 1, 0},
+    {1, 0, 1},
+    {-1, 0, 1},
+    {0, 1, 1},
+    {0, -1, 1},
 }};
 
 struct Vec3Array {
@@ -42,14 +49,14 @@ struct Vec3Array {
 
 // Consecutive particles along x.
 struct ParticleRun {
-    int i, j, k;       // lattice site of the first
+    int i, j, k;  // lattice site of the first
     ParticleId first;
     int count;
 };
 
 // Connections of one direction between particles lower + n and upper + n, n = 0 ... count - 1.
 struct Span {
-    int direction;     // into kForward
+    int direction;  // into kForward
     ParticleId lower;
     ParticleId upper;
     int count;
@@ -58,20 +65,21 @@ struct Span {
 // Consecutive cells along x. Cell n has the particles row[0] + n and + n + 1 at (y, z), row[1] at
 // (y + 1, z), row[2] at (y, z + 1), row[3] at (y + 1, z + 1).
 struct CellRun {
-    int i, j, k;       // lattice site of the first cell's low corner
+    int i, j, k;  // lattice site of the first cell's low corner
     CellId first;
     int count;
     std::array<ParticleId, 4> row;
 };
 
 struct Lattice {
-    Vec3 origin = Vec3::Zero();  // site (0, 0, 0) at molding [m]
-    double spacing = 0;          // [m]
+    Vec3 origin = Vec3::Zero();        // site (0, 0, 0) at molding [m]
+    double spacing = 0;                // [m]
     Vec3i cell_count = Vec3i::Zero();  // cells of the box along x, y, z
     std::vector<ParticleRun> particle_run;
-    std::vector<Span> span;      // in the order of their lower particle's run
+    std::vector<Span> span;  // in the order of their lower particle's run
     std::vector<CellRun> cell_run;
-    std::vector<int> cell_row_begin;  // for (j, k) = j + cell_count.y() * k: first cell_run; one more at the end
+    std::vector<int>
+        cell_row_begin;  // for (j, k) = j + cell_count.y() * k: first cell_run; one more at the end
 
     // The cell at this site, or -1.
     CellId cell_at(int i, int j, int k) const;
@@ -101,14 +109,14 @@ struct Aggregate {
     Material material;
     Lattice lattice;
 
-    Vec3Array particle_reference;  // position at molding [m]
-    Vec3Array particle_position;   // [m]
-    Vec3Array particle_velocity;   // [m/s]
+    Vec3Array particle_reference;       // position at molding [m]
+    Vec3Array particle_position;        // [m]
+    Vec3Array particle_velocity;        // [m/s]
     std::vector<double> particle_mass;  // [kg]
 
     std::array<ConnectionArrays, kForwardCount> connection;
 
-    std::vector<float> cell_fill;              // share of the cell's volume inside the mesh, (0, 1]
+    std::vector<float> cell_fill;  // share of the cell's volume inside the mesh, (0, 1]
     std::vector<Eigen::Vector3f> cell_centroid;  // of that share, in the cell, each -0.5 to 0.5
 
     SurfacePoints surface;
@@ -118,7 +126,7 @@ struct Aggregate {
     double volume() const;                 // of the material at molding [m3]
     double mass() const;                   // [kg]
     Vec3 surface_position(std::size_t point) const;
-    std::size_t bytes() const;             // of all arrays
+    std::size_t bytes() const;  // of all arrays
 };
 
 inline double reference_length(const Lattice& lattice, int direction) {

@@ -15,7 +15,7 @@ namespace swage {
 struct Tool {
     std::string name;
     Shape shape;
-    double friction;      // Coulomb, >= 0
+    double friction;  // Coulomb, >= 0
     Vec3 color = {0.35, 0.38, 0.42};
 };
 
@@ -50,5 +50,8 @@ struct Drive {
     std::vector<Pose> world_from_grip;
     std::vector<Pose> world_from_blade;
 };
+
+// The drive a share `s` of the way between two.
+Drive drive_between(const Drive& from, const Drive& to, double s);
 
 }  // namespace swage

@@ -139,9 +139,9 @@ CellId Lattice::cell_at(int i, int j, int k) const {
 
 namespace {
 const CellRun& run_of_cell(const std::vector<CellRun>& runs, CellId cell) {
-    const auto after = std::upper_bound(
-        runs.begin(), runs.end(), cell,
-        [](CellId wanted, const CellRun& run) { return wanted < run.first; });
+    const auto after =
+        std::upper_bound(runs.begin(), runs.end(), cell,
+                         [](CellId wanted, const CellRun& run) { return wanted < run.first; });
     return *std::prev(after);
 }
 }  // namespace

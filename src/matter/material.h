@@ -9,12 +9,12 @@ namespace swage {
 
 struct Material {
     std::string name = "custom";
-    double young_modulus = 1e6;  // [Pa], > 0
-    double poisson_ratio = 0.25; // NOTE: lattices of springs alone are 1/4 whatever is asked
-    double density = 1000;       // [kg/m3], > 0
+    double young_modulus = 1e6;   // [Pa], > 0
+    double poisson_ratio = 0.25;  // NOTE: lattices of springs alone are 1/4 whatever is asked
+    double density = 1000;        // [kg/m3], > 0
     double yield_stress = std::numeric_limits<double>::infinity();  // [Pa], > 0; inf: never yields
-    double damping_ratio = 0.05; // of the highest lattice mode, 0 to 1; explicit steps only
-    double friction = 0.3;       // Coulomb, against tools that do not say otherwise, >= 0
+    double damping_ratio = 0.05;  // of the highest lattice mode, 0 to 1; explicit steps only
+    double friction = 0.3;        // Coulomb, against tools that do not say otherwise, >= 0
 };
 
 }  // namespace swage

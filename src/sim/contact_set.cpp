@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/parallel.h"
 #include "laws/contact.h"
+#include "sim/move_outcome.h"
 
 namespace swage {
 
@@ -37,13 +39,26 @@ double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
 
 ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
                        const SimSettings& settings)
-    : apparatus_(apparatus),
-      settings_(settings),
+    : apparatus_(&apparatus),
+      settings_(&settings),
       spacing_(matter.lattice.spacing),
       young_modulus_(matter.material.young_modulus) {}
 
-double ContactSet::point_stiffness(double area) const {
-    return young_modulus_ * area / spacing_;
+double ContactSet::point_stiffness(const Aggregate& matter, int point, double factor) const {
+    const double k = factor * young_modulus_ * matter.surface.area[point] / spacing_;
+    return stiffness_limit_.empty() ? k : std::min(k, stiffness_limit_[point]);
+}
+
+void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
+    stiffness_limit_.resize(matter.surface.size());
+    for (std::size_t p = 0; p < stiffness_limit_.size(); ++p) {
+        double lightest = std::numeric_limits<double>::infinity();
+        for (int c = 0; c < 8; ++c) {
+            if (matter.surface.weight[p][c] <= 0.05f) continue;
+            lightest = std::min(lightest, matter.particle_mass[matter.surface.corner[p][c]]);
+        }
+        stiffness_limit_[p] = 0.25 * lightest / (step * step);
+    }
 }
 
 void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
@@ -52,7 +67,8 @@ void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
         start_position_[p] = matter.surface_position(p);
     }
     tool_from_world_at_start_.clear();
-    for (const Pose& pose : from.world_from_tool) tool_from_world_at_start_.push_back(pose.inverse());
+    for (const Pose& pose : from.world_from_tool)
+        tool_from_world_at_start_.push_back(pose.inverse());
 }
 
 void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
@@ -60,8 +76,8 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
     const std::size_t chunks = (points + kPointsPerChunk - 1) / kPointsPerChunk;
     std::vector<Pair> found;
     auto old = pair_.begin();
-    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        const Tool& tool = apparatus_.tool[t];
+    for (std::size_t t = 0; t < apparatus_->tool.size(); ++t) {
+        const Tool& tool = apparatus_->tool[t];
         const Pose tool_from_world = now.world_from_tool[t].inverse();
         Box reach = bounds_of(tool.shape);
         reach.low.array() -= spacing_;
@@ -83,7 +99,8 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
         const int tool_id = static_cast<int>(t);
         for (const std::vector<int>& part : near) {
             for (int p : part) {
-                for (; old != pair_.end() && std::pair(old->tool, old->point) < std::pair(tool_id, p);
+                for (;
+                     old != pair_.end() && std::pair(old->tool, old->point) < std::pair(tool_id, p);
                      ++old) {
                     if (old->stuck) found.push_back(*old);
                 }
@@ -110,11 +127,11 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
     };
     // Normal and tangential stiffness are equal, so each point pulls with k in every direction.
     for (const Pair& pair : pair_) {
-        add(pair.point, settings_.contact_stiffness * point_stiffness(surface.area[pair.point]));
+        add(pair.point, point_stiffness(matter, pair.point, settings_->contact_stiffness));
     }
-    for (const Grip& grip : apparatus_.grip) {
+    for (const Grip& grip : apparatus_->grip) {
         for (int point : grip.point) {
-            add(point, settings_.grip_stiffness * point_stiffness(surface.area[point]));
+            add(point, point_stiffness(matter, point, settings_->grip_stiffness));
         }
     }
 }
@@ -128,13 +145,12 @@ template <typename Act>
 void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const {
     for (std::size_t n = 0; n < pair_.size(); ++n) {
         const Pair& pair = pair_[n];
-        const Tool& tool = apparatus_.tool[pair.tool];
+        const Tool& tool = apparatus_->tool[pair.tool];
         const Pose& pose = now.world_from_tool[pair.tool];
         const Vec3 x = matter.surface_position(pair.point);
         const Distance d = world_distance(tool, pose, x);
         if (d.value >= 0) continue;
-        const double k =
-            settings_.contact_stiffness * point_stiffness(matter.surface.area[pair.point]);
+        const double k = point_stiffness(matter, pair.point, settings_->contact_stiffness);
         act(n, x, d, k,
             contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k, tool.friction));
     }
@@ -147,41 +163,40 @@ void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array
             force.add(surface.corner[point][c], double(surface.weight[point][c]) * f);
         }
     };
-    for_each_touch(matter, now, [&](std::size_t n, const Vec3&, const Distance&, double,
-                                    const ContactForce& contact) {
-        spread(pair_[n].point, contact.force);
-    });
-    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
-        const Grip& grip = apparatus_.grip[g];
+    for_each_touch(matter, now,
+                   [&](std::size_t n, const Vec3&, const Distance&, double,
+                       const ContactForce& contact) { spread(pair_[n].point, contact.force); });
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        const Grip& grip = apparatus_->grip[g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             const int point = grip.point[n];
             const Vec3 reach =
                 now.world_from_grip[g] * grip.anchor[n] - matter.surface_position(point);
-            spread(point, settings_.grip_stiffness * point_stiffness(surface.area[point]) * reach);
+            spread(point, point_stiffness(matter, point, settings_->grip_stiffness) * reach);
         }
     }
 }
 
 std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now) const {
-    std::vector<LoadSum> sums(apparatus_.tool.size() + apparatus_.grip.size());
-    for_each_touch(matter, now, [&](std::size_t n, const Vec3& x, const Distance& d, double,
-                                    const ContactForce& contact) {
-        LoadSum& sum = sums[pair_[n].tool];
-        const Vec3 arm = x - now.world_from_tool[pair_[n].tool].translation;
-        sum.force += contact.force;
-        sum.torque += arm.cross(contact.force);
-        sum.size += contact.force.norm();
-        sum.penetration = std::max(sum.penetration, -d.value);
-        ++sum.contacts;
-        sum.sliding += contact.slips;
-    });
-    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
-        const Grip& grip = apparatus_.grip[g];
-        LoadSum& sum = sums[apparatus_.tool.size() + g];
+    std::vector<LoadSum> sums(apparatus_->tool.size() + apparatus_->grip.size());
+    for_each_touch(
+        matter, now,
+        [&](std::size_t n, const Vec3& x, const Distance& d, double, const ContactForce& contact) {
+            LoadSum& sum = sums[pair_[n].tool];
+            const Vec3 arm = x - now.world_from_tool[pair_[n].tool].translation;
+            sum.force += contact.force;
+            sum.torque += arm.cross(contact.force);
+            sum.size += contact.force.norm();
+            sum.penetration = std::max(sum.penetration, -d.value);
+            ++sum.contacts;
+            sum.sliding += contact.slips;
+        });
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        const Grip& grip = apparatus_->grip[g];
+        LoadSum& sum = sums[apparatus_->tool.size() + g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             const Vec3 x = matter.surface_position(grip.point[n]);
-            const Vec3 f = settings_.grip_stiffness *
-                           point_stiffness(matter.surface.area[grip.point[n]]) *
+            const Vec3 f = point_stiffness(matter, grip.point[n], settings_->grip_stiffness) *
                            (now.world_from_grip[g] * grip.anchor[n] - x);
             sum.force += f;
             sum.torque += (x - now.world_from_grip[g].translation).cross(f);
@@ -194,20 +209,21 @@ std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now
 
 void ContactSet::commit(const Aggregate& matter, const Drive& now) {
     std::vector<char> touches(pair_.size(), 0);
-    for_each_touch(matter, now, [&](std::size_t n, const Vec3& x, const Distance& d, double k,
-                                    const ContactForce& contact) {
-        Pair& pair = pair_[n];
-        touches[n] = 1;
-        pair.anchor = now.world_from_tool[pair.tool].inverse() *
-                      dragged_anchor(contact, d.normal, x, k);
-    });
+    for_each_touch(matter, now,
+                   [&](std::size_t n, const Vec3& x, const Distance& d, double k,
+                       const ContactForce& contact) {
+                       Pair& pair = pair_[n];
+                       touches[n] = 1;
+                       pair.anchor = now.world_from_tool[pair.tool].inverse() *
+                                     dragged_anchor(contact, d.normal, x, k);
+                   });
     for (std::size_t n = 0; n < pair_.size(); ++n) pair_[n].stuck = touches[n];
 }
 
 double ContactSet::travel(const Aggregate& matter, const Drive& from, const Drive& to) const {
     double farthest = 0;
-    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        const Tool& tool = apparatus_.tool[t];
+    for (std::size_t t = 0; t < apparatus_->tool.size(); ++t) {
+        const Tool& tool = apparatus_->tool[t];
         const double most = bounds_travel(tool, from.world_from_tool[t], to.world_from_tool[t]);
         if (most <= spacing_) {
             farthest = std::max(farthest, most);
@@ -221,10 +237,11 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
             farthest = std::max(farthest, (to.world_from_tool[t] * local - x).norm());
         }
     }
-    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
-        for (const Vec3& anchor : apparatus_.grip[g].anchor) {
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        for (const Vec3& anchor : apparatus_->grip[g].anchor) {
             farthest = std::max(
-                farthest, (to.world_from_grip[g] * anchor - from.world_from_grip[g] * anchor).norm());
+                farthest,
+                (to.world_from_grip[g] * anchor - from.world_from_grip[g] * anchor).norm());
         }
     }
     return farthest;
@@ -234,27 +251,40 @@ double ContactSet::pressing(const Aggregate& matter, std::size_t tool, const Dri
                             const Drive& to) const {
     double sum = 0;
     int count = 0;
-    for_each_touch(matter, from, [&](std::size_t n, const Vec3& x, const Distance& d, double,
-                                     const ContactForce&) {
-        if (pair_[n].tool != static_cast<int>(tool)) return;
-        const Vec3 local = from.world_from_tool[tool].inverse() * x;
-        sum += d.normal.dot(to.world_from_tool[tool] * local - x);
-        ++count;
-    });
+    for_each_touch(
+        matter, from,
+        [&](std::size_t n, const Vec3& x, const Distance& d, double, const ContactForce&) {
+            if (pair_[n].tool != static_cast<int>(tool)) return;
+            const Vec3 local = from.world_from_tool[tool].inverse() * x;
+            sum += d.normal.dot(to.world_from_tool[tool] * local - x);
+            ++count;
+        });
     return count > 0 ? sum / count : 0;
 }
 
 std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {
     double hardest = -1;
     std::string text = "no tool in contact";
-    for_each_touch(matter, now, [&](std::size_t n, const Vec3& x, const Distance&, double,
-                                    const ContactForce& contact) {
-        if (contact.force.norm() <= hardest) return;
-        hardest = contact.force.norm();
-        text = fmt::format("hardest contact: {} at ({:.4g}, {:.4g}, {:.4g}) m with {:.3g} N",
-                           apparatus_.tool[pair_[n].tool].name, x.x(), x.y(), x.z(), hardest);
-    });
+    for_each_touch(
+        matter, now,
+        [&](std::size_t n, const Vec3& x, const Distance&, double, const ContactForce& contact) {
+            if (contact.force.norm() <= hardest) return;
+            hardest = contact.force.norm();
+            text = fmt::format("hardest contact: {} at ({:.4g}, {:.4g}, {:.4g}) m with {:.3g} N",
+                               apparatus_->tool[pair_[n].tool].name, x.x(), x.y(), x.z(), hardest);
+        });
     return text;
+}
+
+void add_work(const Drive& from, const Drive& to, const std::vector<LoadSum>& before,
+              const std::vector<LoadSum>& after, std::vector<double>& work) {
+    const std::size_t tools = from.world_from_tool.size();
+    for (std::size_t n = 0; n < work.size(); ++n) {
+        const Pose& a = n < tools ? from.world_from_tool[n] : from.world_from_grip[n - tools];
+        const Pose& b = n < tools ? to.world_from_tool[n] : to.world_from_grip[n - tools];
+        work[n] += 0.5 * (before[n].force + after[n].force).dot(b.translation - a.translation) +
+                   0.5 * (before[n].torque + after[n].torque).dot(turn_between(a, b));
+    }
 }
 
 }  // namespace swage

@@ -26,6 +26,10 @@ class ContactSet {
   public:
     ContactSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
 
+    // Explicit steps of this length [s] must stay stable: no point is stiffer than a quarter of
+    // what its lightest carrier can follow.
+    void limit_stiffness(const Aggregate& matter, double step);
+
     // A move of the drive begins; points touched anew stick where they are now.
     void begin_move(const Aggregate& matter, const Drive& from);
 
@@ -57,20 +61,21 @@ class ContactSet {
   private:
     struct Pair {
         int tool, point;
-        bool stuck;          // has a committed anchor
-        Vec3 anchor;         // in the tool's frame
+        bool stuck;   // has a committed anchor
+        Vec3 anchor;  // in the tool's frame
     };
-    double point_stiffness(double area) const;  // E A / a [N/m]
-    Vec3 anchor_of(const Pair& pair) const;     // in the tool's frame
+    double point_stiffness(const Aggregate& matter, int point, double factor) const;  // [N/m]
+    Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame
     // Calls act(pair, position, distance, stiffness, contact) for each point inside a tool.
     template <typename Act>
     void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const;
 
-    const Apparatus& apparatus_;
-    const SimSettings& settings_;
+    const Apparatus* apparatus_;
+    const SimSettings* settings_;
     double spacing_, young_modulus_;
-    std::vector<Pair> pair_;           // sorted by tool, then point
-    std::vector<Vec3> start_position_; // of every surface point when the move began
+    std::vector<double> stiffness_limit_;  // one a point [N/m]; empty: none
+    std::vector<Pair> pair_;               // sorted by tool, then point
+    std::vector<Vec3> start_position_;     // of every surface point when the move began
     std::vector<Pose> tool_from_world_at_start_;
 };
 

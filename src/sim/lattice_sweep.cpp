@@ -49,16 +49,19 @@ void spring_block(const SpanArrays& s, int count, double* __restrict fx, double*
     }
 }
 
-// The dashpots' share (S2.4): the part of the relative velocity along the connection.
+// The dashpots' share (S2.4): the part of the relative velocity along the connection; and the
+// power [W] that each takes.
 SWAGE_VECTOR_CLONES
 void dashpot_block(const SpanArrays& s, const SpanArrays& v, double damping, int count,
-                   double* __restrict fx, double* __restrict fy, double* __restrict fz) {
+                   double* __restrict fx, double* __restrict fy, double* __restrict fz,
+                   double* __restrict power) {
     for (int n = 0; n < count; ++n) {
         const double dx = s.ux[n] - s.x[n], dy = s.uy[n] - s.y[n], dz = s.uz[n] - s.z[n];
         const double vx = v.ux[n] - v.x[n], vy = v.uy[n] - v.y[n], vz = v.uz[n] - v.z[n];
         const double square = dx * dx + dy * dy + dz * dz;
-        const double pull =
-            damping * s.weight[n] * (vx * dx + vy * dy + vz * dz) / (square + 1e-300);
+        const double along = vx * dx + vy * dy + vz * dz;
+        const double pull = damping * s.weight[n] * along / (square + 1e-300);
+        power[n] = pull * along;
         fx[n] += pull * dx;
         fy[n] += pull * dy;
         fz[n] += pull * dz;
@@ -121,7 +124,7 @@ LatticeSweep::LatticeSweep(const Aggregate& matter) {
     }
 }
 
-void LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3Array& force) {
+double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3Array& force) {
     const std::size_t particles = matter.particle_count();
     force.resize(particles);
     parallel_for(slab_.size(), [&](std::size_t index) {
@@ -129,7 +132,8 @@ void LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3Ar
         std::fill(slab.part.x.begin(), slab.part.x.end(), 0.0);
         std::fill(slab.part.y.begin(), slab.part.y.end(), 0.0);
         std::fill(slab.part.z.begin(), slab.part.z.end(), 0.0);
-        alignas(64) double fx[kBlock], fy[kBlock], fz[kBlock];
+        alignas(64) double fx[kBlock], fy[kBlock], fz[kBlock], power[kBlock];
+        slab.damping_power = 0;
         for (std::size_t n = slab.span_begin; n < slab.span_end; ++n) {
             const Span& span = matter.lattice.span[n];
             const ConnectionArrays& history = matter.connection[span.direction];
@@ -146,7 +150,8 @@ void LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3Ar
                 spring_block(s, count, fx, fy, fz);
                 if (law.damping > 0) {
                     const SpanArrays v = arrays_at(matter.particle_velocity, lower, upper);
-                    dashpot_block(s, v, law.damping, count, fx, fy, fz);
+                    dashpot_block(s, v, law.damping, count, fx, fy, fz, power);
+                    for (int c = 0; c < count; ++c) slab.damping_power += power[c];
                 }
                 const std::size_t l = lower - slab.begin, u = upper - slab.begin;
                 add_block(fx, count, slab.part.x.data() + l);
@@ -176,6 +181,9 @@ void LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3Ar
             add_block(slab.part.z.data() + (from - slab.begin), count, force.z.data() + from);
         }
     });
+    double power = 0;
+    for (const Slab& slab : slab_) power += slab.damping_power;
+    return power;
 }
 
 namespace {
@@ -200,29 +208,29 @@ void for_each_connection(const Aggregate& matter, const Act& act) {
 double commit_plastic(Aggregate& matter, const LatticeLaw& law) {
     if (!law.yields()) return 0;
     double lost = 0;
-    for_each_connection(matter, [&](int d, ParticleId lower, ParticleId, double reference,
-                                    double distance) {
-        const double limit = yield_strain_of(law, d);
-        float& plastic = matter.connection[d].plastic[lower];
-        const double strain = distance / reference - 1;
-        const double after = committed_plastic_strain(strain, double(plastic), limit);
-        lost += law.stiffness * matter.connection[d].weight[lower] * reference * reference *
-                plastic_work(plastic, after, limit);
-        plastic = static_cast<float>(after);
-    });
+    for_each_connection(
+        matter, [&](int d, ParticleId lower, ParticleId, double reference, double distance) {
+            const double limit = yield_strain_of(law, d);
+            float& plastic = matter.connection[d].plastic[lower];
+            const double strain = distance / reference - 1;
+            const double after = committed_plastic_strain(strain, double(plastic), limit);
+            lost += law.stiffness * matter.connection[d].weight[lower] * reference * reference *
+                    plastic_work(plastic, after, limit);
+            plastic = static_cast<float>(after);
+        });
     return lost;
 }
 
 double elastic_energy(const Aggregate& matter, const LatticeLaw& law) {
     double sum = 0;
-    for_each_connection(matter, [&](int d, ParticleId lower, ParticleId, double reference,
-                                    double distance) {
-        const double strain = returned_strain(
-            distance / reference - 1, double(matter.connection[d].plastic[lower]),
-            yield_strain_of(law, d));
-        sum += 0.5 * law.stiffness * matter.connection[d].weight[lower] * reference * reference *
-               strain * strain;
-    });
+    for_each_connection(
+        matter, [&](int d, ParticleId lower, ParticleId, double reference, double distance) {
+            const double strain = returned_strain(distance / reference - 1,
+                                                  double(matter.connection[d].plastic[lower]),
+                                                  yield_strain_of(law, d));
+            sum += 0.5 * law.stiffness * matter.connection[d].weight[lower] * reference *
+                   reference * strain * strain;
+        });
     return sum;
 }
 

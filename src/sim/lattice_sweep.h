@@ -12,8 +12,8 @@ namespace swage {
 
 // Constants of the sweep, derived once from material and spacing.
 struct LatticeLaw {
-    double stiffness;           // of a full connection [N/m]
-    double damping = 0;         // of a full connection [N s/m]; 0 in quasi-static relaxation
+    double stiffness;    // of a full connection [N/m]
+    double damping = 0;  // of a full connection [N s/m]; 0 in quasi-static relaxation
     double yield_strain_edge = std::numeric_limits<double>::infinity();
     double yield_strain_diagonal = std::numeric_limits<double>::infinity();
     bool yields() const { return yield_strain_edge < std::numeric_limits<double>::infinity(); }
@@ -28,14 +28,16 @@ class LatticeSweep {
 
     // force = sum of the connections' forces on each particle [N]. Plastic strain is returned from
     // its committed value and left untouched. Velocities are read only when the law has damping.
-    void forces(const Aggregate& matter, const LatticeLaw& law, Vec3Array& force);
+    // Returns the power that the dashpots take [W].
+    double forces(const Aggregate& matter, const LatticeLaw& law, Vec3Array& force);
 
   private:
     struct Slab {
         std::size_t span_begin, span_end;
-        ParticleId begin, end;    // lower ends of its connections
-        ParticleId reach;         // one past the highest upper end
-        Vec3Array part;           // forces on begin ... reach
+        ParticleId begin, end;  // lower ends of its connections
+        ParticleId reach;       // one past the highest upper end
+        Vec3Array part;         // forces on begin ... reach
+        double damping_power;   // [W]
     };
     std::vector<Slab> slab_;
 };

@@ -7,8 +7,8 @@
 namespace swage {
 
 enum class Solver {
-    quasistatic,    // each frame is an equilibrium, found by relaxation; no inertia
-    explicit_steps, // symplectic Euler with real masses and damping
+    quasistatic,     // each frame is an equilibrium, found by relaxation; no inertia
+    explicit_steps,  // symplectic Euler with real masses and damping
 };
 
 struct SimSettings {
@@ -22,9 +22,9 @@ struct SimSettings {
     double grip_stiffness = 20;    // the same for gripped points; 1 to 100
 
     // Explicit steps.
-    double step_safety = 0.8;      // share of the stable step, 0 to 1
+    double step_safety = 0.8;  // share of the stable step, 0 to 1
 
-    Vec3 gravity = Vec3::Zero();   // [m/s2]
+    Vec3 gravity = Vec3::Zero();  // [m/s2]
 };
 
 }  // namespace swage

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/advance.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <variant>
+
+#include "sim/explicit_steps.h"
+#include "sim/lattice_sweep.h"
+#include "sim/quasistatic.h"
+#include "sim/sever.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kCrumb = 8;  // a piece of fewer particles is less than one cell
+
+double kinetic_energy(const Aggregate& matter) {
+    double sum = 0;
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        sum += 0.5 * matter.particle_mass[p] * matter.particle_velocity.at(p).squaredNorm();
+    }
+    return sum;
+}
+
+}  // namespace
+
+struct Simulation::Rooms {
+    Aggregate& matter;
+    const Apparatus& apparatus;
+    LatticeLaw law;
+    std::variant<QuasistaticSolver, ExplicitSolver> solver;
+    int pieces = 1;
+    double plastic = 0, damped = 0, severed_energy = 0;
+    std::vector<double> work;
+
+    static std::variant<QuasistaticSolver, ExplicitSolver> choose(Aggregate& matter,
+                                                                  const Apparatus& apparatus,
+                                                                  const SimSettings& settings) {
+        if (settings.solver == Solver::explicit_steps) {
+            return ExplicitSolver(matter, apparatus, settings);
+        }
+        return QuasistaticSolver(matter, apparatus, settings);
+    }
+};
+
+Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)
+    : rooms_(new Rooms{matter, apparatus, lattice_law(matter),
+                       Rooms::choose(matter, apparatus, settings), find_pieces(matter).count, 0, 0,
+                       0,
+                       std::vector<double>(apparatus.tool.size() + apparatus.grip.size(), 0.0)}) {
+    if (settings.solver == Solver::quasistatic) {
+        // Equilibria have no speed; whatever an explicit stage left behind is gone.
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            matter.particle_velocity.set(p, Vec3::Zero());
+        }
+    }
+}
+
+Simulation::~Simulation() = default;
+
+FrameReport Simulation::advance(const Drive& from, const Drive& to) {
+    Rooms& r = *rooms_;
+    FrameReport report;
+    report.time = to.time;
+
+    // Sever what the blades sweep.
+    for (std::size_t b = 0; b < r.apparatus.blade.size(); ++b) {
+        const double before = elastic_energy(r.matter, r.law);
+        const std::vector<SeverEvent> events =
+            sever(r.matter, swept_triangles(r.apparatus.blade[b], from.world_from_blade[b],
+                                            to.world_from_blade[b]));
+        if (events.empty()) continue;
+        report.severed += static_cast<int>(events.size());
+        r.severed_energy += before - elastic_energy(r.matter, r.law);
+        std::visit([](auto& solver) { solver.connections_changed(); }, r.solver);
+    }
+    if (report.severed > 0) {
+        const Pieces pieces = find_pieces(r.matter);
+        std::vector<int> size(pieces.count, 0);
+        for (int piece : pieces.particle_piece) ++size[piece];
+        int crumbs = 0;
+        for (int s : size) crumbs += s < kCrumb;
+        if (crumbs > 0) {
+            report.warning.push_back(fmt::format(
+                "the blade left {} crumbs of less than one cell; they stay where they are",
+                crumbs));
+        }
+        r.pieces = pieces.count;
+    }
+    report.pieces = r.pieces;
+
+    // Move.
+    const MoveOutcome outcome =
+        std::visit([&](auto& solver) { return solver.advance(from, to); }, r.solver);
+
+    // Report.
+    report.iterations = outcome.iterations;
+    report.increments = outcome.increments;
+    report.halvings = outcome.halvings;
+    report.steps = outcome.steps;
+    report.residual = outcome.residual;
+    report.warning.insert(report.warning.end(), outcome.warning.begin(), outcome.warning.end());
+    r.plastic += outcome.plastic_work;
+    r.damped += outcome.damped_work;
+    report.plastic = r.plastic;
+    report.damped = r.damped;
+    report.severed_energy = r.severed_energy;
+    report.elastic = elastic_energy(r.matter, r.law);
+    report.kinetic = kinetic_energy(r.matter);
+    const std::size_t tools = r.apparatus.tool.size();
+    for (std::size_t n = 0; n < outcome.load.size(); ++n) {
+        r.work[n] += outcome.work[n];
+        report.work += r.work[n];
+        const LoadSum& sum = outcome.load[n];
+        const bool tool = n < tools;
+        report.load.push_back({tool ? r.apparatus.tool[n].name : r.apparatus.grip[n - tools].name,
+                               tool ? to.world_from_tool[n] : to.world_from_grip[n - tools],
+                               sum.force, sum.torque, r.work[n], sum.penetration, sum.contacts});
+    }
+    for (std::size_t b = 0; b < r.apparatus.blade.size(); ++b) {
+        report.load.push_back({r.apparatus.blade[b].name, to.world_from_blade[b], Vec3::Zero(),
+                               Vec3::Zero(), 0, 0, 0});
+    }
+    return report;
+}
+
+double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings) {
+    return 1 / explicit_step(matter, settings);
+}
+
+}  // namespace swage

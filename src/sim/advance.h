@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The simulation's door: one frame of one stage.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+#include "sim/settings.h"
+
+namespace swage {
+
+struct ToolLoad {
+    std::string name;
+    Pose pose;
+    Vec3 force = Vec3::Zero();   // that the tool exerts on the matter [N]
+    Vec3 torque = Vec3::Zero();  // about the pose's origin [N m]
+    double work = 0;             // done by it since the stage began [J]
+    double penetration = 0;      // of the deepest point [m]
+    int contacts = 0;
+};
+
+struct FrameReport {
+    double time = 0;  // [s] since the stage began
+    int iterations = 0, increments = 0, halvings = 0;
+    long steps = 0;                            // explicit steps taken
+    double residual = 0;                       // over the largest push; quasi-static only
+    double kinetic = 0, elastic = 0;           // now [J]
+    double plastic = 0, damped = 0, work = 0;  // since the stage began [J]
+    double severed_energy = 0;   // elastic energy lost with severed connections, likewise [J]
+    std::vector<ToolLoad> load;  // tools, then grips, then blades
+    int severed = 0;             // connections, in this frame
+    int pieces = 1;
+    std::vector<std::string> warning;
+};
+
+class Simulation {
+  public:
+    // Keeps references to all three; they must outlive it.
+    Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
+    ~Simulation();
+
+    // Moves the matter on while the apparatus goes from one drive to another. What the blades
+    // sweep in this frame is severed first. Throws Error(stopped) with a sentence that names what
+    // to change; the matter is then in a state that was converged.
+    FrameReport advance(const Drive& from, const Drive& to);
+
+  private:
+    struct Rooms;
+    std::unique_ptr<Rooms> rooms_;
+};
+
+// About how many explicit steps a second of machine time takes; for estimates.
+double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings);
+
+}  // namespace swage

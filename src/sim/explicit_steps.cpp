@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/explicit_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace swage {
+
+namespace {
+
+double highest_frequency(const Aggregate& matter, const LatticeLaw& law) {
+    const std::vector<double> bound = stiffness_bound(matter, law);
+    double highest = 0;
+    for (std::size_t p = 0; p < bound.size(); ++p) {
+        highest = std::max(highest, bound[p] / matter.particle_mass[p]);
+    }
+    return std::sqrt(highest);
+}
+
+bool finite(const Vec3Array& a) {
+    double sum = 0;
+    for (std::size_t p = 0; p < a.size(); ++p) sum += a.x[p] + a.y[p] + a.z[p];
+    return std::isfinite(sum);
+}
+
+}  // namespace
+
+double explicit_step(const Aggregate& matter, const SimSettings& settings) {
+    const double w = highest_frequency(matter, lattice_law(matter));
+    const double zeta = matter.material.damping_ratio;
+    return settings.step_safety * 2 / w * (std::sqrt(1 + zeta * zeta) - zeta);
+}
+
+ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
+                               const SimSettings& settings)
+    : matter_(matter),
+      apparatus_(apparatus),
+      settings_(settings),
+      law_(lattice_law(matter)),
+      sweep_(matter),
+      contacts_(matter, apparatus, settings),
+      step_(explicit_step(matter, settings)),
+      load_(apparatus.tool.size() + apparatus.grip.size()) {
+    // A dashpot of b damps a mode of frequency w with zeta = b w / 2 k.
+    const double w = highest_frequency(matter, law_);
+    law_.damping = 2 * matter.material.damping_ratio * law_.stiffness / w;
+    contacts_.limit_stiffness(matter, step_);
+}
+
+void ExplicitSolver::connections_changed() {
+    // Fewer connections are never faster, so the step stays.
+}
+
+bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOutcome& outcome) {
+    const double duration = to.time - from.time;
+    const long count = std::max(1L, static_cast<long>(std::ceil(duration / dt)));
+    dt = duration / static_cast<double>(count);
+    Vec3Array &x = matter_.particle_position, &v = matter_.particle_velocity;
+    Vec3Array listed = x;
+    contacts_.find_candidates(matter_, from);
+    Drive before = from;
+    for (long n = 1; n <= count; ++n) {
+        const Drive now = n == count ? to : drive_between(from, to, double(n) / double(count));
+        contacts_.begin_move(matter_, before);
+        outcome.damped_work += dt * sweep_.forces(matter_, law_, force_);
+        contacts_.add_forces(matter_, now, force_);
+        double farthest = 0;
+        for (std::size_t p = 0; p < x.size(); ++p) {
+            const double push = dt / matter_.particle_mass[p];
+            v.x[p] += push * force_.x[p] + dt * settings_.gravity.x();
+            v.y[p] += push * force_.y[p] + dt * settings_.gravity.y();
+            v.z[p] += push * force_.z[p] + dt * settings_.gravity.z();
+            x.x[p] += dt * v.x[p];
+            x.y[p] += dt * v.y[p];
+            x.z[p] += dt * v.z[p];
+            farthest = std::max({farthest, std::abs(x.x[p] - listed.x[p]),
+                                 std::abs(x.y[p] - listed.y[p]), std::abs(x.z[p] - listed.z[p])});
+        }
+        if (!finite(x)) return false;
+        outcome.plastic_work += commit_plastic(matter_, law_);
+        contacts_.commit(matter_, now);
+        std::vector<LoadSum> load = contacts_.loads(matter_, now);
+        add_work(before, now, load_, load, outcome.work);
+        load_ = std::move(load);
+        const double tool_way = contacts_.travel(matter_, before, now) * double(n);
+        if (farthest + tool_way > 0.45 * matter_.lattice.spacing) {
+            contacts_.find_candidates(matter_, now);
+            listed = x;
+        }
+        before = now;
+    }
+    outcome.steps += count;
+    return true;
+}
+
+MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
+    MoveOutcome outcome;
+    const Vec3Array start_x = matter_.particle_position, start_v = matter_.particle_velocity;
+    const auto start_connections = matter_.connection;
+    const ContactSet start_contacts = contacts_;
+    double dt = step_;
+    for (;; dt *= 0.5, ++outcome.halvings) {
+        outcome.work.assign(load_.size(), 0.0);
+        outcome.plastic_work = outcome.damped_work = 0;
+        if (steps(from, to, dt, outcome)) break;
+        matter_.particle_position = start_x;
+        matter_.particle_velocity = start_v;
+        matter_.connection = start_connections;
+        contacts_ = start_contacts;
+        if (outcome.halvings == settings_.halving_limit) {
+            fail(ExitCode::stopped,
+                 "{}: the motion is not finite at {:.4g} s even with steps of {:.3g} s; move the "
+                 "tools slower (a longer duration) or use solver = \"quasistatic\"",
+                 apparatus_.name, to.time, dt);
+        }
+    }
+    outcome.load = load_;
+    return outcome;
+}
+
+}  // namespace swage

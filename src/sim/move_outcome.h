@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a solver reports of one move of the drive.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/contact_set.h"
+
+namespace swage {
+
+struct MoveOutcome {
+    int iterations = 0;
+    int increments = 0;
+    int halvings = 0;
+    long steps = 0;             // explicit steps only
+    double residual = 0;        // of the last increment, over its reference force
+    double plastic_work = 0;    // [J]
+    double damped_work = 0;     // [J]; explicit steps only
+    std::vector<double> work;   // by tool, then grip [J]
+    std::vector<LoadSum> load;  // at the end, by tool, then grip
+    std::vector<std::string> warning;
+};
+
+// Work [J] that each tool and grip did while its pose went from one to another under these loads
+// before and after: the trapezoid rule on force and torque of the pose's origin.
+void add_work(const Drive& from, const Drive& to, const std::vector<LoadSum>& before,
+              const std::vector<LoadSum>& after, std::vector<double>& work);
+
+}  // namespace swage

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/quasistatic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kDrag = 1e-7;  // settles free modes; 1e-5 already falsifies forces by 3 %
+constexpr double kContactMassShare = 0.5;  // 0.26, the frictionless limit, chatters with friction
+constexpr double kLatticeMassShare = 1.08 / 4;
+constexpr double kSmallestCellVolume = 0.05;
+constexpr double kSlipShare = 0.05;  // of the largest push so far, below which a loss is no slip
+constexpr int kCheckInterval = 10;
+constexpr std::size_t kChunk = 8192;
+
+std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+
+// Sums of one chunk in four lanes: the order is fixed and the loop still vectorises.
+template <typename Term>
+double lane_sum(std::size_t begin, std::size_t end, const Term& term) {
+    double lane[4] = {0, 0, 0, 0};
+    std::size_t i = begin;
+    for (; i + 4 <= end; i += 4) {
+        for (int l = 0; l < 4; ++l) lane[l] += term(i + l);
+    }
+    for (; i < end; ++i) lane[0] += term(i);
+    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+template <typename Term>
+double chunked_sum(std::size_t count, const Term& term) {
+    return ordered_sum(chunks_of(count), [&](std::size_t chunk) {
+        return lane_sum(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), term);
+    });
+}
+
+double largest_extent(const Aggregate& matter) {
+    return matter.lattice.spacing * matter.lattice.cell_count.maxCoeff();
+}
+
+// State of the FIRE schedule.
+struct Schedule {
+    double step = 1, mixing = 0.1;
+    int good = 0;
+
+    void downhill() {
+        if (++good > 5) {
+            step = std::min(1.0, 1.1 * step);
+            mixing *= 0.99;
+        }
+    }
+    void uphill() {
+        good = 0;
+        mixing = 0.1;
+        step = std::max(0.3, 0.5 * step);
+    }
+};
+
+}  // namespace
+
+QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparatus,
+                                     const SimSettings& settings)
+    : matter_(matter),
+      apparatus_(apparatus),
+      settings_(settings),
+      law_(lattice_law(matter)),
+      sweep_(matter),
+      contacts_(matter, apparatus, settings),
+      body_size_(largest_extent(matter)),
+      load_(apparatus.tool.size() + apparatus.grip.size()) {
+    velocity_.resize(matter.particle_count());
+    connections_changed();
+}
+
+void QuasistaticSolver::connections_changed() {
+    lattice_bound_ = stiffness_bound(matter_, law_);
+    const double a = matter_.lattice.spacing;
+    const double full_mass = matter_.material.density * a * a * a;
+    drag_.resize(matter_.particle_count());
+    for (std::size_t p = 0; p < drag_.size(); ++p) {
+        drag_[p] = kDrag * 8 * law_.stiffness * matter_.particle_mass[p] / full_mass;
+    }
+    previous_motion_.clear();
+}
+
+void QuasistaticSolver::find_masses() {
+    const std::size_t n = matter_.particle_count();
+    std::vector<double> contact(n, 0.0);
+    contacts_.add_stiffness(matter_, contact);
+    mass_.resize(n);
+    inverse_mass_.resize(n);
+    for (std::size_t p = 0; p < n; ++p) {
+        mass_[p] = kLatticeMassShare * lattice_bound_[p] + kContactMassShare * contact[p];
+        inverse_mass_[p] = mass_[p] > 0 ? 1 / mass_[p] : 0;  // a loose particle stays where it is
+    }
+}
+
+void QuasistaticSolver::evaluate(const Drive& to) {
+    sweep_.forces(matter_, law_, force_);
+    contacts_.add_forces(matter_, to, force_);
+    const Vec3 g = settings_.gravity;
+    const Vec3Array& x = matter_.particle_position;
+    parallel_for(chunks_of(x.size()), [&](std::size_t chunk) {
+        const std::size_t end = std::min(x.size(), (chunk + 1) * kChunk);
+        for (std::size_t p = chunk * kChunk; p < end; ++p) {
+            const double c = drag_[p], m = matter_.particle_mass[p];
+            force_.x[p] += m * g.x() - c * (x.x[p] - start_.x[p]);
+            force_.y[p] += m * g.y() - c * (x.y[p] - start_.y[p]);
+            force_.z[p] += m * g.z() - c * (x.z[p] - start_.z[p]);
+        }
+    });
+}
+
+// The largest force that any tool or grip carries now, or gravity asks for: the measure of the
+// residual. A force not yet carried through the body shows in the residual itself.
+double QuasistaticSolver::push_limit(const Drive& to) const {
+    const double a = matter_.lattice.spacing;
+    double push = 4e-5 * matter_.material.young_modulus * a * a;
+    for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
+    if (settings_.gravity != Vec3::Zero()) {
+        push = std::max(push, matter_.mass() * settings_.gravity.norm());
+    }
+    return push;
+}
+
+QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
+    const std::size_t n = matter_.particle_count();
+    const double a = matter_.lattice.spacing, longest = 0.2 * a;
+    Vec3Array& x = matter_.particle_position;
+    Vec3Array &v = velocity_, &f = force_;
+    for (auto* component : {&v.x, &v.y, &v.z}) std::fill(component->begin(), component->end(), 0.0);
+    const auto list_candidates = [&] {
+        contacts_.find_candidates(matter_, to);
+        find_masses();
+        listed_ = x;
+    };
+    list_candidates();
+
+    Schedule schedule;
+    Relaxation result;
+    std::vector<double> farthest(chunks_of(n));
+    for (int iteration = 1; iteration <= settings_.iteration_limit; ++iteration) {
+        result.iterations = iteration;
+        evaluate(to);
+        if (iteration % kCheckInterval == 0) {
+            const double residual = chunked_sum(n, [&](std::size_t p) {
+                return std::sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
+            });
+            if (!std::isfinite(residual)) return result;
+            const double reference = std::max(largest_push_, push_limit(to));
+            result.residual = residual / reference;
+            if (result.residual <= settings_.tolerance) {
+                result.converged = true;
+                return result;
+            }
+        }
+        const double power = chunked_sum(
+            n, [&](std::size_t p) { return v.x[p] * f.x[p] + v.y[p] * f.y[p] + v.z[p] * f.z[p]; });
+        double keep = 0, pull = 0;  // v = keep v + pull f / m
+        if (power > 0) {
+            const double vv = chunked_sum(n, [&](std::size_t p) {
+                return mass_[p] * (v.x[p] * v.x[p] + v.y[p] * v.y[p] + v.z[p] * v.z[p]);
+            });
+            const double ff = chunked_sum(n, [&](std::size_t p) {
+                return inverse_mass_[p] * (f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
+            });
+            keep = 1 - schedule.mixing;
+            pull = ff > 0 ? schedule.mixing * std::sqrt(vv / ff) : 0;
+            schedule.downhill();
+        } else {
+            schedule.uphill();
+        }
+        const double dt = schedule.step;
+        parallel_for(chunks_of(n), [&](std::size_t chunk) {
+            const std::size_t end = std::min(n, (chunk + 1) * kChunk);
+            const auto move = [&](std::vector<double>& xs, std::vector<double>& vs,
+                                  const std::vector<double>& fs, const std::vector<double>& from) {
+                double most = 0;
+                for (std::size_t p = chunk * kChunk; p < end; ++p) {
+                    vs[p] = keep * vs[p] + (pull + dt) * fs[p] * inverse_mass_[p];
+                    const double way = dt * vs[p];
+                    xs[p] += way > longest ? longest : way < -longest ? -longest : way;
+                    const double gone = std::abs(xs[p] - from[p]);
+                    most = gone > most ? gone : most;
+                }
+                return most;
+            };
+            farthest[chunk] =
+                std::max({move(x.x, v.x, f.x, listed_.x), move(x.y, v.y, f.y, listed_.y),
+                          move(x.z, v.z, f.z, listed_.z)});
+        });
+        if (*std::max_element(farthest.begin(), farthest.end()) > 0.45 * a) list_candidates();
+    }
+    return result;
+}
+
+// How the drive moves, as one vector: translations, and turns times the size of the body.
+std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive& to) const {
+    std::vector<double> motion;
+    const auto add = [&](const std::vector<Pose>& a, const std::vector<Pose>& b) {
+        for (std::size_t n = 0; n < a.size(); ++n) {
+            const Vec3 way = b[n].translation - a[n].translation;
+            const Vec3 turn = body_size_ * turn_between(a[n], b[n]);
+            motion.insert(motion.end(), {way.x(), way.y(), way.z(), turn.x(), turn.y(), turn.z()});
+        }
+    };
+    add(from.world_from_tool, to.world_from_tool);
+    add(from.world_from_grip, to.world_from_grip);
+    return motion;
+}
+
+// Goes on as in the move before, by at most half a spacing. Nothing is foreseen where the drive
+// starts, stops or turns back.
+void QuasistaticSolver::predict(const std::vector<double>& motion) {
+    if (previous_motion_.empty()) return;
+    double along = 0, square = 0;
+    for (std::size_t n = 0; n < motion.size(); ++n) {
+        along += motion[n] * previous_motion_[n];
+        square += previous_motion_[n] * previous_motion_[n];
+    }
+    if (!(along > 0)) return;
+    const double most = 0.5 * matter_.lattice.spacing, ratio = along / square;
+    const auto extrapolate = [&](std::vector<double>& now, const std::vector<double>& before) {
+        for (std::size_t p = 0; p < now.size(); ++p) {
+            now[p] += std::clamp(ratio * (now[p] - before[p]), -most, most);
+        }
+    };
+    Vec3Array& x = matter_.particle_position;
+    extrapolate(x.x, previous_.x);
+    extrapolate(x.y, previous_.y);
+    extrapolate(x.z, previous_.z);
+}
+
+void QuasistaticSolver::check_slip(const std::vector<double>& pressing,
+                                   const std::vector<LoadSum>& before,
+                                   const std::vector<LoadSum>& after, MoveOutcome& outcome) const {
+    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
+        if (pressing[t] > 0.01 * matter_.lattice.spacing && after[t].contacts == 0 &&
+            before[t].size > kSlipShare * largest_push_) {
+            outcome.warning.push_back(
+                fmt::format("the work-piece slipped away from {} while it was pressed",
+                            apparatus_.tool[t].name));
+        }
+    }
+}
+
+void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
+                                  MoveOutcome& outcome) {
+    start_ = matter_.particle_position;
+    contacts_.begin_move(matter_, from);
+    std::vector<double> pressing;
+    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
+        pressing.push_back(contacts_.pressing(matter_, t, from, to));
+    }
+    std::vector<double> motion = motion_of(from, to);
+    predict(motion);
+
+    const Relaxation relaxed = relax(to);
+    outcome.iterations += relaxed.iterations;
+    outcome.residual = relaxed.residual;
+    const bool whole = relaxed.converged && smallest_cell_volume(matter_) > kSmallestCellVolume;
+    if (!whole) {
+        const std::string hardest = contacts_.hardest_point(matter_, to);
+        matter_.particle_position = start_;
+        previous_motion_.clear();
+        if (depth >= settings_.halving_limit) {
+            fail(ExitCode::stopped,
+                 "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings "
+                 "(residual {:.2g} of the largest push, wanted {:.2g}; {}); {}",
+                 apparatus_.name, to.time, relaxed.iterations, depth, relaxed.residual,
+                 settings_.tolerance, hardest,
+                 relaxed.converged
+                     ? "a cell is crushed flat: raise [mold] across, or bend and twist less"
+                     : "raise frames or tolerance of the stage");
+        }
+        ++outcome.halvings;
+        const Drive middle = drive_between(from, to, 0.5);
+        increment(from, middle, depth + 1, outcome);
+        increment(middle, to, depth + 1, outcome);
+        return;
+    }
+
+    outcome.plastic_work += commit_plastic(matter_, law_);
+    contacts_.commit(matter_, to);
+    std::vector<LoadSum> load = contacts_.loads(matter_, to);
+    for (const LoadSum& sum : load) largest_push_ = std::max(largest_push_, sum.size);
+    check_slip(pressing, load_, load, outcome);
+    add_work(from, to, load_, load, outcome.work);
+    load_ = std::move(load);
+    previous_ = start_;
+    previous_motion_ = std::move(motion);
+    ++outcome.increments;
+}
+
+MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
+    MoveOutcome outcome;
+    outcome.work.assign(load_.size(), 0.0);
+    const double travel = contacts_.travel(matter_, from, to);
+    const int count = std::max(1, static_cast<int>(std::ceil(travel / matter_.lattice.spacing)));
+    Drive before = from;
+    for (int n = 1; n <= count; ++n) {
+        const Drive after = n == count ? to : drive_between(from, to, double(n) / count);
+        increment(before, after, 0, outcome);
+        before = after;
+    }
+    outcome.load = load_;
+    return outcome;
+}
+
+double smallest_cell_volume(const Aggregate& matter) {
+    const double a = matter.lattice.spacing;
+    double smallest = 1;
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            Mat3 gradient = Mat3::Zero();
+            for (int c = 0; c < 8; ++c) {
+                const Vec3 x = matter.particle_position.at(run.row[c >> 1] + n + (c & 1));
+                for (int axis = 0; axis < 3; ++axis) {
+                    gradient.col(axis) += (c >> axis & 1 ? 0.25 : -0.25) / a * x;
+                }
+            }
+            smallest = std::min(smallest, gradient.determinant());
+        }
+    }
+    return smallest;
+}
+
+}  // namespace swage

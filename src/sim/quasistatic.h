@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibrium by relaxation. Each move of the drive is solved from the state before it: positions
+// are the only unknowns; plastic strain and friction anchors are returned from their committed
+// values on every evaluation and committed once, after the move has converged, so that the
+// overshoots of the relaxation leave no trace.
+//
+// Relaxation: FIRE (Bitzek, Koskinen, Gaehler, Moseler, Gumbsch, Phys. Rev. Lett. 97, 170201, 2006)
+// with a mass for each particle under which a step of one is stable everywhere.
+//
+// NOTE: relaxation follows *some* path to a stable state; kinetic energy set free by a snap is
+// lost, and an unstable equilibrium that nothing disturbs is not left.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+#include "sim/contact_set.h"
+#include "sim/lattice_sweep.h"
+#include "sim/move_outcome.h"
+#include "sim/settings.h"
+
+namespace swage {
+
+class QuasistaticSolver {
+  public:
+    QuasistaticSolver(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
+
+    // Throws Error(stopped) when an increment fails at the deepest halving; the matter is then as
+    // it was before that increment.
+    MoveOutcome advance(const Drive& from, const Drive& to);
+
+    // The connections have changed (severed): masses are found anew.
+    void connections_changed();
+
+  private:
+    struct Relaxation {
+        bool converged = false;
+        int iterations = 0;
+        double residual = 0;
+    };
+    void increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome);
+    Relaxation relax(const Drive& to);
+    void find_masses();
+    void evaluate(const Drive& to);
+    double push_limit(const Drive& to) const;
+    std::vector<double> motion_of(const Drive& from, const Drive& to) const;
+    void predict(const std::vector<double>& motion);
+    void check_slip(const std::vector<double>& pressing, const std::vector<LoadSum>& before,
+                    const std::vector<LoadSum>& after, MoveOutcome& outcome) const;
+
+    Aggregate& matter_;
+    const Apparatus& apparatus_;
+    const SimSettings& settings_;
+    LatticeLaw law_;
+    LatticeSweep sweep_;
+    ContactSet contacts_;
+    double body_size_;  // [m]
+    std::vector<double> lattice_bound_;
+    std::vector<double> mass_, inverse_mass_, drag_;
+    Vec3Array force_, velocity_;
+    Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
+                                           // the candidates were found
+    std::vector<double> previous_motion_;  // empty: nothing to extrapolate from
+    double largest_push_ = 0;              // of any tool so far [N]
+    std::vector<LoadSum> load_;
+};
+
+// Determinant of the mean deformation gradient of the most compressed cell; 1 at rest, below 0
+// turned inside out.
+double smallest_cell_volume(const Aggregate& matter);
+
+}  // namespace swage

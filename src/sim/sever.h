@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A blade severs the connections that its edge sweeps through (S2.15).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+
+namespace swage {
+
+struct SeverEvent {
+    int direction;     // of the connection, into kForward
+    ParticleId lower;  // its lower end
+    float weight;      // share of the section that it had
+};
+
+// The surface that the blade's edge sweeps between two poses, as triangles in the world. Neighbours
+// share their vertices bit for bit.
+std::vector<std::array<Vec3, 3>> swept_triangles(const Blade& blade, const Pose& from,
+                                                 const Pose& to);
+
+// Sets the weight of every crossed connection to zero; returns them in the order of the lattice.
+std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<std::array<Vec3, 3>>& swept);
+
+}  // namespace swage

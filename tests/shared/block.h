@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A block of whole cells, made by hand: what tests of rooms below `mold` work on.
+#pragma once
+
+#include "matter/aggregate.h"
+
+namespace swage::test {
+
+// nx * ny * nz cells of edge a, centred on the origin. Four surface points a cell face.
+inline Aggregate make_block(int nx, int ny, int nz, double a, const Material& material) {
+    Aggregate m;
+    m.material = material;
+    std::vector<Vec3i> cells;
+    for (int k = 0; k < nz; ++k) {
+        for (int j = 0; j < ny; ++j) {
+            for (int i = 0; i < nx; ++i) cells.emplace_back(i, j, k);
+        }
+    }
+    const Vec3i count(nx, ny, nz);
+    const Vec3 origin = -0.5 * a * count.cast<double>();
+    m.lattice = make_lattice(origin, a, count, cells);
+    std::size_t particles = 0;
+    for (const ParticleRun& run : m.lattice.particle_run) particles += run.count;
+    m.particle_reference.resize(particles);
+    m.particle_velocity.resize(particles);
+    m.particle_mass.assign(particles, 0.0);
+    for (const ParticleRun& run : m.lattice.particle_run) {
+        for (int n = 0; n < run.count; ++n) {
+            m.particle_reference.set(run.first + n, origin + a * Vec3(run.i + n, run.j, run.k));
+            m.particle_velocity.set(run.first + n, Vec3::Zero());
+        }
+    }
+    m.particle_position = m.particle_reference;
+    for (auto& c : m.connection) c.weight.assign(particles, 0), c.plastic.assign(particles, 0);
+    m.cell_fill.assign(cells.size(), 1.0f);
+    m.cell_centroid.assign(cells.size(), Eigen::Vector3f::Zero());
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const auto corner = m.lattice.cell_corners(static_cast<CellId>(c));
+        for (ParticleId p : corner) m.particle_mass[p] += material.density * a * a * a / 8;
+        // Every connection that lies in this cell gets the cell's share.
+        for (int low = 0; low < 8; ++low) {
+            for (int d = 0; d < kForwardCount; ++d) {
+                int high = 0;
+                bool inside = true;
+                for (int axis = 0; axis < 3; ++axis) {
+                    const int at = (low >> axis & 1) + kForward[d][axis];
+                    inside = inside && at >= 0 && at <= 1;
+                    high |= (at & 1) << axis;
+                }
+                if (inside) m.connection[d].weight[corner[low]] += d < kEdgeCount ? 0.25f : 0.5f;
+            }
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int end = 0; end < 2; ++end) {
+                if (cells[c][axis] != (end ? count[axis] - 1 : 0)) continue;
+                for (int q = 0; q < 4; ++q) {
+                    Vec3 xi = Vec3::Zero(), normal = Vec3::Zero();
+                    xi[axis] = end;
+                    normal[axis] = end ? 1 : -1;
+                    xi[(axis + 1) % 3] = q & 1 ? 0.75 : 0.25;
+                    xi[(axis + 2) % 3] = q & 2 ? 0.75 : 0.25;
+                    std::array<float, 8> weight;
+                    for (int n = 0; n < 8; ++n) {
+                        weight[n] = 1;
+                        for (int s = 0; s < 3; ++s) {
+                            weight[n] *= static_cast<float>(n >> s & 1 ? xi[s] : 1 - xi[s]);
+                        }
+                    }
+                    m.surface.corner.push_back(corner);
+                    m.surface.weight.push_back(weight);
+                    m.surface.area.push_back(a * a / 4);
+                    m.surface.reference_normal.push_back(normal);
+                    m.surface.reference_position.push_back(origin +
+                                                           a * (cells[c].cast<double>() + xi));
+                }
+            }
+        }
+    }
+    return m;
+}
+
+// Holds every surface point whose reference position satisfies the condition.
+template <typename Condition>
+std::vector<int> points_where(const Aggregate& matter, const Condition& condition) {
+    std::vector<int> points;
+    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+        if (condition(matter.surface.reference_position[p])) points.push_back(static_cast<int>(p));
+    }
+    return points;
+}
+
+}  // namespace swage::test
