@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/process.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+
+#include "base/error.h"
+
+extern char** environ;
+
+namespace swage {
+
+namespace {
+
+bool is_executable_file(const std::string& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
+           ::access(path.c_str(), X_OK) == 0;
+}
+
+// Writing to a pipe that nobody reads raises SIGPIPE, whose default ends us. It is held back for
+// this thread during the write and taken off the queue, so the program's own handling stays.
+class PipeSignalGuard {
+  public:
+    PipeSignalGuard() {
+        sigemptyset(&pipe_);
+        sigaddset(&pipe_, SIGPIPE);
+        sigset_t pending;
+        sigpending(&pending);
+        was_pending_ = sigismember(&pending, SIGPIPE) == 1;
+        pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+    }
+    ~PipeSignalGuard() {
+        const timespec at_once{0, 0};
+        if (!was_pending_) {
+            while (sigtimedwait(&pipe_, nullptr, &at_once) < 0 && errno == EINTR) {
+            }
+        }
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    }
+    PipeSignalGuard(const PipeSignalGuard&) = delete;
+    PipeSignalGuard& operator=(const PipeSignalGuard&) = delete;
+
+  private:
+    sigset_t pipe_, before_;
+    bool was_pending_;
+};
+
+void close_if_open(int& handle) {
+    if (handle >= 0) ::close(handle);
+    handle = -1;
+}
+
+}  // namespace
+
+bool program_exists(const std::string& name) {
+    if (name.empty()) return false;
+    if (name.find('/') != std::string::npos) return is_executable_file(name);
+    const char* path = std::getenv("PATH");
+    const std::string folders = path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin";
+    for (std::size_t begin = 0; begin <= folders.size();) {
+        const std::size_t end = std::min(folders.find(':', begin), folders.size());
+        const std::string folder = folders.substr(begin, end - begin);
+        if (is_executable_file((folder.empty() ? "." : folder) + "/" + name)) return true;
+        begin = end + 1;
+    }
+    return false;
+}
+
+PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
+    if (argument.empty()) fail(ExitCode::output, "no program to start");
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) {
+        fail(ExitCode::output, "cannot make a pipe to {}: {}", argument[0], std::strerror(errno));
+    }
+    input_ = ends[1];
+    errors_ = ::memfd_create("errors", MFD_CLOEXEC);
+
+    posix_spawn_file_actions_t action;
+    posix_spawn_file_actions_init(&action);
+    posix_spawn_file_actions_adddup2(&action, ends[0], STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&action, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    if (errors_ >= 0) {
+        posix_spawn_file_actions_adddup2(&action, errors_, STDERR_FILENO);
+    } else {
+        posix_spawn_file_actions_addopen(&action, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    }
+    posix_spawnattr_t attribute;
+    posix_spawnattr_init(&attribute);
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    posix_spawnattr_setsigmask(&attribute, &none);
+    posix_spawnattr_setsigdefault(&attribute, &all);
+    posix_spawnattr_setpgroup(&attribute, 0);
+    posix_spawnattr_setflags(
+        &attribute, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+    std::vector<char*> argv;
+    for (const std::string& a : argument) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    const int error = posix_spawnp(&process_, argv[0], &action, &attribute, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&action);
+    posix_spawnattr_destroy(&attribute);
+    ::close(ends[0]);
+    if (error != 0) {
+        process_ = -1;
+        close_if_open(input_);
+        close_if_open(errors_);
+        fail(ExitCode::output, "cannot start {}: {}", argument[0], std::strerror(error));
+    }
+}
+
+PipedProgram::~PipedProgram() {
+    if (process_ > 0) ::kill(process_, SIGKILL);
+    finish();
+    close_if_open(errors_);
+}
+
+bool PipedProgram::write(const void* bytes, std::size_t size) {
+    if (input_ < 0) return false;
+    const PipeSignalGuard guard;
+    const char* from = static_cast<const char*>(bytes);
+    while (size > 0) {
+        const ssize_t written = ::write(input_, from, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) {
+            close_if_open(input_);
+            return false;
+        }
+        from += written;
+        size -= static_cast<std::size_t>(written);
+    }
+    return true;
+}
+
+int PipedProgram::finish() {
+    close_if_open(input_);
+    if (process_ <= 0) return -1;
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = -1;
+    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+std::string PipedProgram::error_tail() const {
+    constexpr off_t kKept = 4096;
+    struct stat status {};
+    if (errors_ < 0 || ::fstat(errors_, &status) != 0) return {};
+    const off_t from = std::max<off_t>(0, status.st_size - kKept);
+    std::string text(static_cast<std::size_t>(status.st_size - from), '\0');
+    const ssize_t got = ::pread(errors_, text.data(), text.size(), from);
+    text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+    return text;
+}
+
+std::string PipedProgram::last_error_line() const {
+    const std::string text = error_tail();
+    const std::size_t end = text.find_last_not_of(" \t\r\n");
+    if (end == std::string::npos) return {};
+    const std::size_t before = text.find_last_of("\r\n", end);
+    return text.substr(before == std::string::npos ? 0 : before + 1,
+                       end - (before == std::string::npos ? 0 : before + 1) + 1);
+}
+
+}  // namespace swage

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Other programs, found at run time and fed through a pipe: an argument list, never a shell line.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace swage {
+
+// Whether `name` is an executable file in PATH (or, when it has a slash, that file).
+bool program_exists(const std::string& name);
+
+// A running program whose standard input we write. Its standard output is thrown away, its
+// standard error kept. It stands in a process group of its own, so that an interrupt from the
+// terminal reaches only us and we decide how it ends.
+class PipedProgram {
+  public:
+    // argument[0] is looked up in PATH. Throws Error(output) when it cannot be started.
+    explicit PipedProgram(const std::vector<std::string>& argument);
+    // Kills the program when finish() was not called.
+    ~PipedProgram();
+    PipedProgram(const PipedProgram&) = delete;
+    PipedProgram& operator=(const PipedProgram&) = delete;
+
+    // False when the program has stopped listening; no signal is raised.
+    bool write(const void* bytes, std::size_t size);
+    bool write(std::string_view text) { return write(text.data(), text.size()); }
+
+    // Ends the input, waits, and gives the exit status (128 + n when ended by signal n).
+    int finish();
+
+    // The last lines that the program wrote to standard error; the last non-empty one of them.
+    std::string error_tail() const;
+    std::string last_error_line() const;
+
+  private:
+    pid_t process_ = -1;
+    int input_ = -1;   // our end of the pipe
+    int errors_ = -1;  // a file in memory, so that a talkative program never blocks
+};
+
+}  // namespace swage
