@@ -15,7 +15,7 @@ struct MoldSettings {
     MoldKind kind = MoldKind::shape;
     // One of the two. `across`: cells over the thinnest side of the box, 1 or more; start with 6.
     std::optional<int> across;
-    std::optional<double> spacing;  // [m]
+    std::optional<double> spacing;        // [m]
     std::size_t cell_limit = 50'000'000;  // of the box; more is refused with exit code 7
 };
 

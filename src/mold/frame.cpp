@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mold/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swage {
+
+namespace {
+
+// Mesh files often hold single precision: a side of three times 0.1 is three cells of 0.1.
+constexpr double kWholeCells = 3e-7;
+constexpr double kOnPlane = 1e-9;  // [bins]
+
+bool is_whole(double cells) {
+    return cells > 0.5 && std::abs(cells - std::round(cells)) <= kWholeCells * cells;
+}
+
+}  // namespace
+
+Vec3 cells_over(const Box& box, double spacing) {
+    const Vec3 cells = box.size() / spacing;
+    return cells.unaryExpr(
+        [](double c) { return is_whole(c) ? std::round(c) : std::max(1.0, std::ceil(c)); });
+}
+
+MoldFrame frame_over(const Box& box, double spacing) {
+    const Vec3 count = cells_over(box, spacing);
+    MoldFrame frame{box.center() - 0.5 * spacing * count, spacing, count.cast<int>(),
+                    Vec3::Constant(spacing)};
+    for (int d = 0; d < 3; ++d) {
+        if (!is_whole(box.size()[d] / spacing)) continue;
+        frame.origin[d] = box.low[d];
+        frame.step[d] = box.size()[d] / count[d];
+    }
+    return frame;
+}
+
+Vec3 MoldFrame::bins(const Vec3& point) const {
+    Vec3 bins;
+    for (int d = 0; d < 3; ++d) {
+        double v = 2 * (point[d] - origin[d]) / step[d];
+        const double plane = std::round(v);
+        if (std::abs(v - plane) < kOnPlane) v = plane;
+        bins[d] = std::clamp(v, 0.0, 2.0 * cell_count[d]);
+    }
+    return bins;
+}
+
+}  // namespace swage

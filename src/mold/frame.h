@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the cells of a mold lie: the map between the mesh's space and bins. Each cell is two bins
+// wide along every axis, so that its surface can be told in quarters of a face.
+#pragma once
+
+#include "geometry/box.h"
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+struct MoldFrame {
+    Vec3 origin;       // low corner of cell (0, 0, 0) [m]
+    double spacing;    // [m]
+    Vec3i cell_count;  // of the box
+    // Along an axis that holds a whole number of cells to within the noise of single precision,
+    // a step is stretched by that noise, so that the faces of a box lie exactly on cell faces.
+    Vec3 step;  // [m], a cell's true width
+    double cell_volume() const { return step.prod(); }
+
+    // In bins, 0 to twice cell_count; whole when within 1e-9 of it.
+    Vec3 bins(const Vec3& point) const;
+    Vec3 point(const Vec3& bins) const { return origin + bins.cwiseProduct(0.5 * step); }
+};
+
+// Whole cells over the box, centred on it. The counts must fit into int.
+MoldFrame frame_over(const Box& box, double spacing);
+
+// Cells over each side, before anything is allocated; may be too many for int.
+Vec3 cells_over(const Box& box, double spacing);
+
+}  // namespace swage

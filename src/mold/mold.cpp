@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sources: S2.12 and S2.16 for molds. Share weights make any union of cells pass the patch test:
+// a cell's connections carry what its volume carries under uniform strain.
+#include "mold/mold.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "mold/prepare.h"
+#include "mold/shares.h"
+#include "mold/surface.h"
+#include "mold/topology.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kThinnest = 0.02;  // mean thickness, in cells
+constexpr double kThin = 0.25;
+
+TriMesh box_surface(const Box& box) {
+    TriMesh mesh;
+    for (int c = 0; c < 8; ++c) {
+        mesh.position.emplace_back(c & 1 ? box.high.x() : box.low.x(),
+                                   c & 2 ? box.high.y() : box.low.y(),
+                                   c & 4 ? box.high.z() : box.low.z());
+    }
+    for (const auto& [a, b, c, d] : {std::array{0, 4, 6, 2},
+                                     {1, 3, 7, 5},
+                                     {0, 1, 5, 4},
+                                     {2, 6, 7, 3},
+                                     {0, 2, 3, 1},
+                                     {4, 5, 7, 6}}) {
+        mesh.triangle.push_back({a, b, c});
+        mesh.triangle.push_back({a, c, d});
+    }
+    return mesh;
+}
+
+// The box, grown to whole cells about its centre (S2.16).
+TriMesh block_around(const TriMesh& mesh, double spacing) {
+    const Box box = surface_box(mesh);
+    const Vec3 half = 0.5 * spacing * cells_over(box, spacing);
+    Box block;
+    block.grow(box.center() - half);
+    block.grow(box.center() + half);
+    return box_surface(block);
+}
+
+// The lower end's corner and the direction of a cell's 12 edges and 12 face diagonals.
+struct CellConnection {
+    int direction, lower_corner;
+    float share;  // of a whole connection
+};
+
+std::vector<CellConnection> cell_connections() {
+    std::vector<CellConnection> all;
+    for (int d = 0; d < kForwardCount; ++d) {
+        for (int c = 0; c < 8; ++c) {
+            bool fits = true;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int end = (c >> axis & 1) + kForward[d][axis];
+                fits = fits && (end == 0 || end == 1);
+            }
+            if (fits) all.push_back({d, c, d < kEdgeCount ? 0.25f : 0.5f});
+        }
+    }
+    return all;
+}
+
+void fill_cells(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
+    std::vector<Vec3i> site;
+    std::size_t count = 0;
+    for (const CellLayer& layer : layers) count += layer.share.size();
+    site.reserve(count);
+    matter.cell_fill.reserve(count);
+    matter.cell_centroid.reserve(count);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        for (const CellShare& s : layers[k].share) {
+            site.emplace_back(s.i, s.j, static_cast<int>(k));
+            matter.cell_fill.push_back(static_cast<float>(s.fill));
+            const Vec3 centroid = s.moment / s.fill;
+            matter.cell_centroid.push_back(centroid.cwiseMax(-0.5).cwiseMin(0.5).cast<float>());
+        }
+    }
+    matter.lattice = make_lattice(frame.origin, frame.spacing, frame.cell_count, site);
+}
+
+void place_particles(const MoldFrame& frame, Aggregate& matter) {
+    std::size_t count = 0;
+    for (const ParticleRun& run : matter.lattice.particle_run) count += run.count;
+    matter.particle_reference.resize(count);
+    for (const ParticleRun& run : matter.lattice.particle_run) {
+        for (int n = 0; n < run.count; ++n) {
+            matter.particle_reference.set(
+                run.first + n,
+                frame.origin + frame.step.cwiseProduct(Vec3(run.i + n, run.j, run.k)));
+        }
+    }
+    matter.particle_position = matter.particle_reference;
+    matter.particle_velocity.resize(count);
+    matter.particle_mass.assign(count, 0.0);
+    for (ConnectionArrays& c : matter.connection) {
+        c.weight.assign(count, 0.0f);
+        c.plastic.assign(count, 0.0f);
+    }
+}
+
+// Each cell shares out its mass and its part of the connections along its edges and faces.
+// NOTE: mass goes to the corners in equal parts. Parts by the material's own place would keep its
+// centre of mass, but leave corners of nearly empty cells so light that no step is small enough.
+void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
+    const std::vector<CellConnection> connections = cell_connections();
+    const double corner_mass = matter.material.density * frame.cell_volume() / 8;
+    auto layer = layers.begin();
+    std::size_t in_layer = 0;
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n, ++in_layer) {
+            while (in_layer == layer->share.size()) ++layer, in_layer = 0;
+            const double fill = layer->share[in_layer].fill;
+            const auto corner = [&](int c) { return run.row[c >> 1] + n + (c & 1); };
+            for (int c = 0; c < 8; ++c) matter.particle_mass[corner(c)] += corner_mass * fill;
+            for (const CellConnection& c : connections) {
+                matter.connection[c.direction].weight[corner(c.lower_corner)] +=
+                    c.share * static_cast<float>(fill);
+            }
+        }
+    }
+}
+
+double filled_cells(const std::vector<CellLayer>& layers) {
+    double sum = 0;
+    for (const CellLayer& layer : layers)
+        for (const CellShare& s : layer.share) sum += s.fill;
+    return sum;
+}
+
+// Everything about the result that a user would not expect.
+void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
+                   const std::vector<CellLayer>& layers, double lost, const Aggregate& matter) {
+    double surplus = 0, deficit = 0;
+    int open_rows = 0;
+    for (const CellLayer& layer : layers) {
+        surplus += layer.surplus, deficit += layer.deficit, open_rows += layer.open_rows;
+    }
+    const double cell = frame.cell_volume();
+    const double filled = filled_cells(layers) * cell;
+    if (open_rows > 0) {
+        log_warning("mold: the surface is open: {} rows of cells were filled by sampling",
+                    open_rows);
+    }
+    if (surplus * cell > 1e-6 * volume || deficit * cell > 1e-6 * volume) {
+        log_warning(
+            "mold: parts of the surface overlap or are turned inside out: {:.4g} m3 filled more "
+            "than once and {:.4g} m3 less than not at all are left out; the matter has {:.6g} m3, "
+            "the surface encloses {:.6g} m3",
+            surplus * cell, deficit * cell, filled, volume);
+    }
+    if (lost * cell > 1e-6 * volume) {
+        log_warning("mold: {:.4g} m3 lie in pieces too small for cells of {:.4g} m and are lost",
+                    lost * cell, frame.spacing);
+    }
+    const double thickness = 2 * volume / surface_area(mesh);
+    if (thickness < kThin * frame.spacing) {
+        log_warning(
+            "mold: the mesh is about {:.3g} m thick, thinner than its cells of {:.3g} m; sheets "
+            "that share a cell become one (spacing = \"{:.2g} m\" keeps them apart)",
+            thickness, frame.spacing, 0.5 * thickness);
+    }
+    // Separate bodies and handles tell of parts that melted together for want of room.
+    const int bodies = count_bodies(mesh);
+    const int pieces = find_pieces(matter).count;
+    const std::optional<int> wanted = euler_inside(mesh);
+    if (pieces < bodies) {
+        log_warning(
+            "mold: {} separate bodies became {} where they share cells of {:.3g} m; a smaller "
+            "spacing keeps them apart",
+            bodies, pieces, frame.spacing);
+    } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
+        log_warning(
+            "mold: in cells of {:.3g} m the matter has other holes or handles than the mesh: parts "
+            "closer than a cell are joined, or thin ones parted; a smaller spacing keeps them",
+            frame.spacing);
+    }
+}
+
+[[noreturn]] void refuse_thin(double thickness, double spacing) {
+    fail(ExitCode::mesh,
+         "cannot mold: the mesh is about {:.3g} m thick and all but vanishes in cells of {:.3g} m; "
+         "use spacing = \"{:.2g} m\" or less",
+         thickness, spacing, thickness);
+}
+
+Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spacing) {
+    const double volume = signed_volume(mesh);
+    const double area = surface_area(mesh);
+    if (!(std::abs(volume) > 1e-9 * area * std::sqrt(area))) {
+        fail(ExitCode::mesh,
+             "cannot mold: the surface of {:.4g} m2 encloses no volume; give it thickness first",
+             area);
+    }
+    if (volume < 0) {
+        fail(ExitCode::mesh,
+             "cannot mold: the surface is turned inside out (it encloses {:.4g} m3); its triangles "
+             "must run counter-clockwise seen from outside",
+             volume);
+    }
+    if (2 * volume / area < kThinnest * spacing) refuse_thin(2 * volume / area, spacing);
+    const MoldFrame frame = frame_over(surface_box(mesh), spacing);
+    std::vector<CellLayer> layers = share_cells(mesh, frame);
+    const double lost = drop_slivers(layers);
+    Aggregate matter;
+    matter.material = material;
+    fill_cells(layers, frame, matter);
+    if (matter.cell_fill.empty()) refuse_thin(2 * volume / area, spacing);
+    place_particles(frame, matter);
+    share_out(layers, frame, matter);
+    matter.surface = carry_patches(layers, frame, matter.lattice);
+    tell_findings(mesh, frame, volume, layers, lost, matter);
+    return matter;
+}
+
+}  // namespace
+
+Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings) {
+    const double spacing = spacing_for(mesh, settings);
+    refuse_too_many_cells(mesh, settings);
+    return mold_surface(settings.kind == MoldKind::block ? block_around(mesh, spacing) : mesh,
+                        material, spacing);
+}
+
+}  // namespace swage

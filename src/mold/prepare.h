@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is settled about a mold before any cell is made.
+#pragma once
+
+#include "mold/frame.h"
+#include "mold/mold.h"
+
+namespace swage {
+
+// Of the positions that triangles use. Throws Error(mesh) without any.
+Box surface_box(const TriMesh& mesh);
+
+// Throws Error(resources) naming cells, bytes and limit.
+void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings);
+
+}  // namespace swage

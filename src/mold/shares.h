@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exact share of every cell inside a mesh, and the mesh's surface in pieces, cell by cell.
+#pragma once
+
+#include <vector>
+
+#include "geometry/trimesh.h"
+#include "mold/frame.h"
+
+namespace swage {
+
+// A cell that holds material.
+struct CellShare {
+    int i, j;
+    double fill;  // share of its volume
+    Vec3 moment;  // fill times the centroid, in cells from the cell's centre
+};
+
+// Surface of one bin whose normals point most along one of the six axis directions.
+struct SurfacePatch {
+    int i, j;     // the cell it lies in
+    Vec3 center;  // [bins]
+    Vec3 normal;  // unit, outward
+    double area;  // [m2]
+};
+
+// One layer of cells along z.
+struct CellLayer {
+    std::vector<CellShare> share;     // sorted by j, i
+    std::vector<SurfacePatch> patch;  // sorted by j, i
+    double surplus = 0;               // [cells], filled more than once by overlapping parts
+    double deficit = 0;  // [cells], filled less than not at all by parts turned inside out
+    int open_rows = 0;   // rows that the surface does not close
+};
+
+std::vector<CellLayer> share_cells(const TriMesh& mesh, const MoldFrame& frame);
+
+inline constexpr double kLeastFill = 1e-3;
+
+// Gives the material of cells with less than kLeastFill to their fullest face neighbours and takes
+// those cells out. Returns what had no neighbour and is lost [cells].
+double drop_slivers(std::vector<CellLayer>& layers);
+
+}  // namespace swage

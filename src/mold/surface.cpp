@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// NOTE: a point stands at the centre of its patch, so the points nearest an edge of the body lie a
+// quarter of a spacing inside it. The area's integral and first moments are exact; a tool that
+// meets only an edge is met that much later.
+#include "mold/surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 2048;  // patches
+// How far from its carrier a point may lie, in cells. Farther ones are drawn in: the weights would
+// grow and with them the stiffness that contact puts on the carrier's far corners.
+constexpr double kOverhang = 0.25;
+
+double distance_squared(const Vec3& point, const Vec3i& cell) {
+    const Vec3 low = cell.cast<double>();
+    return (point - point.cwiseMax(low).cwiseMin(low + Vec3::Ones())).squaredNorm();
+}
+
+// The active cell nearest to a point given in cells; `home` is where it would be.
+CellId nearest_cell(const Lattice& lattice, const Vec3i& home, const Vec3& point) {
+    CellId best = -1;
+    double best_distance = 0;
+    const auto consider = [&](CellId cell, const Vec3i& site) {
+        const double d = distance_squared(point, site);
+        if (best < 0 || d < best_distance) best = cell, best_distance = d;
+    };
+    constexpr int kRings = 3;
+    for (int ring = 1; ring <= kRings; ++ring) {
+        // Cells of this ring are at least ring - 1 away.
+        if (best >= 0 && best_distance <= (ring - 1.0) * (ring - 1.0)) break;
+        for (int dk = -ring; dk <= ring; ++dk) {
+            for (int dj = -ring; dj <= ring; ++dj) {
+                const bool inner = std::max(std::abs(dk), std::abs(dj)) < ring;
+                for (int di = -ring; di <= ring; di += inner ? 2 * ring : 1) {
+                    const Vec3i site = home + Vec3i(di, dj, dk);
+                    const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+                    if (cell >= 0) consider(cell, site);
+                }
+            }
+        }
+    }
+    if (best >= 0) return best;
+    for (const CellRun& run : lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) consider(run.first + n, {run.i + n, run.j, run.k});
+    }
+    return best;
+}
+
+// Trilinear weights in steps of 2^-23, so that as floats they still sum to exactly one.
+std::array<float, 8> corner_weights(const Vec3& local) {
+    constexpr double kOne = 1 << 23;
+    std::array<double, 8> weight;
+    double sum = 0;
+    int largest = 0;
+    for (int c = 0; c < 8; ++c) {
+        double w = 1;
+        for (int d = 0; d < 3; ++d) w *= c >> d & 1 ? local[d] : 1 - local[d];
+        weight[c] = std::round(w * kOne);
+        sum += weight[c];
+        if (weight[c] > weight[largest]) largest = c;
+    }
+    weight[largest] += kOne - sum;
+    std::array<float, 8> result;
+    for (int c = 0; c < 8; ++c) result[c] = static_cast<float>(weight[c] / kOne);
+    return result;
+}
+
+}  // namespace
+
+SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFrame& frame,
+                            const Lattice& lattice) {
+    struct Chunk {
+        int k;
+        std::size_t begin, end, first;  // patches of the layer; the first's number in all
+    };
+    std::vector<Chunk> chunks;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        const std::size_t patches = layers[k].patch.size();
+        for (std::size_t begin = 0; begin < patches; begin += kChunk) {
+            const std::size_t end = std::min(patches, begin + kChunk);
+            chunks.push_back({static_cast<int>(k), begin, end, count});
+            count += end - begin;
+        }
+    }
+    SurfacePoints surface;
+    surface.corner.resize(count);
+    surface.weight.resize(count);
+    surface.area.resize(count);
+    surface.reference_position.resize(count);
+    surface.reference_normal.resize(count);
+    parallel_for(chunks.size(), [&](std::size_t c) {
+        const Chunk& chunk = chunks[c];
+        for (std::size_t n = chunk.begin; n < chunk.end; ++n) {
+            const SurfacePatch& patch = layers[chunk.k].patch[n];
+            const std::size_t p = chunk.first + n - chunk.begin;
+            const Vec3 point = 0.5 * patch.center;
+            Vec3i site(patch.i, patch.j, chunk.k);
+            CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+            if (cell < 0) {
+                cell = nearest_cell(lattice, site, point);
+                site = lattice.cell_site(cell);
+            }
+            const Vec3 free = point - site.cast<double>();
+            const Vec3 local = free.cwiseMax(-kOverhang).cwiseMin(1 + kOverhang);
+            surface.corner[p] = lattice.cell_corners(cell);
+            surface.weight[p] = corner_weights(local);
+            surface.area[p] = patch.area;
+            surface.reference_position[p] = frame.point(2 * (site.cast<double>() + local));
+            surface.reference_normal[p] = patch.normal;
+        }
+    });
+    return surface;
+}
+
+}  // namespace swage

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points of the true surface, carried by cells.
+#pragma once
+
+#include "matter/aggregate.h"
+#include "mold/shares.h"
+
+namespace swage {
+
+SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFrame& frame,
+                            const Lattice& lattice);
+
+}  // namespace swage
