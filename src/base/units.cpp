@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/units.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "base/math.h"
+#include "base/suggest.h"
+#include "base/text.h"
+
+namespace swage {
+
+namespace {
+
+struct Unit {
+    const char* name;
+    Quantity quantity;
+    double factor;       // to SI
+    bool shown = false;  // used to show values; those of one quantity stand from large to small
+};
+
+constexpr double kInch = 0.0254;
+constexpr double kDegree = kPi / 180;
+
+constexpr Unit kUnits[] = {
+    {"m", Quantity::length, 1, true},
+    {"cm", Quantity::length, 1e-2, true},
+    {"mm", Quantity::length, 1e-3, true},
+    {"um", Quantity::length, 1e-6, true},
+    {"nm", Quantity::length, 1e-9, true},
+    {"km", Quantity::length, 1e3},
+    {"dm", Quantity::length, 1e-1},
+    {"\u00b5m", Quantity::length, 1e-6},
+    {"\u03bcm", Quantity::length, 1e-6},
+    {"in", Quantity::length, kInch},
+    {"ft", Quantity::length, 12 * kInch},
+    {"deg", Quantity::angle, kDegree, true},
+    {"rad", Quantity::angle, 1},
+    {"mrad", Quantity::angle, 1e-3},
+    {"turn", Quantity::angle, 2 * kPi},
+    {"turns", Quantity::angle, 2 * kPi},
+    {"\u00b0", Quantity::angle, kDegree},
+    {"s", Quantity::time, 1, true},
+    {"ms", Quantity::time, 1e-3, true},
+    {"us", Quantity::time, 1e-6, true},
+    {"min", Quantity::time, 60},
+    {"h", Quantity::time, 3600},
+    {"m/s", Quantity::speed, 1, true},
+    {"mm/s", Quantity::speed, 1e-3, true},
+    {"um/s", Quantity::speed, 1e-6, true},
+    {"cm/s", Quantity::speed, 1e-2},
+    {"km/h", Quantity::speed, 1 / 3.6},
+    {"GPa", Quantity::stress, 1e9, true},
+    {"MPa", Quantity::stress, 1e6, true},
+    {"kPa", Quantity::stress, 1e3, true},
+    {"Pa", Quantity::stress, 1, true},
+    {"N/m2", Quantity::stress, 1},
+    {"N/mm2", Quantity::stress, 1e6},
+    {"bar", Quantity::stress, 1e5},
+    {"psi", Quantity::stress, 6894.757293168361},
+    {"kg/m3", Quantity::density, 1, true},
+    {"g/cm3", Quantity::density, 1e3},
+    {"kg/dm3", Quantity::density, 1e3},
+    {"kg/l", Quantity::density, 1e3},
+    {"t/m3", Quantity::density, 1e3},
+    {"kg", Quantity::mass, 1, true},
+    {"g", Quantity::mass, 1e-3, true},
+    {"mg", Quantity::mass, 1e-6, true},
+    {"t", Quantity::mass, 1e3},
+    {"MN", Quantity::force, 1e6, true},
+    {"kN", Quantity::force, 1e3, true},
+    {"N", Quantity::force, 1, true},
+    {"mN", Quantity::force, 1e-3, true},
+    {"m/s2", Quantity::acceleration, 1, true},
+    {"mm/s2", Quantity::acceleration, 1e-3},
+    {"kJ/m2", Quantity::toughness, 1e3, true},
+    {"J/m2", Quantity::toughness, 1, true},
+    {"N/m", Quantity::toughness, 1},
+    {"N/mm", Quantity::toughness, 1e3},
+    {"%", Quantity::number, 1e-2},
+};
+
+struct QuantityName {
+    Quantity quantity;
+    const char* name;
+    const char* si;
+    const char* with_article;
+};
+
+constexpr QuantityName kQuantities[] = {
+    {Quantity::number, "number", "", "a plain number"},
+    {Quantity::length, "length", "m", "a length"},
+    {Quantity::angle, "angle", "rad", "an angle"},
+    {Quantity::time, "time", "s", "a time"},
+    {Quantity::speed, "speed", "m/s", "a speed"},
+    {Quantity::stress, "stress", "Pa", "a stress"},
+    {Quantity::density, "density", "kg/m3", "a density"},
+    {Quantity::mass, "mass", "kg", "a mass"},
+    {Quantity::force, "force", "N", "a force"},
+    {Quantity::acceleration, "acceleration", "m/s2", "an acceleration"},
+    {Quantity::toughness, "toughness", "J/m2", "a toughness"},
+};
+
+const QuantityName& about(Quantity quantity) {
+    return *std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                         [&](const QuantityName& one) { return one.quantity == quantity; });
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_word_letter(char c) {
+    return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+           static_cast<unsigned char>(c) >= 0x80;
+}
+
+// Bytes of `text` that spell `unit`, where the text may write m2 as m^2 or with a raised digit.
+std::size_t spelled(std::string_view text, std::string_view unit) {
+    std::size_t at = 0;
+    for (char letter : unit) {
+        const std::string_view rest = text.substr(at);
+        if (letter == '2' && rest.starts_with("\u00b2")) {
+            at += 2;
+        } else if (letter == '3' && rest.starts_with("\u00b3")) {
+            at += 2;
+        } else if (is_digit(letter) && rest.size() > 1 && rest[0] == '^' && rest[1] == letter) {
+            at += 2;
+        } else if (!rest.empty() && rest[0] == letter) {
+            at += 1;
+        } else {
+            return 0;
+        }
+    }
+    return at;
+}
+
+// "m (also cm, mm, um, nm, ...)"
+std::string wanted_text(Quantity wanted) {
+    if (wanted == Quantity::number) return "a plain number is wanted";
+    std::vector<std::string> names = unit_names(wanted);
+    if (names.size() > 4) {
+        names.resize(4);
+        names.push_back("...");
+    }
+    return std::string(about(wanted).with_article) + " is wanted (" + joined(names, ", ") + ")";
+}
+
+[[noreturn]] void refuse(std::size_t at, const std::string& sentence) {
+    throw TextError(at, sentence);
+}
+
+// "1,5 cm": says so when `text`, whose number ends at `comma`, goes on as a decimal comma does.
+void refuse_decimal_comma(std::string_view text, std::size_t comma) {
+    if (comma + 1 >= text.size() || text[comma] != ',' || !is_digit(text[comma + 1])) return;
+    std::string meant(text);
+    meant[comma] = '.';
+    refuse(comma, fmt::format("\"{}\" has a decimal comma; write \"{}\"", text, meant));
+}
+
+}  // namespace
+
+std::string quantity_name(Quantity quantity) { return about(quantity).name; }
+
+std::optional<Quantity> quantity_named(std::string_view name) {
+    for (const QuantityName& one : kQuantities) {
+        if (name == one.name) return one.quantity;
+    }
+    return std::nullopt;
+}
+
+std::vector<std::string> quantity_names() {
+    std::vector<std::string> names;
+    for (const QuantityName& one : kQuantities) names.emplace_back(one.name);
+    return names;
+}
+
+std::string si_unit(Quantity quantity) { return about(quantity).si; }
+
+std::vector<std::string> unit_names(Quantity quantity) {
+    std::vector<std::string> names;
+    for (const Unit& unit : kUnits) {
+        if (unit.quantity == quantity) names.emplace_back(unit.name);
+    }
+    return names;
+}
+
+std::optional<LeadingNumber> leading_number(std::string_view text) {
+    const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-') ? 1 : 0;
+    const std::string_view digits = text.substr(sign);
+    const bool begins =
+        !digits.empty() &&
+        (is_digit(digits[0]) || (digits.size() > 1 && digits[0] == '.' && is_digit(digits[1])));
+    if (!begins) {
+        // from_chars would also read these words; a unit or variable may begin with them.
+        const std::size_t end = static_cast<std::size_t>(
+            std::find_if_not(digits.begin(), digits.end(), is_word_letter) - digits.begin());
+        const std::string_view word = digits.substr(0, end);
+        if (edit_distance(word, "nan") == 0 || edit_distance(word, "inf") == 0 ||
+            edit_distance(word, "infinity") == 0) {
+            refuse(0, fmt::format("\"{}\" is not a finite number", word));
+        }
+        return std::nullopt;
+    }
+    if (digits.size() > 1 && digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X')) {
+        refuse(0, fmt::format("\"{}\" is hexadecimal; write a decimal number", text));
+    }
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const std::size_t size = static_cast<std::size_t>(end - digits.data());
+    if (error == std::errc::result_out_of_range) {
+        // Either way out of range: what is too small is 0 for every purpose here.
+        const std::string_view number = digits.substr(0, size);
+        const std::size_t exponent = number.find_first_of("eE");
+        const bool tiny = (exponent != std::string_view::npos && number[exponent + 1] == '-') ||
+                          (exponent == std::string_view::npos && number[0] == '0');
+        if (!tiny) refuse(0, fmt::format("\"{}\" is too large for a number", number));
+        value = 0;
+    }
+    if (sign == 1 && text[0] == '-') value = -value;
+    return LeadingNumber{value + 0.0, sign + size};  // + 0.0: -0 is 0
+}
+
+std::optional<LeadingUnit> leading_unit(std::string_view text) {
+    std::optional<LeadingUnit> best;
+    for (const Unit& unit : kUnits) {
+        const std::size_t size = spelled(text, unit.name);
+        if (size == 0 || (best && size <= best->size)) continue;
+        if (size < text.size() && is_word_letter(text[size]) && unit.name[0] != '%') continue;
+        best = LeadingUnit{unit.quantity, unit.factor, size};
+    }
+    return best;
+}
+
+double parse_quantity(std::string_view text, Quantity wanted) {
+    std::size_t begin = 0, end = text.size();
+    while (begin < end && is_blank(text[begin])) ++begin;
+    while (end > begin && is_blank(text[end - 1])) --end;
+    if (begin == end) refuse(0, "the text is empty; " + wanted_text(wanted));
+    const std::string_view inner = text.substr(begin, end - begin);
+
+    const std::optional<LeadingNumber> number = leading_number(inner);
+    if (!number) refuse(begin, fmt::format("\"{}\" is no number; {}", inner, wanted_text(wanted)));
+    refuse_decimal_comma(inner, number->size);
+    std::size_t at = number->size;
+    while (at < inner.size() && is_blank(inner[at])) ++at;
+    const std::string_view rest = inner.substr(at);
+    if (rest.empty()) return number->value;
+
+    const std::optional<LeadingUnit> unit = leading_unit(rest);
+    if (!unit || unit->size != rest.size()) {
+        refuse(begin + at,
+               fmt::format("unknown unit \"{}\"{}; {}", rest,
+                           did_you_mean(rest, unit_names(wanted)), wanted_text(wanted)));
+    }
+    if (unit->quantity != wanted) {
+        refuse(begin + at, fmt::format("\"{}\" is {}; {}", inner,
+                                       about(unit->quantity).with_article, wanted_text(wanted)));
+    }
+    const double value = number->value * unit->factor;
+    if (!std::isfinite(value)) refuse(begin, fmt::format("\"{}\" is too large", inner));
+    return value;
+}
+
+std::string quantity_text(double value, Quantity quantity) {
+    const std::string si = si_unit(quantity);
+    const auto text = [](double number, const std::string& unit) {
+        return fmt::format("{:.6g}{}{}", number + 0.0, unit.empty() ? "" : " ", unit);
+    };
+    if (!std::isfinite(value)) {
+        return std::isnan(value) ? "not a number" : value > 0 ? "infinite" : "-infinite";
+    }
+    const Unit* smallest = nullptr;
+    for (const Unit& unit : kUnits) {
+        if (unit.quantity != quantity || !unit.shown) continue;
+        smallest = &unit;
+        if (std::abs(value) >= unit.factor * (1 - 1e-9)) break;
+    }
+    if (smallest == nullptr || (value == 0 && quantity != Quantity::angle)) return text(value, si);
+    return text(value / smallest->factor, smallest->name);
+}
+
+}  // namespace swage

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Quantities with units, as users write them: "18 cm", "210 GPa", "60 deg", "7.8 g/cm3". A bare
+// number is SI. No locale has a say, ever: the decimal sign is a point.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/text_error.h"
+
+namespace swage {
+
+enum class Quantity {
+    number,
+    length,        // [m]
+    angle,         // [rad]
+    time,          // [s]
+    speed,         // [m/s]
+    stress,        // [Pa]
+    density,       // [kg/m3]
+    mass,          // [kg]
+    force,         // [N]
+    acceleration,  // [m/s2]
+    toughness,     // [J/m2]
+};
+
+std::string quantity_name(Quantity quantity);  // "length"
+std::optional<Quantity> quantity_named(std::string_view name);
+std::vector<std::string> quantity_names();
+std::string si_unit(Quantity quantity);                  // "m"; a number's is empty
+std::vector<std::string> unit_names(Quantity quantity);  // the usual one first
+
+// The SI value of a text. Throws TextError: what is wrong, where, what is wanted.
+double parse_quantity(std::string_view text, Quantity wanted);
+
+// A number alone at the beginning of `text`: its value and how many bytes it takes. Nothing when
+// there is none. Throws TextError for hexadecimal, nan, inf and what is too large.
+struct LeadingNumber {
+    double value;
+    std::size_t size;
+};
+std::optional<LeadingNumber> leading_number(std::string_view text);
+
+// The longest unit at the beginning of `text` ("mm/s" of "mm/s + 3"), which must not go on with a
+// letter or digit.
+struct LeadingUnit {
+    Quantity quantity;
+    double factor;  // to SI
+    std::size_t size;
+};
+std::optional<LeadingUnit> leading_unit(std::string_view text);
+
+// For people: 0.18 m is "18 cm", 2.1e11 Pa "210 GPa", angles are in degrees. Six digits.
+std::string quantity_text(double value, Quantity quantity);
+
+}  // namespace swage

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "base/expression.h"
+#include "base/math.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+std::string mistake_of(const std::string& text, const std::vector<std::string>& variables = {}) {
+    try {
+        const Formula formula(text, variables);
+        formula.evaluate(std::vector<double>(variables.size(), 0.0));
+    } catch (const TextError& error) {
+        return fmt::format("{}: {}", error.at(), error.what());
+    }
+    return "none";
+}
+
+double value_of(const std::string& text) { return evaluate_text(text, {}); }
+
+}  // namespace
+
+TEST_CASE("an expression computes as mathematics does") {
+    CHECK(value_of("1 + 2*3") == 7);
+    CHECK(value_of("(1 + 2)*3") == 9);
+    CHECK(value_of("-2^2") == -4);
+    CHECK(value_of("2^3^2") == 512);
+    CHECK(value_of("10 - 4 - 3") == 3);
+    CHECK(value_of("10/4/5") == 0.5);
+    CHECK(value_of("1e-3 + .5") == 0.501);
+    CHECK(value_of("3 > 2 && 1 <= 1 ? 5 : 6") == 5);
+    CHECK(value_of("(2 > 3)*7") == 0);
+    CHECK(value_of("min(3, 1, 2) + max(4, 6)") == 7);
+    CHECK(value_of("clamp(5, 0, 1) + clamp(-5, 0, 1) + abs(-2)") == 3);
+    CHECK(value_of("sin(pi/2) + atan2(0, 1)") == 1);
+    CHECK(value_of("hypot(3, 4) + mod(7, 4) + pow(2, 3)") == 16);
+    CHECK_FALSE(std::signbit(value_of("-0")));
+}
+
+TEST_CASE("a number in an expression may carry a unit") {
+    CHECK(evaluate_text("2*radius + 3 mm", {{"radius", 0.1}}) == Approx(0.203).epsilon(1e-15));
+    CHECK(value_of("60 deg") == Approx(kPi / 3).epsilon(1e-15));
+    CHECK(value_of("-60deg") == Approx(-kPi / 3).epsilon(1e-15));
+    CHECK(value_of("2*3 cm^2") == Approx(2 * 9e-4).epsilon(1e-15));
+    CHECK(value_of("5 mm/s") == 0.005);
+    CHECK(value_of("50 %") == 0.5);
+    // After a number without a unit, a variable is never taken for one.
+    CHECK(evaluate_text("3*t", {{"t", 2}}) == 6);
+}
+
+TEST_CASE("a ramp rises smoothly from 0 to 1 and never leaves them") {
+    const Formula ramp("ramp(t, 0.2, 0.7)", {"t"});
+    const auto at = [&](double t) { return ramp.evaluate(std::vector<double>{t}); };
+    CHECK(at(0) == 0);
+    CHECK(at(0.2) == 0);
+    CHECK(at(0.45) == Approx(0.5));
+    CHECK(at(0.7) == 1);
+    CHECK(at(1) == 1);
+    const double slope = (at(0.45 + 1e-6) - at(0.45 - 1e-6)) / 2e-6;
+    CHECK(slope == Approx(1.5 / 0.5).epsilon(1e-6));
+    CHECK((at(0.2 + 1e-5) - at(0.2)) / 1e-5 < 1e-3);
+    CHECK((at(0.7) - at(0.7 - 1e-5)) / 1e-5 < 1e-3);
+    for (double t = 0, last = 0; t <= 1; t += 0.01) {
+        CHECK(at(t) >= last);
+        last = at(t);
+    }
+    // Without width it is a step, never 0/0.
+    CHECK(value_of("ramp(0.3, 0.3, 0.3)") == 1);
+    CHECK(value_of("ramp(0.2, 0.3, 0.3)") == 0);
+    CHECK(value_of("ramp(0.4, 0.3, 0.3)") == 1);
+    CHECK(value_of("ramp(0.4, 0.5, 0.3)") == 0);
+    CHECK(value_of("line(0.3, 0.2, 0.6)") == Approx(0.25));
+    CHECK(value_of("step(0.3, 0.3) - step(0.2, 0.3)") == 1);
+}
+
+TEST_CASE("a mistake in an expression is named at its place") {
+    struct Bad {
+        const char* text;
+        const char* mistake;  // how it begins
+    };
+    const Bad bad[] = {
+        {"", "0: the expression is empty"},
+        {"  ", "0: the expression is empty"},
+        {"2*radus", "2: unknown name \"radus\", did you mean \"radius\"?"},
+        {"2*q", "2: unknown name \"q\""},
+        {"rmap(t, 0, 1)", "0: unknown function \"rmap\", did you mean \"ramp\"?"},
+        {"1 + min", "4: the function min needs brackets: min(a, b, ...)"},
+        {"radius(2)", "0: \"radius\" is no function; to multiply write radius*(...)"},
+        {"2 radius", "2: a sign is missing before \"radius\"; to multiply write 2*radius"},
+        {"2 parsec", "2: unknown unit \"parsec\""},
+        {"1,5*radius", "1: a comma may only part the arguments of a function"},
+        {"(1,5)", "2: a comma may only part"},
+        {"min(1,(2,3))", "8: a comma may only part"},
+        {"radius = 3", "7: a single = means nothing here"},
+        {"(1 + 2", "0: this bracket is not closed"},
+        {"1 + 2)", "5: this bracket was never opened"},
+        {"1 +", "3: the expression ends too early"},
+        {"1 + * 2", "4: the sign \"*\" has nothing to work on"},
+        {"radius t", "7: a sign is missing before this"},
+        {"1 2", "2: "},
+        {"ramp(t, 1)", "9: too few arguments: ramp(t, a, b)"},
+        {"sin(t, 1)", "8: too many arguments: sin(x)"},
+        {"max()", "5: too few"},
+        {"t ? 1", "5: a ? needs a : after it"},
+        {"1 : 2", "4: this : has no ?"},
+        {"\"a\"", "0: \"\"\" does not belong"},
+        {"1 & 2", "2: \"&\" does not belong"},
+        {"1e999", "0: \"1e999\" is too large"},
+        {"t + 0x1F", "4: \"0x1F\" is hexadecimal"},
+        {"nan", "0: unknown name \"nan\""},
+        {"1/t", "0: the expression gives no finite number"},
+        {"sqrt(t - 1)", "0: the expression gives no finite number"},
+        {"l\u00e4nge", "0: unknown name"},
+    };
+    for (const Bad& one : bad) {
+        INFO(one.text);
+        const std::string mistake = mistake_of(one.text, {"radius", "t"});
+        INFO(mistake);
+        CHECK(mistake.rfind(one.mistake, 0) == 0);
+    }
+    CHECK(mistake_of(std::string(5000, '1')).find("too long") != std::string::npos);
+    CHECK(mistake_of(std::string(2000, '(') + "1" + std::string(2000, ')')).find("brackets") !=
+          std::string::npos);
+}
+
+TEST_CASE("a formula tells which variables it uses") {
+    const Formula formula("a + 2*c", {"a", "b", "c"});
+    CHECK(formula.used() == std::vector<std::string>{"a", "c"});
+    CHECK_FALSE(formula.is_constant());
+    CHECK(Formula("60 deg", {"deg_offset"}).is_constant());
+    CHECK(formula.evaluate(std::vector<double>{1, NAN, 3}) == 7);  // b has no say
+    CHECK_THROWS_AS(formula.evaluate(std::vector<double>{1, 2}), TextError);
+}
+
+TEST_CASE("a formula evaluates the same from many threads at once") {
+    const Formula formula("a*ramp(t, 0, 1) + sin(t)", {"a", "t"});
+    std::vector<int> wrong(4, 0);
+    std::vector<std::thread> thread;
+    for (std::size_t n = 0; n < wrong.size(); ++n) {
+        thread.emplace_back([&, n] {
+            for (int i = 0; i < 5000; ++i) {
+                const double t = i / 5000.0, a = static_cast<double>(n);
+                const double s = t * t * (3 - 2 * t);
+                const double value = formula.evaluate(std::vector<double>{a, t});
+                if (std::abs(value - (a * s + std::sin(t))) > 1e-12) ++wrong[n];
+            }
+        });
+    }
+    for (std::thread& one : thread) one.join();
+    CHECK(wrong == std::vector<int>(4, 0));
+}
+
+TEST_CASE("names of functions, constants and units are not for variables") {
+    CHECK(is_reserved_name("ramp"));
+    CHECK(is_reserved_name("pi"));
+    CHECK(is_reserved_name("mm"));
+    CHECK_FALSE(is_reserved_name("radius"));
+    CHECK_FALSE(is_reserved_name("hold"));
+}

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <clocale>
+#include <limits>
+
+#include "base/math.h"
+#include "base/suggest.h"
+#include "base/units.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+std::string mistake_of(const std::string& text, Quantity wanted) {
+    try {
+        parse_quantity(text, wanted);
+    } catch (const TextError& error) {
+        return fmt::format("{}: {}", error.at(), error.what());
+    }
+    return "none";
+}
+
+}  // namespace
+
+TEST_CASE("a quantity has the value of its unit, however it is spelled") {
+    struct Good {
+        const char* text;
+        Quantity quantity;
+        double value;
+    };
+    const Good good[] = {
+        {"18 cm", Quantity::length, 0.18},
+        {"18cm", Quantity::length, 0.18},
+        {"  -18\tcm ", Quantity::length, -0.18},
+        {"+2 m", Quantity::length, 2},
+        {".5 mm", Quantity::length, 0.0005},
+        {"2.5e1 \u00b5m", Quantity::length, 25e-6},
+        {"0.25", Quantity::length, 0.25},
+        {"010", Quantity::number, 10},
+        {"-0", Quantity::number, 0},
+        {"1e-999", Quantity::number, 0},
+        {"30 %", Quantity::number, 0.3},
+        {"210 GPa", Quantity::stress, 210e9},
+        {"210 N/mm^2", Quantity::stress, 210e6},
+        {"60 deg", Quantity::angle, kPi / 3},
+        {"60\u00b0", Quantity::angle, kPi / 3},
+        {"0.5 turn", Quantity::angle, kPi},
+        {"0.5 mm/s", Quantity::speed, 0.0005},
+        {"36 km/h", Quantity::speed, 10},
+        {"1.5 s", Quantity::time, 1.5},
+        {"2 min", Quantity::time, 120},
+        {"7.8 g/cm3", Quantity::density, 7800},
+        {"7.8 g/cm\u00b3", Quantity::density, 7800},
+        {"9.81 m/s2", Quantity::acceleration, 9.81},
+        {"9.81 m/s^2", Quantity::acceleration, 9.81},
+        {"100 J/m2", Quantity::toughness, 100},
+        {"3 kN", Quantity::force, 3000},
+        {"3 g", Quantity::mass, 0.003},
+    };
+    for (const Good& one : good) {
+        INFO(one.text);
+        CHECK(parse_quantity(one.text, one.quantity) == Approx(one.value).epsilon(1e-15));
+    }
+    CHECK_FALSE(std::signbit(parse_quantity("-0", Quantity::number)));
+}
+
+TEST_CASE("what is no quantity is refused with place and reason") {
+    struct Bad {
+        const char* text;
+        Quantity wanted;
+        const char* mistake;  // how it begins
+    };
+    const Bad bad[] = {
+        {"", Quantity::length, "0: the text is empty; a length is wanted (m, cm, mm, um, ...)"},
+        {"long", Quantity::length, "0: \"long\" is no number; a length is wanted"},
+        {"1,5 cm", Quantity::length, "1: \"1,5 cm\" has a decimal comma; write \"1.5 cm\""},
+        {"10 apples", Quantity::length, "3: unknown unit \"apples\"; a length is wanted"},
+        {"1e5x", Quantity::number, "3: unknown unit \"x\"; a plain number is wanted"},
+        {"18 cm long", Quantity::length, "3: unknown unit \"cm long\"; a length is wanted"},
+        {"1.2.3", Quantity::number, "3: unknown unit \".3\""},
+        {"3 mpa", Quantity::stress, "2: unknown unit \"mpa\", did you mean \"MPa\"?"},
+        {"3 kg", Quantity::length, "2: \"3 kg\" is a mass; a length is wanted"},
+        {"3 m", Quantity::number, "2: \"3 m\" is a length; a plain number is wanted"},
+        {"0x10", Quantity::number, "0: \"0x10\" is hexadecimal"},
+        {"nan", Quantity::number, "0: \"nan\" is not a finite number"},
+        {"-Inf m", Quantity::length, "0: \"Inf\" is not a finite number"},
+        {"1e999", Quantity::number, "0: \"1e999\" is too large"},
+        {"1e308 km", Quantity::length, "0: \"1e308 km\" is too large"},
+        {"- 3", Quantity::number, "0: \"- 3\" is no number"},
+    };
+    for (const Bad& one : bad) {
+        INFO(one.text);
+        const std::string mistake = mistake_of(one.text, one.wanted);
+        INFO(mistake);
+        CHECK(mistake.rfind(one.mistake, 0) == 0);
+    }
+}
+
+TEST_CASE("every unit's own name reads back as its quantity") {
+    for (const std::string& name : quantity_names()) {
+        const Quantity quantity = *quantity_named(name);
+        CHECK(quantity_name(quantity) == name);
+        for (const std::string& unit : unit_names(quantity)) {
+            INFO(unit);
+            CHECK(parse_quantity("2 " + unit, quantity) > 0);
+            CHECK(parse_quantity("2" + unit, quantity) == parse_quantity("2 " + unit, quantity));
+        }
+    }
+}
+
+TEST_CASE("shown quantities use a unit that reads well, and read back") {
+    CHECK(quantity_text(0.18, Quantity::length) == "18 cm");
+    CHECK(quantity_text(0.005, Quantity::length) == "5 mm");
+    CHECK(quantity_text(0.01, Quantity::length) == "1 cm");
+    CHECK(quantity_text(0, Quantity::length) == "0 m");
+    CHECK(quantity_text(-0.3, Quantity::length) == "-30 cm");
+    CHECK(quantity_text(210e9, Quantity::stress) == "210 GPa");
+    CHECK(quantity_text(kPi / 3, Quantity::angle) == "60 deg");
+    CHECK(quantity_text(0, Quantity::angle) == "0 deg");
+    CHECK(quantity_text(0.3, Quantity::number) == "0.3");
+    CHECK(quantity_text(7800, Quantity::density) == "7800 kg/m3");
+    CHECK(quantity_text(std::numeric_limits<double>::infinity(), Quantity::stress) == "infinite");
+    for (const std::string& name : quantity_names()) {
+        const Quantity quantity = *quantity_named(name);
+        for (double value : {3.25e-8, 1.5e-3, 0.75, 12.5, 4.5e7}) {
+            const std::string text = quantity_text(value, quantity);
+            INFO(text);
+            CHECK(parse_quantity(text, quantity) == Approx(value).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("no locale changes how numbers are read or shown") {
+    const std::string before = std::setlocale(LC_ALL, nullptr);
+    if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) std::setlocale(LC_ALL, "C.UTF-8");
+    CHECK(parse_quantity("1.5 mm", Quantity::length) == Approx(0.0015));
+    CHECK(quantity_text(0.0015, Quantity::length) == "1.5 mm");
+    std::setlocale(LC_ALL, before.c_str());
+}
+
+TEST_CASE("a mistyped word finds what it was meant to be") {
+    const std::vector<std::string> known = {"young_modulus", "poisson_ratio", "density",
+                                            "yield_stress",  "damping_ratio", "friction"};
+    CHECK(nearest_word("yeild", known) == "yield_stress");
+    CHECK(nearest_word("yield", known) == "yield_stress");
+    CHECK(nearest_word("yungs_modulus", known) == "young_modulus");
+    CHECK(nearest_word("Density", known) == "density");
+    CHECK(nearest_word("frictoin", known) == "friction");
+    CHECK(nearest_word("colour", known).empty());
+    CHECK(nearest_word("x", {"y", "z"}).empty());
+    CHECK(nearest_word("", known).empty());
+    CHECK(nearest_word(std::string(100000, 'a'), known).empty());
+    CHECK(did_you_mean("densty", known) == ", did you mean \"density\"?");
+    CHECK(edit_distance("abcd", "abdc") == 1);
+    CHECK(edit_distance("", "abc") == 3);
+}
