@@ -107,7 +107,7 @@ TEST_CASE("a mistake in an expression is named at its place") {
         {"sin(t, 1)", "8: too many arguments: sin(x)"},
         {"max()", "5: too few"},
         {"t ? 1", "5: a ? needs a : after it"},
-        {"1 : 2", "4: this : has no ?"},
+        {"1 : 2", "3: this : has no ?"},
         {"\"a\"", "0: \"\"\" does not belong"},
         {"1 & 2", "2: \"&\" does not belong"},
         {"1e999", "0: \"1e999\" is too large"},

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What there is to choose from: machines and materials.
+#pragma once
+
+#include <vector>
+
+#include "matter/material.h"
+#include "scene/find.h"
+#include "scene/mistake.h"
+#include "scene/read_machine.h"
+
+namespace swage {
+
+struct MachineCatalogue {
+    std::vector<MachineSpec> machine;  // sorted by name
+    std::vector<Mistake> mistakes;     // of machine files that cannot be used
+};
+MachineCatalogue machine_catalogue(const AssetPaths& assets);
+
+struct MaterialCatalogue {
+    std::vector<Material> material;  // in the order of the files
+    std::vector<Mistake> mistakes;
+    std::vector<std::filesystem::path> files;  // those that were read
+};
+// With a folder: also the materials beside a scene there.
+MaterialCatalogue material_catalogue(const AssetPaths& assets,
+                                     const std::filesystem::path& scene_folder = {});
+
+}  // namespace swage

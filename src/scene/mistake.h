@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is wrong in the files that a user wrote, all of it collected in one reading.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace swage {
+
+struct Mistake {
+    std::filesystem::path file;       // as the user would write it; an override: "--set KEY=VALUE"
+    int line = 0, column = 0;         // from 1; 0: of the file as a whole
+    std::string text;                 // one sentence, without a full stop
+    bool warning = false;             // the scene can be run all the same
+    ExitCode code = ExitCode::scene;  // what the program should return for this one alone
+};
+
+// `bend.toml:14:3: unknown key "yeild" in [material], did you mean "yield_stress"?`; warnings have
+// "warning: " after the place.
+std::string mistake_text(const Mistake& mistake);
+
+// The exit code for all of them: the scene's own comes before a mesh's. `done` when there are only
+// warnings.
+ExitCode exit_code(const std::vector<Mistake>& mistakes);
+
+}  // namespace swage
