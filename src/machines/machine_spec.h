@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A machine as its file says it: plain data and expressions, nothing evaluated.
 //
-// Expressions see the machine's parameters, and of the work-piece: length, height, width (its box
-// along the work frame's x, y, z) and spacing (of the lattice); motions also t, 0 at the start of
-// the stage and 1 at its end, and ramp(t, a, b): 0 before a, 1 after b, smooth between.
+// Expressions (base/expression.h) see the machine's parameters, and of the work-piece: length,
+// height, width (its box along the work frame's x, y, z), spacing (of the lattice) and
+// material_friction; tools also the placed centres of the tools before them, as NAME_x, NAME_y,
+// NAME_z in the work frame, and motions, grips, blades and checks those of all tools. Motions also
+// see t, 0 at the start of the stage and 1 at its end.
 //
 // The work frame stands at the centre of the work-piece's box: x along its length, y the way the
 // machine calls up, z across.
@@ -16,46 +18,44 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/units.h"
 
 namespace swage {
 
 using Expression = std::string;
 using Expression3 = std::array<Expression, 3>;
 
-enum class Quantity { number, length, angle, time, speed, stress, density, mass, force, acceleration,
-                      toughness };
-
 struct ParameterSpec {
     std::string name;
     Quantity quantity = Quantity::number;
     Expression default_value;  // may use box variables and earlier parameters
     Expression low, high;      // allowed range, same variables; empty: unbounded
-    std::string unit;          // as shown to the user ("deg", "m", "")
     std::string help;
 };
 
-// Pose over time in the work frame: first turned by `turn` about `axis` through `pivot`, then moved.
+// Pose over time in the work frame: first turned by `turn` about `axis` through `pivot`, then
+// moved.
 struct MotionSpec {
     Expression3 move = {"0", "0", "0"};  // [m]
     Expression turn = "0";               // [rad]
     Vec3 axis = Vec3::UnitZ();
-    Expression3 pivot = {"0", "0", "0"}; // [m]; in the work frame
+    Expression3 pivot = {"0", "0", "0"};  // [m]; in the work frame
 };
 
 struct ToolSpec {
     std::string name;
-    std::string shape;               // "cylinder", "box", "sphere", "mesh"
-    Expression radius = "0";         // cylinder, sphere
-    Expression length = "0";         // cylinder
+    std::string shape;                   // "cylinder", "box", "sphere", "mesh"
+    Expression radius = "0";             // cylinder, sphere
+    Expression length = "0";             // cylinder
     Expression3 size = {"0", "0", "0"};  // box
-    Expression rounding = "0";       // box
-    std::filesystem::path mesh;      // mesh: absolute; scaled so that its longest side is `length`
-    Vec3 axis = Vec3::UnitZ();       // the shape's z axis, in the work frame
-    Expression3 at = {"0", "0", "0"};    // centre at the start, in the work frame
+    Expression rounding = "0";           // box
+    std::filesystem::path mesh;  // mesh: absolute; scaled so that its longest side is `length`
+    Vec3 axis = Vec3::UnitZ();   // the shape's z axis, in the work frame
+    Expression3 at = {"0", "0", "0"};  // centre before `touch`, in the work frame
     // Slides the tool along this direction (from far outside) until it just touches; zero: stays.
     Vec3 touch = Vec3::Zero();
-    Expression gap = "0";            // left between tool and work-piece by `touch`
-    Expression friction;             // empty: the material's
+    Expression gap = "0";  // left between tool and work-piece by `touch`
+    Expression friction;   // empty: the material's
     MotionSpec motion;
 };
 
@@ -68,9 +68,15 @@ struct GripSpec {
 
 struct BladeSpec {
     std::string name;
-    std::vector<Expression3> edge;  // in the work frame at the start
+    std::vector<Expression3> edge;         // in the work frame at the start
     Expression thickness = "0.02*height";  // of the drawn body
     MotionSpec motion;
+};
+
+// What had better hold before the machine starts; where it does not, the user is told.
+struct CheckSpec {
+    Expression holds;       // not 0
+    std::string otherwise;  // a sentence that says what to change
 };
 
 struct MachineSpec {
@@ -81,6 +87,7 @@ struct MachineSpec {
     std::vector<ToolSpec> tool;
     std::vector<GripSpec> grip;
     std::vector<BladeSpec> blade;
+    std::vector<CheckSpec> check;
 };
 
 }  // namespace swage

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/machine.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/text_error.h"
+#include "base/units.h"
+#include "geometry/distance_field.h"
+#include "geometry/mesh_read.h"
+#include "machines/bodies.h"
+#include "machines/parameters.h"
+#include "machines/touch.h"
+
+namespace swage {
+
+namespace {
+
+// A motion that begins nearer than this to rest begins at rest: share of the body's size, radians.
+constexpr double kAtRest = 1e-9;
+// Tools that start deeper than this in the work-piece are noted: share of the spacing.
+constexpr double kDeepStart = 0.05;
+constexpr double kGripSlack = 1e-9;  // for points on the border of a grip's box: share of the size
+constexpr double kClampClearance = 0.1;  // between a grip's drawn plates and the points; the same
+constexpr int kTravelSamples = 64;       // of a blade's way, to see where it goes
+
+struct Setting {  // what every part of a machine is set up in
+    const MachineSpec& spec;
+    const WorkFrame& frame;
+    double spacing;
+    double friction;
+    std::vector<Vec3> point;  // the body's surface, in the work frame
+    Variables known;          // grows with each tool
+};
+
+[[noreturn]] void refuse(const Setting& setting, const std::string& what) {
+    fail(ExitCode::scene, "machine {}: {}", setting.spec.name, what);
+}
+
+double positive(const Setting& setting, const Expression& text, const std::string& tool,
+                const char* quantity) {
+    const double value = evaluate(text, setting.known);
+    if (value > 0 && std::isfinite(value)) return value;
+    refuse(setting, fmt::format("the {} of tool {} is {} and has to be more than 0", quantity, tool,
+                                quantity_text(value, Quantity::length)));
+}
+
+MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
+    auto mesh = std::make_shared<TriMesh>(read_mesh(tool.mesh));
+    const Box box = box_of(mesh->position);
+    const double scale =
+        positive(setting, tool.length, tool.name, "length") / box.size().maxCoeff();
+    for (Vec3& p : mesh->position) p = scale * (p - box.center());
+    return {mesh, std::make_shared<const DistanceField>(*mesh)};
+}
+
+Shape shape_of(const Setting& setting, const ToolSpec& tool) {
+    const auto length = [&](const Expression& text, const char* quantity) {
+        return positive(setting, text, tool.name, quantity);
+    };
+    if (tool.shape == "cylinder") {
+        return CylinderShape{length(tool.radius, "radius"), length(tool.length, "length")};
+    }
+    if (tool.shape == "sphere") return SphereShape{length(tool.radius, "radius")};
+    if (tool.shape == "box") {
+        const Vec3 size(length(tool.size[0], "size"), length(tool.size[1], "size"),
+                        length(tool.size[2], "size"));
+        const double rounding = evaluate(tool.rounding, setting.known);
+        if (!(rounding >= 0 && rounding <= 0.5 * size.minCoeff())) {
+            refuse(setting, fmt::format("the rounding of tool {} is {} and has to be 0 to half of "
+                                        "the box's smallest side",
+                                        tool.name, quantity_text(rounding, Quantity::length)));
+        }
+        return BoxShape{size, rounding};
+    }
+    if (tool.shape == "mesh") return scaled_mesh(setting, tool);
+    refuse(setting, fmt::format("tool {} has the shape \"{}\"; it may be cylinder, box, sphere or "
+                                "mesh",
+                                tool.name, tool.shape));
+}
+
+void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
+    Tool tool{spec.name, shape_of(setting, spec), setting.friction};
+    if (!spec.friction.empty()) tool.friction = evaluate(spec.friction, setting.known);
+    if (!(tool.friction >= 0)) {
+        refuse(setting, fmt::format("the friction of tool {} is {}; it cannot be negative",
+                                    spec.name, tool.friction));
+    }
+    if (!(spec.axis.norm() > 0)) {
+        refuse(setting, fmt::format("the axis of tool {} has no length", spec.name));
+    }
+    Pose work_from_tool{Quat::FromTwoVectors(Vec3::UnitZ(), spec.axis).normalized(),
+                        evaluate(spec.at, setting.known)};
+    if (spec.touch.norm() > 0) {
+        const Vec3 direction = spec.touch.normalized();
+        const std::optional<double> shift =
+            slide_to_touch(tool.shape, work_from_tool, direction, setting.point,
+                           evaluate(spec.gap, setting.known));
+        if (!shift) {
+            refuse(setting, fmt::format("tool {} can never touch the work-piece: it passes by. "
+                                        "Place it nearer to the middle",
+                                        spec.name));
+        }
+        work_from_tool.translation += *shift * direction;
+    } else {
+        const double nearest = nearest_distance(tool.shape, work_from_tool, setting.point);
+        if (nearest < -kDeepStart * setting.spacing) {
+            machine.notes.push_back(fmt::format("tool {} starts {} deep in the work-piece",
+                                                spec.name,
+                                                quantity_text(-nearest, Quantity::length)));
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        setting.known[spec.name + "_" + "xyz"[axis]] = work_from_tool.translation[axis];
+    }
+    machine.apparatus.tool.push_back(std::move(tool));
+    machine.work_from_tool.push_back(work_from_tool);
+}
+
+void add_grip(Machine& machine, const Setting& setting, const GripSpec& spec,
+              std::vector<int>& grip_of_point) {
+    const Vec3 slack = Vec3::Constant(kGripSlack * setting.frame.size.norm());
+    const Box region{evaluate(spec.from, setting.known) - slack,
+                     evaluate(spec.to, setting.known) + slack};
+    Grip grip;
+    grip.name = spec.name;
+    Box held;
+    const int self = static_cast<int>(machine.apparatus.grip.size());
+    for (std::size_t p = 0; p < setting.point.size(); ++p) {
+        const Vec3& point = setting.point[p];
+        if ((point.array() < region.low.array()).any()) continue;
+        if ((point.array() > region.high.array()).any()) continue;
+        if (grip_of_point[p] >= 0) {
+            refuse(setting, fmt::format("grips {} and {} would hold the same points; make one of "
+                                        "them smaller",
+                                        machine.apparatus.grip[grip_of_point[p]].name, spec.name));
+        }
+        grip_of_point[p] = self;
+        grip.point.push_back(static_cast<int>(p));
+        held.grow(point);
+    }
+    if (grip.point.empty()) {
+        refuse(setting, fmt::format("grip {} holds nothing: no point of the work-piece's surface "
+                                    "lies in its box",
+                                    spec.name));
+    }
+    const Pose work_from_grip{Quat::Identity(), held.center()};
+    for (int p : grip.point) grip.anchor.push_back(setting.point[p] - held.center());
+    grip.jaw = clamp_around({held.low - held.center(), held.high - held.center()},
+                            kClampClearance * setting.spacing);
+
+    Motion motion(spec.motion, setting.known);
+    const Pose start = motion.at(0);
+    const double size = setting.frame.size.norm();
+    if ((start * held.center() - held.center()).norm() > kAtRest * size ||
+        start.rotation.angularDistance(Quat::Identity()) > 10 * kAtRest) {
+        refuse(setting, fmt::format("the motion of grip {} does not start at rest: at t = 0 it has "
+                                    "to be 0",
+                                    spec.name));
+    }
+    machine.apparatus.grip.push_back(std::move(grip));
+    machine.work_from_grip.push_back(work_from_grip);
+    machine.grip_motion.push_back(std::move(motion));
+}
+
+void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) {
+    std::vector<Vec3> edge;
+    for (const Expression3& point : spec.edge) edge.push_back(evaluate(point, setting.known));
+    if (edge.size() < 2 || (edge.back() - edge.front()).norm() == 0) {
+        refuse(setting, fmt::format("the edge of blade {} needs two points or more", spec.name));
+    }
+    const double thickness = evaluate(spec.thickness, setting.known);
+    if (!(thickness > 0)) {
+        refuse(setting, fmt::format("the thickness of blade {} is {} and has to be more than 0",
+                                    spec.name, quantity_text(thickness, Quantity::length)));
+    }
+    const Vec3 centre = box_of(edge).center();
+    Motion motion(spec.motion, setting.known);
+
+    // The plate stands behind the edge and is tall enough to show above what it has cut.
+    const Vec3 start = motion.at(0) * centre;
+    Vec3 travel = Vec3::Zero();
+    for (int n = 1; n <= kTravelSamples; ++n) {
+        const Vec3 way = motion.at(static_cast<double>(n) / kTravelSamples) * centre - start;
+        if (way.norm() > travel.norm()) travel = way;
+    }
+    const double width = (edge.back() - edge.front()).norm();
+    const bool moves = travel.norm() > kAtRest * setting.frame.size.norm();
+    const Vec3 back = moves ? Vec3(-travel) : Vec3(0.5 * width * Vec3::UnitY());
+
+    Blade blade;
+    blade.name = spec.name;
+    for (const Vec3& point : edge) blade.edge.push_back(point - centre);
+    blade.body = blade_behind(blade.edge, back, 1.15 * back.norm(), thickness);
+    machine.apparatus.blade.push_back(std::move(blade));
+    machine.work_from_blade.push_back({Quat::Identity(), centre});
+    machine.blade_motion.push_back(std::move(motion));
+}
+
+std::vector<Pose> placed(const Pose& world_from_work, const std::vector<Pose>& work_from_part,
+                         const std::vector<Motion>& motion, double t) {
+    std::vector<Pose> world_from_part;
+    for (std::size_t n = 0; n < motion.size(); ++n) {
+        world_from_part.push_back(world_from_work * motion[n].at(t) * work_from_part[n]);
+    }
+    return world_from_part;
+}
+
+}  // namespace
+
+Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
+                      const WorkFrame& frame, const Aggregate& matter) try {
+    Setting setting{spec, frame, matter.lattice.spacing, matter.material.friction, {}, {}};
+    const Pose work_from_world = frame.world_from_work.inverse();
+    for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
+    setting.known = {{"length", frame.size.x()},
+                     {"height", frame.size.y()},
+                     {"width", frame.size.z()},
+                     {"spacing", setting.spacing},
+                     {"material_friction", setting.friction}};
+
+    Machine machine;
+    machine.spec = spec;
+    machine.frame = frame;
+    machine.parameter = resolve_parameters(spec, given, setting.known);
+    machine.apparatus.name = spec.name;
+    setting.known.insert(machine.parameter.begin(), machine.parameter.end());
+
+    for (const ToolSpec& tool : spec.tool) add_tool(machine, setting, tool);
+    for (const ToolSpec& tool : spec.tool) {
+        machine.tool_motion.emplace_back(tool.motion, setting.known);
+    }
+    std::vector<int> grip_of_point(setting.point.size(), -1);
+    for (const GripSpec& grip : spec.grip) add_grip(machine, setting, grip, grip_of_point);
+    for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
+    for (const CheckSpec& check : spec.check) {
+        if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
+    }
+    return machine;
+} catch (const TextError& error) {  // in one of the machine's expressions
+    fail(ExitCode::scene, "machine {}: {}", spec.name, error.what());
+}
+
+Drive drive_at(const Machine& machine, double t, double duration) {
+    const Pose& world_from_work = machine.frame.world_from_work;
+    return {t * duration, placed(world_from_work, machine.work_from_tool, machine.tool_motion, t),
+            placed(world_from_work, machine.work_from_grip, machine.grip_motion, t),
+            placed(world_from_work, machine.work_from_blade, machine.blade_motion, t)};
+}
+
+}  // namespace swage

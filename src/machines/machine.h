@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A machine set up at a work-piece (S2.13 to S2.15): its parameters resolved, its tools brought up
+// to the surface, its grips holding points of it, its motions ready to be asked for any time.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "machines/machine_spec.h"
+#include "machines/motion.h"
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+
+namespace swage {
+
+// Local axes of the work-piece: x along its length, y up, z across; origin at the box's centre.
+struct WorkFrame {
+    Pose world_from_work;
+    Vec3 size;  // [m] of the box: length, height, width
+};
+
+// Where every point of the body's true surface is now [m].
+std::vector<Vec3> surface_positions(const Aggregate& matter);
+
+// From the box of the surface as it is now, along the world's axes. `axis` (the frame's x) and `up`
+// (its y) are "auto" or x, y, z with or without a sign. "auto" is the longest side for `axis`, and
+// the world's y for `up`, or z where the axis lies along y. Throws Error(scene) for other words and
+// where both lie on one line, Error(mesh) for a body without a surface.
+WorkFrame place_work_frame(const Aggregate& matter, const std::string& axis, const std::string& up);
+
+struct Machine {
+    MachineSpec spec;
+    std::map<std::string, double> parameter;  // every one, SI
+    WorkFrame frame;
+    Apparatus apparatus;
+    std::vector<std::string> notes;  // sentences for the user: what may go wrong
+
+    // In the order of the apparatus.
+    std::vector<Pose> work_from_tool, work_from_grip, work_from_blade;  // before they move
+    std::vector<Motion> tool_motion, grip_motion, blade_motion;
+};
+
+// `given`: parameters by name, SI; the rest take their defaults. Throws Error(scene) naming machine
+// and parameter, tool, grip or blade: unknown or out of range; a tool that can never touch; a grip
+// that holds nothing, a point that two hold, or one that does not start at rest.
+Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
+                      const WorkFrame& frame, const Aggregate& matter);
+
+// Poses at `t` (0 to 1) of a stage of `duration` [s].
+Drive drive_at(const Machine& machine, double t, double duration);
+
+}  // namespace swage

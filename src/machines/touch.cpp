@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conservative advancement: a signed distance changes no faster than the tool moves, so a step as
+// long as the smallest distance never passes the first contact (Hart, Sphere Tracing, 1996).
+#include "machines/touch.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kPointsPerChunk = 4096;
+constexpr double kStepShare = 0.95;     // of the free way: sampled distances err a little
+constexpr double kSmallestStep = 1e-4;  // of the tool's and the body's size together
+constexpr double kResolution = 1e-10;   // the same
+
+}  // namespace
+
+double nearest_distance(const Shape& shape, const Pose& points_from_tool,
+                        const std::vector<Vec3>& points) {
+    const Pose tool_from_points = points_from_tool.inverse();
+    const std::size_t chunks = (points.size() + kPointsPerChunk - 1) / kPointsPerChunk;
+    std::vector<double> nearest(chunks, std::numeric_limits<double>::infinity());
+    parallel_for(chunks, [&](std::size_t chunk) {
+        const std::size_t end = std::min(points.size(), (chunk + 1) * kPointsPerChunk);
+        for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
+            nearest[chunk] =
+                std::min(nearest[chunk], distance_to(shape, tool_from_points * points[p]).value);
+        }
+    });
+    double smallest = std::numeric_limits<double>::infinity();
+    for (double value : nearest) smallest = std::min(smallest, value);
+    return smallest;
+}
+
+std::optional<double> slide_to_touch(const Shape& shape, const Pose& points_from_tool,
+                                     const Vec3& direction, const std::vector<Vec3>& points,
+                                     double gap) {
+    const Box bounds = bounds_of(shape);
+    const double radius = bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
+    const double reach = radius + std::max(gap, 0.0);
+
+    // Only points in the tube that the tool's ball sweeps can be touched.
+    std::vector<Vec3> in_the_way;
+    double begin = std::numeric_limits<double>::infinity();
+    double end = -std::numeric_limits<double>::infinity();
+    for (const Vec3& point : points) {
+        const Vec3 from_tool = point - points_from_tool.translation;
+        const double along = direction.dot(from_tool);
+        if ((from_tool - along * direction).norm() > reach) continue;
+        in_the_way.push_back(point);
+        begin = std::min(begin, along);
+        end = std::max(end, along);
+    }
+    if (in_the_way.empty()) return std::nullopt;
+    const double size = end - begin + 2 * reach;
+    begin -= 1.001 * reach;
+    end += 1.001 * reach;
+
+    const auto room = [&](double shift) {
+        Pose moved = points_from_tool;
+        moved.translation += shift * direction;
+        return nearest_distance(shape, moved, in_the_way) - gap;
+    };
+    double free = begin, touching = begin;
+    while (touching <= end) {
+        const double left = room(touching);
+        if (left <= 0) break;
+        free = touching;
+        touching += std::max(kStepShare * left, kSmallestStep * size);
+    }
+    if (touching > end) return std::nullopt;
+    while (touching - free > kResolution * size) {
+        const double middle = 0.5 * (free + touching);
+        (room(middle) > 0 ? free : touching) = middle;
+    }
+    return free;
+}
+
+}  // namespace swage

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/machine.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "machines/touch.h"
+#include "tests/catch.h"
+#include "tests/machines/bodies.h"
+
+using namespace swage;
+
+namespace {
+
+ParameterSpec parameter(const char* name, Quantity quantity, const char* value, const char* low,
+                        const char* high) {
+    return {name, quantity, value, low, high, ""};
+}
+
+// A roller under the body and one above that turns about the first and then lifts.
+MachineSpec roller() {
+    MachineSpec spec;
+    spec.name = "roller";
+    spec.parameter = {
+        parameter("angle", Quantity::angle, "60 deg", "0 deg", "180 deg"),
+        parameter("radius", Quantity::length, "0.2*length", "spacing", "length"),
+        parameter("offset", Quantity::length, "2*radius", "", ""),
+    };
+    ToolSpec support;
+    support.name = "support";
+    support.shape = "cylinder";
+    support.radius = "radius";
+    support.length = "2*width";
+    support.at = {"0", "-height", "0"};
+    support.touch = Vec3::UnitY();
+    ToolSpec pusher = support;
+    pusher.name = "pusher";
+    pusher.radius = "0.05*length";
+    pusher.at = {"offset", "height", "0"};
+    pusher.touch = -Vec3::UnitY();
+    pusher.friction = "0.7";
+    pusher.motion.turn = "-angle*ramp(t, 0, 0.5)";
+    pusher.motion.pivot = {"support_x", "support_y", "0"};
+    pusher.motion.move = {"0", "height*ramp(t, 0.5, 1)", "0"};
+    spec.tool = {support, pusher};
+    return spec;
+}
+
+MachineSpec vice() {
+    MachineSpec spec;
+    spec.name = "vice";
+    GripSpec hold;
+    hold.name = "hold";
+    hold.from = {"-length", "-height", "-width"};
+    hold.to = {"-0.4*length", "height", "width"};
+    GripSpec turn = hold;
+    turn.name = "turn";
+    turn.from[0] = "0.4*length";
+    turn.to[0] = "length";
+    turn.motion.turn = "450 deg*ramp(t, 0, 1)";
+    turn.motion.axis = Vec3::UnitX();
+    turn.motion.move = {"0.1*length*ramp(t, 0, 1)", "0", "0"};
+    spec.grip = {hold, turn};
+    return spec;
+}
+
+Machine set_up(const MachineSpec& spec, const Aggregate& body = bar(),
+               const std::map<std::string, double>& given = {}) {
+    return build_machine(spec, given, place_work_frame(body, "auto", "auto"), body);
+}
+
+std::string refusal(const MachineSpec& spec, const std::map<std::string, double>& given = {},
+                    const Aggregate& body = bar()) {
+    try {
+        set_up(spec, body, given);
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::scene);
+        return error.what();
+    }
+    return "";
+}
+
+bool says(const std::string& text, const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+        if (text.find(word) == std::string::npos) {
+            UNSCOPED_INFO("'" << text << "' lacks '" << word << "'");
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("parameters take their defaults from the body and from earlier parameters") {
+    const Machine machine = set_up(roller(), bar(), {{"radius", 0.22}});
+    CHECK(machine.parameter.at("angle") == Approx(kPi / 3));
+    CHECK(machine.parameter.at("radius") == 0.22);
+    CHECK(machine.parameter.at("offset") == Approx(0.44));
+    CHECK(set_up(roller()).parameter.at("offset") == Approx(0.4));
+}
+
+TEST_CASE("a parameter out of range is refused with its name, value and range in its own unit") {
+    CHECK(says(refusal(roller(), {{"angle", 200 * kPi / 180}}),
+               {"roller", "angle", "200 deg", "0 deg to 180 deg"}));
+    CHECK(says(refusal(roller(), {{"radius", 0.001}}), {"roller", "radius", "1 mm", "1.25 cm to 1 m"}));
+    CHECK(says(refusal(roller(), {{"radius", std::nan("")}}), {"roller", "radius"}));
+    CHECK(says(refusal(roller(), {{"angel", 1}}), {"roller", "angel"}));
+    CHECK(refusal(roller(), {{"angle", kPi}}) == "");
+    CHECK(refusal(roller(), {{"offset", -0.3}}) == "");
+    MachineSpec bad_default = roller();
+    bad_default.parameter[0].default_value = "-1 deg";
+    CHECK(says(refusal(bad_default), {"roller", "default", "angle", "-1 deg"}));
+}
+
+TEST_CASE("tools are brought up to the body, whatever way it lies") {
+    for (int axis = 0; axis < 3; ++axis) {
+        const Aggregate body = bar(axis, {1, 2, 3});
+        const Machine machine = set_up(roller(), body);
+        CHECK(machine.work_from_tool[0].translation.y() == Approx(-0.05 - 0.2).margin(1e-8));
+        CHECK(machine.work_from_tool[1].translation.y() == Approx(0.05 + 0.05).margin(1e-8));
+        const Drive drive = drive_at(machine, 0, 1);
+        for (int tool = 0; tool < 2; ++tool) {
+            const double room =
+                nearest_distance(machine.apparatus.tool[tool].shape, drive.world_from_tool[tool],
+                                 surface_positions(body));
+            CHECK(room == Approx(0).margin(1e-8));
+        }
+    }
+}
+
+TEST_CASE("a tool that turns about another's axis keeps its distance and turns by the angle") {
+    const Machine machine = set_up(roller(), bar(0, {5, 5, 5}));
+    const Pose support = drive_at(machine, 0, 1).world_from_tool[0];
+    const Pose start = drive_at(machine, 0, 1).world_from_tool[1];
+    const Pose end = drive_at(machine, 0.5, 1).world_from_tool[1];
+    const Vec3 before = start.translation - support.translation;
+    const Vec3 after = end.translation - support.translation;
+    CHECK(after.norm() == Approx(before.norm()));
+    CHECK(std::atan2(before.y(), before.x()) - std::atan2(after.y(), after.x()) == Approx(kPi / 3));
+    CHECK(start.rotation.angularDistance(end.rotation) == Approx(kPi / 3));
+    // Afterwards it lifts, straight up.
+    const Pose lifted = drive_at(machine, 1, 1).world_from_tool[1];
+    CHECK((lifted.translation - end.translation - Vec3(0, 0.1, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("tools rub as their machine says, or else as the material") {
+    Aggregate body = bar();
+    body.material.friction = 0.45;
+    const Machine machine = set_up(roller(), body);
+    CHECK(machine.apparatus.tool[0].friction == 0.45);
+    CHECK(machine.apparatus.tool[1].friction == 0.7);
+    MachineSpec greased = roller();
+    greased.tool[0].friction = "material_friction/3";
+    CHECK(set_up(greased, body).apparatus.tool[0].friction == Approx(0.15));
+}
+
+TEST_CASE("tools that cannot be are refused by name") {
+    MachineSpec spec = roller();
+    spec.tool[1].at[0] = "3*length";
+    CHECK(says(refusal(spec), {"roller", "pusher", "never touch"}));
+    spec = roller();
+    spec.tool[0].radius = "0";
+    CHECK(says(refusal(spec), {"roller", "support", "radius"}));
+    spec = roller();
+    spec.tool[0].shape = "cone";
+    CHECK(says(refusal(spec), {"roller", "support", "cone"}));
+    spec = roller();
+    spec.tool[1].friction = "-1";
+    CHECK(says(refusal(spec), {"roller", "pusher", "friction"}));
+    spec = roller();
+    spec.tool[1].at[0] = "nonsense*2";
+    CHECK(refusal(spec) != "");
+}
+
+TEST_CASE("a tool that starts inside the body is noted") {
+    MachineSpec spec = roller();
+    CHECK(set_up(spec).notes.empty());
+    spec.tool[0].touch = Vec3::Zero();
+    const Machine machine = set_up(spec);
+    REQUIRE(machine.notes.size() == 1);
+    CHECK(says(machine.notes[0], {"support", "deep"}));
+}
+
+TEST_CASE("a check that does not hold becomes a note, and may use where tools came to stand") {
+    MachineSpec spec = roller();
+    spec.check = {{"support_y < -height", "the support is too small"},
+                  {"abs(pusher_y - 0.05*length - 0.5*height) < 1e-6", "never seen"},
+                  {"offset > length", "the offset is too small"}};
+    CHECK(set_up(spec).notes == std::vector<std::string>{"the offset is too small"});
+}
+
+TEST_CASE("a grip holds the points in its box where they are") {
+    const Aggregate body = bar(2, {4, 4, 4});
+    const Machine machine = set_up(vice(), body);
+    const Drive drive = drive_at(machine, 0, 1);
+    for (std::size_t g = 0; g < 2; ++g) {
+        const Grip& grip = machine.apparatus.grip[g];
+        // A tenth of 80 slices and the first, 32 points around; the end face is full.
+        CHECK(grip.point.size() == 8 * 32 + 81);
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const Vec3 held = drive.world_from_grip[g] * grip.anchor[n];
+            CHECK((held - body.surface_position(grip.point[n])).norm() < 1e-12);
+        }
+        CHECK_FALSE(grip.jaw.triangle.empty());
+    }
+}
+
+TEST_CASE("a grip turns its points by the whole angle, also past a full turn") {
+    const Aggregate body = bar(0, {4, 4, 4});
+    const Machine machine = set_up(vice(), body);
+    const Drive end = drive_at(machine, 1, 1);
+    const Grip& grip = machine.apparatus.grip[1];
+    for (std::size_t n = 0; n < grip.point.size(); ++n) {
+        const Vec3 from = body.surface_position(grip.point[n]) - Vec3(4, 4, 4);
+        const Vec3 to = end.world_from_grip[1] * grip.anchor[n] - Vec3(4, 4, 4);
+        CHECK((to - Vec3(from.x() + 0.1, -from.z(), from.y())).norm() < 1e-12);  // 450 = 90 deg
+    }
+    CHECK((end.world_from_grip[0].translation -
+           drive_at(machine, 0, 1).world_from_grip[0].translation)
+              .norm() == 0);
+}
+
+TEST_CASE("grips that hold nothing, hold twice or jump at the start are refused by name") {
+    MachineSpec spec = vice();
+    spec.grip[1].from[0] = "0.6*length";
+    CHECK(says(refusal(spec), {"vice", "turn", "holds nothing"}));
+    spec = vice();
+    spec.grip[1].from[0] = "-0.45*length";
+    CHECK(says(refusal(spec), {"vice", "hold", "turn", "same points"}));
+    spec = vice();
+    spec.grip[1].motion.move[1] = "0.01*height*(1 - t)";
+    CHECK(says(refusal(spec), {"vice", "turn", "start at rest"}));
+    spec = vice();
+    spec.grip[0].motion.turn = "1 deg";
+    CHECK(says(refusal(spec), {"vice", "hold", "start at rest"}));
+}
+
+TEST_CASE("a blade's edge goes where its motion says, its plate behind it") {
+    MachineSpec spec;
+    spec.name = "guillotine";
+    BladeSpec blade;
+    blade.name = "blade";
+    blade.edge = {{"0.1*length", "height", "-width"}, {"0.1*length", "height", "width"}};
+    blade.motion.move = {"0", "-2*height*ramp(t, 0.2, 0.8)", "0"};
+    spec.blade = {blade};
+    const Aggregate body = bar(0, {1, 1, 1});
+    const Machine machine = set_up(spec, body);
+    const auto edge_at = [&](double t, int n) -> Vec3 {
+        return drive_at(machine, t, 1).world_from_blade[0] * machine.apparatus.blade[0].edge[n];
+    };
+    CHECK((edge_at(0, 0) - Vec3(1.1, 1.1, 0.9)).norm() < 1e-12);
+    CHECK((edge_at(0.2, 1) - Vec3(1.1, 1.1, 1.1)).norm() < 1e-12);
+    CHECK((edge_at(0.5, 0) - Vec3(1.1, 1.0, 0.9)).norm() < 1e-12);
+    CHECK((edge_at(1, 1) - Vec3(1.1, 0.9, 1.1)).norm() < 1e-12);
+    const Box drawn = box_of(machine.apparatus.blade[0].body.position);
+    CHECK(drawn.low.y() == Approx(0).margin(1e-12));
+    CHECK(drawn.high.y() > 0.2);
+    CHECK(drawn.size().x() < 0.05);
+
+    spec.blade[0].edge.pop_back();
+    CHECK(says(refusal(spec), {"guillotine", "blade", "edge"}));
+    spec.blade = {blade};
+    spec.blade[0].thickness = "0";
+    CHECK(says(refusal(spec), {"guillotine", "blade", "thickness"}));
+}
+
+TEST_CASE("the drive's time is the share of the stage's duration") {
+    CHECK(drive_at(set_up(vice()), 0.25, 8).time == 2);
+}
+
+TEST_CASE("a machine is the same to the bit at any number of threads") {
+    const Aggregate body = bar(2, {0.1, 0.2, 0.3});
+    set_thread_count(1);
+    const Drive one = drive_at(set_up(roller(), body), 0.37, 1);
+    set_thread_count(3);
+    const Drive three = drive_at(set_up(roller(), body), 0.37, 1);
+    set_thread_count(0);
+    for (std::size_t n = 0; n < one.world_from_tool.size(); ++n) {
+        CHECK(one.world_from_tool[n].translation == three.world_from_tool[n].translation);
+        CHECK(one.world_from_tool[n].rotation.coeffs() ==
+              three.world_from_tool[n].rotation.coeffs());
+    }
+}

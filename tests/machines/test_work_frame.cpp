@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/error.h"
+#include "machines/machine.h"
+#include "tests/catch.h"
+#include "tests/machines/bodies.h"
+
+using namespace swage;
+
+TEST_CASE("the work frame lies along the longest side, at the middle of the body") {
+    const Vec3 centre(3, -2, 7);
+    for (int axis = 0; axis < 3; ++axis) {
+        const WorkFrame frame = place_work_frame(bar(axis, centre), "auto", "auto");
+        CHECK((frame.size - Vec3(1, 0.1, 0.1)).norm() < 1e-12);
+        CHECK((frame.world_from_work.translation - centre).norm() < 1e-12);
+        CHECK((frame.world_from_work.turn(Vec3::UnitX()) - Vec3::Unit(axis)).norm() < 1e-12);
+        const Vec3 up = axis == 1 ? Vec3::UnitZ() : Vec3::UnitY();
+        CHECK((frame.world_from_work.turn(Vec3::UnitY()) - up).norm() < 1e-12);
+    }
+}
+
+TEST_CASE("the work frame follows the words of the scene, signs too, and stays right-handed") {
+    const Aggregate body = body_of(box_points({0, 0, 0}, {3, 2, 1}, {6, 4, 2}), 0.5);
+    const std::vector<std::pair<std::string, Vec3>> names = {{"x", {1, 0, 0}},  {"-x", {-1, 0, 0}},
+                                                             {"+y", {0, 1, 0}}, {"-y", {0, -1, 0}},
+                                                             {"z", {0, 0, 1}},  {"-z", {0, 0, -1}}};
+    for (const auto& [axis, x] : names) {
+        for (const auto& [up, y] : names) {
+            if (x.cross(y).norm() == 0) {
+                CHECK_THROWS_AS(place_work_frame(body, axis, up), Error);
+                continue;
+            }
+            const WorkFrame frame = place_work_frame(body, axis, up);
+            const Pose& pose = frame.world_from_work;
+            CHECK((pose.turn(Vec3::UnitX()) - x).norm() < 1e-12);
+            CHECK((pose.turn(Vec3::UnitY()) - y).norm() < 1e-12);
+            CHECK((pose.turn(Vec3::UnitZ()) - x.cross(y)).norm() < 1e-12);
+            // The sizes are those of the sides the axes lie along.
+            CHECK((pose.turn(frame.size).cwiseAbs() - Vec3(3, 2, 1)).norm() < 1e-12);
+        }
+    }
+    for (const char* wrong : {"", "w", "xy", "--x", "X", "auto "}) {
+        CHECK_THROWS_AS(place_work_frame(body, wrong, "auto"), Error);
+        CHECK_THROWS_AS(place_work_frame(body, "auto", wrong), Error);
+    }
+}
+
+TEST_CASE("the work frame is placed by the surface as it is now, not as it was molded") {
+    Aggregate body = bar();
+    for (double& x : body.particle_position.x) x = 4 + 2 * x;
+    const WorkFrame frame = place_work_frame(body, "auto", "auto");
+    CHECK(frame.size.x() == Approx(2));
+    CHECK(frame.world_from_work.translation.x() == Approx(4));
+}
+
+TEST_CASE("a body without a surface has no place for a machine") {
+    CHECK_THROWS_AS(place_work_frame(Aggregate{}, "auto", "auto"), Error);
+}
