@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,14 @@ using Corners = std::array<int, 3>;
 
 // How a part of a surface looks. Colours are linear RGB, 0 to 1.
 struct SurfaceMaterial {
-    std::string name;
+    std::string name = {};
     Vec3 color = {0.8, 0.8, 0.8};
     double roughness = 0.55;
     double metallic = 0.0;
-    std::filesystem::path texture;  // absolute; empty for none. Multiplies `color`.
+    std::filesystem::path texture = {};  // absolute; empty for none. Multiplies `color`.
+    // The image itself (a PNG or JPEG file's bytes) when it came inside the mesh file, as in GLB;
+    // `texture` is empty then.
+    std::shared_ptr<const std::string> embedded_texture = {};
 };
 
 struct TriMesh {

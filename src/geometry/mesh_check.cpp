@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/mesh_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kNoArea = 1e-12;  // of the longest edge squared
+
+bool is_degenerate(const TriMesh& mesh, const Corners& t) {
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
+    const Vec3 a = mesh.position[t[1]] - mesh.position[t[0]];
+    const Vec3 b = mesh.position[t[2]] - mesh.position[t[0]];
+    const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+    return !(a.cross(b).norm() > kNoArea * longest);
+}
+
+std::size_t count_duplicates(const std::vector<Corners>& triangle) {
+    std::vector<Corners> sorted = triangle;
+    for (Corners& t : sorted) std::sort(t.begin(), t.end());
+    std::sort(sorted.begin(), sorted.end());
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < sorted.size(); ++i) count += sorted[i] == sorted[i - 1];
+    return count;
+}
+
+void check_edges(const TriMesh& mesh, MeshReport& report) {
+    DisjointSets fans(3 * mesh.triangle.size());
+    bool odd = false;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        std::size_t forward = 0;
+        for (const EdgeUse& use : uses) forward += use.forward;
+        const std::size_t backward = uses.size() - forward;
+        report.boundary_edges += uses.size() == 1;
+        report.crowded_edges += uses.size() > 2;
+        report.disagreeing_edges += std::max(forward, backward) - std::min(forward, backward) > 1;
+        odd = odd || uses.size() % 2 == 1;
+        for (std::size_t i = 1; i < uses.size(); ++i) {
+            const EdgeUse &a = uses[i - 1], &b = uses[i];
+            const int shift = a.forward == b.forward ? 0 : 1;
+            const int b_low = 3 * b.triangle + (b.side + shift) % 3;
+            const int b_high = 3 * b.triangle + (b.side + 1 - shift) % 3;
+            fans.unite(3 * a.triangle + a.side, b_low);
+            fans.unite(3 * a.triangle + (a.side + 1) % 3, b_high);
+        }
+    });
+    report.watertight = !odd;
+    report.oriented = report.disagreeing_edges == 0;
+
+    std::vector<int> fan_at(mesh.position.size(), -1);
+    std::vector<char> crowded(mesh.position.size(), 0);
+    for (std::size_t c = 0; c < 3 * mesh.triangle.size(); ++c) {
+        const Corners& t = mesh.triangle[c / 3];
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        const int place = t[c % 3];
+        const int fan = fans.root(static_cast<int>(c));
+        if (fan_at[place] >= 0 && fan_at[place] != fan) crowded[place] = 1;
+        fan_at[place] = fan;
+    }
+    report.crowded_vertices =
+        static_cast<std::size_t>(std::count(crowded.begin(), crowded.end(), 1));
+    report.manifold = report.crowded_edges == 0 && report.crowded_vertices == 0;
+}
+
+// Closed components only; each about its own first vertex, so that it is exact wherever it lies.
+std::vector<double> component_volumes(const TriMesh& mesh, const Components& components) {
+    std::vector<double> volume(components.count, 0.0);
+    std::vector<int> anchor(components.count, -1);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const int c = components.triangle_component[t];
+        if (anchor[c] < 0) anchor[c] = mesh.triangle[t][0];
+        const Vec3& o = mesh.position[anchor[c]];
+        const Corners& k = mesh.triangle[t];
+        volume[c] += (mesh.position[k[0]] - o)
+                         .dot((mesh.position[k[1]] - o).cross(mesh.position[k[2]] - o)) /
+                     6;
+    }
+    return volume;
+}
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+void add_findings(MeshReport& report) {
+    const auto say = [&](std::size_t count, const char* one, const char* many, const char* what) {
+        if (count > 0) report.finding.push_back(counted(count, one, many) + what);
+    };
+    say(report.boundary_edges, "edge", "edges", " at the border of a hole or an open sheet");
+    say(report.crowded_edges, "edge", "edges", " shared by more than two triangles");
+    say(report.disagreeing_edges, "edge", "edges", " whose triangles disagree on the outside");
+    if (report.crowded_edges == 0)
+        say(report.crowded_vertices, "vertex", "vertices", " where separate surfaces touch");
+    say(report.degenerate_triangles, "triangle", "triangles", " without area");
+    say(report.duplicate_triangles, "triangle", "triangles", " present more than once");
+    say(report.unreferenced_vertices, "vertex", "vertices", " that no triangle uses");
+    if (report.watertight && report.oriented && report.volume < 0)
+        report.finding.push_back("the surface is inside out");
+    else
+        say(static_cast<std::size_t>(report.inward_components), "closed surface", "closed surfaces",
+            " facing inwards (a cavity, or inside out)");
+}
+
+}  // namespace
+
+MeshReport check_mesh(const TriMesh& mesh) {
+    MeshReport report;
+    report.vertices = mesh.position.size();
+    report.triangles = mesh.triangle.size();
+    report.polygons = mesh.triangle.size();
+    for (std::size_t t = 1; t < mesh.triangle_polygon.size(); ++t)
+        report.polygons -= mesh.triangle_polygon[t] == mesh.triangle_polygon[t - 1];
+    report.materials = mesh.material.size();
+    report.has_uv = !mesh.triangle_uv.empty();
+    std::vector<char> used(mesh.position.size(), 0);
+    for (const Corners& t : mesh.triangle) {
+        report.degenerate_triangles += is_degenerate(mesh, t);
+        for (const int i : t) {
+            used[i] = 1;
+            report.box.grow(mesh.position[i]);
+        }
+    }
+    report.unreferenced_vertices =
+        static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+    report.duplicate_triangles = count_duplicates(mesh.triangle);
+    check_edges(mesh, report);
+    const Components components = surface_components(mesh);
+    report.components = components.count;
+    report.volume = signed_volume(mesh);
+    report.area = surface_area(mesh);
+    if (report.watertight && report.oriented)
+        for (const double v : component_volumes(mesh, components))
+            report.inward_components += v < 0;
+    add_findings(report);
+    return report;
+}
+
+std::string length_text(double metres) {
+    const double size = std::abs(metres);
+    if (size >= 1e4) return fmt::format("{:.4g} km", metres / 1e3);
+    if (size >= 1 || size == 0) return fmt::format("{:.4g} m", metres);
+    if (size >= 1e-2) return fmt::format("{:.4g} cm", metres * 1e2);
+    if (size >= 1e-3) return fmt::format("{:.4g} mm", metres * 1e3);
+    return fmt::format("{:.4g} um", metres * 1e6);
+}
+
+std::string volume_text(double cubic_metres) {
+    const double size = std::abs(cubic_metres);
+    if (size >= 1e-3 || size == 0) return fmt::format("{:.4g} m3", cubic_metres);
+    if (size >= 1e-8) return fmt::format("{:.4g} cm3", cubic_metres * 1e6);
+    if (size >= 1e-12) return fmt::format("{:.4g} mm3", cubic_metres * 1e9);
+    return fmt::format("{:.4g} um3", cubic_metres * 1e18);
+}
+
+std::string summary_line(const MeshReport& report) {
+    std::string state = "closed";
+    if (!report.watertight) {
+        state = report.boundary_edges > 0
+                    ? fmt::format("open ({})",
+                                  counted(report.boundary_edges, "border edge", "border edges"))
+                    : "not closed";
+    } else if (!report.oriented) {
+        state = "closed, its faces disagree on the outside";
+    } else if (report.volume < 0) {
+        state = "closed, inside out";
+    }
+    // All three sides in the unit that suits the longest.
+    const Vec3 size = report.box.empty() ? Vec3(Vec3::Zero()) : report.box.size();
+    const std::string longest = length_text(size.maxCoeff());
+    const std::string unit = longest.substr(longest.find(' ') + 1);
+    const double scale = unit == "km"   ? 1e-3
+                         : unit == "cm" ? 1e2
+                         : unit == "mm" ? 1e3
+                         : unit == "um" ? 1e6
+                                        : 1.0;
+    std::string line = counted(report.vertices, "vertex", "vertices") + ", " +
+                       counted(report.triangles, "triangle", "triangles");
+    if (report.polygons != report.triangles)
+        line += fmt::format(" ({})", counted(report.polygons, "polygon", "polygons"));
+    line += ", " + counted(static_cast<std::size_t>(report.components), "component", "components");
+    if (report.materials > 0) line += ", " + counted(report.materials, "material", "materials");
+    if (report.has_uv) line += ", texture coordinates";
+    return line + fmt::format(", {}, volume {}, box {:.4g} x {:.4g} x {:.4g} {}", state,
+                              volume_text(report.volume), scale * size.x(), scale * size.y(),
+                              scale * size.z(), unit);
+}
+
+}  // namespace swage

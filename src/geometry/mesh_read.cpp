@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The outer side of reading a mesh: checks the file, runs the reader in a child process under
+// limits, checks what it hands back.
+#include "geometry/mesh_read.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "geometry/mesh_read_child.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// The first byte of what the child sends; a mesh or a sentence follows.
+constexpr char kMeshFollows = 'M', kReasonFollows = 'E';
+constexpr int kOutOfMemory = 3;  // exit status of the child
+
+class Handle {  // a file descriptor
+  public:
+    explicit Handle(int id = -1) : id_(id) {}
+    Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
+    Handle& operator=(Handle&&) = delete;
+    ~Handle() { close(); }
+    int id() const { return id_; }
+    void close() {
+        if (id_ >= 0) ::close(id_);
+        id_ = -1;
+    }
+
+  private:
+    int id_;
+};
+
+bool format_of(const fs::path& file, MeshFormat& format) {
+    std::string ending = file.extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    static const std::pair<const char*, MeshFormat> kFormats[] = {
+        {".obj", MeshFormat::obj}, {".ply", MeshFormat::ply},   {".stl", MeshFormat::stl},
+        {".off", MeshFormat::off}, {".gltf", MeshFormat::gltf}, {".glb", MeshFormat::glb},
+        {".dae", MeshFormat::dae}, {".3ds", MeshFormat::tds},   {".3mf", MeshFormat::tmf}};
+    for (const auto& [name, value] : kFormats)
+        if (ending == name) {
+            format = value;
+            return true;
+        }
+    return false;
+}
+
+const char* kind_of(mode_t mode) {
+    if (S_ISDIR(mode)) return "a directory";
+    if (S_ISFIFO(mode)) return "a pipe";
+    if (S_ISSOCK(mode)) return "a socket";
+    return "a device";
+}
+
+// Opens regular files only, and never waits for anybody.
+Handle open_checked(const fs::path& file, const ReadLimits& limits) {
+    Handle handle(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (handle.id() < 0) fail(ExitCode::mesh, "{}: {}", file.string(), std::strerror(errno));
+    struct stat status {};
+    if (::fstat(handle.id(), &status) != 0)
+        fail(ExitCode::mesh, "{}: {}", file.string(), std::strerror(errno));
+    if (!S_ISREG(status.st_mode))
+        fail(ExitCode::mesh, "{}: this is {}, not a mesh file", file.string(),
+             kind_of(status.st_mode));
+    if (status.st_size == 0) fail(ExitCode::mesh, "{}: the file is empty", file.string());
+    if (static_cast<std::uint64_t>(status.st_size) > limits.file_bytes)
+        fail(ExitCode::mesh, "{}: {:.1f} MiB is more than the limit of {:.1f} MiB", file.string(),
+             status.st_size / 1048576.0, static_cast<double>(limits.file_bytes) / 1048576.0);
+    return handle;
+}
+
+std::uint64_t address_space_in_use() {
+    unsigned long long pages = 0;
+    if (std::FILE* file = std::fopen("/proc/self/statm", "re")) {
+        if (std::fscanf(file, "%llu", &pages) != 1) pages = 0;
+        std::fclose(file);
+    }
+    return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void send_all(int pipe, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t sent = ::write(pipe, bytes.data(), bytes.size());
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent <= 0) ::_exit(1);
+        bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+}
+
+void set_limit(__rlimit_resource what, std::uint64_t value) {
+    const rlimit limit = {value, value};
+    ::setrlimit(what, &limit);
+}
+
+// The child holds nothing but its pipe, its file and its limits. It was forked without exec: a
+// library has no program of its own to start. In a process with threads that is sound as long as
+// the child stays clear of locks that another thread may hold: it logs nothing, starts no parallel
+// loop, never returns; the heap is made safe for forks by glibc.
+[[noreturn]] void run_child(MeshSource& source, int pipe, int file, std::uint64_t file_size,
+                            const ReadLimits& limits, std::uint64_t memory_limit, pid_t parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1);
+    for (const int signal :
+         {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGPIPE})
+        std::signal(signal, SIG_DFL);
+    const int nothing = ::open("/dev/null", O_RDWR);
+    for (const int standard : {0, 1, 2})
+        if (standard != pipe && standard != file) ::dup2(nothing, standard);
+    const unsigned low = static_cast<unsigned>(std::min(pipe, file));
+    const unsigned high = static_cast<unsigned>(std::max(pipe, file));
+    if (low > 3) ::close_range(3, low - 1, 0);
+    if (high > low + 1) ::close_range(std::max(3u, low + 1), high - 1, 0);
+    ::close_range(std::max(3u, high + 1), ~0u, 0);
+    set_limit(RLIMIT_CORE, 0);
+    set_limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::max(1, limits.cpu_seconds)));
+    set_limit(RLIMIT_AS, memory_limit);
+    try {
+        std::string bytes;
+        try {
+            source.bytes.resize(file_size);
+            std::size_t have = 0;
+            while (have < file_size) {
+                const ssize_t got = ::read(file, source.bytes.data() + have, file_size - have);
+                if (got < 0 && errno == EINTR) continue;
+                if (got < 0) fail(ExitCode::mesh, "cannot be read: {}", std::strerror(errno));
+                if (got == 0) break;
+                have += static_cast<std::size_t>(got);
+            }
+            source.bytes.resize(have);
+            const RawMesh mesh = read_raw(source);
+            check_raw(mesh);
+            bytes = kMeshFollows + to_bytes(mesh);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::length_error&) {
+            throw std::bad_alloc();
+        } catch (const std::exception& error) {
+            bytes = kReasonFollows + std::string(error.what());
+        }
+        send_all(pipe, bytes);
+    } catch (...) {
+        ::_exit(kOutOfMemory);
+    }
+    ::_exit(0);
+}
+
+// Everything the child sends until it closes the pipe; false when time or room runs out.
+bool receive(int pipe, const ReadLimits& limits, std::string& bytes, bool& too_large) {
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::seconds(std::max(1, limits.wall_seconds));
+    constexpr std::size_t kBlock = 1 << 20;
+    std::size_t have = 0;
+    for (;;) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+        if (left.count() <= 0) return false;
+        pollfd wait = {pipe, POLLIN, 0};
+        const int ready =
+            ::poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), 1000)));
+        if (ready < 0 && errno != EINTR) return false;
+        if (ready <= 0) continue;
+        if (bytes.size() < have + kBlock) bytes.resize(std::max(2 * bytes.size(), have + kBlock));
+        const ssize_t got = ::read(pipe, bytes.data() + have, bytes.size() - have);
+        if (got < 0 && errno != EINTR) return false;
+        if (got == 0) break;
+        if (got > 0) have += static_cast<std::size_t>(got);
+        too_large = have > limits.memory_bytes;
+        if (too_large) return false;
+    }
+    bytes.resize(have);
+    return true;
+}
+
+}  // namespace
+
+bool is_mesh_file_name(const fs::path& file) {
+    MeshFormat ignored;
+    return format_of(file, ignored);
+}
+
+TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
+                  std::vector<std::string>* finding) {
+    const std::string name = file.string();
+    if (name.find('\0') != std::string::npos || file.empty())
+        fail(ExitCode::mesh, "a mesh file needs a name");
+    const Handle opened = open_checked(file, limits);
+    MeshSource source;
+    if (!format_of(file, source.format))
+        fail(ExitCode::mesh,
+             "{}: '{}' is no kind of mesh that can be read (OBJ, PLY, STL, OFF, glTF, GLB, DAE, "
+             "3DS, 3MF)",
+             name, file.extension().string());
+    source.file = fs::absolute(file).lexically_normal();
+    source.file_bytes = limits.file_bytes;
+    struct stat status {};
+    ::fstat(opened.id(), &status);
+
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+        fail(ExitCode::resources, "{}: no pipe to read it through: {}", name, std::strerror(errno));
+    const Handle from_child(ends[0]);
+    Handle to_parent(ends[1]);
+    const std::uint64_t memory_limit = address_space_in_use() + limits.memory_bytes;
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child < 0)
+        fail(ExitCode::resources, "{}: no process to read it in: {}", name, std::strerror(errno));
+    if (child == 0)
+        run_child(source, to_parent.id(), opened.id(), static_cast<std::uint64_t>(status.st_size),
+                  limits, memory_limit, parent);
+    to_parent.close();
+    std::string bytes;
+    bool too_large = false, in_time = false;
+    try {
+        in_time = receive(from_child.id(), limits, bytes, too_large);
+    } catch (const std::bad_alloc&) {
+        too_large = true;
+    }
+    if (!in_time) ::kill(child, SIGKILL);
+    int outcome = 0;
+    while (::waitpid(child, &outcome, 0) < 0 && errno == EINTR) {
+    }
+    const double limit_gib = static_cast<double>(limits.memory_bytes) / (1 << 30);
+    if (too_large || (WIFEXITED(outcome) && WEXITSTATUS(outcome) == kOutOfMemory))
+        fail(ExitCode::mesh, "{}: reading it takes more than the {:.3g} GiB allowed", name,
+             limit_gib);
+    if (!in_time)
+        fail(ExitCode::mesh, "{}: reading it takes more than the {} s allowed", name,
+             limits.wall_seconds);
+    if (WIFSIGNALED(outcome)) {
+        const int signal = WTERMSIG(outcome);
+        if (signal == SIGXCPU || (signal == SIGKILL && bytes.empty()))
+            fail(ExitCode::mesh,
+                 "{}: reading it takes more than the {} s of processor time allowed", name,
+                 limits.cpu_seconds);
+        fail(ExitCode::mesh, "{}: the file is damaged: its reader crashed ({})", name,
+             ::strsignal(signal));
+    }
+    if (bytes.empty() || (bytes[0] != kMeshFollows && bytes[0] != kReasonFollows))
+        fail(ExitCode::mesh, "{}: the file is damaged: its reader gave up without a word", name);
+    const std::string_view body = std::string_view(bytes).substr(1);
+    if (bytes[0] == kReasonFollows) fail(ExitCode::mesh, "{}: {}", name, body);
+    try {
+        RawMesh raw = from_bytes(body);
+        bytes = {};
+        check_raw(raw);
+        TriMesh mesh = weld(raw);
+        if (finding != nullptr) {
+            finding->insert(finding->end(), raw.finding.begin(), raw.finding.end());
+        } else {
+            for (const std::string& text : raw.finding) log_warning("{}: {}", name, text);
+        }
+        return mesh;
+    } catch (const Error& error) {
+        fail(ExitCode::mesh, "{}: {}", name, error.what());
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Meshes from files. A file is read in a child process under limits, so that a broken or hostile
+// one costs an error message and nothing else; what comes back is checked again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+struct ReadLimits {
+    std::uint64_t file_bytes = std::uint64_t{2} << 30;    // the mesh file, and each file it names
+    std::uint64_t memory_bytes = std::uint64_t{8} << 30;  // of the reading process
+    int cpu_seconds = 120;
+    int wall_seconds = 180;
+};
+
+// OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS and 3MF, told apart by the name's ending. Lengths are
+// taken as metres (glTF is in metres; DAE and 3MF files are scaled by the unit they state). Equal
+// positions are welded; texture coordinates, colours, materials, parts, polygons and shading (from
+// the file's normals, else by a crease angle of 40 degrees) are kept. Node transforms are applied.
+//
+// `finding` receives one sentence for everything that the file held and the mesh does not, or that
+// was odd; without it they are logged as warnings. Throws Error(mesh): the file, the reason.
+TriMesh read_mesh(const std::filesystem::path& file, const ReadLimits& limits = {},
+                  std::vector<std::string>* finding = nullptr);
+
+// Whether the name ends like a mesh file that can be read.
+bool is_mesh_file_name(const std::filesystem::path& file);
+
+}  // namespace swage

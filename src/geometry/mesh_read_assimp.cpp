@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// STL, OFF, glTF, GLB, DAE, 3DS and 3MF through assimp; the one file that sees it. Runs only in
+// the child process: assimp 5.2 crashes on some broken files.
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+
+#include <assimp/importerdesc.h>
+#include <algorithm>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cstring>
+#include <map>
+
+#include "base/error.h"
+#include "geometry/mesh_read_child.h"
+#include "geometry/text_scan.h"
+
+namespace swage {
+
+namespace {
+
+class MemoryStream : public Assimp::IOStream {
+  public:
+    explicit MemoryStream(std::string bytes) : bytes_(std::move(bytes)) {}
+    std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+        if (size == 0) return 0;
+        const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
+        std::memcpy(to, bytes_.data() + at_, whole * size);
+        at_ += whole * size;
+        return whole;
+    }
+    std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+    aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+        const std::size_t base = origin == aiOrigin_SET   ? 0
+                                 : origin == aiOrigin_CUR ? at_
+                                                          : bytes_.size();
+        const std::size_t to = origin == aiOrigin_END ? base - offset : base + offset;
+        if (to > bytes_.size()) return aiReturn_FAILURE;
+        at_ = to;
+        return aiReturn_SUCCESS;
+    }
+    std::size_t Tell() const override { return at_; }
+    std::size_t FileSize() const override { return bytes_.size(); }
+    void Flush() override {}
+
+  private:
+    std::string bytes_;
+    std::size_t at_ = 0;
+};
+
+// Hands out regular files only, so that a mesh that names a pipe or a device cannot block.
+class FileSystem : public Assimp::IOSystem {
+  public:
+    explicit FileSystem(const MeshSource& source) : source_(source) {}
+    bool Exists(const char* file) const override {
+        std::error_code ignored;
+        return std::filesystem::is_regular_file(file, ignored);
+    }
+    char getOsSeparator() const override { return '/'; }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        if (std::strchr(mode, 'w') != nullptr || std::strchr(mode, 'a') != nullptr) return nullptr;
+        if (source_.file == file) return new MemoryStream(source_.bytes);
+        auto bytes = file_contents(file, source_.file_bytes);
+        return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;
+    }
+    void Close(Assimp::IOStream* stream) override { delete stream; }
+
+  private:
+    const MeshSource& source_;
+};
+
+const char* extension_of(MeshFormat format) {
+    switch (format) {
+        case MeshFormat::obj:
+            return "obj";
+        case MeshFormat::ply:
+            return "ply";
+        case MeshFormat::stl:
+            return "stl";
+        case MeshFormat::off:
+            return "off";
+        case MeshFormat::gltf:
+            return "gltf";
+        case MeshFormat::glb:
+            return "glb";
+        case MeshFormat::dae:
+            return "dae";
+        case MeshFormat::tds:
+            return "3ds";
+        case MeshFormat::tmf:
+            return "3mf";
+    }
+    return "";
+}
+
+// Takes out every reader but those for the extension: a file never reaches another format's.
+void keep_only(Assimp::Importer& importer, const std::string& extension) {
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+        const aiImporterDesc* info = importer.GetImporterInfo(i);
+        std::string_view words = info == nullptr ? "" : info->mFileExtensions;
+        bool fits = false;
+        for (std::string_view word; !(word = next_word(words)).empty();)
+            fits = fits || word == extension;
+        if (!fits) importer.UnregisterLoader(importer.GetImporter(i));
+    }
+}
+
+class SceneReader {
+  public:
+    SceneReader(MeshSource& source, const aiScene& scene) : source_(source), scene_(scene) {}
+
+    RawMesh read() {
+        if (scene_.mRootNode == nullptr) fail(ExitCode::mesh, "the file holds no scene");
+        visit(*scene_.mRootNode, aiMatrix4x4());
+        if (polygons_.size() == 0) fail(ExitCode::mesh, "the file holds no faces");
+        read_materials();
+        mesh_.at_vertices = 1;
+        if (mesh_.part_name.size() == 1 && !is_named_) {
+            mesh_.part_name.clear();
+            std::fill(polygons_.part.begin(), polygons_.part.end(), -1);
+        }
+        if (!mesh_.color.empty())
+            mesh_.color.resize(mesh_.position.size(), Eigen::Vector3f::Ones());
+        const auto say = [&](bool is_so, const char* what) {
+            if (is_so) source_.finding.emplace_back(what);
+        };
+        say(lines_and_points_ > 0, "lines and points were left out");
+        say(has_bones_ || scene_.mNumAnimations > 0,
+            "bones and animations are not followed: the mesh stands as it was modelled");
+        say(has_shapes_, "morph targets were left out");
+        say(more_uv_, "only the first set of texture coordinates was read");
+        say(more_color_, "only the first set of vertex colours was read");
+        add_polygons(polygons_, mesh_);
+        return std::move(mesh_);
+    }
+
+  private:
+    void visit(const aiNode& node, const aiMatrix4x4& world_from_parent) {
+        const aiMatrix4x4 world_from_node = world_from_parent * node.mTransformation;
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+            if (node.mMeshes[i] >= scene_.mNumMeshes)
+                fail(ExitCode::mesh, "node '{}' names mesh {} of {}", node.mName.C_Str(),
+                     node.mMeshes[i], scene_.mNumMeshes);
+            add_mesh(*scene_.mMeshes[node.mMeshes[i]], node, world_from_node);
+        }
+        for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], world_from_node);
+    }
+
+    int part_of(const aiMesh& mesh, const aiNode& node) {
+        const bool is_plain =
+            source_.format == MeshFormat::stl || source_.format == MeshFormat::off;
+        std::string name = mesh.mName.C_Str();
+        if (name.empty() && !is_plain) name = node.mName.C_Str();
+        is_named_ = is_named_ || !name.empty();
+        if (name.empty()) name = "part";
+        // One node's meshes of one name differ in material only: one part.
+        const auto [at, is_new] =
+            part_id_.emplace(std::make_pair(&node, name), static_cast<int>(mesh_.part_name.size()));
+        if (is_new) {
+            const int uses = ++name_uses_[name];
+            mesh_.part_name.push_back(uses == 1 ? name : fmt::format("{}.{}", name, uses));
+        }
+        return at->second;
+    }
+
+    void add_mesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& m) {
+        if (mesh.mNumFaces == 0 || mesh.mVertices == nullptr) return;
+        // Points and lines alone are no part.
+        bool has_surface = false;
+        for (unsigned f = 0; f < mesh.mNumFaces && !has_surface; ++f)
+            has_surface = mesh.mFaces[f].mNumIndices >= 3;
+        if (!has_surface) {
+            lines_and_points_ += mesh.mNumFaces;
+            return;
+        }
+        Eigen::Matrix4d world_from_mesh;
+        for (int r = 0; r < 4; ++r)
+            for (int c = 0; c < 4; ++c) world_from_mesh(r, c) = m[r][c];
+        const Mat3 linear = world_from_mesh.topLeftCorner<3, 3>();
+        const bool mirrored = linear.determinant() < 0;
+        // Cofactors carry normals also through a singular matrix.
+        Mat3 cofactor;
+        for (int k = 0; k < 3; ++k)
+            cofactor.col(k) = linear.col((k + 1) % 3).cross(linear.col((k + 2) % 3));
+        if (mirrored) cofactor = -cofactor;
+
+        const int base = static_cast<int>(mesh_.position.size());
+        if (mesh_.position.size() + mesh.mNumVertices > 0x7fffffff)
+            fail(ExitCode::mesh, "more vertices than can be handled");
+        // An STL file's normals belong to facets and say nothing about shading.
+        const bool has_normal = mesh.HasNormals() && source_.format != MeshFormat::stl;
+        const bool has_uv = mesh.HasTextureCoords(0);
+        if (mesh.HasVertexColors(0) && mesh_.color.empty())
+            mesh_.color.resize(base, Eigen::Vector3f::Ones());
+        mesh_.uv.resize(base, Vec2::Zero());
+        mesh_.normal.resize(base, Eigen::Vector3f::Zero());
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+            const aiVector3D& p = mesh.mVertices[v];
+            mesh_.position.push_back(linear * Vec3(p.x, p.y, p.z) +
+                                     world_from_mesh.topRightCorner<3, 1>());
+            if (has_normal) {
+                const aiVector3D& n = mesh.mNormals[v];
+                mesh_.normal.push_back(
+                    (cofactor * Vec3(n.x, n.y, n.z)).stableNormalized().cast<float>());
+            }
+            if (has_uv)
+                mesh_.uv.emplace_back(mesh.mTextureCoords[0][v].x, mesh.mTextureCoords[0][v].y);
+            if (mesh.HasVertexColors(0)) {
+                const aiColor4D& c = mesh.mColors[0][v];
+                mesh_.color.emplace_back(c.r, c.g, c.b);
+            }
+        }
+        if (!mesh_.color.empty())
+            mesh_.color.resize(mesh_.position.size(), Eigen::Vector3f::Ones());
+        const int part = part_of(mesh, node);
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices < 3) {
+                ++lines_and_points_;
+                continue;
+            }
+            for (unsigned k = 0; k < face.mNumIndices; ++k) {
+                const unsigned i = face.mIndices[mirrored ? face.mNumIndices - 1 - k : k];
+                if (i >= mesh.mNumVertices)
+                    fail(ExitCode::mesh, "face {} of '{}': vertex {} of {} does not exist", f,
+                         mesh.mName.C_Str(), i, mesh.mNumVertices);
+                const int vertex = base + static_cast<int>(i);
+                polygons_.add_corner(vertex, has_uv ? vertex : -1, has_normal ? vertex : -1);
+            }
+            polygons_.end_polygon(static_cast<int>(mesh.mMaterialIndex), part, 0);
+        }
+        has_bones_ = has_bones_ || mesh.HasBones();
+        has_shapes_ = has_shapes_ || mesh.mNumAnimMeshes > 0;
+        more_uv_ = more_uv_ || mesh.HasTextureCoords(1);
+        more_color_ = more_color_ || mesh.HasVertexColors(1);
+    }
+
+    void read_materials() {
+        std::vector<int> number(scene_.mNumMaterials, -1);
+        bool all_default = true;
+        for (int& id : polygons_.material) {
+            if (id < 0 || id >= static_cast<int>(number.size()))
+                fail(ExitCode::mesh, "material {} of {} does not exist", id, number.size());
+            const int file_id = id;
+            if (number[file_id] < 0) {
+                number[file_id] = static_cast<int>(mesh_.material.size());
+                const aiMaterial& material = *scene_.mMaterials[file_id];
+                all_default = all_default && std::strcmp(material.GetName().C_Str(),
+                                                         AI_DEFAULT_MATERIAL_NAME) == 0;
+                mesh_.material.push_back(material_from(material));
+            }
+            id = number[file_id];
+        }
+        if (all_default) {  // assimp's own filler
+            mesh_.material.clear();
+            std::fill(polygons_.material.begin(), polygons_.material.end(), -1);
+        }
+    }
+
+    RawMaterial material_from(const aiMaterial& from) {
+        RawMaterial to;
+        to.name = from.GetName().C_Str();
+        aiColor4D color;
+        if (from.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS ||
+            from.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS)
+            to.color = Vec3(color.r, color.g, color.b).cwiseMax(0.0).cwiseMin(1.0);
+        const bool has_surface_map =
+            from.GetTextureCount(aiTextureType_METALNESS) > 0 ||
+            from.GetTextureCount(aiTextureType_DIFFUSE_ROUGHNESS) > 0 ||
+            from.GetTexture(AI_MATKEY_GLTF_PBRMETALLICROUGHNESS_METALLICROUGHNESS_TEXTURE,
+                            &path_) == AI_SUCCESS;
+        float value = 0;
+        if (has_surface_map) {  // the factors mean little without the image they multiply
+            source_.finding.push_back(fmt::format(
+                "material '{}': its image of metal and roughness was left out", to.name));
+        } else {
+            if (from.Get(AI_MATKEY_METALLIC_FACTOR, value) == AI_SUCCESS) to.metallic = value;
+            if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, value) == AI_SUCCESS) to.roughness = value;
+        }
+        if (from.GetTextureCount(aiTextureType_NORMALS) > 0)
+            source_.finding.push_back(
+                fmt::format("material '{}': its normal map was left out", to.name));
+        for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+            if (from.GetTextureCount(type) == 0) continue;
+            if (from.GetTexture(type, 0, &path_) != AI_SUCCESS) continue;
+            aiUVTransform transform;
+            if (from.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) == AI_SUCCESS &&
+                (transform.mScaling != aiVector2D(1, 1) ||
+                 transform.mTranslation != aiVector2D(0, 0) || transform.mRotation != 0))
+                source_.finding.push_back(fmt::format(
+                    "material '{}': the shift and scale of its texture were left out", to.name));
+            take_texture(to);
+            break;
+        }
+        return to;
+    }
+
+    void take_texture(RawMaterial& to) {
+        const aiTexture* inside = scene_.GetEmbeddedTexture(path_.C_Str());
+        if (inside == nullptr) {
+            to.texture = path_.C_Str();
+        } else if (inside->mHeight == 0 && inside->pcData != nullptr) {
+            to.texture_bytes.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
+        } else {
+            source_.finding.push_back(
+                fmt::format("material '{}': an uncompressed image was left out", to.name));
+        }
+    }
+
+    MeshSource& source_;
+    const aiScene& scene_;
+    RawMesh mesh_;
+    PolygonList polygons_;
+    std::map<std::pair<const aiNode*, std::string>, int> part_id_;
+    std::map<std::string, int> name_uses_;
+    bool is_named_ = false;
+    aiString path_;
+    std::size_t lines_and_points_ = 0;
+    bool has_bones_ = false, has_shapes_ = false, more_uv_ = false, more_color_ = false;
+};
+
+// assimp takes facets of four vertices and files that break off.
+void check_stl(const std::string& bytes) {
+    const bool is_binary = bytes.size() >= 84 && [&] {
+        std::uint32_t count = 0;
+        std::memcpy(&count, bytes.data() + 80, 4);
+        return bytes.size() == 84 + std::uint64_t{50} * count;
+    }();
+    if (is_binary || !bytes.starts_with("solid") || bytes.find('\0') != std::string::npos) return;
+    std::size_t facet_vertices = 3, facets = 0;
+    std::string_view text = bytes, line;
+    const auto check = [&] {
+        if (facet_vertices != 3)
+            fail(ExitCode::mesh, "facet {} has {} vertices", facets, facet_vertices);
+    };
+    while (next_line(text, line)) {
+        const std::string_view key = next_word(line);
+        if (key == "facet") {
+            check();
+            ++facets;
+            facet_vertices = 0;
+        } else if (key == "vertex") {
+            ++facet_vertices;
+            for (int k = 0; k < 3; ++k) {
+                double value = 0;
+                const std::string_view word = next_word(line);
+                if (!to_number(word, value))
+                    fail(ExitCode::mesh, "facet {}: '{}' is not a number", facets,
+                         word.substr(0, 40));
+            }
+        }
+    }
+    check();
+}
+
+// assimp moves indices that are out of range to the last vertex without a word.
+void check_off(std::string_view text) {
+    std::string_view line;
+    const auto next = [&] {
+        while (next_line(text, line)) {
+            line = trimmed(line.substr(0, line.find('#')));
+            if (!line.empty()) return true;
+        }
+        return false;
+    };
+    long long vertices = 0, faces = 0;
+    for (bool found = false; !found;) {
+        if (!next()) fail(ExitCode::mesh, "no line with the numbers of vertices and faces");
+        std::string_view words = line;
+        std::string_view word = next_word(words);
+        if (word.ends_with("OFF")) word = next_word(words);
+        found = to_integer(word, vertices) && to_integer(next_word(words), faces);
+    }
+    for (long long v = 0; v < vertices; ++v)
+        if (!next()) fail(ExitCode::mesh, "the file ends early, at vertex {} of {}", v, vertices);
+    for (long long f = 0; f < faces; ++f) {
+        if (!next()) fail(ExitCode::mesh, "the file ends early, at face {} of {}", f, faces);
+        long long corners = 0, index = 0;
+        if (!to_integer(next_word(line), corners))
+            fail(ExitCode::mesh, "face {}: no number of corners", f);
+        for (; corners > 0; --corners) {
+            const std::string_view word = next_word(line);
+            if (!to_integer(word, index) || index < 0 || index >= vertices)
+                fail(ExitCode::mesh, "face {}: '{}' is no vertex (there are {})", f,
+                     word.substr(0, 40), vertices);
+        }
+    }
+}
+
+}  // namespace
+
+RawMesh read_by_assimp(MeshSource& source) {
+    if (source.format == MeshFormat::stl) check_stl(source.bytes);
+    if (source.format == MeshFormat::off) check_off(source.bytes);
+    const std::string extension = extension_of(source.format);
+    Assimp::Importer importer;
+    keep_only(importer, extension);
+    importer.SetIOHandler(new FileSystem(source));
+    const aiScene* scene = importer.ReadFile(source.file.string(), 0);
+    if (scene == nullptr)
+        fail(ExitCode::mesh, "not a readable .{} file ({})", extension, importer.GetErrorString());
+    return SceneReader(source, *scene).read();
+}
+
+}  // namespace swage

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Chooses the reader and finds the images that materials name.
+#include "geometry/mesh_read_child.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/error.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+std::string url_decoded(const std::string& text) {
+    const auto digit = [](char c) {
+        if (c >= '0' && c <= '9') return c - '0';
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+    };
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 &&
+            digit(text[i + 2]) >= 0) {
+            out += static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
+            i += 2;
+        } else {
+            out += text[i];
+        }
+    }
+    return out;
+}
+
+bool is_file(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored);
+}
+
+// The named image, also when only its last part fits (a path of the author's machine) or the
+// case differs (files of DOS days). Empty when there is none.
+fs::path find_image(const fs::path& folder, std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (name.starts_with("file://")) name.erase(0, 7);
+    if (name.empty() || name.find('\0') != std::string::npos) return {};
+    for (const std::string& n : {name, url_decoded(name)})
+        for (const fs::path& candidate : {folder / n, folder / fs::path(n).filename()})
+            if (is_file(candidate)) return fs::weakly_canonical(candidate);
+    const std::string wanted = lower(fs::path(name).filename().string());
+    std::vector<fs::path> fit;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+        if (lower(entry.path().filename().string()) == wanted && is_file(entry.path()))
+            fit.push_back(entry.path());
+    return fit.empty() ? fs::path()
+                       : fs::weakly_canonical(*std::min_element(fit.begin(), fit.end()));
+}
+
+// For a mesh with texture coordinates and no material at all: an image beside it that goes by
+// its name, as in cow.obj and cow_texture.png.
+fs::path guess_image(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    std::vector<std::string> names = {stem};
+    if (const std::size_t cut = stem.find_last_of("_-"); cut != std::string::npos && cut > 0)
+        names.push_back(stem.substr(0, cut));
+    for (std::size_t i = 0; i < names.size(); ++i)
+        for (const char* ending : {"", "_texture", "_diffuse", "_albedo", "_basecolor", "_color"})
+            for (const char* type : {".png", ".jpg", ".jpeg", ".tga", ".bmp"}) {
+                if (i > 0 && *ending == '\0') continue;
+                const fs::path image = file.parent_path() / (names[i] + ending + type);
+                if (is_file(image)) return image;
+            }
+    return {};
+}
+
+}  // namespace
+
+RawMesh read_raw(MeshSource& source) {
+    RawMesh mesh = source.format == MeshFormat::obj   ? read_obj(source)
+                   : source.format == MeshFormat::ply ? read_ply(source)
+                                                      : read_by_assimp(source);
+    for (RawMaterial& material : mesh.material) {
+        if (material.texture.empty()) continue;
+        const fs::path image = find_image(source.file.parent_path(), material.texture);
+        if (image.empty())
+            source.finding.push_back(fmt::format("material '{}': its image '{}' is missing",
+                                                 material.name, material.texture));
+        material.texture = image.string();
+        // Exporters that leave the colour black beside an image do not mean it.
+        if (!image.empty() && material.color.isZero()) material.color = Vec3::Ones();
+    }
+    if (mesh.material.empty() && !mesh.triangle_uv.empty()) {
+        const fs::path image = guess_image(source.file);
+        if (!image.empty()) {
+            mesh.material.push_back({.name = "material", .color = Vec3::Ones()});
+            mesh.material[0].texture = image.string();
+            mesh.triangle_material.assign(mesh.triangle.size(), 0);
+            source.finding.push_back(fmt::format(
+                "it names no material; the image beside it, {}, is taken for its texture",
+                image.filename().string()));
+        }
+    }
+    mesh.finding.insert(mesh.finding.begin(), source.finding.begin(), source.finding.end());
+    return mesh;
+}
+
+}  // namespace swage

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The inner side of reading a mesh: what runs in the child process and what it hands back.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+enum class MeshFormat { obj, ply, stl, off, gltf, glb, dae, tds, tmf };
+
+struct MeshSource {
+    std::filesystem::path file;  // absolute
+    MeshFormat format;
+    std::string bytes;         // the file's contents
+    std::uint64_t file_bytes;  // limit for each further file
+    std::vector<std::string> finding;
+};
+
+// Colours here are linear RGB. A texture is either the path of a file or its contents.
+struct RawMaterial {
+    std::string name = {};
+    Vec3 color = {0.8, 0.8, 0.8};
+    double roughness = 0.55;
+    double metallic = 0;
+    std::string texture = {};
+    std::string texture_bytes = {};
+};
+
+// Polygons as a file gives them; -1 for a corner without the attribute.
+struct PolygonList {
+    std::vector<int> first = {0};  // corners of polygon p: first[p] .. first[p + 1]
+    std::vector<int> position, uv, normal;
+    std::vector<int> material, part, line;  // one a polygon; line in the file or 0
+
+    void add_corner(int p, int t, int n) {
+        position.push_back(p);
+        uv.push_back(t);
+        normal.push_back(n);
+    }
+    void end_polygon(int material_id, int part_id, int line_number) {
+        first.push_back(static_cast<int>(position.size()));
+        material.push_back(material_id);
+        part.push_back(part_id);
+        line.push_back(line_number);
+    }
+    std::size_t size() const { return material.size(); }
+};
+
+// Plain arrays, as they cross the pipe.
+struct RawMesh {
+    std::vector<Vec3> position;
+    std::vector<Eigen::Vector3f> color;  // empty or one a position
+    std::vector<Vec2> uv;
+    std::vector<Eigen::Vector3f> normal;
+    std::vector<Corners> triangle, triangle_uv, triangle_normal;
+    std::vector<int> polygon, triangle_material, triangle_part;
+    std::vector<RawMaterial> material;
+    std::vector<std::string> part_name;
+    std::vector<std::string> finding;
+    int at_vertices = 0;  // 1: attributes belong to the file's vertices, which are split at seams
+};
+
+// Reads one format. Errors are swage::Error with a sentence that does not name the file.
+RawMesh read_obj(MeshSource& source);
+RawMesh read_ply(MeshSource& source);
+RawMesh read_by_assimp(MeshSource& source);
+RawMesh read_raw(MeshSource& source);  // whichever fits, with its textures looked up
+
+// Cuts the polygons into triangles and files them in `mesh`; checks every index. Polygons of fewer
+// than three different corners are left out, with a finding.
+void add_polygons(const PolygonList& polygons, RawMesh& mesh);
+
+// A regular file's contents, or nothing; never blocks on a pipe or device.
+std::optional<std::string> file_contents(const std::filesystem::path& file, std::uint64_t limit);
+
+std::string to_bytes(const RawMesh& mesh);
+// Throws Error(mesh) when the bytes are not a whole mesh.
+RawMesh from_bytes(std::string_view bytes);
+
+// Throws Error(mesh) on indices out of range, sizes that disagree, numbers that are not finite or
+// of no sane magnitude.
+void check_raw(const RawMesh& mesh);
+
+// Welds equal positions and builds the value that the program works on. Takes the arrays out of
+// `mesh`, adds to its findings.
+TriMesh weld(RawMesh& mesh);
+
+}  // namespace swage

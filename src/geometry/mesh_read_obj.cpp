@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wavefront OBJ and MTL, after the format's appendix to the Advanced Visualizer manual. Not read
+// through assimp, which splits vertices, forgets their order, rounds them to single precision,
+// takes "1,0" for 1, and refuses a byte order mark or a face of two corners.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "geometry/mesh_read_child.h"
+#include "geometry/text_scan.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void bad_line(int line, const std::string& what) {
+    fail(ExitCode::mesh, "line {}: {}", line, what);
+}
+
+class ObjReader {
+  public:
+    explicit ObjReader(MeshSource& source) : source_(source) {}
+
+    RawMesh read() {
+        std::string_view text = source_.bytes;
+        if (const std::size_t at = text.find('\0'); at != std::string_view::npos)
+            fail(ExitCode::mesh, "byte {} is zero, so this is no text: not an OBJ file, or damaged",
+                 at);
+        if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+        std::string_view line;
+        std::string joined;
+        while (next_line(text, line)) {
+            ++line_;
+            std::string_view whole = trimmed(line);
+            if (whole.ends_with('\\')) {
+                joined.assign(whole.substr(0, whole.size() - 1));
+                while (next_line(text, line)) {
+                    ++line_;
+                    whole = trimmed(line);
+                    const bool more = whole.ends_with('\\');
+                    joined += ' ';
+                    joined += more ? whole.substr(0, whole.size() - 1) : whole;
+                    if (!more) break;
+                }
+                whole = joined;
+            }
+            if (!whole.empty() && whole.front() != '#') read_statement(whole);
+        }
+        return finish();
+    }
+
+  private:
+    double number(std::string_view word) {
+        double value = 0;
+        if (!to_number(word, value)) {
+            const bool comma = word.find(',') != std::string_view::npos;
+            bad_line(line_, fmt::format("'{}' is not a number{}", word.substr(0, 40),
+                                        comma ? " (write decimals with a point)" : ""));
+        }
+        if (!std::isfinite(value)) bad_line(line_, fmt::format("'{}' is not finite", word));
+        return value;
+    }
+
+    // As many numbers as the line has, at most 8.
+    int numbers(std::string_view line, double* value) {
+        int count = 0;
+        for (std::string_view word; count < 8 && !(word = next_word(line)).empty();) {
+            if (word.front() == '#') break;
+            value[count++] = number(word);
+        }
+        return count;
+    }
+
+    void read_statement(std::string_view line) {
+        const std::string_view key = next_word(line);
+        double value[8];
+        if (key == "v") {
+            const int count = numbers(line, value);
+            if (count < 3) bad_line(line_, "a vertex needs three coordinates");
+            mesh_.position.emplace_back(value[0], value[1], value[2]);
+            if (count >= 6) {  // x y z r g b, the common extension
+                mesh_.color.resize(mesh_.position.size() - 1, Eigen::Vector3f::Ones());
+                Eigen::Vector3f color;
+                for (int k = 0; k < 3; ++k)
+                    color[k] = linear_from_srgb(std::clamp(value[3 + k], 0.0, 1.0));
+                mesh_.color.push_back(color);
+            }
+        } else if (key == "vt") {
+            const int count = numbers(line, value);
+            if (count < 1) bad_line(line_, "a texture coordinate needs numbers");
+            mesh_.uv.emplace_back(value[0], count > 1 ? value[1] : 0.0);
+        } else if (key == "vn") {
+            if (numbers(line, value) < 3) bad_line(line_, "a normal needs three coordinates");
+            mesh_.normal.emplace_back(value[0], value[1], value[2]);
+        } else if (key == "f") {
+            read_face(line);
+        } else if (key == "usemtl") {
+            material_ = id_of(std::string(trimmed(line)), material_id_, material_name_);
+        } else if (key == "mtllib") {
+            library_.emplace_back(trimmed(line));
+        } else if (key == "o" || (key == "g" && !has_objects_)) {
+            has_objects_ = has_objects_ || key == "o";
+            const std::string_view name = trimmed(line);
+            part_ = id_of(name.empty() ? "default" : std::string(name), part_id_, mesh_.part_name);
+        } else if (key == "l" || key == "p") {
+            ++lines_and_points_;
+        } else if (key == "curv" || key == "surf" || key == "curv2") {
+            ++free_forms_;
+        }
+    }
+
+    static int id_of(const std::string& name, std::map<std::string, int>& ids,
+                     std::vector<std::string>& names) {
+        const auto [at, is_new] = ids.emplace(name, static_cast<int>(names.size()));
+        if (is_new) names.push_back(name);
+        return at->second;
+    }
+
+    // Counts from 1, or backwards from -1. Ranges are checked when all is read.
+    int index(std::string_view word, std::size_t count) {
+        long long value = 0;
+        if (!to_integer(word, value) || value == 0 || std::abs(value) > 0x7fffffff)
+            bad_line(line_, fmt::format("'{}' is not an index", word.substr(0, 40)));
+        if (value > 0) return static_cast<int>(value - 1);
+        value += static_cast<long long>(count);
+        if (value < 0)
+            bad_line(line_, fmt::format("index {} reaches before the first entry", word));
+        return static_cast<int>(value);
+    }
+
+    void read_face(std::string_view line) {
+        for (std::string_view word; !(word = next_word(line)).empty();) {
+            if (word.front() == '#') break;
+            int id[3] = {-1, -1, -1};
+            const std::size_t count[3] = {mesh_.position.size(), mesh_.uv.size(),
+                                          mesh_.normal.size()};
+            for (int k = 0; k < 3; ++k) {
+                const std::size_t slash = word.find('/');
+                const std::string_view field = word.substr(0, slash);
+                if (k == 0 || !field.empty()) id[k] = index(field, count[k]);
+                if (slash == std::string_view::npos) break;
+                if (k == 2) bad_line(line_, "a corner has more than three indices");
+                word.remove_prefix(slash + 1);
+            }
+            polygons_.add_corner(id[0], id[1], id[2]);
+        }
+        polygons_.end_polygon(material_, part_, line_);
+    }
+
+    RawMesh finish() {
+        if (polygons_.size() == 0) {
+            fail(ExitCode::mesh,
+                 "no faces ({} vertices, {} lines and points, {} free-form surfaces)",
+                 mesh_.position.size(), lines_and_points_, free_forms_);
+        }
+        if (!mesh_.color.empty())
+            mesh_.color.resize(mesh_.position.size(), Eigen::Vector3f::Ones());
+        if (lines_and_points_ > 0)
+            source_.finding.push_back(
+                fmt::format("{} lines and points were left out", lines_and_points_));
+        if (free_forms_ > 0)
+            source_.finding.push_back(
+                fmt::format("{} free-form curves and surfaces were left out", free_forms_));
+
+        // Faces before the first usemtl, o or g belong to a default.
+        const auto give_default = [](std::vector<int>& id, int fallback) {
+            std::replace(id.begin(), id.end(), -1, fallback);
+        };
+        const auto missing = [](const std::vector<int>& id) {
+            return std::find(id.begin(), id.end(), -1) != id.end();
+        };
+        if (!material_name_.empty() && missing(polygons_.material))
+            give_default(polygons_.material, id_of("default", material_id_, material_name_));
+        if (!mesh_.part_name.empty() && missing(polygons_.part))
+            give_default(polygons_.part, id_of("default", part_id_, mesh_.part_name));
+        for (const std::string& name : material_name_) mesh_.material.push_back({.name = name});
+        for (const std::string& library : library_) read_library(library);
+        add_polygons(polygons_, mesh_);
+        return std::move(mesh_);
+    }
+
+    // A library name may hold blanks, or be several names.
+    void read_library(const std::string& names) {
+        const fs::path folder = source_.file.parent_path();
+        const auto try_name = [&](std::string name) {
+            std::replace(name.begin(), name.end(), '\\', '/');
+            const fs::path file = folder / name;
+            const auto text = file_contents(file, source_.file_bytes);
+            if (text) read_materials(*text, file.parent_path());
+            return text.has_value();
+        };
+        if (try_name(names)) return;
+        std::string_view rest = names;
+        int found = 0;
+        for (std::string_view word; !(word = next_word(rest)).empty();)
+            found += word != names && try_name(std::string(word));
+        if (found == 0)
+            source_.finding.push_back(fmt::format("the material file '{}' cannot be read", names));
+    }
+
+    // Image name after its options, "-s 1 1 1" and the like.
+    static std::string_view map_name(std::string_view line) {
+        for (std::string_view rest = line; !trimmed(rest).empty();) {
+            const std::string_view option = next_word(rest);
+            if (option.front() != '-' || option.size() < 2) break;
+            const bool vector = option == "-s" || option == "-o" || option == "-t";
+            int arguments = option == "-mm" ? 2 : vector ? 3 : 1;
+            for (double ignored; arguments > 0; --arguments) {
+                std::string_view peek = rest;
+                const std::string_view word = next_word(peek);
+                if (vector && !to_number(word, ignored))
+                    break;  // of three, the last may be left out
+                rest = peek;
+            }
+            line = rest;
+        }
+        return trimmed(line);
+    }
+
+    void read_materials(const std::string& bytes, const fs::path& folder) {
+        std::string_view text = bytes, line;
+        if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+        RawMaterial unused, *material = &unused;
+        std::vector<std::string> other_maps;
+        while (next_line(text, line)) {
+            std::string_view rest = trimmed(line);
+            const std::string_view key = next_word(rest);
+            const auto scalar = [&](double fallback) {
+                double value = fallback;
+                std::string_view words = rest;
+                return to_number(next_word(words), value) && std::isfinite(value) ? value
+                                                                                  : fallback;
+            };
+            if (key == "newmtl") {
+                const auto at = material_id_.find(std::string(trimmed(rest)));
+                material = at == material_id_.end() ? &unused : &mesh_.material[at->second];
+            } else if (key == "Kd") {
+                Vec3 color;
+                int count = 0;
+                while (count < 3 && to_number(next_word(rest), color[count]) &&
+                       std::isfinite(color[count]))
+                    ++count;
+                if (count == 1) color = Vec3::Constant(color[0]);
+                if (count == 1 || count == 3) material->color = color.cwiseMax(0.0).cwiseMin(1.0);
+            } else if (key == "Ns") {  // Blinn exponent
+                material->roughness = std::sqrt(2 / (2 + std::clamp(scalar(4.6), 0.0, 1e6)));
+            } else if (key == "Pr") {
+                material->roughness = std::clamp(scalar(material->roughness), 0.0, 1.0);
+            } else if (key == "Pm") {
+                material->metallic = std::clamp(scalar(material->metallic), 0.0, 1.0);
+            } else if (key == "map_Kd") {
+                std::string name(map_name(rest));
+                std::replace(name.begin(), name.end(), '\\', '/');
+                material->texture = (folder / name).string();
+            } else if (key.starts_with("map_") || key == "bump" || key == "norm") {
+                if (material != &unused) other_maps.emplace_back(key);
+            }
+        }
+        std::sort(other_maps.begin(), other_maps.end());
+        other_maps.erase(std::unique(other_maps.begin(), other_maps.end()), other_maps.end());
+        if (other_maps.empty()) return;
+        std::string list;
+        for (const std::string& map : other_maps) list += (list.empty() ? "" : ", ") + map;
+        source_.finding.push_back("of the materials' images only map_Kd is used, not " + list);
+    }
+
+    MeshSource& source_;
+    RawMesh mesh_;
+    PolygonList polygons_;
+    int line_ = 0, material_ = -1, part_ = -1;
+    bool has_objects_ = false;
+    int lines_and_points_ = 0, free_forms_ = 0;
+    std::map<std::string, int> material_id_, part_id_;
+    std::vector<std::string> material_name_, library_;
+};
+
+}  // namespace
+
+RawMesh read_obj(MeshSource& source) { return ObjReader(source).read(); }
+
+}  // namespace swage

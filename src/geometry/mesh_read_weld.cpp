@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the arrays of a file to the mesh the program works on: equal positions become one, what may
+// jump across an edge stays with the corners.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "base/error.h"
+#include "geometry/mesh_read_child.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kCreaseAngle = 40 * kPi / 180;
+
+// Gives equal keys equal numbers, in the order of their first appearance. An open-addressed table;
+// its order never shows in the result.
+template <typename Key>
+std::vector<int> number_equal(const std::vector<Key>& key, int& count) {
+    std::vector<int> table(std::bit_ceil(2 * key.size() + 2), -1);
+    std::vector<int> number(key.size());
+    count = 0;
+    const auto hash = [](const Key& k) {
+        std::uint64_t h = 0x9e3779b97f4a7c15;
+        for (const auto value : k) {
+            std::uint64_t bits = 0;
+            std::memcpy(&bits, &value, sizeof value);
+            h = (h ^ bits) * 0xff51afd7ed558ccd;
+            h ^= h >> 32;
+        }
+        return h;
+    };
+    for (std::size_t i = 0; i < key.size(); ++i) {
+        std::size_t slot = hash(key[i]) & (table.size() - 1);
+        while (table[slot] >= 0 && key[table[slot]] != key[i])
+            slot = (slot + 1) & (table.size() - 1);
+        if (table[slot] < 0) {
+            table[slot] = static_cast<int>(i);
+            number[i] = count++;
+        } else {
+            number[i] = number[table[slot]];
+        }
+    }
+    return number;
+}
+
+// Corners at one place whose normals agree share a group. False when a corner has no normal.
+bool smooth_by_normals(const RawMesh& raw, TriMesh& mesh) {
+    if (raw.triangle_normal.empty()) return false;
+    std::vector<std::array<int, 4>> key;
+    key.reserve(3 * mesh.triangle.size());
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const int n = raw.triangle_normal[t][k];
+            if (n < 0) return false;
+            const Vec3 normal = raw.normal[n].cast<double>().stableNormalized();
+            if (!(normal.squaredNorm() > 0.5)) return false;  // zero, or not a number
+            key.push_back({mesh.triangle[t][k], static_cast<int>(std::lround(normal.x() * 1000)),
+                           static_cast<int>(std::lround(normal.y() * 1000)),
+                           static_cast<int>(std::lround(normal.z() * 1000))});
+        }
+    const std::vector<int> group = number_equal(key, mesh.smooth_group_count);
+    mesh.triangle_smooth.resize(mesh.triangle.size());
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        mesh.triangle_smooth[t] = {group[3 * t], group[3 * t + 1], group[3 * t + 2]};
+    return true;
+}
+
+// Texture coordinates of split vertices: corners at one place with equal values share an entry.
+void weld_uv(TriMesh& mesh) {
+    std::vector<std::array<double, 3>> key;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const int i = mesh.triangle_uv[t][k];
+            if (i >= 0)
+                key.push_back({static_cast<double>(mesh.triangle[t][k]), mesh.uv[i].x() + 0.0,
+                               mesh.uv[i].y() + 0.0});
+        }
+    int count = 0;
+    const std::vector<int> number = number_equal(key, count);
+    mesh.uv.resize(count);
+    for (std::size_t i = 0; i < key.size(); ++i) mesh.uv[number[i]] = {key[i][1], key[i][2]};
+    std::size_t next = 0;
+    for (Corners& corners : mesh.triangle_uv)
+        for (int& i : corners)
+            if (i >= 0) i = number[next++];
+}
+
+// Polygons numbered from 0 without gaps, in order.
+std::vector<int> renumbered(std::vector<int> polygon) {
+    int next = -1, last = -1;
+    for (int& p : polygon) {
+        if (next < 0 || p != last) ++next;
+        last = p;
+        p = next;
+    }
+    return polygon;
+}
+
+}  // namespace
+
+TriMesh weld(RawMesh& raw) {
+    TriMesh mesh;
+    // Only vertices that faces use, in the file's order: strays would spoil the box.
+    std::vector<char> used(raw.position.size(), 0);
+    for (const Corners& t : raw.triangle)
+        for (const int i : t) used[i] = 1;
+    std::vector<int> kept;
+    std::vector<std::array<double, 3>> key;
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) {
+            kept.push_back(static_cast<int>(i));
+            const Vec3& p = raw.position[i];
+            key.push_back({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0});  // -0 becomes 0
+        }
+    if (const std::size_t strays = used.size() - kept.size(); strays > 0)
+        raw.finding.push_back(fmt::format("{} of {} vertices belong to no face and were left out",
+                                          strays, used.size()));
+    int count = 0;
+    const std::vector<int> number = number_equal(key, count);
+    std::vector<int> place(used.size(), -1);
+    mesh.position.resize(count);
+    if (!raw.color.empty()) mesh.position_color.resize(count);
+    for (std::size_t i = kept.size(); i-- > 0;) {  // backwards: the first of equals wins
+        place[kept[i]] = number[i];
+        mesh.position[number[i]] = {key[i][0], key[i][1], key[i][2]};
+        if (!raw.color.empty()) mesh.position_color[number[i]] = raw.color[kept[i]];
+    }
+    mesh.triangle = std::move(raw.triangle);
+    for (Corners& t : mesh.triangle)
+        for (int& i : t) i = place[i];
+
+    if (!raw.triangle_uv.empty()) {
+        mesh.uv = std::move(raw.uv);
+        mesh.triangle_uv = std::move(raw.triangle_uv);
+        if (raw.at_vertices) weld_uv(mesh);
+    }
+    mesh.triangle_polygon = renumbered(std::move(raw.polygon));
+    mesh.triangle_material = std::move(raw.triangle_material);
+    mesh.triangle_part = std::move(raw.triangle_part);
+    mesh.part_name = std::move(raw.part_name);
+    for (RawMaterial& m : raw.material) {
+        SurfaceMaterial material;
+        material.name = std::move(m.name);
+        material.color = m.color;
+        material.roughness = m.roughness;
+        material.metallic = m.metallic;
+        material.texture = std::move(m.texture);
+        if (!m.texture_bytes.empty())
+            material.embedded_texture =
+                std::make_shared<const std::string>(std::move(m.texture_bytes));
+        mesh.material.push_back(std::move(material));
+    }
+    if (!smooth_by_normals(raw, mesh)) smooth_by_crease_angle(mesh, kCreaseAngle);
+    return mesh;
+}
+
+}  // namespace swage

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/mesh_write.h"
+
+#include <fmt/compile.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <set>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "geometry/polygon.h"
+#include "geometry/text_scan.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Appends text to one large string; fmt writes straight into it.
+class Text {
+  public:
+    explicit Text(std::size_t expected) { bytes_.reserve(expected); }
+    void put(std::string_view text) { bytes_.append(text); }
+    void number(double value) {
+        fmt::format_to(std::back_inserter(bytes_), FMT_COMPILE(" {}"), value + 0.0);  // no "-0"
+    }
+    void number(char before, int value) {
+        bytes_.push_back(before);
+        const fmt::format_int digits(value);
+        bytes_.append(digits.data(), digits.size());
+    }
+    const std::string& bytes() const { return bytes_; }
+
+  private:
+    std::string bytes_;
+};
+
+// One word, for readers that end a name at a blank.
+std::string plain_name(const std::string& name, const char* otherwise) {
+    std::string plain = name.empty() ? otherwise : name;
+    for (char& c : plain)
+        if (static_cast<unsigned char>(c) <= ' ' || c == '#' || c == '\\' || c == '\x7f') c = '_';
+    return plain;
+}
+
+std::vector<std::string> unique_names(const std::vector<std::string>& wanted,
+                                      const char* otherwise) {
+    std::set<std::string> taken;
+    std::vector<std::string> names;
+    for (const std::string& name : wanted) {
+        const std::string plain = plain_name(name, otherwise);
+        std::string unique = plain;
+        for (int n = 2; !taken.insert(unique).second; ++n) unique = fmt::format("{}.{}", plain, n);
+        names.push_back(unique);
+    }
+    return names;
+}
+
+bool read_whole(const fs::path& file, std::string& bytes) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) return false;
+    std::ifstream in(file, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+    return !in.bad();
+}
+
+std::string image_ending(std::string_view bytes) {
+    if (bytes.starts_with("\x89PNG")) return ".png";
+    if (bytes.starts_with("\xff\xd8\xff")) return ".jpg";
+    if (bytes.starts_with("BM")) return ".bmp";
+    if (bytes.starts_with("GIF8")) return ".gif";
+    if (bytes.substr(0, 16).find("WEBP") != std::string_view::npos) return ".webp";
+    return ".img";
+}
+
+// Puts each material's image beside `file`; returns the names, empty for no image. An equal file
+// that stands there already is left alone, a different one of that name is not touched.
+std::vector<std::string> copy_textures(const fs::path& file,
+                                       const std::vector<SurfaceMaterial>& material) {
+    std::vector<std::string> names;
+    for (const SurfaceMaterial& m : material) {
+        std::string bytes, wanted;
+        if (m.embedded_texture != nullptr) {
+            bytes = *m.embedded_texture;
+            wanted = plain_name(m.name, "texture") + image_ending(bytes);
+            std::replace(wanted.begin(), wanted.end(), '/', '_');
+        } else if (!m.texture.empty()) {
+            if (!read_whole(m.texture, bytes))
+                fail(ExitCode::output, "{}: the texture {} cannot be read", file.string(),
+                     m.texture.string());
+            wanted = m.texture.filename().string();
+        } else {
+            names.emplace_back();
+            continue;
+        }
+        std::string name = wanted, there;
+        for (int n = 2; read_whole(file.parent_path() / name, there) && there != bytes; ++n)
+            name = fmt::format("{}_{}{}", fs::path(wanted).stem().string(), n,
+                               fs::path(wanted).extension().string());
+        if (there != bytes || !fs::exists(file.parent_path() / name))
+            write_file_whole(file.parent_path() / name, bytes);
+        names.push_back(name);
+    }
+    return names;
+}
+
+void write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& material,
+               const std::vector<std::string>& name) {
+    const std::vector<std::string> image = copy_textures(file, material);
+    std::string text;
+    for (std::size_t i = 0; i < material.size(); ++i) {
+        const SurfaceMaterial& m = material[i];
+        // Ns for programs without Pr: the Blinn exponent of that roughness.
+        const double r2 = std::clamp(m.roughness * m.roughness, 1e-3, 1.0);
+        text +=
+            fmt::format("newmtl {}\nKd {} {} {}\nNs {:.6g}\nPr {}\nPm {}\n", name[i], m.color.x(),
+                        m.color.y(), m.color.z(), 2 / r2 - 2, m.roughness, m.metallic);
+        if (!image[i].empty()) text += "map_Kd " + image[i] + "\n";
+        text += "\n";
+    }
+    write_file_whole(file, text);
+}
+
+void check_indices(const fs::path& file, const TriMesh& mesh) {
+    const auto check = [&](const std::vector<Corners>& ids, std::size_t count, int least) {
+        for (const Corners& c : ids)
+            for (const int i : c)
+                if (i < least || i >= static_cast<long long>(count))
+                    fail(ExitCode::output, "{}: the mesh to be written has bad indices",
+                         file.string());
+        if (!ids.empty() && ids.size() != mesh.triangle.size())
+            fail(ExitCode::output, "{}: the mesh to be written has uneven arrays", file.string());
+    };
+    check(mesh.triangle, mesh.position.size(), 0);
+    check(mesh.triangle_uv, mesh.uv.size(), -1);
+    check(mesh.triangle_smooth, static_cast<std::size_t>(mesh.smooth_group_count), 0);
+}
+
+double srgb(float linear) { return srgb_from_linear(std::clamp<double>(linear, 0, 1)); }
+
+// Per-vertex texture coordinates, when every place has just one; empty otherwise.
+std::vector<Vec2> uv_of_positions(const TriMesh& mesh) {
+    std::vector<int> id(mesh.position.size(), -1);
+    for (std::size_t t = 0; t < mesh.triangle_uv.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            int& known = id[mesh.triangle[t][k]];
+            const int here = mesh.triangle_uv[t][k];
+            if (here < 0 || (known >= 0 && mesh.uv[known] != mesh.uv[here])) return {};
+            known = here;
+        }
+    std::vector<Vec2> uv;
+    for (const int i : id) uv.push_back(i < 0 ? Vec2(Vec2::Zero()) : mesh.uv[i]);
+    return uv;
+}
+
+template <typename T>
+void pack(std::string& bytes, T value) {
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    if constexpr (std::endian::native == std::endian::big) std::reverse(raw, raw + sizeof(T));
+    bytes.append(raw, sizeof(T));
+}
+
+}  // namespace
+
+void write_obj(const fs::path& file, const TriMesh& mesh) {
+    check_indices(file, mesh);
+    const PolygonCorners polygons = rejoin_polygons(mesh);
+    const bool has_uv = !mesh.triangle_uv.empty(), has_normal = !mesh.triangle_smooth.empty();
+    Text text(64 * mesh.position.size() + 24 * mesh.uv.size() + 28 * mesh.smooth_group_count +
+              10 * polygons.corner.size() * (1 + has_uv + has_normal) + 4096);
+
+    std::vector<std::string> material_name;
+    if (!mesh.material.empty()) {
+        for (const SurfaceMaterial& m : mesh.material) material_name.push_back(m.name);
+        material_name = unique_names(material_name, "material");
+        const fs::path library = fs::path(file).replace_extension(".mtl");
+        write_mtl(library, mesh.material, material_name);
+        text.put("mtllib " + library.filename().string() + "\n");
+    }
+    for (std::size_t i = 0; i < mesh.position.size(); ++i) {
+        text.put("v");
+        for (int k = 0; k < 3; ++k) text.number(mesh.position[i][k]);
+        if (!mesh.position_color.empty())
+            for (int k = 0; k < 3; ++k)
+                text.number(std::round(srgb(mesh.position_color[i][k]) * 1e7) / 1e7);
+        text.put("\n");
+    }
+    for (const Vec2& uv : mesh.uv) {
+        text.put("vt");
+        text.number(uv.x());
+        text.number(uv.y());
+        text.put("\n");
+    }
+    if (has_normal)
+        for (const Vec3& n : smooth_normals(mesh, mesh.position)) {
+            text.put("vn");
+            for (int k = 0; k < 3; ++k) text.number(std::round(n[k] * 1e5) / 1e5);
+            text.put("\n");
+        }
+
+    const std::vector<std::string> part_name = unique_names(mesh.part_name, "part");
+    int part = -1, material = -1;
+    for (std::size_t p = 0; p < polygons.count(); ++p) {
+        const int t = polygons.corner[polygons.first[p]] / 3;
+        if (!mesh.triangle_part.empty() && mesh.triangle_part[t] != part) {
+            part = mesh.triangle_part[t];
+            text.put("o " + part_name.at(part) + "\n");
+        }
+        if (!mesh.triangle_material.empty() && mesh.triangle_material[t] != material) {
+            material = mesh.triangle_material[t];
+            text.put("usemtl " + material_name.at(material) + "\n");
+        }
+        text.put("f");
+        for (std::size_t i = polygons.first[p]; i < polygons.first[p + 1]; ++i) {
+            const int c = polygons.corner[i];
+            text.number(' ', mesh.triangle[c / 3][c % 3] + 1);
+            const int uv = has_uv ? mesh.triangle_uv[c / 3][c % 3] : -1;
+            if (uv >= 0) text.number('/', uv + 1);
+            if (has_normal) {
+                if (uv < 0) text.put("/");
+                text.number('/', mesh.triangle_smooth[c / 3][c % 3] + 1);
+            }
+        }
+        text.put("\n");
+    }
+    write_file_whole(file, text.bytes());
+}
+
+void write_ply(const fs::path& file, const TriMesh& mesh) {
+    check_indices(file, mesh);
+    const PolygonCorners polygons = rejoin_polygons(mesh);
+    std::size_t most_corners = 0;
+    for (std::size_t p = 0; p < polygons.count(); ++p)
+        most_corners = std::max(most_corners, polygons.first[p + 1] - polygons.first[p]);
+    const bool wide = 2 * most_corners > 255;  // lists count in a byte when they can
+    const std::vector<Vec2> uv = uv_of_positions(mesh);
+    bool corner_uv = uv.empty() && !mesh.triangle_uv.empty();
+    for (const Corners& c : mesh.triangle_uv)
+        corner_uv = corner_uv && std::min({c[0], c[1], c[2]}) >= 0;
+
+    std::string bytes = "ply\nformat binary_little_endian 1.0\n";
+    if (mesh.material.size() == 1) {
+        const std::string image = copy_textures(file, mesh.material)[0];
+        if (!image.empty()) bytes += "comment TextureFile " + image + "\n";
+    }
+    bytes +=
+        fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
+                    mesh.position.size());
+    if (!uv.empty()) bytes += "property double s\nproperty double t\n";
+    if (!mesh.position_color.empty())
+        bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    const char* count_type = wide ? "uint" : "uchar";
+    bytes += fmt::format("element face {}\nproperty list {} int vertex_indices\n", polygons.count(),
+                         count_type);
+    if (corner_uv) bytes += fmt::format("property list {} double texcoord\n", count_type);
+    bytes += "end_header\n";
+
+    bytes.reserve(bytes.size() + 43 * mesh.position.size() + 8 * polygons.count() +
+                  (corner_uv ? 20 : 4) * polygons.corner.size());
+    for (std::size_t i = 0; i < mesh.position.size(); ++i) {
+        for (int k = 0; k < 3; ++k) pack(bytes, mesh.position[i][k]);
+        if (!uv.empty()) {
+            pack(bytes, uv[i].x());
+            pack(bytes, uv[i].y());
+        }
+        if (!mesh.position_color.empty())
+            for (int k = 0; k < 3; ++k)
+                pack(bytes,
+                     static_cast<std::uint8_t>(std::lround(255 * srgb(mesh.position_color[i][k]))));
+    }
+    const auto put_count = [&](std::size_t count) {
+        if (wide)
+            pack(bytes, static_cast<std::uint32_t>(count));
+        else
+            pack(bytes, static_cast<std::uint8_t>(count));
+    };
+    for (std::size_t p = 0; p < polygons.count(); ++p) {
+        const std::size_t begin = polygons.first[p], end = polygons.first[p + 1];
+        put_count(end - begin);
+        for (std::size_t i = begin; i < end; ++i)
+            pack(bytes, static_cast<std::int32_t>(
+                            mesh.triangle[polygons.corner[i] / 3][polygons.corner[i] % 3]));
+        if (!corner_uv) continue;
+        put_count(2 * (end - begin));
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec2& t =
+                mesh.uv[mesh.triangle_uv[polygons.corner[i] / 3][polygons.corner[i] % 3]];
+            pack(bytes, t.x());
+            pack(bytes, t.y());
+        }
+    }
+    write_file_whole(file, bytes);
+}
+
+}  // namespace swage

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Meshes into files that other programs read. Files appear only when whole (base/atomic_file.h);
+// all functions throw Error(output).
+#pragma once
+
+#include <filesystem>
+
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+// Wavefront OBJ with everything the mesh holds: polygons, parts, materials, texture coordinates,
+// normals by smooth group, colours as "v x y z r g b" (sRGB). Numbers are the shortest that read
+// back to the same double. With materials, writes the .mtl of the same name and copies of
+// the textures beside it, so that the folder can be moved.
+void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
+
+// Binary little-endian PLY in double precision: polygons, colours (8 bit sRGB), texture
+// coordinates at vertices (s, t) when no seam forbids it, else at face corners (texcoord).
+void write_ply(const std::filesystem::path& file, const TriMesh& mesh);
+
+}  // namespace swage

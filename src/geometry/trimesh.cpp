@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sources: corner angles as normal weights, G. Thuermer and C. Wuethrich, "Computing vertex
+// normals from polygonal facets", 1998.
+#include "geometry/trimesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 8192;  // triangles
+
+std::size_t chunk_count(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+
+// Twice the area, along the normal.
+Vec3 area_vector(const std::vector<Vec3>& position, const Corners& t) {
+    return (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
+}
+
+template <typename Term>
+double sum_over_triangles(const TriMesh& mesh, const Term& term) {
+    return ordered_sum(chunk_count(mesh.triangle.size()), [&](std::size_t chunk) {
+        const std::size_t end = std::min(mesh.triangle.size(), (chunk + 1) * kChunk);
+        double sum = 0;
+        for (std::size_t t = chunk * kChunk; t < end; ++t) sum += term(mesh.triangle[t]);
+        return sum;
+    });
+}
+
+}  // namespace
+
+double signed_volume(const TriMesh& mesh) {
+    if (mesh.triangle.empty()) return 0;
+    const Vec3 center = box_of(mesh.position).center();
+    return sum_over_triangles(mesh, [&](const Corners& t) {
+        const Vec3 a = mesh.position[t[0]] - center;
+        const Vec3 b = mesh.position[t[1]] - center;
+        const Vec3 c = mesh.position[t[2]] - center;
+        return a.dot(b.cross(c)) / 6;
+    });
+}
+
+double surface_area(const TriMesh& mesh) {
+    return sum_over_triangles(
+        mesh, [&](const Corners& t) { return 0.5 * area_vector(mesh.position, t).norm(); });
+}
+
+std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangle, std::size_t position_count) {
+    // Counting sort by the lower position, then a short sort within each.
+    std::vector<std::size_t> first(position_count + 1, 0);
+    for (const Corners& t : triangle)
+        for (int side = 0; side < 3; ++side) {
+            const int a = t[side], b = t[(side + 1) % 3];
+            if (a != b) ++first[std::min(a, b) + 1];
+        }
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<EdgeUse> uses(first.back());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (std::size_t t = 0; t < triangle.size(); ++t)
+        for (int side = 0; side < 3; ++side) {
+            const int a = triangle[t][side], b = triangle[t][(side + 1) % 3];
+            if (a == b) continue;
+            uses[next[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), static_cast<int>(t),
+                                            side, a < b};
+        }
+    for (std::size_t i = 0; i < position_count; ++i)
+        std::sort(uses.begin() + first[i], uses.begin() + first[i + 1],
+                  [](const EdgeUse& x, const EdgeUse& y) {
+                      if (x.high != y.high) return x.high < y.high;
+                      return x.triangle != y.triangle ? x.triangle < y.triangle : x.side < y.side;
+                  });
+    return uses;
+}
+
+Components surface_components(const TriMesh& mesh) {
+    DisjointSets sets(mesh.position.size());
+    for (const Corners& t : mesh.triangle) {
+        sets.unite(t[0], t[1]);
+        sets.unite(t[0], t[2]);
+    }
+    // Numbered by their first triangle.
+    Components result;
+    std::vector<int> number(mesh.position.size(), -1);
+    result.triangle_component.reserve(mesh.triangle.size());
+    for (const Corners& t : mesh.triangle) {
+        int& n = number[sets.root(t[0])];
+        if (n < 0) n = result.count++;
+        result.triangle_component.push_back(n);
+    }
+    return result;
+}
+
+void smooth_by_crease_angle(TriMesh& mesh, double crease_angle) {
+    const std::size_t count = mesh.triangle.size();
+    std::vector<Vec3> normal(count);
+    for (std::size_t t = 0; t < count; ++t)
+        normal[t] = area_vector(mesh.position, mesh.triangle[t]).stableNormalized();
+    const double least_cosine = std::cos(crease_angle);
+
+    // Corners are joined across an edge when its two faces run along it in opposite directions
+    // (they agree on the outside) and meet at less than the angle.
+    DisjointSets corners(3 * count);
+    const auto join = [&](const EdgeUse& a, const EdgeUse& b) {
+        if (a.forward == b.forward || normal[a.triangle].dot(normal[b.triangle]) < least_cosine)
+            return;
+        corners.unite(3 * a.triangle + a.side, 3 * b.triangle + (b.side + 1) % 3);
+        corners.unite(3 * a.triangle + (a.side + 1) % 3, 3 * b.triangle + b.side);
+    };
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        // All pairs; where many faces share an edge, each with its next, to stay linear.
+        const std::size_t reach = uses.size() <= 8 ? uses.size() : 2;
+        for (std::size_t i = 0; i < uses.size(); ++i)
+            for (std::size_t j = i + 1; j < std::min(uses.size(), i + reach); ++j)
+                join(uses[i], uses[j]);
+    });
+    std::vector<int> group;
+    mesh.smooth_group_count = corners.number_sets(group);
+    mesh.triangle_smooth.resize(count);
+    for (std::size_t t = 0; t < count; ++t)
+        mesh.triangle_smooth[t] = {group[3 * t], group[3 * t + 1], group[3 * t + 2]};
+}
+
+std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& position) {
+    const std::size_t count = mesh.triangle.size();
+    std::vector<std::array<Vec3, 3>> share(count);
+    parallel_for(chunk_count(count), [&](std::size_t chunk) {
+        const std::size_t end = std::min(count, (chunk + 1) * kChunk);
+        for (std::size_t t = chunk * kChunk; t < end; ++t) {
+            const Corners& c = mesh.triangle[t];
+            const std::array<Vec3, 3> p = {position[c[0]], position[c[1]], position[c[2]]};
+            const Vec3 cross = (p[1] - p[0]).cross(p[2] - p[0]);
+            const double twice_area = cross.norm();
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 out = p[(k + 1) % 3] - p[k];
+                const Vec3 in = p[(k + 2) % 3] - p[k];
+                share[t][k] = twice_area > 0
+                                  ? Vec3(cross * (std::atan2(twice_area, out.dot(in)) / twice_area))
+                                  : Vec3(Vec3::Zero());
+            }
+        }
+    });
+    std::vector<Vec3> normal(mesh.smooth_group_count, Vec3::Zero());
+    for (std::size_t t = 0; t < count; ++t)
+        for (int k = 0; k < 3; ++k) normal[mesh.triangle_smooth[t][k]] += share[t][k];
+    for (Vec3& n : normal) {
+        const double length = n.norm();
+        n = length > 0 ? Vec3(n / length) : Vec3(Vec3::UnitZ());  // only degenerate faces: any
+    }
+    return normal;
+}
+
+}  // namespace swage

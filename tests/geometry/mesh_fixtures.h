@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small meshes and a folder to keep their files in.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "geometry/trimesh.h"
+
+namespace swage::fixtures {
+
+class Folder {
+  public:
+    Folder() {
+        static int count = 0;
+        path_ = std::filesystem::temp_directory_path() /
+                ("swage_mesh_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+        std::filesystem::create_directories(path_);
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(path_ / name, std::ios::binary) << bytes;
+        return path_ / name;
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+inline std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Unit cube of quads, outward, with a texture square on each face.
+inline std::string cube_obj() {
+    return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+           "f 1/1 4/2 3/3 2/4\nf 5/1 6/2 7/3 8/4\nf 1/1 2/2 6/3 5/4\n"
+           "f 2/1 3/2 7/3 6/4\nf 3/1 4/2 8/3 7/4\nf 4/1 1/2 5/3 8/4\n";
+}
+
+// A box of triangles, outward; `inward` turns it.
+inline TriMesh box_mesh(const Vec3& low, const Vec3& high, bool inward = false) {
+    TriMesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.position.emplace_back((i & 1) ? high.x() : low.x(), (i & 2) ? high.y() : low.y(),
+                                   (i & 4) ? high.z() : low.z());
+    mesh.triangle = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    if (inward)
+        for (Corners& t : mesh.triangle) std::swap(t[0], t[1]);
+    return mesh;
+}
+
+inline void append(TriMesh& mesh, const TriMesh& other) {
+    const int base = static_cast<int>(mesh.position.size());
+    mesh.position.insert(mesh.position.end(), other.position.begin(), other.position.end());
+    for (const Corners& t : other.triangle)
+        mesh.triangle.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
+
+// A sphere of about 2 * across^2 triangles with texture coordinates and one material.
+inline TriMesh ball_mesh(int across, double radius) {
+    TriMesh mesh;
+    const int rings = across, around = 2 * across;
+    mesh.position.push_back({0, 0, -radius});
+    for (int r = 1; r < rings; ++r)
+        for (int a = 0; a < around; ++a) {
+            const double latitude = kPi * (static_cast<double>(r) / rings - 0.5);
+            const double longitude = 2 * kPi * a / around;
+            mesh.position.push_back(radius * Vec3(std::cos(latitude) * std::cos(longitude),
+                                                  std::cos(latitude) * std::sin(longitude),
+                                                  std::sin(latitude)));
+        }
+    mesh.position.push_back({0, 0, radius});
+    const int last = static_cast<int>(mesh.position.size()) - 1;
+    const auto at = [&](int r, int a) { return 1 + (r - 1) * around + a % around; };
+    for (int a = 0; a < around; ++a) {
+        mesh.triangle.push_back({0, at(1, a + 1), at(1, a)});
+        mesh.triangle.push_back({last, at(rings - 1, a), at(rings - 1, a + 1)});
+        for (int r = 1; r + 1 < rings; ++r) {
+            mesh.triangle.push_back({at(r, a), at(r, a + 1), at(r + 1, a + 1)});
+            mesh.triangle.push_back({at(r, a), at(r + 1, a + 1), at(r + 1, a)});
+        }
+    }
+    for (const Vec3& p : mesh.position) mesh.uv.emplace_back(p.x() / radius, p.z() / radius);
+    mesh.triangle_uv = mesh.triangle;
+    mesh.material.push_back({});
+    mesh.material[0].name = "skin";
+    mesh.triangle_material.assign(mesh.triangle.size(), 0);
+    return mesh;
+}
+
+}  // namespace swage::fixtures

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a broken or hostile file costs: one error, soon.
+#include <sys/stat.h>
+
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "geometry/mesh_check.h"
+#include "geometry/mesh_read.h"
+#include "geometry/mesh_write.h"
+#include "tests/catch.h"
+#include "tests/geometry/mesh_fixtures.h"
+
+using namespace swage;
+using fixtures::Folder;
+
+namespace {
+
+// The sentence that refuses the file; empty when it was read.
+std::string refusal(const std::filesystem::path& file, const ReadLimits& limits = {}) {
+    try {
+        std::vector<std::string> finding;
+        read_mesh(file, limits, &finding);
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::mesh);
+        const std::string text = error.what();
+        CHECK(text.find('\n') == std::string::npos);
+        CHECK(text.starts_with(file.string()));
+        return text;
+    }
+    return {};
+}
+
+bool says(const std::string& text, const std::string& what) {
+    CAPTURE(text, what);
+    const bool found = text.find(what) != std::string::npos;
+    CHECK(found);
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("what is no mesh file is refused at once") {
+    const Folder folder;
+    const auto started = std::chrono::steady_clock::now();
+    says(refusal(folder / "missing.obj"), "No such file");
+    std::filesystem::create_directory(folder / "folder.obj");
+    says(refusal(folder / "folder.obj"), "a directory");
+    REQUIRE(::mkfifo((folder / "pipe.obj").c_str(), 0600) == 0);
+    says(refusal(folder / "pipe.obj"), "a pipe");
+    std::filesystem::create_symlink("/dev/zero", folder / "zero.obj");
+    says(refusal(folder / "zero.obj"), "a device");
+    says(refusal(folder.write("empty.obj", "")), "empty");
+    says(refusal(folder.write("cube.fbx", "x")), ".fbx");
+    says(refusal(folder.write("cube", fixtures::cube_obj())), "no kind of mesh");
+    ReadLimits small;
+    small.file_bytes = 10;
+    says(refusal(folder.write("large.obj", fixtures::cube_obj()), small), "limit");
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
+    CHECK(took.count() < 2);
+}
+
+TEST_CASE("a broken OBJ is refused with its line") {
+    const Folder folder;
+    const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    says(refusal(folder.write("a.obj", v + "f 1 2 4\n")), "line 4: vertex 4 is used");
+    says(refusal(folder.write("b.obj", v + "f 1/1 2/1 3/1\n")), "texture coordinate 1");
+    says(refusal(folder.write("c.obj", v + "f 0 1 2\n")), "line 4: '0' is not an index");
+    says(refusal(folder.write("d.obj", v + "f -4 -1 -2\n")), "line 4");
+    says(refusal(folder.write("e.obj", "v 1,0 0 0\n")), "write decimals with a point");
+    says(refusal(folder.write("f.obj", "v nan 0 0\n" + v + "f 1 2 3\n")), "line 1");
+    says(refusal(folder.write("g.obj", "v 1e999 0 0\n" + v + "f 1 2 3\n")), "not finite");
+    says(refusal(folder.write("h.obj", "v -1.#IND 0 0\n" + v + "f 1 2 3\n")), "not a number");
+    says(refusal(folder.write("i.obj", v + std::string(1, '\0') + "f 1 2 3\n")), "zero");
+    says(refusal(folder.write("j.obj", v)), "no faces");
+    says(refusal(folder.write("k.obj", v + "f 1 2\n")), "no triangles");
+    says(refusal(folder.write("l.obj", "v 1e30 0 0\n" + v + "f 1 2 3\n")), "beyond all sense");
+    says(refusal(folder.write("m.obj", "v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n")), "large");
+    says(refusal(folder.write("n.obj", v + "f 1 2 99999999999999999999\n")), "not an index");
+    // A good mesh whose material library is a folder is still a good mesh.
+    std::filesystem::create_directory(folder / "dir.mtl");
+    CHECK(refusal(folder.write("o.obj", "mtllib dir.mtl\n" + v + "f 1 2 3\n")).empty());
+}
+
+TEST_CASE("a broken PLY is refused with the reason") {
+    const Folder folder;
+    const std::string vertex = "property float x\nproperty float y\nproperty float z\n";
+    const std::string face = "property list uchar int vertex_indices\n";
+    const std::string start = "ply\nformat ascii 1.0\n";
+    const auto file = [&](const char* name, const std::string& text) {
+        return refusal(folder.write(name, text));
+    };
+    says(file("a.ply", std::string("ply\nformat ascii 1.0\nelement vertex 3\n") + vertex),
+         "end_header");
+    says(file("b.ply", start + "element vertex 3\n" + vertex + "element face 1\n" + face +
+                           "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"),
+         "vertex 7 of 3 does not exist");
+    says(file("c.ply", start + "element vertex 3\n" + vertex + "element face 1\n" + face +
+                           "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"),
+         "ends early");
+    says(file("d.ply", start + "element vertex 2000000000\n" + vertex + "end_header\n0 0 0\n"),
+         "too short");
+    says(file("e.ply", start + "element vertex 3\n" + vertex + "end_header\n0 0 0\n1 0 0\n0 1 0\n"),
+         "no faces");
+    says(file("f.ply", start + "element vertex 3\n" + vertex + "element face 1\n" + face +
+                           "end_header\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n"),
+         "not finite");
+    says(file("g.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 0\n" + vertex +
+                           "element face 1\nproperty list uint int vertex_indices\nend_header\n" +
+                           "\xff\xff\xff\x7f"),
+         "does not fit");
+}
+
+TEST_CASE("lying glTF, GLB, STL, DAE, 3DS and 3MF files are refused") {
+    const Folder folder;
+    CHECK(!refusal(folder.write("a.glb", "glTF\x02")).empty());
+    CHECK(!refusal(folder.write("b.gltf", "{\"asset\":{\"version\":\"2.0\"}}")).empty());
+    CHECK(!refusal(folder.write("c.gltf", "{\"asset\"")).empty());
+    says(
+        refusal(folder.write("d.stl",
+                             "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                             "vertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n")),
+        "4 vertices");
+    CHECK(!refusal(folder.write("e.stl", std::string(80, ' ') + "\xff\xff\xff\x7f")).empty());
+    CHECK(!refusal(folder.write("f.dae", "<COLLADA>")).empty());
+    CHECK(!refusal(folder.write("g.3ds", "MM")).empty());
+    CHECK(!refusal(folder.write("h.3mf", "PK\x03\x04")).empty());
+    CHECK(!refusal(folder.write("i.stl", fixtures::cube_obj())).empty());
+}
+
+TEST_CASE("a reader out of memory or time is stopped, and said so") {
+    const Folder folder;
+    std::string text;
+    for (int i = 0; i < 400000; ++i) text += "v 0.123 0.234 0.345\n";
+    text += "f 1 2 3\n";
+    const auto file = folder.write("large.obj", text);
+    ReadLimits limits;
+    limits.memory_bytes = 8 << 20;
+    says(refusal(file, limits), "GiB");
+}
+
+TEST_CASE("random damage to good files never harms the reader's parent") {
+    const Folder folder;
+    TriMesh ball = fixtures::ball_mesh(6, 0.5);
+    smooth_by_crease_angle(ball, 0.7);
+    write_obj(folder / "ball.obj", ball);
+    write_ply(folder / "ball.ply", ball);
+    std::string stl(80, ' ');
+    const auto put = [&](auto value) { stl.append(reinterpret_cast<char*>(&value), sizeof value); };
+    put(static_cast<std::uint32_t>(ball.triangle.size()));
+    for (const Corners& t : ball.triangle) {
+        for (int k = 0; k < 3; ++k) put(0.f);
+        for (const int i : t)
+            for (int k = 0; k < 3; ++k) put(static_cast<float>(ball.position[i][k]));
+        put(static_cast<std::uint16_t>(0));
+    }
+    folder.write("ball.stl", stl);
+    std::mt19937 random(20240229);
+    ReadLimits limits;
+    limits.cpu_seconds = 5;
+    limits.wall_seconds = 10;
+    int read = 0, refused = 0;
+    for (const char* name : {"ball.obj", "ball.ply", "ball.stl"}) {
+        const std::string good = fixtures::bytes_of(folder / name);
+        for (int round = 0; round < 40; ++round) {
+            std::string bad = good;
+            // Flip a few bytes, mostly near the start where the structure is; sometimes cut.
+            for (unsigned i = 0; i < 1 + random() % 8; ++i) {
+                const std::size_t reach =
+                    random() % 2 ? bad.size() : std::min<std::size_t>(400, bad.size());
+                bad[random() % reach] = static_cast<char>(random());
+            }
+            if (random() % 4 == 0) bad.resize(random() % bad.size() + 1);
+            const auto file = folder.write(std::string("bad_") + name, bad);
+            try {
+                std::vector<std::string> finding;
+                const TriMesh mesh = read_mesh(file, limits, &finding);
+                for (const Vec3& p : mesh.position) REQUIRE(p.allFinite());
+                for (const Corners& t : mesh.triangle)
+                    for (const int i : t)
+                        REQUIRE((i >= 0 && i < static_cast<int>(mesh.position.size())));
+                check_mesh(mesh);
+                ++read;
+            } catch (const Error&) {
+                ++refused;
+            }
+        }
+    }
+    CHECK(read + refused == 120);
+    CHECK(refused > 20);
+}
+
+TEST_CASE("meshes are read from several threads at once") {
+    const Folder folder;
+    const auto file = folder.write("cube.obj", fixtures::cube_obj());
+    std::vector<std::thread> threads;
+    std::vector<double> volume(8, 0);
+    for (int i = 0; i < 8; ++i)
+        threads.emplace_back([&, i] {
+            std::vector<std::string> finding;
+            for (int k = 0; k < 5; ++k) volume[i] = signed_volume(read_mesh(file, {}, &finding));
+        });
+    for (std::thread& t : threads) t.join();
+    for (const double v : volume) CHECK(v == Approx(1));
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <chrono>
+
+#include "base/error.h"
+#include "geometry/mesh_check.h"
+#include "geometry/mesh_read.h"
+#include "geometry/mesh_write.h"
+#include "tests/catch.h"
+#include "tests/geometry/mesh_fixtures.h"
+
+using namespace swage;
+using fixtures::Folder;
+
+namespace {
+
+TriMesh read_quietly(const std::filesystem::path& file) {
+    std::vector<std::string> finding;
+    return read_mesh(file, {}, &finding);
+}
+
+void check_equal(const TriMesh& a, const TriMesh& b) {
+    CHECK(a.position == b.position);
+    CHECK(a.triangle == b.triangle);
+    CHECK(a.uv == b.uv);
+    CHECK(a.triangle_uv == b.triangle_uv);
+    CHECK(a.triangle_polygon == b.triangle_polygon);
+    CHECK(a.triangle_material == b.triangle_material);
+    CHECK(a.triangle_part == b.triangle_part);
+    CHECK(a.triangle_smooth == b.triangle_smooth);
+    CHECK(a.part_name == b.part_name);
+}
+
+}  // namespace
+
+TEST_CASE("an OBJ read, written and read again is the same mesh, bit for bit") {
+    const Folder folder;
+    folder.write("p.mtl", "newmtl a\nKd 0.1 0.2 0.3\nPr 0.4\nPm 0.5\nmap_Kd i.png\nnewmtl b\n");
+    folder.write("i.png", "image");
+    // A prism of a concave hexagon: quads, two hexagons, two parts, two materials, odd numbers.
+    std::string text = "mtllib p.mtl\n";
+    const double x[6] = {0, 2, 2.1, 1, 1.0 / 3, 0}, y[6] = {0, 0, 3, 1, 3, 2};
+    for (int z = 0; z < 2; ++z)
+        for (int i = 0; i < 6; ++i) text += fmt::format("v {} {} {}\n", x[i], y[i], z * 0.7);
+    text += "vt 0 0\nvt 1 0\nvt 1 0.333333\nvt 0 1\n";
+    text += "o side\nusemtl a\n";
+    for (int i = 0; i < 6; ++i)
+        text +=
+            fmt::format("f {}/1 {}/2 {}/3 {}/4\n", i + 1, (i + 1) % 6 + 1, (i + 1) % 6 + 7, i + 7);
+    text += "o ends\nusemtl b\nf 6 5 4 3 2 1\nf 7 8 9 10 11 12\n";
+    const TriMesh first = read_quietly(folder.write("p.obj", text));
+    REQUIRE(check_mesh(first).bounds_a_volume());
+    CHECK(check_mesh(first).polygons == 8);
+    std::filesystem::create_directory(folder / "out");
+    write_obj(folder / "out/p.obj", first);
+    const TriMesh second = read_quietly(folder / "out/p.obj");
+    check_equal(first, second);
+    REQUIRE(second.material.size() == 2);
+    CHECK(second.material[0].name == "a");
+    CHECK(second.material[0].color == Vec3(0.1, 0.2, 0.3));
+    CHECK(second.material[0].roughness == 0.4);
+    CHECK(second.material[0].metallic == 0.5);
+    CHECK(second.material[0].texture == std::filesystem::weakly_canonical(folder / "out/i.png"));
+    const std::string bytes = fixtures::bytes_of(folder / "out/p.obj");
+    write_obj(folder / "out/q.obj", second);
+    CHECK(fixtures::bytes_of(folder / "out/q.obj").substr(13) == bytes.substr(13));  // mtllib aside
+}
+
+TEST_CASE("quads and large polygons come out of the writer whole") {
+    const Folder folder;
+    write_obj(folder / "cube.obj", read_quietly(folder.write("in.obj", fixtures::cube_obj())));
+    const std::string text = fixtures::bytes_of(folder / "cube.obj");
+    CHECK(text.find("\nf 1/1/1 4/2/2 3/3/3 2/4/4\n") != std::string::npos);
+    std::size_t faces = 0;
+    for (std::size_t at = 0; (at = text.find("\nf ", at)) != std::string::npos; ++at) ++faces;
+    CHECK(faces == 6);
+}
+
+TEST_CASE("PLY keeps double precision, polygons, colours and texture seams") {
+    const Folder folder;
+    TriMesh cube = read_quietly(folder.write("in.obj", fixtures::cube_obj()));
+    for (Vec3& p : cube.position) p = p / 3 + Vec3(1e-7, 0, 2.0 / 7);
+    for (int i = 0; i < 8; ++i) cube.position_color.push_back({0.25f, 1.0f, 0.125f * i});
+    write_ply(folder / "cube.ply", cube);
+    const TriMesh again = read_quietly(folder / "cube.ply");
+    CHECK(again.position == cube.position);
+    CHECK(again.triangle_polygon == cube.triangle_polygon);
+    for (int i = 0; i < 8; ++i)
+        CHECK((again.position_color[i] - cube.position_color[i]).norm() < 0.006);
+    for (std::size_t t = 0; t < cube.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            CHECK(again.uv[again.triangle_uv[t][k]] == cube.uv[cube.triangle_uv[t][k]]);
+
+    TriMesh ball = fixtures::ball_mesh(4, 1);  // no seam: coordinates at the vertices
+    write_ply(folder / "ball.ply", ball);
+    CHECK(fixtures::bytes_of(folder / "ball.ply").find("property double s") != std::string::npos);
+    CHECK(read_quietly(folder / "ball.ply").triangle == ball.triangle);
+}
+
+TEST_CASE("vertex colours survive an OBJ") {
+    const Folder folder;
+    TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
+    for (int i = 0; i < 8; ++i) box.position_color.push_back({0.1f * i, 0.5f, 1 - 0.1f * i});
+    write_obj(folder / "box.obj", box);
+    const TriMesh again = read_quietly(folder / "box.obj");
+    REQUIRE(again.position_color.size() == 8);
+    for (int i = 0; i < 8; ++i)
+        CHECK((again.position_color[i] - box.position_color[i]).norm() < 1e-5);
+}
+
+TEST_CASE("exports beside each other share equal textures and never overwrite others") {
+    const Folder folder;
+    TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
+    box.material.push_back({});
+    box.triangle_material.assign(box.triangle.size(), 0);
+    std::filesystem::create_directories(folder / "a");
+    std::filesystem::create_directories(folder / "out");
+    folder.write("a/t.png", "one");
+    folder.write("out/t.png", "another");
+    box.material[0].texture = folder / "a/t.png";
+    write_obj(folder / "out/f1.obj", box);
+    write_obj(folder / "out/f2.obj", box);
+    CHECK(fixtures::bytes_of(folder / "out/t.png") == "another");
+    CHECK(fixtures::bytes_of(folder / "out/t_2.png") == "one");
+    CHECK(!std::filesystem::exists(folder / "out/t_3.png"));
+    CHECK(read_quietly(folder / "out/f2.obj").material[0].texture.filename() == "t_2.png");
+}
+
+TEST_CASE("a mesh with bad indices or a folder that is not there is an output error") {
+    const Folder folder;
+    TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
+    const auto code = [&](const std::filesystem::path& file) {
+        try {
+            write_obj(file, box);
+        } catch (const Error& error) {
+            return error.code();
+        }
+        return ExitCode::done;
+    };
+    CHECK(code(folder / "no/where.obj") == ExitCode::output);
+    box.triangle[0][0] = 8;
+    CHECK(code(folder / "bad.obj") == ExitCode::output);
+    CHECK(!std::filesystem::exists(folder / "bad.obj"));
+}
+
+TEST_CASE("a hundred thousand triangles are written in well under a second") {
+    const Folder folder;
+    TriMesh ball = fixtures::ball_mesh(160, 1);
+    smooth_by_crease_angle(ball, 0.7);
+    const auto started = std::chrono::steady_clock::now();
+    write_obj(folder / "ball.obj", ball);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
+    const auto read_started = std::chrono::steady_clock::now();
+    const TriMesh again = read_quietly(folder / "ball.obj");
+    const std::chrono::duration<double> read_took = std::chrono::steady_clock::now() - read_started;
+    UNSCOPED_INFO(ball.triangle.size() << " triangles: written in " << took.count()
+                                       << " s, read in " << read_took.count() << " s");
+    CHECK(again.triangle == ball.triangle);
+    CHECK(took.count() < 5);  // the bench holds the real bar
+}
