@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/carrier.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swage {
+
+namespace {
+
+// Places this far beyond a cell, in cells, still count as inside: the lattice's steps may differ
+// from its spacing by the noise of single precision.
+constexpr double kSlack = 1e-3;
+
+struct Link {
+    int low, high, direction;
+};
+
+// The 12 edges and 12 face diagonals within a cell.
+constexpr std::array<Link, 24> make_links() {
+    std::array<Link, 24> links{};
+    int count = 0;
+    for (int low = 0; low < 8; ++low) {
+        for (int d = 0; d < kForwardCount; ++d) {
+            int high = 0;
+            bool inside = true;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int at = (low >> axis & 1) + kForward[d][axis];
+                inside = inside && at >= 0 && at <= 1;
+                high |= (at & 1) << axis;
+            }
+            if (inside) links[count++] = {low, high, d};
+        }
+    }
+    return links;
+}
+constexpr std::array<Link, 24> kLinks = make_links();
+
+// Squared distance from a place (in cells from the origin) to a run of cells.
+double distance2(const CellRun& run, int first, int count, const Vec3& at) {
+    const Vec3 low(run.i + first, run.j, run.k);
+    const Vec3 high(run.i + first + count, run.j + 1, run.k + 1);
+    return (at - at.cwiseMax(low).cwiseMin(high)).squaredNorm();
+}
+
+}  // namespace
+
+CellBox cell_box(const Aggregate& matter, CellId cell) {
+    const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
+    const Vec3 low = matter.particle_reference.at(corner[0]);
+    return {low, matter.particle_reference.at(corner[7]) - low};
+}
+
+CellId carrying_cell(const Aggregate& matter, const Vec3& place) {
+    const Lattice& lattice = matter.lattice;
+    const Vec3 at = (place - lattice.origin) / lattice.spacing;
+    const Vec3 floor = at.array().floor().max(-1e9).min(1e9);
+    const Vec3i site = floor.cast<int>();
+    const CellId home = lattice.cell_at(site.x(), site.y(), site.z());
+    if (home >= 0) return home;
+
+    CellId nearest = -1;
+    double least = std::numeric_limits<double>::infinity();
+    // On a tie the lowest cell, so that the choice does not hang on the order of the search.
+    const auto offer = [&](CellId cell, double d) {
+        if (d < least || (d == least && cell < nearest)) least = d, nearest = cell;
+    };
+    for (int k = -1; k <= 1; ++k) {
+        for (int j = -1; j <= 1; ++j) {
+            for (int i = -1; i <= 1; ++i) {
+                const Vec3i next = site + Vec3i(i, j, k);
+                const CellId cell = lattice.cell_at(next.x(), next.y(), next.z());
+                if (cell < 0) continue;
+                const Vec3 low = next.cast<double>(), high = low + Vec3::Ones();
+                offer(cell, (at - at.cwiseMax(low).cwiseMin(high)).squaredNorm());
+            }
+        }
+    }
+    if (nearest >= 0 && least <= 1) return nearest;
+    for (const CellRun& run : lattice.cell_run) {
+        if (distance2(run, 0, run.count, at) > least) continue;
+        const int n = std::clamp(site.x() - run.i, 0, run.count - 1);
+        offer(run.first + n, distance2(run, n, 1, at));
+    }
+    return nearest;
+}
+
+Carrier carrier_in(const CellBox& box, const Vec3& place) {
+    Carrier carrier;
+    const Vec3 way = place - box.low;
+    carrier.local = way.cwiseQuotient(box.size).cwiseMax(-kSlack).cwiseMin(1 + kSlack);
+    carrier.arm = way - 0.5 * carrier.local.cwiseProduct(box.size);
+    return carrier;
+}
+
+std::array<double, 8> corner_weights(const Vec3& local) {
+    const double x1 = local[0], y1 = local[1], z1 = local[2];
+    const double x0 = 1 - x1, y0 = 1 - y1, z0 = 1 - z1;
+    const double a = y0 * z0, b = y1 * z0, c = y0 * z1, d = y1 * z1;
+    return {x0 * a, x1 * a, x0 * b, x1 * b, x0 * c, x1 * c, x0 * d, x1 * d};
+}
+
+bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
+    float least = 1;
+    for (const Link& link : kLinks) {
+        least = std::min(least, matter.connection[link.direction].weight[corner[link.low]]);
+    }
+    if (least > 0) return true;
+    return corner_groups(matter, corner)[0] == kAllCorners;
+}
+
+CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
+    CornerGroups group;
+    for (int c = 0; c < 8; ++c) group[c] = static_cast<CornerMask>(1 << c);
+    for (const Link& link : kLinks) {
+        if (matter.connection[link.direction].weight[corner[link.low]] <= 0) continue;
+        const CornerMask joined = group[link.low] | group[link.high];
+        for (int c = 0; c < 8; ++c) {
+            if (joined >> c & 1) group[c] = joined;
+        }
+    }
+    return group;
+}
+
+CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const Vec3& local) {
+    if (groups[0] == kAllCorners) return kAllCorners;
+    const std::array<double, 8> weight = corner_weights(local);
+    int heaviest = -1;
+    for (int c = 0; c < 8; ++c) {
+        if (side >> c & 1 && (heaviest < 0 || weight[c] > weight[heaviest])) heaviest = c;
+    }
+    return heaviest < 0 ? kAllCorners : groups[heaviest] & side;
+}
+
+CellFrames half_frames(const CellFrames& cell) {
+    CellFrames half = cell;
+    for (int c = 0; c < 8; ++c) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (c >> axis & 1) {
+                half.corner.col(c).tail<3>() -=
+                    0.5 * cell.size[axis] * cell.corner.col(c).segment<3>(3 * axis);
+            }
+        }
+    }
+    return half;
+}
+
+Vec3 part_displacement(const CellFrames& cell, const Carrier& carrier, CornerMask followed) {
+    const std::array<double, 8> weight = corner_weights(carrier.local);
+    const Vec3 way = carrier.arm + 0.5 * carrier.local.cwiseProduct(cell.size);
+    Vec3 sum = Vec3::Zero();
+    double total = 0;
+    for (int c = 0; c < 8; ++c) {
+        if (!(followed >> c & 1)) continue;
+        // Not zero anywhere: a place on the far face of the cell still has someone to follow.
+        const double share = std::max(weight[c], 0.0) + 1e-3;
+        const auto frame = cell.corner.col(c);
+        Vec3 moved = frame.tail<3>();
+        for (int axis = 0; axis < 3; ++axis) {
+            const double from = c >> axis & 1 ? cell.size[axis] : 0;
+            moved += frame.segment<3>(3 * axis) * (way[axis] - from);
+        }
+        sum += share * moved;
+        total += share;
+    }
+    return sum / total;
+}
+
+}  // namespace swage

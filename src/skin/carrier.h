@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a place of the body at molding is carried by the eight particles of a cell.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "matter/aggregate.h"
+#include "skin/particle_frames.h"
+
+namespace swage {
+
+using CornerMask = std::uint8_t;  // a bit for each corner of a cell
+inline constexpr CornerMask kAllCorners = 0xff;
+
+// The frames of a cell's corners, a column each, and the cell's size at molding.
+struct CellFrames {
+    Eigen::Matrix<double, 12, 8> corner;
+    Vec3 size;
+};
+
+// A place in or near a cell. Beyond the cell, `local` stops at its face and `arm` goes on.
+struct Carrier {
+    Vec3 local;  // in the cell, 0 to 1 along each axis
+    Vec3 arm;    // from the cell's low corner: the place, less half of the way to `local` [m]
+};
+
+// Low corner and size of a cell at molding [m].
+struct CellBox {
+    Vec3 low, size;
+};
+CellBox cell_box(const Aggregate& matter, CellId cell);
+
+// The active cell that holds the place (at molding), or the nearest one.
+CellId carrying_cell(const Aggregate& matter, const Vec3& place);
+Carrier carrier_in(const CellBox& box, const Vec3& place);
+
+std::array<double, 8> corner_weights(const Vec3& local);
+
+// For each corner the corners that hang together with it by connections within the cell. Every
+// entry is kAllCorners in a whole cell.
+using CornerGroups = std::array<CornerMask, 8>;
+CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
+bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
+
+// The corners that a place follows: all of them in a whole cell, else those of `side` that hang
+// together with the one of `side` that weighs most.
+CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const Vec3& local);
+
+// Displacement [m] in a whole cell: sum N_c (u_c + 1/2 G_c (X - X_c)), exact for quadratic fields
+// when the frames are. `half` is made once a cell.
+CellFrames half_frames(const CellFrames& cell);
+inline Vec3 whole_displacement(const CellFrames& half, const Carrier& carrier) {
+    const std::array<double, 8> weight = corner_weights(carrier.local);
+    ParticleFrame sum = weight[0] * half.corner.col(0);
+    for (int c = 1; c < 8; ++c) sum += weight[c] * half.corner.col(c);
+    return sum.segment<3>(0) * carrier.arm[0] + sum.segment<3>(3) * carrier.arm[1] +
+           sum.segment<3>(6) * carrier.arm[2] + sum.tail<3>();
+}
+
+// In a severed cell: the weighted mean of what each followed corner's affine frame says.
+Vec3 part_displacement(const CellFrames& cell, const Carrier& carrier, CornerMask followed);
+
+}  // namespace swage

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sources: S2.11 (frame4). The default blends the affine frames of all eight corners of the cell;
+// linear weights alone leave an error in the curvature f'' that the frames make again with opposite
+// sign and twice the size, so half of each frame cancels it.
+#include "skin/mount.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/parallel.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 256;  // cells
+
+Vec3 moved_by(const Vec3& place, const Vec3& u) {
+    // A sum with zero would turn -0 into 0.
+    return {u[0] == 0 ? place[0] : place[0] + u[0], u[1] == 0 ? place[1] : place[1] + u[1],
+            u[2] == 0 ? place[2] : place[2] + u[2]};
+}
+
+// The paper's basis of four particles: o, the corner nearest to the vertex, and its three
+// neighbours along the cell's edges, made orthonormal by Gram-Schmidt. An edge that is severed is
+// replaced by the column of o's own frame.
+Vec3 frame4_displacement(const Aggregate& matter, const std::array<ParticleId, 8>& corner,
+                         const CellFrames& cell, const Carrier& carrier, CornerMask followed) {
+    const std::array<double, 8> weight = corner_weights(carrier.local);
+    int o = -1;
+    for (int c = 0; c < 8; ++c) {
+        if (followed >> c & 1 && (o < 0 || weight[c] > weight[o])) o = c;
+    }
+    const auto own = cell.corner.col(o);
+    Mat3 basis;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int next = o ^ 1 << axis;
+        const double way = o >> axis & 1 ? -cell.size[axis] : cell.size[axis];
+        const ParticleId lower = corner[o & ~(1 << axis)];
+        const bool connected = matter.connection[axis].weight[lower] > 0;
+        const Vec3 change = connected ? Vec3((cell.corner.col(next) - own).tail<3>() / way)
+                                      : Vec3(own.segment<3>(3 * axis));
+        basis.col(axis) = Vec3::Unit(axis) + change;
+    }
+    basis.col(0).normalize();
+    basis.col(1) -= basis.col(0).dot(basis.col(1)) * basis.col(0);
+    basis.col(1).normalize();
+    basis.col(2) -= basis.col(0).dot(basis.col(2)) * basis.col(0);
+    basis.col(2) -= basis.col(1).dot(basis.col(2)) * basis.col(1);
+    basis.col(2).normalize();
+
+    Vec3 from_o = carrier.arm + 0.5 * carrier.local.cwiseProduct(cell.size);
+    for (int axis = 0; axis < 3; ++axis) from_o[axis] -= o >> axis & 1 ? cell.size[axis] : 0;
+    return own.tail<3>() + (basis - Mat3::Identity()) * from_o;
+}
+
+}  // namespace
+
+Mount mount_mesh(const std::vector<Vec3>& reference, const Aggregate& matter, SkinKind kind) {
+    Mount mount;
+    mount.kind = kind;
+    mount.reference = reference;
+    mount.cell.resize(reference.size());
+    constexpr std::size_t kPlaces = 4096;
+    parallel_for((reference.size() + kPlaces - 1) / kPlaces, [&](std::size_t chunk) {
+        const std::size_t end = std::min(reference.size(), (chunk + 1) * kPlaces);
+        for (std::size_t v = chunk * kPlaces; v < end; ++v) {
+            mount.cell[v] = carrying_cell(matter, reference[v]);
+        }
+    });
+    mount.side.assign(reference.size(), kAllCorners);
+    finish_mount(mount, matter);
+    return mount;
+}
+
+void finish_mount(Mount& mount, const Aggregate& matter) {
+    const std::size_t count = mount.reference.size();
+    mount.vertex.resize(count);
+    std::iota(mount.vertex.begin(), mount.vertex.end(), 0);
+    std::sort(mount.vertex.begin(), mount.vertex.end(), [&](int a, int b) {
+        return std::pair(mount.cell[a], a) < std::pair(mount.cell[b], b);
+    });
+    mount.group.clear();
+    mount.carrier.resize(count);
+    std::vector<ParticleId> used;
+    CellBox box;
+    for (std::size_t n = 0; n < count; ++n) {
+        const int v = mount.vertex[n];
+        if (n == 0 || mount.cell[v] != mount.group.back().cell) {
+            mount.group.push_back({mount.cell[v], static_cast<int>(n), 0, {}});
+            box = cell_box(matter, mount.cell[v]);
+            const auto corner = matter.lattice.cell_corners(mount.cell[v]);
+            used.insert(used.end(), corner.begin(), corner.end());
+        }
+        ++mount.group.back().count;
+        mount.carrier[n] = carrier_in(box, mount.reference[v]);
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<int> slot(matter.particle_count(), -1);
+    for (std::size_t s = 0; s < used.size(); ++s) slot[used[s]] = static_cast<int>(s);
+    for (Mount::CellGroup& group : mount.group) {
+        const auto corner = matter.lattice.cell_corners(group.cell);
+        for (int c = 0; c < 8; ++c) group.corner[c] = slot[corner[c]];
+    }
+    mount.particle = std::move(used);
+    mount.stencil = make_frame_stencil(matter);
+}
+
+void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec3>& position) {
+    std::vector<ParticleFrame> frame;
+    particle_frames(matter, mount.stencil, mount.particle, frame);
+    position.resize(mount.reference.size());
+    parallel_for((mount.group.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(mount.group.size(), (chunk + 1) * kChunk);
+        for (std::size_t g = chunk * kChunk; g < end; ++g) {
+            const Mount::CellGroup& group = mount.group[g];
+            std::array<ParticleId, 8> corner;
+            CellFrames cell;
+            for (int c = 0; c < 8; ++c) {
+                corner[c] = mount.particle[group.corner[c]];
+                cell.corner.col(c) = frame[group.corner[c]];
+            }
+            cell.size =
+                matter.particle_reference.at(corner[7]) - matter.particle_reference.at(corner[0]);
+            const bool whole = is_whole(matter, corner);
+            const CellFrames half = half_frames(cell);
+            CornerGroups groups;
+            groups.fill(kAllCorners);
+            if (!whole) groups = corner_groups(matter, corner);
+            for (int n = group.first; n < group.first + group.count; ++n) {
+                const int v = mount.vertex[n];
+                const Carrier& carrier = mount.carrier[n];
+                const CornerMask followed =
+                    whole ? kAllCorners : followed_corners(groups, mount.side[v], carrier.local);
+                Vec3 u;
+                if (mount.kind == SkinKind::frame4) {
+                    u = frame4_displacement(matter, corner, cell, carrier, followed);
+                } else if (whole) {
+                    u = whole_displacement(half, carrier);
+                } else {
+                    u = part_displacement(cell, carrier, followed);
+                }
+                position[v] = moved_by(mount.reference[v], u);
+            }
+        }
+    });
+}
+
+}  // namespace swage

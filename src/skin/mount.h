@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mounting (S2.11): every vertex of a mesh is bound, at molding, to the particles around it, and
+// follows them from then on.
+#pragma once
+
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "skin/carrier.h"
+#include "skin/settings.h"
+
+namespace swage {
+
+// Vertices in the order of the mesh. `reference`, `cell` and `side` say everything; the rest is
+// derived from them by finish_mount.
+struct Mount {
+    SkinKind kind = SkinKind::mount;
+    std::vector<Vec3> reference;   // at molding [m]
+    std::vector<CellId> cell;      // that carries the vertex
+    std::vector<CornerMask> side;  // corners that it follows once the cell is severed
+
+    // Vertices of one cell together, so that its frames are read once.
+    struct CellGroup {
+        CellId cell;
+        int first, count;           // into vertex, carrier
+        std::array<int, 8> corner;  // into particle
+    };
+    std::vector<CellGroup> group;
+    std::vector<int> vertex;
+    std::vector<Carrier> carrier;
+    std::vector<ParticleId> particle;  // that carry vertices, ascending
+    FrameStencil stencil;
+};
+
+// Binds places of the body at molding. The matter may be deformed already: only its lattice and its
+// reference positions count. Places outside every active cell are carried by the nearest one.
+Mount mount_mesh(const std::vector<Vec3>& reference, const Aggregate& matter, SkinKind kind);
+
+// To be called after reference, cell or side were changed.
+void finish_mount(Mount& mount, const Aggregate& matter);
+
+// Where the vertices are now [m]. With the matter at rest they are the reference to the bit; a
+// rigid motion is followed exactly; in severed cells each vertex follows the matter on its side.
+void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec3>& position);
+
+}  // namespace swage

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies of matter made by hand from a signed distance, for tests of rooms that may not see `mold`.
+#pragma once
+
+#include <functional>
+
+#include "matter/aggregate.h"
+
+namespace swage::test {
+
+using Distance = std::function<double(const Vec3&)>;  // negative inside [m]
+
+inline Vec3 gradient_of(const Distance& distance, const Vec3& at, double reach) {
+    Vec3 g;
+    for (int d = 0; d < 3; ++d) {
+        g[d] = distance(at + reach * Vec3::Unit(d)) - distance(at - reach * Vec3::Unit(d));
+    }
+    return g.normalized();
+}
+
+// Particles, masses and connections with share weights for cells of the given fill, and whole
+// cells' worth of everything else. Cells sorted by z, y, x.
+inline Aggregate make_matter(const Vec3& origin, double a, const Vec3i& count,
+                             const std::vector<Vec3i>& cells, const std::vector<float>& fill) {
+    Aggregate m;
+    m.lattice = make_lattice(origin, a, count, cells);
+    std::size_t particles = 0;
+    for (const ParticleRun& run : m.lattice.particle_run) particles += run.count;
+    m.particle_reference.resize(particles);
+    m.particle_velocity.resize(particles);
+    m.particle_mass.assign(particles, 0.0);
+    for (const ParticleRun& run : m.lattice.particle_run) {
+        for (int n = 0; n < run.count; ++n) {
+            m.particle_reference.set(run.first + n, origin + a * Vec3(run.i + n, run.j, run.k));
+            m.particle_velocity.set(run.first + n, Vec3::Zero());
+        }
+    }
+    m.particle_position = m.particle_reference;
+    for (auto& c : m.connection) c.weight.assign(particles, 0), c.plastic.assign(particles, 0);
+    m.cell_fill = fill;
+    m.cell_centroid.assign(cells.size(), Eigen::Vector3f::Zero());
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const auto corner = m.lattice.cell_corners(static_cast<CellId>(c));
+        for (ParticleId p : corner) {
+            m.particle_mass[p] += fill[c] * m.material.density * a * a * a / 8;
+        }
+        for (int low = 0; low < 8; ++low) {
+            for (int d = 0; d < kForwardCount; ++d) {
+                int high = 0;
+                bool inside = true;
+                for (int axis = 0; axis < 3; ++axis) {
+                    const int at = (low >> axis & 1) + kForward[d][axis];
+                    inside = inside && at >= 0 && at <= 1;
+                    high |= (at & 1) << axis;
+                }
+                if (inside) {
+                    m.connection[d].weight[corner[low]] += fill[c] * (d < kEdgeCount ? .25f : .5f);
+                }
+            }
+        }
+    }
+    return m;
+}
+
+// Fills the shape with cells of edge `a` over the box `low` to `low + a * count`. Each cell's fill
+// is sampled; each half-cell that the surface passes through holds one surface point.
+inline Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec3i& count,
+                            double a) {
+    constexpr int kSamples = 8;
+    std::vector<Vec3i> cells;
+    std::vector<float> fill;
+    for (int k = 0; k < count.z(); ++k) {
+        for (int j = 0; j < count.y(); ++j) {
+            for (int i = 0; i < count.x(); ++i) {
+                const Vec3 corner = low + a * Vec3(i, j, k);
+                const double middle = distance(corner + Vec3::Constant(a / 2));
+                int inside = 0;
+                for (int s = 0; s < kSamples * kSamples * kSamples; ++s) {
+                    const Vec3 at(s % kSamples, s / kSamples % kSamples, s / kSamples / kSamples);
+                    if (std::abs(middle) > a) {
+                        inside += middle < 0;
+                    } else {
+                        inside += distance(corner + a / kSamples * (at + Vec3::Constant(.5))) < 0;
+                    }
+                }
+                if (inside == 0) continue;
+                cells.emplace_back(i, j, k);
+                fill.push_back(static_cast<float>(inside) / (kSamples * kSamples * kSamples));
+            }
+        }
+    }
+    Aggregate m = make_matter(low, a, count, cells, fill);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        for (int s = 0; s < 8; ++s) {
+            const Vec3 half(s & 1, s >> 1 & 1, s >> 2);
+            const Vec3 corner = low + a * (cells[c].cast<double>() + 0.5 * half);
+            Vec3 at = corner + Vec3::Constant(a / 4), normal;
+            if (std::abs(distance(at)) > a / 2) continue;
+            for (int n = 0; n < 4; ++n) {
+                normal = gradient_of(distance, at, 1e-5 * a);
+                at -= distance(at) * normal;
+            }
+            const Vec3 xi = (at - corner) / (a / 2);
+            if ((xi.array() < -1e-6).any() || (xi.array() >= 1 - 1e-6).any()) continue;
+            const Vec3 local = (at - low) / a - cells[c].cast<double>();
+            std::array<float, 8> weight;
+            for (int n = 0; n < 8; ++n) {
+                weight[n] = 1;
+                for (int d = 0; d < 3; ++d) {
+                    weight[n] *= static_cast<float>(n >> d & 1 ? local[d] : 1 - local[d]);
+                }
+            }
+            m.surface.corner.push_back(m.lattice.cell_corners(static_cast<CellId>(c)));
+            m.surface.weight.push_back(weight);
+            m.surface.area.push_back(a * a / 4);
+            m.surface.reference_position.push_back(at);
+            m.surface.reference_normal.push_back(normal);
+        }
+    }
+    return m;
+}
+
+// Severs every connection that crosses the plane, as a blade does: a particle on it counts as
+// being on the positive side. Only connections whose middle satisfies `where`.
+inline void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
+                        const std::function<bool(const Vec3&)>& where = nullptr) {
+    const Vec3 on_plane = point + m.lattice.spacing * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+    for (const Span& span : m.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            const Vec3 a = m.particle_position.at(span.lower + n);
+            const Vec3 b = m.particle_position.at(span.upper + n);
+            const bool crosses = (normal.dot(a - on_plane) >= 0) != (normal.dot(b - on_plane) >= 0);
+            if (crosses && (!where || where(0.5 * (a + b)))) {
+                m.connection[span.direction].weight[span.lower + n] = 0;
+            }
+        }
+    }
+}
+
+// Puts every particle where the map takes its reference position.
+inline void deform(Aggregate& m, const std::function<Vec3(const Vec3&)>& map) {
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_position.set(p, map(m.particle_reference.at(p)));
+    }
+}
+
+}  // namespace swage::test
