@@ -15,19 +15,19 @@ enum class GlProviderKind { automatic, osmesa, egl };
 // between keys the values move smoothly.
 struct CameraKey {
     double at = 0;
-    double azimuth = 0.6;    // about world up, from the world's +z toward +x
-    double elevation = 0.35; // above the horizon, -pi/2 to pi/2
-    double zoom = 1.0;       // 1 frames the whole motion; 2 is twice as near; > 0
+    double azimuth = 0.6;             // about world up, from the world's +z toward +x
+    double elevation = 0.35;          // above the horizon, -pi/2 to pi/2
+    double zoom = 1.0;                // 1 frames the whole motion; 2 is twice as near; > 0
     std::optional<Vec3> eye, target;  // both given: these instead of azimuth, elevation and zoom
 };
 
 struct RenderSettings {
-    int width = 1280, height = 720;  // 1 to 16384
-    double field_of_view = 0.6;      // vertical, 0 to pi exclusive
+    int width = 1280, height = 720;                 // 1 to 16384
+    double field_of_view = 0.6;                     // vertical, 0 to pi exclusive
     std::vector<CameraKey> camera = {CameraKey{}};  // sorted by `at`
-    int frames_per_second = 30;      // of the film, 1 to 240
-    bool film = true;                // also write film.mp4
-    bool tools = true;               // draw tools, grips and blades
+    int frames_per_second = 30;                     // of the film, 1 to 240
+    bool film = true;                               // also write film.mp4
+    bool tools = true;                              // draw tools, grips and blades
     bool ground = true;
     GlProviderKind gl = GlProviderKind::automatic;
 };

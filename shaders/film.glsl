@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From light to the bytes of a picture.
+
+// Straight up to the knee, so that a texture's colours come out as painted; above it a shoulder
+// that nears 1, where bright colours also pale as film does.
+vec3 film_curve(vec3 light) {
+    const float knee = 0.62;
+    float peak = max(light.r, max(light.g, light.b));
+    if (peak <= knee) return light;
+    float over = (peak - knee) / (1.0 - knee);
+    float bent = knee + (1.0 - knee) * (1.0 - exp(-over));
+    vec3 color = light * (bent / peak);
+    float pale = 1.0 - 1.0 / (0.18 * (peak - bent) + 1.0);
+    return mix(color, vec3(bent), pale);
+}
+
+vec3 srgb(vec3 linear) {
+    vec3 c = clamp(linear, 0.0, 1.0);
+    return mix(12.92 * c, 1.055 * pow(max(c, 1e-6), vec3(1.0 / 2.4)) - 0.055,
+               step(0.0031308, c));
+}
+
+// One unit of the last bit, spread in an 8 by 8 ordered pattern (B. E. Bayer 1973), so that slow
+// gradients show no steps. The pattern repeats, which packs better than noise.
+float dither(vec2 pixel) {
+    ivec2 p = ivec2(pixel);
+    int x = p.x ^ p.y, y = p.y;
+    int rank = (x & 1) << 5 | (y & 1) << 4 | (x & 2) << 2 | (y & 2) << 1 | (x & 4) >> 1 |
+               (y & 4) >> 2;
+    return (float(rank) + 0.5) / 64.0 - 0.5;
+}
+
+vec4 developed(vec3 light, vec2 pixel) {
+    vec3 c = srgb(film_curve(light));
+    // A little of an S-curve: deeper darks without touching white or the middle.
+    c = mix(c, c * c * (3.0 - 2.0 * c), 0.18);
+    return vec4(c + dither(pixel) / 255.0, 1.0);
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all passes of one picture know. Stage space: the world moved so that the action's centre
+// is the origin and scaled so that its half diagonal is 1; y is up.
+layout(std140) uniform Frame {
+    mat4 clip_from_stage;
+    mat4 view_from_stage;
+    mat4 stage_from_view;
+    mat4 shadow_from_stage;  // to texture coordinates and depth, all 0 to 1
+    vec4 eye;
+    vec4 lens;       // tangents of the half angles x and y
+    vec4 size;       // width, height, 1 / width, 1 / height
+    vec4 half_size;  // the same of the half-size passes
+    vec4 key;        // directions towards the lights
+    vec4 fill;
+    vec4 rim;
+    vec4 ground;     // height, where its shadows start to fade, where it ends
+    vec4 shadow;     // texel [stage], texel [texture], penumbra [texture] a unit of depth, least one
+};
+
+const float PI = 3.14159265;
+
+// The direction from the eye through a pixel, in stage space.
+vec3 sight(vec2 pixel) {
+    vec2 ndc = 2.0 * pixel * size.zw - 1.0;
+    return normalize(mat3(stage_from_view) * vec3(ndc * lens.xy, -1.0));
+}

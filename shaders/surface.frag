@@ -1,0 +1,56 @@
+#version 330 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A metal or dielectric surface. Microfacets: B. Walter et al., "Microfacet Models for Refraction
+// through Rough Surfaces", EGSR 2007; E. Heitz 2014 for the masking; the environment's share after
+// B. Karis, "Physically Based Shading on Mobile", 2014.
+#include "frame.glsl"
+#include "light.glsl"
+#include "film.glsl"
+#include "normal.glsl"
+#include "upsample.glsl"
+in vec3 position;
+in vec3 normal;
+in vec2 uv;
+in vec3 color;
+uniform sampler2D surface_texture;
+uniform vec4 material_color;
+uniform vec4 material_finish;  // roughness, metallic
+layout(location = 0) out vec4 pixel_color;
+
+vec3 environment_share(vec3 f0, float roughness, float nv) {
+    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
+    vec2 scale = vec2(-1.04, 1.04) * a + r.zw;
+    return f0 * scale.x + scale.y;
+}
+
+void main() {
+    vec3 base = material_color.rgb * color * texture(surface_texture, uv).rgb;
+    float roughness = clamp(material_finish.x, 0.08, 1.0), metallic = material_finish.y;
+    vec3 n = facing_normal(normal, position, eye.xyz);
+    vec3 v = normalize(eye.xyz - position);
+    float nv = max(dot(n, v), 0.02);
+    float depth = -(view_from_stage * vec4(position, 1.0)).z;
+    vec2 seen = visibility_at(gl_FragCoord.xy, depth);
+
+    vec3 f0 = mix(vec3(0.04), base, metallic);
+    vec3 matt = base * (1.0 - metallic);
+    float nl = max(dot(n, key.xyz), 0.0);
+
+    vec3 h = normalize(key.xyz + v);
+    float nh = max(dot(n, h), 0.0);
+    // The lamp has a size, which widens its highlight.
+    float a = min(1.0, roughness * roughness + 0.06), a2 = a * a;
+    float q = nh * nh * (a2 - 1.0) + 1.0;
+    float masking = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) +
+                              nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-3);
+    float fresnel = pow(1.0 - max(dot(h, v), 0.0), 5.0);
+    vec3 mirror = (f0 + (1.0 - f0) * fresnel) * (a2 / (q * q) * masking);
+
+    vec3 light = KEY * nl * seen.y * (matt + mirror);
+    light += matt * ambient(n) * seen.x;
+    vec3 r = reflect(-v, n);
+    float seen_mirror = clamp(seen.x * (0.55 + 0.45 * seen.y), 0.0, 1.0);
+    light += surroundings(r, roughness) * environment_share(f0, roughness, nv) * seen_mirror;
+    pixel_color = developed(light, gl_FragCoord.xy);
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source of the interpolation: F. N. Fritsch and R. E. Carlson, "Monotone Piecewise Cubic
+// Interpolation", SIAM J. Numer. Anal. 17 (1980), with harmonic-mean slopes: no key is overshot.
+#include "render/camera.h"
+
+#include <algorithm>
+
+namespace swage {
+
+namespace {
+
+std::array<Vec3, 8> corners_of(const Box& box) {
+    std::array<Vec3, 8> corner;
+    for (std::size_t i = 0; i < 8; ++i) {
+        corner[i] = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(),
+                     (i & 4 ? box.high : box.low).z()};
+    }
+    return corner;
+}
+
+// The slope at key k of a monotone curve through the keys; flat at both ends, so that the camera
+// starts and stops gently.
+double slope_at(const std::vector<double>& x, const std::vector<double>& y, std::size_t k) {
+    if (k == 0 || k + 1 >= x.size()) return 0;
+    const double before = (y[k] - y[k - 1]) / (x[k] - x[k - 1]);
+    const double after = (y[k + 1] - y[k]) / (x[k + 1] - x[k]);
+    if (before * after <= 0) return 0;
+    return 2 * before * after / (before + after);
+}
+
+double monotone_cubic(const std::vector<double>& x, const std::vector<double>& y, double at) {
+    if (at <= x.front()) return y.front();
+    if (at >= x.back()) return y.back();
+    const std::size_t k =
+        static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), at) - x.begin()) - 1;
+    const double width = x[k + 1] - x[k], t = (at - x[k]) / width;
+    const double t2 = t * t, t3 = t2 * t;
+    return (2 * t3 - 3 * t2 + 1) * y[k] + (t3 - 2 * t2 + t) * width * slope_at(x, y, k) +
+           (3 * t2 - 2 * t3) * y[k + 1] + (t3 - t2) * width * slope_at(x, y, k + 1);
+}
+
+Box sensible(Box box) {
+    if (box.empty()) box = {Vec3::Constant(-0.5), Vec3::Constant(0.5)};
+    const double least = std::max(1e-9, 1e-6 * box.size().maxCoeff());
+    const Vec3 half = (0.5 * box.size()).cwiseMax(least), center = box.center();
+    return {center - half, center + half};
+}
+
+}  // namespace
+
+Lens lens_of(const RenderSettings& settings) {
+    const double tangent = std::tan(0.5 * settings.field_of_view);
+    return {tangent * settings.width / settings.height, tangent};
+}
+
+Mat3 orbit_rotation(double azimuth, double elevation) {
+    const double sa = std::sin(azimuth), ca = std::cos(azimuth);
+    const double se = std::sin(elevation), ce = std::cos(elevation);
+    const Vec3 right = {ca, 0, -sa}, back = {sa * ce, se, ca * ce};
+    Mat3 rotation;
+    rotation << right, back.cross(right), back;
+    return rotation;
+}
+
+View look_at(const Vec3& eye, const Vec3& target) {
+    View view{eye, Mat3::Identity()};
+    const double distance = (eye - target).norm();
+    if (!(distance > 0)) return view;
+    const Vec3 back = (eye - target) / distance;
+    const double sideways = std::hypot(back.x(), back.z());
+    const double azimuth = sideways > 1e-9 ? std::atan2(back.x(), back.z()) : 0;
+    view.world_from_view = orbit_rotation(azimuth, std::atan2(back.y(), sideways));
+    return view;
+}
+
+Framing frame_box(const Box& box, const Mat3& world_from_view, const Lens& lens) {
+    const double tx = lens.tangent_x / kFramingMargin, ty = lens.tangent_y / kFramingMargin;
+    // With the eye at (cx, cy, cz), a corner is inside the pyramid when |x - cx| <= tx (cz - z)
+    // and the same for y: four upper bounds over the corners, met by the least cz.
+    const double none = -std::numeric_limits<double>::infinity();
+    double right = none, left = none, top = none, bottom = none;
+    for (const Vec3& corner : corners_of(box)) {
+        const Vec3 p = world_from_view.transpose() * (corner - box.center());
+        right = std::max(right, p.x() + tx * p.z());
+        left = std::max(left, -p.x() + tx * p.z());
+        top = std::max(top, p.y() + ty * p.z());
+        bottom = std::max(bottom, -p.y() + ty * p.z());
+    }
+    const double distance = std::max((right + left) / (2 * tx), (top + bottom) / (2 * ty));
+    const Vec3 shift = {0.5 * (right - left), 0.5 * (top - bottom), 0};
+    return {distance, box.center() + world_from_view * shift};
+}
+
+DepthRange depth_range(const Box& box, const View& view) {
+    double least = std::numeric_limits<double>::infinity(), greatest = 0;
+    for (const Vec3& corner : corners_of(box)) {
+        const double depth = -view.in_view(corner).z();
+        least = std::min(least, depth);
+        greatest = std::max(greatest, depth);
+    }
+    const double size = std::max(box.size().norm(), 1e-9);
+    const double near = std::max(0.8 * least, 2e-3 * size);
+    return {near, std::max(1.1 * greatest, 2 * near)};
+}
+
+Eigen::Matrix4d clip_from_view(const Lens& lens, const DepthRange& depth) {
+    Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
+    m(0, 0) = 1 / lens.tangent_x;
+    m(1, 1) = 1 / lens.tangent_y;
+    m(2, 2) = -(depth.far + depth.near) / (depth.far - depth.near);
+    m(2, 3) = -2 * depth.far * depth.near / (depth.far - depth.near);
+    m(3, 2) = -1;
+    return m;
+}
+
+Eigen::Matrix4d view_from_world(const View& view) {
+    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+    m.topLeftCorner<3, 3>() = view.world_from_view.transpose();
+    m.topRightCorner<3, 1>() = -(view.world_from_view.transpose() * view.eye);
+    return m;
+}
+
+CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds)
+    : bounds_(sensible(action_bounds)), lens_(lens_of(settings)) {
+    std::vector<CameraKey> keys = settings.camera;
+    if (keys.empty()) keys.emplace_back();
+    by_eye_ = std::any_of(keys.begin(), keys.end(),
+                          [](const CameraKey& key) { return key.eye && key.target; });
+    for (const CameraKey& key : keys) {
+        // Of keys at one moment the last counts.
+        if (!share_.empty() && key.at <= share_.back()) {
+            share_.pop_back();
+            value_.pop_back();
+        }
+        share_.push_back(key.at);
+        value_.push_back({key.azimuth, key.elevation, std::log(std::max(1e-6, key.zoom))});
+    }
+    distance_ = 0;
+    constexpr int kSamples = 64;
+    for (int i = 0; i <= (share_.size() > 1 ? kSamples : 0); ++i) {
+        const double share = share_.front() + i * (share_.back() - share_.front()) / kSamples;
+        const std::vector<double> v = interpolated(share);
+        distance_ =
+            std::max(distance_, frame_box(bounds_, orbit_rotation(v[0], v[1]), lens_).distance);
+    }
+    if (!by_eye_) return;
+    std::vector<std::vector<double>> places;
+    for (std::size_t k = 0; k < share_.size(); ++k) {
+        const auto named = std::find_if(keys.rbegin(), keys.rend(),
+                                        [&](const CameraKey& key) { return key.at == share_[k]; });
+        Vec3 eye, target;
+        if (named->eye && named->target) {
+            eye = *named->eye;
+            target = *named->target;
+        } else {
+            const View view = orbit(value_[k][0], value_[k][1], std::exp(value_[k][2]));
+            eye = view.eye;
+            const double depth = -view.in_view(bounds_.center()).z();
+            target = eye - depth * view.world_from_view.col(2);
+        }
+        places.push_back({eye.x(), eye.y(), eye.z(), target.x(), target.y(), target.z()});
+    }
+    value_ = std::move(places);
+}
+
+std::vector<double> CameraPath::interpolated(double film_share) const {
+    std::vector<double> result, curve(share_.size());
+    for (std::size_t i = 0; i < value_.front().size(); ++i) {
+        for (std::size_t k = 0; k < share_.size(); ++k) curve[k] = value_[k][i];
+        result.push_back(monotone_cubic(share_, curve, film_share));
+    }
+    return result;
+}
+
+View CameraPath::orbit(double azimuth, double elevation, double zoom) const {
+    const Mat3 rotation = orbit_rotation(azimuth, elevation);
+    const Framing framing = frame_box(bounds_, rotation, lens_);
+    return {framing.target + distance_ / zoom * rotation.col(2), rotation};
+}
+
+View CameraPath::at(double film_share) const {
+    const std::vector<double> v = interpolated(film_share);
+    if (by_eye_) return look_at({v[0], v[1], v[2]}, {v[3], v[4], v[5]});
+    return orbit(v[0], v[1], std::exp(v[2]));
+}
+
+}  // namespace swage

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the picture is taken from. The world has y up; a view looks along its own -z with x to
+// the right and y up.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/math.h"
+#include "geometry/box.h"
+#include "render/settings.h"
+
+namespace swage {
+
+struct View {
+    Vec3 eye = {0, 0, 1};
+    Mat3 world_from_view = Mat3::Identity();  // columns: right, up, back
+
+    Vec3 in_view(const Vec3& point) const { return world_from_view.transpose() * (point - eye); }
+};
+
+// A pyramid of sight: tangents of half the angles.
+struct Lens {
+    double tangent_x, tangent_y;
+};
+Lens lens_of(const RenderSettings& settings);
+
+// Turns right, up and back for an orbit's angles [rad], at any elevation.
+Mat3 orbit_rotation(double azimuth, double elevation);
+
+// Looks from eye to target with the world's y up; looking straight up or down, -z is up (or +z).
+// Eye and target at one place look along -z.
+View look_at(const Vec3& eye, const Vec3& target);
+
+// The distance to a box's centre, along the view, from which all eight corners are seen with a
+// margin, and the sideways shift of the eye that centres them.
+struct Framing {
+    double distance;
+    Vec3 target;  // the point looked at, as deep as the box's centre
+};
+inline constexpr double kFramingMargin =
+    1.12;  // the picture is this much wider than what it frames
+Framing frame_box(const Box& box, const Mat3& world_from_view, const Lens& lens);
+
+// Least and greatest depth of the box before the eye, with 0 < near < far even when the eye is
+// inside the box.
+struct DepthRange {
+    double near, far;
+};
+DepthRange depth_range(const Box& box, const View& view);
+
+// OpenGL's projection to the cube of -1 to 1.
+Eigen::Matrix4d clip_from_view(const Lens& lens, const DepthRange& depth);
+Eigen::Matrix4d view_from_world(const View& view);
+
+// The keys of the settings as one smooth flight. The distance that frames the whole motion is
+// found once for the whole flight, so an orbit does not pump; zoom divides it. As soon as one key
+// gives eye and target, all keys are turned into eyes and targets and fly straight between them.
+class CameraPath {
+  public:
+    CameraPath(const RenderSettings& settings, const Box& action_bounds);
+    View at(double film_share) const;
+
+  private:
+    View orbit(double azimuth, double elevation, double zoom) const;
+    std::vector<double> interpolated(double film_share) const;
+
+    Box bounds_;
+    Lens lens_;
+    bool by_eye_;  // a key's values are eye and target; else azimuth, elevation, log of zoom
+    double distance_ = 1;
+    std::vector<double> share_;
+    std::vector<std::vector<double>> value_;  // one a key
+};
+
+}  // namespace swage

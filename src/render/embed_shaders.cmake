@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# cmake -DFOLDER=shaders -DOUT=embedded.cpp -P embed_shaders.cmake: every shader as a string.
+file(GLOB sources ${FOLDER}/*.glsl ${FOLDER}/*.vert ${FOLDER}/*.frag)
+list(SORT sources)
+set(text "// Made by embed_shaders.cmake from the files of shaders/.\n")
+string(APPEND text "#include \"render/shaders.h\"\n\nnamespace swage {\n\n")
+string(APPEND text "const std::vector<EmbeddedShader>& embedded_shaders() {\n")
+string(APPEND text "    static const std::vector<EmbeddedShader> all = {\n")
+foreach(source ${sources})
+    get_filename_component(name ${source} NAME)
+    file(READ ${source} body)
+    string(APPEND text "        {\"${name}\", R\"SWAGE(${body})SWAGE\"},\n")
+endforeach()
+string(APPEND text "    };\n    return all;\n}\n\n}  // namespace swage\n")
+file(WRITE ${OUT} "${text}")

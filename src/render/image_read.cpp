@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one file that sees stb_image.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "base/error.h"
+#include "render/png.h"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_BMP
+#define STBI_ONLY_TGA
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#define STBI_FAILURE_USERMSG
+#define STBI_MAX_DIMENSIONS 16384
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#include <stb_image.h>
+
+namespace swage {
+
+namespace {
+struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+}  // namespace
+
+Image read_image(const std::filesystem::path& path, int largest_side) {
+    const std::string name = path.string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+        fail(ExitCode::output, "{}: no such picture", name);
+    }
+    const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(name.c_str(), "rb"));
+    if (!file) fail(ExitCode::output, "{}: cannot be opened", name);
+    int width = 0, height = 0, channels = 0;
+    // The size stands in the header: a bomb is refused before it is unpacked.
+    if (stbi_info_from_file(file.get(), &width, &height, &channels) == 0) {
+        fail(ExitCode::output, "{}: not a PNG, JPEG, BMP or TGA picture ({})", name,
+             stbi_failure_reason());
+    }
+    if (width > largest_side || height > largest_side) {
+        fail(ExitCode::output, "{}: {} x {} pixels are more than {} a side", name, width, height,
+             largest_side);
+    }
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load_from_file(file.get(), &width, &height, &channels, 3), stbi_image_free);
+    if (!pixels) fail(ExitCode::output, "{}: {}", name, stbi_failure_reason());
+    Image image{width, height, {}};
+    image.rgb.assign(pixels.get(), pixels.get() + 3 * static_cast<std::size_t>(width) *
+                                                      static_cast<std::size_t>(height));
+    return image;
+}
+
+}  // namespace swage

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One picture is five passes: the shadow map; normal and depth at half size; occlusion and shadow
+// from these, blurred; the surfaces in full size with four samples a pixel, each already developed
+// to the picture's colours; the mean of the samples. Occlusion is known before the surfaces are
+// lit, so it dims only the light it should. Shading happens once a pixel and surface.
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "base/error.h"
+#include "render/mesh_cache.h"
+#include "render/shaders.h"
+#include "render/studio.h"
+#include "render/targets.h"
+#include "render/texture_cache.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kSamples = 4;
+// Above this multisampling costs more than it gives: edges are softened afterwards instead.
+constexpr std::size_t kMostMultisampledTriangles = 300'000;
+constexpr long kMostMultisampledPixels = 4096l * 4096l;
+constexpr float kNowhere = 1e4f;  // depth of the backdrop in the half-size pass [stage]
+
+// Beside triangles of two sides: what a GPU is told of one item.
+struct Drawable {
+    const GpuMesh* mesh;
+    const DrawItem* item;
+    Eigen::Matrix4f stage_from_mesh;
+};
+
+void set_unit(const Gl& gl, GLenum unit, GLuint texture) {
+    gl.ActiveTexture(GL_TEXTURE0 + unit);
+    gl.BindTexture(GL_TEXTURE_2D, texture);
+}
+
+void grow(Box& box, const DrawItem& item) {
+    for (const Vec3& p : item.position ? *item.position : item.mesh->position) {
+        const Vec3 world = item.world_from_mesh * p;
+        if (world.allFinite()) box.grow(world);
+    }
+}
+
+}  // namespace
+
+struct Renderer::Parts {
+    Parts(const RenderSettings& wanted, const Box& bounds, double ground, int threads)
+        : settings(wanted),
+          action_bounds(bounds),
+          ground_height(ground),
+          stage(bounds),
+          camera(wanted, bounds),
+          canvas(wanted.gl, threads),
+          gl(canvas.gl()),
+          meshes(gl),
+          textures(gl),
+          shadow_shader(gl, "shadow.vert", "shadow.frag"),
+          depth_shader(gl, "surface.vert", "depth.frag"),
+          ground_depth_shader(gl, "ground.vert", "depth.frag"),
+          visibility_shader(gl, "screen.vert", "visibility.frag",
+                            {"normal_and_depth", "shadow_depth"}),
+          blur_shader(gl, "screen.vert", "blur.frag", {"visibility"}),
+          surface_shader(gl, "surface.vert", "surface.frag", {"visibility", "surface_texture"}),
+          ground_shader(gl, "ground.vert", "ground.frag", {"visibility"}),
+          backdrop_shader(gl, "screen.vert", "backdrop.frag"),
+          smooth_shader(gl, "screen.vert", "smooth.frag", {"picture"}),
+          nothing(make_vertex_array(gl)),
+          frame_buffer(make_buffer(gl)),
+          shadow(make_target(gl, kShadowMapSide, kShadowMapSide, {.depth_texture = true})),
+          half(make_target(gl, (settings.width + 1) / 2, (settings.height + 1) / 2,
+                           {.color = GL_RGBA32F, .depth_buffer = true})) {
+        for (Target& target : visibility) {
+            target = make_target(gl, half.width, half.height, {.color = GL_RGBA16F});
+        }
+        plain = make_target(gl, settings.width, settings.height,
+                            {.color = GL_RGBA8, .depth_buffer = true});
+        const Vec3 back = camera.at(0).world_from_view.col(2);
+        // Looking straight down has no azimuth; any will do.
+        front = std::hypot(back.x(), back.z()) > 1e-6 ? std::atan2(back.x(), back.z()) : 0;
+    }
+
+    RenderSettings settings;
+    Box action_bounds;
+    double ground_height;
+    Stage stage;
+    CameraPath camera;
+    double front = 0;  // azimuth of the film's first view
+    Canvas canvas;
+    const Gl& gl;
+    MeshCache meshes;
+    TextureCache textures;
+    Shader shadow_shader, depth_shader, ground_depth_shader, visibility_shader, blur_shader,
+        surface_shader, ground_shader, backdrop_shader, smooth_shader;
+    GlHandle nothing, frame_buffer;
+    Target shadow, half;
+    std::array<Target, 2> visibility;
+    Target plain, sampled, smoothed;  // the latter two are made when first needed
+    Stopwatch* watch = nullptr;
+
+    template <typename Pass>
+    void timed(const char* name, const Pass& pass) {
+        if (watch == nullptr) return pass();
+        const Stopwatch::Lap lap = watch->lap(name);
+        pass();
+        gl.Finish();
+    }
+
+    void cover_screen() const {
+        gl.BindVertexArray(nothing.id());
+        gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    void draw_ground() const {
+        gl.BindVertexArray(nothing.id());
+        gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    }
+    void draw_shapes(const Shader& shader, const std::vector<Drawable>& drawables) const {
+        shader.use();
+        for (const Drawable& d : drawables) {
+            shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
+            const auto count = static_cast<std::uint32_t>(d.mesh->split.index.size());
+            d.mesh->draw(gl, {-1, 0, count});
+        }
+    }
+
+    std::vector<Drawable> prepare(const Picture& picture, Box& shown);
+    void draw_shadow(const std::vector<Drawable>& drawables) const;
+    void draw_depth(const std::vector<Drawable>& drawables, bool ground) const;
+    void draw_visibility() const;
+    void draw_surfaces(const std::vector<Drawable>& drawables, bool ground, const Target& target);
+    const Target& whole_picture(bool multisampled);
+    Image read_back(const Target& target) const;
+    Image draw(const Picture& picture);
+};
+
+std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& shown) {
+    meshes.begin_picture();
+    std::vector<Drawable> drawables;
+    for (const DrawItem& item : picture.item) {
+        if (item.mesh == nullptr || item.mesh->triangle.empty()) continue;
+        grow(shown, item);
+        // Read now: loading one in the middle of a pass would unbind what the pass has bound.
+        if (item.material_override) textures.texture(item.material_override->texture);
+        for (const SurfaceMaterial& material : item.mesh->material) {
+            textures.texture(material.texture);
+        }
+        const GpuMesh& mesh = meshes.prepared(*item.mesh, item.position);
+        drawables.push_back({&mesh, &item, stage.from_mesh(item.world_from_mesh, mesh.origin)});
+    }
+    if (shown.empty()) shown = {stage.center, stage.center};
+    return drawables;
+}
+
+void Renderer::Parts::draw_shadow(const std::vector<Drawable>& drawables) const {
+    shadow.bind(gl);
+    gl.Clear(GL_DEPTH_BUFFER_BIT);
+    gl.Enable(GL_DEPTH_CLAMP);  // what sticks out of the map towards the light still casts
+    gl.Enable(GL_POLYGON_OFFSET_FILL);
+    gl.PolygonOffset(1.5f, 2.0f);
+    draw_shapes(shadow_shader, drawables);
+    gl.Disable(GL_POLYGON_OFFSET_FILL);
+    gl.Disable(GL_DEPTH_CLAMP);
+}
+
+void Renderer::Parts::draw_depth(const std::vector<Drawable>& drawables, bool ground) const {
+    half.bind(gl);
+    gl.ClearColor(0, 0, 1, kNowhere);
+    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    draw_shapes(depth_shader, drawables);
+    if (!ground) return;
+    ground_depth_shader.use();
+    draw_ground();
+}
+
+void Renderer::Parts::draw_visibility() const {
+    gl.Disable(GL_DEPTH_TEST);
+    visibility[0].bind(gl);
+    visibility_shader.use();
+    set_unit(gl, 0, half.color.id());
+    set_unit(gl, 1, shadow.depth.id());
+    cover_screen();
+    blur_shader.use();
+    for (int down = 0; down < 2; ++down) {
+        visibility[static_cast<std::size_t>(1 - down)].bind(gl);
+        blur_shader.set("down", down);
+        set_unit(gl, 0, visibility[static_cast<std::size_t>(down)].color.id());
+        cover_screen();
+    }
+    gl.Enable(GL_DEPTH_TEST);
+}
+
+void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool ground,
+                                    const Target& target) {
+    target.bind(gl);
+    gl.Clear(GL_DEPTH_BUFFER_BIT);  // the backdrop covers every pixel
+    set_unit(gl, 0, visibility[0].color.id());
+    surface_shader.use();
+    static const SurfaceMaterial plain_material;
+    for (const Drawable& d : drawables) {
+        const TriMesh& mesh = *d.item->mesh;
+        surface_shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
+        for (const DrawMesh::Range& range : d.mesh->split.range) {
+            const bool named =
+                range.material >= 0 && range.material < static_cast<int>(mesh.material.size());
+            const SurfaceMaterial& material =
+                d.item->material_override ? *d.item->material_override
+                : named                   ? mesh.material[static_cast<std::size_t>(range.material)]
+                : mesh.material.size() == 1 ? mesh.material.front()
+                                            : plain_material;
+            const Eigen::Vector4f color(static_cast<float>(material.color.x()),
+                                        static_cast<float>(material.color.y()),
+                                        static_cast<float>(material.color.z()), 1);
+            const Eigen::Vector4f finish(static_cast<float>(material.roughness),
+                                         static_cast<float>(material.metallic), 0, 0);
+            surface_shader.set4("material_color", color.data());
+            surface_shader.set4("material_finish", finish.data());
+            set_unit(gl, 1, textures.texture(mesh.uv.empty() ? "" : material.texture));
+            d.mesh->draw(gl, range);
+        }
+    }
+    if (ground) {
+        ground_shader.use();
+        draw_ground();
+    }
+    gl.DepthFunc(GL_LEQUAL);
+    backdrop_shader.use();
+    cover_screen();
+    gl.DepthFunc(GL_LESS);
+}
+
+const Target& Renderer::Parts::whole_picture(bool multisampled) {
+    if (multisampled) {
+        gl.BindFramebuffer(GL_READ_FRAMEBUFFER, sampled.framebuffer.id());
+        gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, plain.framebuffer.id());
+        gl.BlitFramebuffer(0, 0, plain.width, plain.height, 0, 0, plain.width, plain.height,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        return plain;
+    }
+    if (smoothed.width == 0) {
+        smoothed = make_target(gl, plain.width, plain.height, {.color = GL_RGBA8});
+    }
+    gl.Disable(GL_DEPTH_TEST);
+    smoothed.bind(gl);
+    smooth_shader.use();
+    set_unit(gl, 0, plain.color.id());
+    cover_screen();
+    gl.Enable(GL_DEPTH_TEST);
+    return smoothed;
+}
+
+Image Renderer::Parts::read_back(const Target& target) const {
+    const std::size_t width = static_cast<std::size_t>(target.width);
+    const std::size_t height = static_cast<std::size_t>(target.height);
+    std::vector<std::uint8_t> rgba(4 * width * height);
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.id());
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl.ReadPixels(0, 0, target.width, target.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    if (gl.GetError() != GL_NO_ERROR) fail(ExitCode::output, "OpenGL failed to draw a picture");
+    Image image{target.width, target.height, {}};
+    image.rgb.resize(3 * width * height);
+    for (std::size_t y = 0; y < height; ++y) {  // OpenGL's first row is the lowest
+        const std::uint8_t* from = &rgba[4 * width * (height - 1 - y)];
+        std::uint8_t* to = &image.rgb[3 * width * y];
+        for (std::size_t x = 0; x < width; ++x) {
+            for (std::size_t c = 0; c < 3; ++c) to[3 * x + c] = from[4 * x + c];
+        }
+    }
+    return image;
+}
+
+Image Renderer::Parts::draw(const Picture& picture) {
+    canvas.make_current();
+    Box shown = action_bounds;
+    std::vector<Drawable> drawables;
+    timed("send", [&] { drawables = prepare(picture, shown); });
+    std::size_t triangles = 0;
+    for (const Drawable& d : drawables) triangles += d.mesh->split.index.size() / 3;
+    const bool multisampled =
+        triangles <= kMostMultisampledTriangles &&
+        static_cast<long>(settings.width) * settings.height <= kMostMultisampledPixels;
+    if (multisampled && sampled.width == 0) {
+        sampled = make_target(gl, settings.width, settings.height,
+                              {.color = GL_RGBA8, .depth_buffer = true, .samples = kSamples});
+    }
+
+    const View view = camera.at(picture.film_share);
+    const FrameBlock frame = frame_block(settings, stage, shown, view, ground_height, front);
+    gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());
+    gl.BufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
+    gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer.id());
+    // From below the ground would hide everything.
+    const bool ground = settings.ground && view.eye.y() > ground_height;
+
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    timed("shadow", [&] { draw_shadow(drawables); });
+    timed("depth", [&] { draw_depth(drawables, ground); });
+    timed("visibility", [&] { draw_visibility(); });
+    timed("surfaces", [&] { draw_surfaces(drawables, ground, multisampled ? sampled : plain); });
+    const Target* whole = nullptr;
+    timed("resolve", [&] { whole = &whole_picture(multisampled); });
+    Image image;
+    timed("read back", [&] { image = read_back(*whole); });
+    return image;
+}
+
+Renderer::Renderer(const RenderSettings& settings, const Box& action_bounds, double ground_height,
+                   int threads)
+    : parts_(std::make_unique<Parts>(settings, action_bounds, ground_height, threads)) {}
+
+Renderer::~Renderer() {
+    try {
+        parts_->canvas.make_current();  // another renderer's context would lose its objects
+    } catch (const Error&) {
+        // The context is gone, and with it what it held.
+    }
+}
+
+Image Renderer::draw(const Picture& picture) { return parts_->draw(picture); }
+
+std::string Renderer::renderer_string() const { return parts_->canvas.renderer_string(); }
+
+void Renderer::time_passes(Stopwatch* watch) { parts_->watch = watch; }
+
+}  // namespace swage

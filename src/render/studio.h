@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where lights, floor and shadow map stand for an action of any size, and what the shaders are
+// told of it. Mathematics only.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "render/camera.h"
+
+namespace swage {
+
+// The block Frame of shaders/frame.glsl, in its layout.
+struct FrameBlock {
+    Eigen::Matrix4f clip_from_stage, view_from_stage, stage_from_view, shadow_from_stage;
+    Eigen::Vector4f eye, lens, size, half_size, key, fill, rim, ground, shadow;
+};
+
+inline constexpr int kShadowMapSide = 2048;
+
+// Stage space: the action's centre is the origin, its half diagonal is 1.
+struct Stage {
+    Vec3 center = Vec3::Zero();
+    double radius = 1;
+
+    explicit Stage(const Box& action_bounds);
+    Box box(const Box& world) const;
+    // For a mesh whose positions are given relative to `origin`.
+    Eigen::Matrix4f from_mesh(const Pose& world_from_mesh, const Vec3& origin) const;
+};
+
+// `front` is the azimuth of the film's first view: the lights stand about it and stay in the
+// world. `shown` is the box of what is drawn, never empty.
+FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const Box& shown,
+                       const View& view, double ground_height, double front);
+
+}  // namespace swage

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/targets.h"
+
+#include "base/error.h"
+
+namespace swage {
+
+namespace {
+
+GlHandle texture_of(const Gl& gl, int width, int height, GLenum format, GLenum layout) {
+    GlHandle texture = make_texture(gl);
+    gl.BindTexture(GL_TEXTURE_2D, texture.id());
+    gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, layout, GL_FLOAT,
+                  nullptr);
+    const GLint filter = format == GL_RGBA8 ? GL_LINEAR : GL_NEAREST;
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
+GlHandle buffer_of(const Gl& gl, int width, int height, GLenum format, int samples) {
+    GlHandle buffer = make_renderbuffer(gl);
+    gl.BindRenderbuffer(GL_RENDERBUFFER, buffer.id());
+    if (samples > 0) {
+        gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
+    } else {
+        gl.RenderbufferStorage(GL_RENDERBUFFER, format, width, height);
+    }
+    return buffer;
+}
+
+}  // namespace
+
+void Target::bind(const Gl& gl) const {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+    gl.Viewport(0, 0, width, height);
+}
+
+Target make_target(const Gl& gl, int width, int height, const TargetFormat& format) {
+    Target target;
+    target.width = width;
+    target.height = height;
+    target.framebuffer = make_framebuffer(gl);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.id());
+    if (format.color == 0) {
+        gl.DrawBuffer(GL_NONE);
+        gl.ReadBuffer(GL_NONE);
+    } else if (format.samples > 0) {
+        target.color = buffer_of(gl, width, height, format.color, format.samples);
+        gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                                   target.color.id());
+    } else {
+        target.color = texture_of(gl, width, height, format.color, GL_RGBA);
+        gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+                                target.color.id(), 0);
+    }
+    if (format.depth_texture) {
+        target.depth = texture_of(gl, width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT);
+        gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D,
+                                target.depth.id(), 0);
+    } else if (format.depth_buffer) {
+        target.depth = buffer_of(gl, width, height, GL_DEPTH_COMPONENT24, format.samples);
+        gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                   target.depth.id());
+    }
+    const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE || gl.GetError() == GL_OUT_OF_MEMORY) {
+        fail(ExitCode::output, "OpenGL cannot draw pictures of {} x {} pixels here (status {:#x})",
+             width, height, status);
+    }
+    return target;
+}
+
+}  // namespace swage

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/texture_cache.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "render/contact_sheet.h"
+#include "render/png.h"
+
+namespace swage {
+
+namespace {
+
+// Larger pictures are shrunk to this; on a still of common size nothing is lost.
+constexpr int kLargestSide = 4096;
+
+GlHandle uploaded(const Gl& gl, const Image& image) {
+    // A texture's first row is the lowest.
+    const std::size_t stride = 3 * static_cast<std::size_t>(image.width);
+    std::vector<std::uint8_t> rows(image.rgb.size());
+    for (int y = 0; y < image.height; ++y) {
+        std::memcpy(&rows[static_cast<std::size_t>(image.height - 1 - y) * stride],
+                    image.pixel(0, y), stride);
+    }
+    GlHandle texture = make_texture(gl);
+    gl.BindTexture(GL_TEXTURE_2D, texture.id());
+    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, image.width, image.height, 0, GL_RGB,
+                  GL_UNSIGNED_BYTE, rows.data());
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_REPEAT);
+    gl.GenerateMipmap(GL_TEXTURE_2D);
+    return texture;
+}
+
+}  // namespace
+
+TextureCache::TextureCache(const Gl& gl)
+    : gl_(&gl), white_(uploaded(gl, Image{1, 1, {255, 255, 255}})) {}
+
+GLuint TextureCache::texture(const std::filesystem::path& file) {
+    if (file.empty()) return white_.id();
+    const auto [entry, is_new] = by_name_.try_emplace(file.string());
+    if (is_new) entry->second = loaded(file);
+    return entry->second.id() != 0 ? entry->second.id() : white_.id();
+}
+
+GlHandle TextureCache::loaded(const std::filesystem::path& file) const {
+    try {
+        const Image image = read_image(file);
+        return uploaded(*gl_, thumbnail(image, kLargestSide, kLargestSide));
+    } catch (const Error& error) {
+        log_warning("{}; the surface is drawn in its plain colour", error.what());
+        return {};
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+
+#include "render/camera.h"
+#include "render/studio.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+std::array<Vec3, 8> corners_of(const Box& box) {
+    std::array<Vec3, 8> corner;
+    for (std::size_t i = 0; i < 8; ++i) {
+        corner[i] = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(),
+                     (i & 4 ? box.high : box.low).z()};
+    }
+    return corner;
+}
+
+Eigen::Vector4d clip(const Eigen::Matrix4d& m, const Vec3& p) {
+    return m * Eigen::Vector4d(p.x(), p.y(), p.z(), 1);
+}
+
+// How far the farthest corner reaches in the picture: 1 is the edge.
+double reach(const RenderSettings& settings, const Box& box, const View& view) {
+    const Eigen::Matrix4d m =
+        clip_from_view(lens_of(settings), depth_range(box, view)) * view_from_world(view);
+    double most = 0;
+    for (const Vec3& corner : corners_of(box)) {
+        const Eigen::Vector4d c = clip(m, corner);
+        if (!(c.w() > 0)) return 1e9;
+        most = std::max({most, std::abs(c.x() / c.w()), std::abs(c.y() / c.w())});
+    }
+    return most;
+}
+
+const std::vector<Box> kBoxes = {
+    {{-1, -1, -1}, {1, 1, 1}},
+    {{0, 0, 0}, {10, 0.1, 0.3}},
+    {{1e3, -5, 2}, {1e3 + 1e-3, -4.99, 2.01}},
+    {{-0.2, 0, -4}, {0.2, 7, 4}},
+};
+
+}  // namespace
+
+TEST_CASE("all corners of the action are in the picture, and fill it", "[camera]") {
+    for (const Box& box : kBoxes) {
+        for (const auto& [width, height] : {std::pair(1280, 720), {200, 800}, {500, 500}}) {
+            for (const double azimuth : {0.0, 0.7, 2.5, -1.57}) {
+                for (const double elevation : {-kPi / 2, -0.4, 0.0, 0.35, 1.2, kPi / 2}) {
+                    RenderSettings settings;
+                    settings.width = width;
+                    settings.height = height;
+                    settings.camera = {{0, azimuth, elevation, 1, {}, {}}};
+                    const View view = CameraPath(settings, box).at(0);
+                    CHECK(reach(settings, box, view) == Approx(1 / kFramingMargin).epsilon(1e-6));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("zoom 2 stands twice as near", "[camera]") {
+    const Box box = kBoxes[0];
+    RenderSettings settings;
+    settings.camera = {{0, 0.3, 0.2, 1, {}, {}}};
+    const View one = CameraPath(settings, box).at(0);
+    settings.camera[0].zoom = 2;
+    const View two = CameraPath(settings, box).at(0);
+    CHECK(-one.in_view(box.center()).z() == Approx(-2 * two.in_view(box.center()).z()));
+}
+
+TEST_CASE("azimuth turns from +z toward +x and elevation raises the eye", "[camera]") {
+    CHECK((orbit_rotation(0, 0).col(2) - Vec3(0, 0, 1)).norm() < 1e-12);
+    CHECK((orbit_rotation(kPi / 2, 0).col(2) - Vec3(1, 0, 0)).norm() < 1e-12);
+    CHECK((orbit_rotation(1, kPi / 2).col(2) - Vec3(0, 1, 0)).norm() < 1e-12);
+    for (const double a : {-3.0, 0.0, 1.1}) {
+        for (const double e : {-kPi / 2, -0.5, 0.0, kPi / 2}) {
+            const Mat3 m = orbit_rotation(a, e);
+            CHECK((m * m.transpose() - Mat3::Identity()).norm() < 1e-12);
+            CHECK(m.determinant() == Approx(1));
+            CHECK(std::abs(m.col(0).y()) < 1e-12);  // the horizon is level
+        }
+    }
+}
+
+TEST_CASE("the camera passes through its keys and never overshoots them", "[camera]") {
+    const Box box = kBoxes[0];
+    RenderSettings settings;
+    settings.camera = {
+        {0, 0.0, 0.1, 1, {}, {}}, {0.4, 1.0, 0.1, 2, {}, {}}, {1, 1.2, 0.9, 2, {}, {}}};
+    const CameraPath path(settings, box);
+    const auto azimuth = [&](double share) {
+        const Vec3 back = path.at(share).world_from_view.col(2);
+        return std::atan2(back.x(), back.z());
+    };
+    for (const CameraKey& key : settings.camera) CHECK(azimuth(key.at) == Approx(key.azimuth));
+    double last = -1, greatest_step = 0;
+    for (int i = 0; i <= 1000; ++i) {
+        const double now = azimuth(i / 1000.0);
+        CHECK(now >= last - 1e-12);
+        if (i > 0) greatest_step = std::max(greatest_step, now - last);
+        last = now;
+    }
+    CHECK(greatest_step < 0.006);  // smooth: no jump
+    CHECK(azimuth(-1) == Approx(0).margin(1e-12));
+    CHECK(azimuth(2) == Approx(1.2));
+}
+
+TEST_CASE("an orbit keeps its distance and keeps everything in sight", "[camera]") {
+    const Box box = kBoxes[1];  // a long bar
+    RenderSettings settings;
+    settings.camera = {{0, 0, 0.3, 1, {}, {}}, {1, 2 * kPi, 0.3, 1, {}, {}}};
+    const CameraPath path(settings, box);
+    const double distance = -path.at(0).in_view(box.center()).z();
+    for (int i = 0; i <= 100; ++i) {
+        const View view = path.at(i / 100.0);
+        CHECK(-view.in_view(box.center()).z() == Approx(distance));
+        CHECK(reach(settings, box, view) < 0.95);
+    }
+}
+
+TEST_CASE("an eye and a target are taken as they are, even straight down", "[camera]") {
+    RenderSettings settings;
+    CameraKey key;
+    key.eye = Vec3(1, 5, 2);
+    key.target = Vec3(1, 0, 2);
+    settings.camera = {key};
+    const View view = CameraPath(settings, kBoxes[0]).at(0.5);
+    CHECK((view.eye - *key.eye).norm() < 1e-12);
+    CHECK((view.world_from_view.col(2) - Vec3::UnitY()).norm() < 1e-9);
+    CHECK(view.world_from_view.allFinite());
+    CHECK(look_at({1, 1, 1}, {1, 1, 1}).world_from_view == Mat3::Identity());
+    // The target stands in the middle of the picture.
+    const View slanted = look_at({3, 4, 5}, {-1, 0, 2});
+    const Vec3 t = slanted.in_view({-1, 0, 2});
+    CHECK(std::hypot(t.x(), t.y()) < 1e-12);
+    CHECK(t.z() < 0);
+}
+
+TEST_CASE("depth holds the action, also from inside it", "[camera]") {
+    const Box box = kBoxes[0];
+    for (const double at : {0.0, 0.5, 0.99, 3.0, 50.0}) {
+        const View view = look_at({0, 0, at}, {0, 0, at - 1});
+        const DepthRange depth = depth_range(box, view);
+        CHECK(depth.near > 0);
+        CHECK(depth.near < depth.far);
+        CHECK(depth.far >= at + 1);
+        if (at > 2) CHECK(depth.near <= at - 1);
+    }
+}
+
+TEST_CASE("an empty or flat action still gives a camera", "[camera]") {
+    for (const Box& box : {Box{}, Box{{0, 0, 0}, {0, 0, 0}}, Box{{0, 0, 0}, {1, 0, 1}}}) {
+        const View view = CameraPath(RenderSettings{}, box).at(0);
+        CHECK(view.eye.allFinite());
+        CHECK(view.world_from_view.allFinite());
+    }
+}
+
+TEST_CASE("the shadow map holds the action whatever its size and place", "[studio]") {
+    for (const Box& box : kBoxes) {
+        const RenderSettings settings;
+        const Stage stage(box);
+        const View view = CameraPath(settings, box).at(0);
+        const FrameBlock frame = frame_block(settings, stage, box, view, box.low.y(), 0.6);
+        for (const Vec3& corner : corners_of(stage.box(box))) {
+            const Eigen::Vector4f s =
+                frame.shadow_from_stage * Eigen::Vector4f(static_cast<float>(corner.x()),
+                                                          static_cast<float>(corner.y()),
+                                                          static_cast<float>(corner.z()), 1);
+            CHECK(s.minCoeff() > 0);
+            CHECK(s.head<3>().maxCoeff() < 1);
+        }
+        // Nearer to the light is less deep.
+        const Eigen::Vector4f up = frame.shadow_from_stage * frame.key;
+        CHECK(up.z() < 0);
+    }
+}

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Picture files, sheets and films.
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/process.h"
+#include "render/contact_sheet.h"
+#include "render/film.h"
+#include "render/png.h"
+#include "render/srgb.h"
+#include "tests/catch.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+Image pattern(int width, int height, unsigned seed = 1) {
+    Image image{width, height, {}};
+    for (int i = 0; i < 3 * width * height; ++i) {
+        seed = seed * 1664525u + 1013904223u;
+        image.rgb.push_back(static_cast<std::uint8_t>(seed >> 24));
+    }
+    return image;
+}
+
+Image plain(int width, int height, std::uint8_t value) {
+    return {width, height,
+            std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), value)};
+}
+
+struct Folder {
+    fs::path path = fs::temp_directory_path() / fmt::format("swage_pictures_{}", ::getpid());
+    Folder() { fs::create_directories(path); }
+    ~Folder() { fs::remove_all(path); }
+};
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a PNG read again has the same pixels", "[png]") {
+    const Folder folder;
+    for (const auto& [width, height] : {std::pair(1, 1), {7, 3}, {640, 361}}) {
+        const Image image = pattern(width, height);
+        write_png(folder.path / "a.png", image);
+        const Image again = read_image(folder.path / "a.png");
+        CHECK(again.width == width);
+        CHECK(again.height == height);
+        CHECK((again.rgb == image.rgb));
+        CHECK(encode_png(image) == encode_png(image));
+    }
+    CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);  // no temporary is left
+}
+
+TEST_CASE("a picture that cannot be read says why", "[png]") {
+    const Folder folder;
+    CHECK_THROWS_AS(read_image(folder.path / "none.png"), Error);
+    CHECK_THROWS_AS(read_image(folder.path), Error);
+    std::ofstream(folder.path / "text.png") << "this is no picture";
+    CHECK_THROWS_AS(read_image(folder.path / "text.png"), Error);
+    const std::string whole = encode_png(pattern(64, 64));
+    std::ofstream(folder.path / "half.png", std::ios::binary) << whole.substr(0, whole.size() / 2);
+    CHECK_THROWS_AS(read_image(folder.path / "half.png"), Error);
+    std::ofstream(folder.path / "whole.png", std::ios::binary) << whole;
+    CHECK_THROWS_AS(read_image(folder.path / "whole.png", 63), Error);
+    CHECK_THROWS_AS(encode_png(Image{}), Error);
+}
+
+TEST_CASE("light and bytes turn into each other", "[srgb]") {
+    for (int i = 0; i < 256; ++i) {
+        CHECK(std::lround(255 * srgb_from_linear(linear_from_srgb(i / 255.0))) == i);
+    }
+    CHECK(linear_from_srgb(0.5) == Approx(0.21404).epsilon(1e-4));
+}
+
+TEST_CASE("a plain picture scales to the same colour, the own size to itself", "[scale]") {
+    for (int value = 0; value < 256; ++value) {
+        const Image small = scaled(plain(9, 7, static_cast<std::uint8_t>(value)), 4, 2);
+        CHECK((small.rgb == plain(4, 2, static_cast<std::uint8_t>(value)).rgb));
+    }
+    const Image image = pattern(31, 17);
+    CHECK((scaled(image, 31, 17).rgb == image.rgb));
+}
+
+TEST_CASE("scaling keeps the mean light", "[scale]") {
+    // Black and white stripes give the byte of half the light, not half the byte.
+    Image stripes = plain(64, 64, 0);
+    for (std::size_t i = 0; i < stripes.rgb.size(); ++i) {
+        if (i / 3 % 2 == 0) stripes.rgb[i] = 255;
+    }
+    CHECK((scaled(stripes, 16, 16).rgb == plain(16, 16, 188).rgb));
+    // Also where new pixels straddle old ones.
+    const Image image = pattern(100, 80), small = scaled(image, 37, 23);
+    const auto mean = [](const Image& m) {
+        double sum = 0;
+        for (const auto v : m.rgb) sum += linear_from_srgb(v / 255.0);
+        return sum / static_cast<double>(m.rgb.size());
+    };
+    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));
+}
+
+TEST_CASE("a thumbnail keeps its proportions and is never enlarged", "[scale]") {
+    CHECK(thumbnail(pattern(1280, 720), 320, 320).width == 320);
+    CHECK(thumbnail(pattern(1280, 720), 320, 320).height == 180);
+    CHECK(thumbnail(pattern(10, 300), 100, 100).height == 100);
+    CHECK(thumbnail(pattern(10, 5), 100, 100).width == 10);
+}
+
+TEST_CASE("a contact sheet shows each picture once in its place", "[sheet]") {
+    std::vector<Image> pictures;
+    for (int i = 0; i < 5; ++i) pictures.push_back(plain(8, 6, static_cast<std::uint8_t>(50 * i)));
+    SheetStyle style;
+    style.gap = 2;
+    const Image sheet = contact_sheet(pictures, 3, style);
+    CHECK(sheet.width == 3 * 10 + 2);
+    CHECK(sheet.height == 2 * 8 + 2);
+    CHECK(sheet.pixel(0, 0)[0] == style.paper[0]);
+    for (int i = 0; i < 5; ++i) {
+        const int left = 2 + i % 3 * 10, top = 2 + i / 3 * 8;
+        CHECK(sheet.pixel(left, top)[0] == 50 * i);
+        CHECK(sheet.pixel(left + 7, top + 5)[2] == 50 * i);
+        CHECK(sheet.pixel(left + 8, top)[0] == style.paper[0]);
+    }
+    CHECK(contact_sheet(pictures, 100, style).height == 10);  // no empty columns
+    CHECK(contact_sheet(pictures, 0, style).width == 12);
+    CHECK_THROWS_AS(contact_sheet({}, 3), Error);
+}
+
+TEST_CASE("a film appears under its name when whole, with the same bytes each time", "[film]") {
+    if (!program_exists("ffmpeg")) {
+        WARN("skipped: ffmpeg is not in PATH");
+        return;
+    }
+    const Folder folder;
+    const auto make = [&](const fs::path& file, int width, int height) {
+        Film film(file, width, height, 30);
+        for (unsigned i = 0; i < 12; ++i) film.add(pattern(width, height, i));
+        CHECK_FALSE(fs::exists(file));
+        return film.finish();
+    };
+    CHECK(make(folder.path / "a.mp4", 64, 48));
+    CHECK(make(folder.path / "b.mp4", 64, 48));
+    CHECK(bytes_of(folder.path / "a.mp4") == bytes_of(folder.path / "b.mp4"));
+    CHECK(bytes_of(folder.path / "a.mp4").size() > 1000);
+    CHECK(make(folder.path / "odd.mp4", 33, 17));
+    CHECK(make(folder.path / "dot.mp4", 1, 1));
+    CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 4);
+}
+
+TEST_CASE("a film that cannot be made is a warning and leaves nothing behind", "[film]") {
+    const Folder folder;
+    {
+        Film film(folder.path / "no_such_folder/a.mp4", 64, 48, 30);
+        for (unsigned i = 0; i < 200; ++i) film.add(pattern(64, 48, i));
+        CHECK_FALSE(film.finish());
+    }
+    {
+        Film unfinished(folder.path / "b.mp4", 64, 48, 30);
+        unfinished.add(pattern(64, 48));
+    }
+    {
+        Film empty(folder.path / "c.mp4", 64, 48, 30);
+        CHECK_FALSE(empty.finish());
+    }
+    const std::string path = std::getenv("PATH");
+    ::setenv("PATH", folder.path.c_str(), 1);
+    {
+        Film film(folder.path / "d.mp4", 64, 48, 30);
+        film.add(pattern(64, 48));
+        CHECK_FALSE(film.finish());
+    }
+    ::setenv("PATH", path.c_str(), 1);
+    CHECK(fs::is_empty(folder.path));
+    Film film(folder.path / "e.mp4", 64, 48, 30);
+    CHECK_THROWS_AS(film.add(pattern(48, 64)), Error);
+}

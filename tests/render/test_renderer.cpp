@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures are compared with tolerance: their bytes differ between processors and versions of Mesa.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "base/error.h"
+#include "geometry/shape.h"
+#include "render/draw_mesh.h"
+#include "render/png.h"
+#include "render/renderer.h"
+#include "render/srgb.h"
+#include "tests/catch.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+RenderSettings small_picture() {
+    RenderSettings settings;
+    settings.width = 160;
+    settings.height = 120;
+    settings.camera[0].elevation = 0.6;
+    return settings;
+}
+
+const Box kAction = {{-1, 0, -1}, {1, 1, 1}};
+
+SurfaceMaterial colored(const Vec3& color) {
+    SurfaceMaterial material;
+    material.color = color;
+    return material;
+}
+
+TriMesh box_mesh(double side) { return surface_of(BoxShape{Vec3::Constant(side), 0.02 * side}); }
+
+// A square in the plane z = 0 that faces +z, with texture coordinates 0 to 1.
+TriMesh square(double side) {
+    TriMesh mesh;
+    const double h = 0.5 * side;
+    mesh.position = {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
+    mesh.triangle = {{0, 1, 2}, {0, 2, 3}};
+    mesh.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.triangle_uv = mesh.triangle;
+    return mesh;
+}
+
+double brightness(const Image& image, int x, int y) {
+    const std::uint8_t* p = image.pixel(x, y);
+    return (p[0] + p[1] + p[2]) / 3.0;
+}
+
+double mean_difference(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.rgb.size(); ++i) sum += std::abs(a.rgb[i] - b.rgb[i]);
+    return sum / static_cast<double>(a.rgb.size());
+}
+
+Image drawn(const RenderSettings& settings, const std::vector<DrawItem>& items, double ground = 0,
+            const Box& action = kAction) {
+    Renderer renderer(settings, action, ground);
+    return renderer.draw({items, 0});
+}
+
+bool can_draw(GlProviderKind kind) {
+    RenderSettings settings = small_picture();
+    settings.gl = kind;
+    try {
+        Renderer renderer(settings, kAction, 0);
+        return true;
+    } catch (const Error& error) {
+        WARN("skipped: " << error.what());
+        return false;
+    }
+}
+
+}  // namespace
+
+TEST_CASE("OSMesa and EGL draw the same picture", "[renderer]") {
+    if (!can_draw(GlProviderKind::osmesa) || !can_draw(GlProviderKind::egl)) return;
+    RenderSettings settings = small_picture();
+    const TriMesh box = box_mesh(0.8);
+    const std::vector<DrawItem> items = {
+        {&box, nullptr, {Quat::Identity(), {0, 0.5, 0}}, colored({0.7, 0.2, 0.1})}};
+    settings.gl = GlProviderKind::osmesa;
+    const Image a = drawn(settings, items);
+    settings.gl = GlProviderKind::egl;
+    const Image b = drawn(settings, items);
+    CHECK(mean_difference(a, b) < 0.5);
+}
+
+TEST_CASE("the same picture twice has the same bytes, in any thread", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const TriMesh box = box_mesh(0.8);
+    const std::vector<DrawItem> items = {{&box, nullptr, {Quat::Identity(), {0, 0.5, 0}}, {}}};
+    const Image here = drawn(small_picture(), items);
+    Image there;
+    std::thread([&] { there = drawn(small_picture(), items); }).join();
+    CHECK((here.rgb == there.rgb));
+}
+
+TEST_CASE("a picture of nothing is a smooth backdrop", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    for (const bool ground : {false, true}) {
+        RenderSettings settings = small_picture();
+        settings.ground = ground;
+        const Image image = drawn(settings, {});
+        for (int y = 1; y < image.height; ++y) {
+            for (int x = 1; x < image.width; ++x) {
+                REQUIRE(std::abs(brightness(image, x, y) - brightness(image, x - 1, y)) < 3);
+                REQUIRE(std::abs(brightness(image, x, y) - brightness(image, x, y - 1)) < 4);
+            }
+        }
+    }
+    Renderer nowhere(small_picture(), Box{}, 0);
+    CHECK(nowhere.draw({}).rgb.size() == 160u * 120u * 3u);
+}
+
+TEST_CASE("a body throws a shadow on the ground", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const TriMesh box = box_mesh(0.4);
+    RenderSettings settings = small_picture();
+    settings.camera[0].elevation = 1.2;
+    const Image without = drawn(settings, {});
+    const Image with =
+        drawn(settings, {{&box, nullptr, {Quat::Identity(), {0, 0.2, 0}}, colored({1, 1, 1})}});
+    int darker = 0, brighter_ground = 0;
+    for (int y = 0; y < with.height; ++y) {
+        for (int x = 0; x < with.width; ++x) {
+            const double change = brightness(with, x, y) - brightness(without, x, y);
+            if (change < -25) ++darker;
+            if (change > 1 && (x < 30 || x > 130)) ++brighter_ground;
+        }
+    }
+    CHECK(darker > 100);
+    CHECK(brighter_ground == 0);  // and nothing else changes the ground
+}
+
+TEST_CASE("a texture's colours come through as if the surface had them", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const fs::path file = fs::temp_directory_path() / fmt::format("swage_{}.png", ::getpid());
+    RenderSettings settings = small_picture();
+    settings.camera[0] = {};
+    settings.camera[0].azimuth = 0;
+    settings.camera[0].elevation = 0;
+    const Box action = {{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.1}};
+    for (const std::array<int, 3> srgb :
+         {std::array{200, 60, 20}, {40, 90, 180}, {128, 128, 128}}) {
+        Image texture{16, 16, {}};
+        Vec3 linear;
+        for (int i = 0; i < 3; ++i) {
+            linear[i] = linear_from_srgb(srgb[static_cast<std::size_t>(i)] / 255.0);
+        }
+        for (int i = 0; i < 256; ++i) {
+            for (const int c : srgb) texture.rgb.push_back(static_cast<std::uint8_t>(c));
+        }
+        write_png(file, texture);
+        const TriMesh mesh = square(1);
+        SurfaceMaterial textured = colored({1, 1, 1});
+        textured.texture = file;
+        const Image a = drawn(settings, {{&mesh, nullptr, {}, textured}}, -0.5, action);
+        const Image b = drawn(settings, {{&mesh, nullptr, {}, colored(linear)}}, -0.5, action);
+        for (std::size_t c = 0; c < 3; ++c) {
+            CHECK(std::abs(a.pixel(80, 60)[c] - b.pixel(80, 60)[c]) <= 1);
+        }
+        // Brighter in the texture is brighter in the picture, in the same order.
+        const std::uint8_t* p = a.pixel(80, 60);
+        CHECK((p[0] > p[2]) == (srgb[0] > srgb[2]));
+    }
+    fs::remove(file);
+}
+
+TEST_CASE("a texture stands upright", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const fs::path file = fs::temp_directory_path() / fmt::format("swage_up_{}.png", ::getpid());
+    Image texture{64, 64, {}};  // red over blue
+    for (int i = 0; i < 64 * 64; ++i) {
+        for (const int c : {i < 2048 ? 200 : 0, 0, i < 2048 ? 0 : 200}) {
+            texture.rgb.push_back(static_cast<std::uint8_t>(c));
+        }
+    }
+    write_png(file, texture);
+    RenderSettings settings = small_picture();
+    settings.camera[0].azimuth = settings.camera[0].elevation = 0;
+    const TriMesh mesh = square(1);
+    SurfaceMaterial textured = colored({1, 1, 1});
+    textured.texture = file;
+    const Image image = drawn(settings, {{&mesh, nullptr, {}, textured}}, -0.5,
+                              {{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.1}});
+    CHECK(image.pixel(80, 40)[0] > image.pixel(80, 40)[2] + 50);
+    CHECK(image.pixel(80, 80)[2] > image.pixel(80, 80)[0] + 50);
+    fs::remove(file);
+}
+
+TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const TriMesh mesh = square(1);
+    SurfaceMaterial broken = colored({0.8, 0.3, 0.1});
+    broken.texture = "/no/such/picture.png";
+    const Image a = drawn(small_picture(), {{&mesh, nullptr, {}, broken}});
+    const Image b = drawn(small_picture(), {{&mesh, nullptr, {}, colored({0.8, 0.3, 0.1})}});
+    CHECK((a.rgb == b.rgb));
+}
+
+TEST_CASE("both sides of a surface are lit", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    TriMesh front = square(1), back = front;
+    for (Corners& t : back.triangle) std::swap(t[0], t[1]);
+    back.uv.clear();
+    back.triangle_uv.clear();
+    RenderSettings settings = small_picture();
+    settings.ground = false;
+    settings.camera[0].azimuth = settings.camera[0].elevation = 0;
+    const Box action = {{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.1}};
+    const SurfaceMaterial white = colored({0.9, 0.9, 0.9});
+    const Image a = drawn(settings, {{&front, nullptr, {}, white}}, -1, action);
+    const Image b = drawn(settings, {{&back, nullptr, {}, white}}, -1, action);
+    CHECK(brightness(a, 80, 60) > 150);
+    CHECK(mean_difference(a, b) < 1);
+}
+
+TEST_CASE("colours of positions are shown", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    TriMesh mesh = square(1);
+    mesh.position_color.assign(4, Eigen::Vector3f(0.1f, 0.6f, 0.2f));
+    const Image a = drawn(small_picture(), {{&mesh, nullptr, {}, colored({1, 1, 1})}});
+    mesh.position_color.clear();
+    const Image b = drawn(small_picture(), {{&mesh, nullptr, {}, colored({0.1f, 0.6f, 0.2f})}});
+    CHECK(mean_difference(a, b) < 0.05);
+}
+
+TEST_CASE("given positions are drawn instead of the mesh's own, picture after picture",
+          "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const TriMesh mesh = box_mesh(0.5);
+    Renderer renderer(small_picture(), kAction, 0);
+    const auto picture_at = [&](double x) {
+        const Pose pose{Quat::Identity(), {x, 0.3, 0}};
+        return renderer.draw({{{&mesh, nullptr, pose, {}}}, 0});
+    };
+    std::vector<Vec3> left = mesh.position, right = mesh.position;
+    for (Vec3& p : left) p += Vec3(-0.5, 0.3, 0);
+    for (Vec3& p : right) p += Vec3(0.5, 0.3, 0);
+    const Image a = renderer.draw({{{&mesh, &left, {}, {}}}, 0});
+    CHECK(mean_difference(a, picture_at(-0.5)) < 0.2);
+    const Image b = renderer.draw({{{&mesh, &right, {}, {}}}, 0});
+    CHECK(mean_difference(b, picture_at(0.5)) < 0.2);
+    CHECK(mean_difference(a, b) > 1);
+    // One mesh twice in one picture, at different positions.
+    const Image both = renderer.draw({{{&mesh, &left, {}, {}}, {&mesh, &right, {}, {}}}, 0});
+    CHECK(mean_difference(both, a) > 1);
+    CHECK(mean_difference(both, b) > 1);
+    std::vector<Vec3> too_few(3, Vec3::Zero());
+    CHECK_THROWS_AS(renderer.draw({{{&mesh, &too_few, {}, {}}}, 0}), Error);
+}
+
+TEST_CASE("size and place in the world do not change the picture", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const auto picture = [](double scale, const Vec3& at) {
+        TriMesh mesh = box_mesh(0.8 * scale);
+        for (Vec3& p : mesh.position) p += at + Vec3(0, 0.45 * scale, 0);
+        const Box action = {at + scale * kAction.low, at + scale * kAction.high};
+        return drawn(small_picture(), {{&mesh, nullptr, {}, {}}}, at.y(), action);
+    };
+    const Image a = picture(1, Vec3::Zero());
+    CHECK(mean_difference(a, picture(1e-4, Vec3::Zero())) < 0.2);
+    CHECK(mean_difference(a, picture(1e4, Vec3::Zero())) < 0.2);
+    CHECK(mean_difference(a, picture(1, {1e5, -1e5, 3e4})) < 0.2);
+}
+
+TEST_CASE("the camera's keys move the picture", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const TriMesh mesh = box_mesh(0.6);
+    RenderSettings settings = small_picture();
+    settings.camera = {{0, 0.0, 0.4, 1, {}, {}}, {1, 0.7, 0.4, 1, {}, {}}};
+    Renderer renderer(settings, kAction, 0);
+    const std::vector<DrawItem> items = {{&mesh, nullptr, {Quat::Identity(), {0, 0.3, 0}}, {}}};
+    const Image a = renderer.draw({items, 0}), b = renderer.draw({items, 1});
+    CHECK(mean_difference(a, b) > 0.5);
+    CHECK((renderer.draw({items, 0}).rgb == a.rgb));
+}
+
+TEST_CASE("many triangles are smoothed afterwards and look the same from afar", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const auto sheet = [](int n) {
+        TriMesh mesh;
+        for (int i = 0; i <= n; ++i) {
+            for (int j = 0; j <= n; ++j) mesh.position.push_back({1.0 * i / n, 0.3, 1.0 * j / n});
+        }
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n; ++j) {
+                const int a = i * (n + 1) + j, b = a + n + 1;
+                mesh.triangle.push_back({a, a + 1, b});
+                mesh.triangle.push_back({b, a + 1, b + 1});
+            }
+        }
+        return mesh;
+    };
+    const TriMesh few = sheet(4), many = sheet(400);
+    const Image a = drawn(small_picture(), {{&few, nullptr, {}, {}}});
+    const Image b = drawn(small_picture(), {{&many, nullptr, {}, {}}});
+    CHECK(mean_difference(a, b) < 1);
+}
+
+TEST_CASE("corners that differ become vertices of their own, others are shared", "[renderer]") {
+    TriMesh mesh = square(1);
+    smooth_by_crease_angle(mesh, 1);
+    CHECK(split_corners(mesh).vertex_position.size() == 4);
+    mesh.triangle_uv[1] = {-1, -1, -1};  // a seam along the diagonal
+    const DrawMesh split = split_corners(mesh);
+    CHECK(split.vertex_position.size() == 6);
+    CHECK(split.index.size() == 6);
+    for (std::size_t i = 0; i < 6; ++i) {
+        CHECK(split.vertex_position[split.index[i]] == mesh.triangle[i / 3][i % 3]);
+        CHECK(split.vertex_uv[split.index[i]] == mesh.triangle_uv[i / 3][i % 3]);
+    }
+    mesh.triangle_material = {1, 0};
+    const DrawMesh sorted = split_corners(mesh);
+    REQUIRE(sorted.range.size() == 2);
+    CHECK(sorted.range[0].material == 0);
+    CHECK(sorted.index[0] == 0);
+    CHECK(sorted.vertex_position[sorted.index[1]] == mesh.triangle[1][1]);
+}
