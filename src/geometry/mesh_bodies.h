@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Closed surfaces among each other: which is inside which, which way they face, where they cross.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+// Parts connected through shared edges, numbered by their first triangle; one number a triangle.
+std::vector<int> shells_of(const TriMesh& mesh);
+
+// For closed, oriented shells: turns bodies outward (with all that is inside them, so that a cavity
+// stays one), leaves out a body inside another of the same sense, unites bodies that cross. Adds a
+// sentence to `account` for each kind of change. False when crossing bodies could not be united.
+bool settle_bodies(TriMesh& mesh, std::vector<std::string>& account);
+
+}  // namespace swage

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Repair of surfaces: from duplicates to holes. What bodies do to each other is in mesh_bodies.cpp.
+#include "geometry/mesh_repair.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
+#include "geometry/mesh_bodies.h"
+#include "geometry/mesh_check.h"
+#include "geometry/mesh_edit.h"
+#include "geometry/mesh_repair_cgal.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kMostFilled =
+    0.4;  // of a shell's area after filling, to count as a body with holes
+constexpr double kMostLeftOut = 0.25;  // of all area, in open sheets
+constexpr double kCreaseAngle = 40 * kPi / 180;
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+double area_of(const TriMesh& mesh, std::size_t t) {
+    const Corners& c = mesh.triangle[t];
+    return 0.5 * (mesh.position[c[1]] - mesh.position[c[0]])
+                     .cross(mesh.position[c[2]] - mesh.position[c[0]])
+                     .norm();
+}
+
+struct EdgeCount {
+    std::size_t odd = 0;         // edges with an odd number of triangles
+    std::size_t unbalanced = 0;  // edges not run along equally often in both directions
+};
+
+EdgeCount count_edges(const TriMesh& mesh) {
+    EdgeCount count;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        int sum = 0;
+        for (const EdgeUse& use : uses) sum += use.forward ? 1 : -1;
+        count.odd += uses.size() % 2;
+        count.unbalanced += sum != 0;
+    });
+    return count;
+}
+
+class Repairer {
+  public:
+    explicit Repairer(const TriMesh& input) : mesh_(input) {}
+
+    Repair run() {
+        if (mesh_.triangle.empty()) fail(ExitCode::mesh, "the mesh has no triangles");
+        drop_repeated_corners();
+        const double size = box_of(mesh_.position).size().norm();
+        const bool encloses = count_edges(mesh_).unbalanced == 0 &&
+                              std::abs(signed_volume(mesh_)) > 1e-12 * size * size * size;
+        if (!encloses) {
+            drop_duplicates();
+            if (count_edges(mesh_).odd > 0) stitch();
+            orient();
+            if (count_edges(mesh_).odd > 0) close_holes();
+        }
+        if (count_edges(mesh_).unbalanced > 0) {
+            wrap("its surface cannot be oriented, or more than two triangles meet at an edge");
+        } else if (!settle_bodies(mesh_, account_)) {
+            wrap("its parts cross each other and cannot be united");
+        }
+        if (!account_.empty()) drop_unused_positions(mesh_);
+        const MeshReport report = check_mesh(mesh_);
+        if (!report.bounds_a_volume())
+            fail(ExitCode::mesh, "no volume can be made of this mesh ({})", summary_line(report));
+        return {std::move(mesh_), std::move(account_)};
+    }
+
+  private:
+    void say(std::string sentence) { account_.push_back(std::move(sentence)); }
+
+    void drop_repeated_corners() {
+        std::vector<char> keep(mesh_.triangle.size(), 1);
+        for (std::size_t t = 0; t < keep.size(); ++t) {
+            const Corners& c = mesh_.triangle[t];
+            keep[t] = c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
+        }
+        const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
+        if (dropped == 0) return;
+        keep_triangles(mesh_, keep);
+        say(fmt::format("left out {} with repeated corners",
+                        counted(dropped, "triangle", "triangles")));
+        if (mesh_.triangle.empty()) fail(ExitCode::mesh, "all triangles have repeated corners");
+    }
+
+    // Of triangles on the same corners one stays; a pair facing both ways is an inner wall and
+    // goes, unless that takes most of the mesh: then every face was given twice.
+    void drop_duplicates() {
+        std::vector<std::pair<Corners, int>> sorted;
+        for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
+            Corners c = mesh_.triangle[t];
+            std::sort(c.begin(), c.end());
+            sorted.emplace_back(c, static_cast<int>(t));
+        }
+        std::sort(sorted.begin(), sorted.end());
+        const auto even = [&](int t) {  // the cyclic order of its corners is ascending
+            const Corners& c = mesh_.triangle[t];
+            return (c[0] < c[1]) + (c[1] < c[2]) + (c[2] < c[0]) == 2;
+        };
+        std::vector<char> without_walls(mesh_.triangle.size(), 1),
+            one_each(mesh_.triangle.size(), 1);
+        std::size_t walls = 0, copies = 0;
+        for (std::size_t begin = 0, end; begin < sorted.size(); begin = end) {
+            end = begin + 1;
+            while (end < sorted.size() && sorted[end].first == sorted[begin].first) ++end;
+            bool both_ways = false;
+            for (std::size_t i = begin + 1; i < end; ++i) {
+                without_walls[sorted[i].second] = one_each[sorted[i].second] = 0;
+                both_ways = both_ways || even(sorted[i].second) != even(sorted[begin].second);
+                ++copies;
+            }
+            if (both_ways) {
+                without_walls[sorted[begin].second] = 0;
+                walls += end - begin;
+            }
+        }
+        if (copies == 0) return;
+        const bool doubled = 2 * walls > mesh_.triangle.size();
+        keep_triangles(mesh_, doubled ? one_each : without_walls);
+        if (doubled || walls == 0)
+            say(fmt::format("left out {}",
+                            counted(copies, "duplicate triangle", "duplicate triangles")));
+        else
+            say(fmt::format("left out {} of inner walls and duplicates",
+                            counted(walls + copies - walls / 2, "triangle", "triangles")));
+    }
+
+    // Merges border vertices that all but coincide.
+    void stitch() {
+        const double diagonal = box_of(mesh_.position).size().norm();
+        std::size_t best_odd = count_edges(mesh_).odd;
+        const std::size_t odd_before = best_odd;
+        TriMesh best;
+        double best_gap = 0;
+        std::size_t best_merged = 0;
+        for (const double share : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
+            TriMesh trial = mesh_;
+            const std::size_t merged = merge_borders(trial, share * diagonal);
+            const std::size_t odd = merged > 0 ? count_edges(trial).odd : best_odd;
+            if (odd >= best_odd) continue;
+            best_odd = odd;
+            best = std::move(trial);
+            best_gap = share * diagonal;
+            best_merged = merged;
+            if (odd == 0) break;
+        }
+        if (best_merged == 0) return;
+        mesh_ = std::move(best);
+        say(fmt::format("stitched {} within {} of another: {} border edges became {}",
+                        counted(best_merged, "vertex", "vertices"), length_text(best_gap),
+                        odd_before, best_odd));
+    }
+
+    static std::size_t merge_borders(TriMesh& mesh, double gap) {
+        std::vector<char> at_border(mesh.position.size(), 0);
+        double shortest = std::numeric_limits<double>::infinity();
+        for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+            const EdgeUse& e = uses[0];
+            if (uses.size() % 2 == 0) return;
+            at_border[e.low] = at_border[e.high] = 1;
+            const double length = (mesh.position[e.low] - mesh.position[e.high]).norm();
+            if (length > gap) shortest = std::min(shortest, length);
+        });
+        if (gap > 0.2 * shortest) return 0;  // would eat detail
+        std::vector<int> border;
+        for (std::size_t i = 0; i < at_border.size(); ++i)
+            if (at_border[i]) border.push_back(static_cast<int>(i));
+        std::sort(border.begin(), border.end(), [&](int a, int b) {
+            const double ax = mesh.position[a].x(), bx = mesh.position[b].x();
+            return ax != bx ? ax < bx : a < b;
+        });
+        DisjointSets same(mesh.position.size());
+        std::size_t merged = 0;
+        for (std::size_t i = 0; i < border.size(); ++i)
+            for (std::size_t j = i + 1; j < border.size(); ++j) {
+                const Vec3 apart = mesh.position[border[j]] - mesh.position[border[i]];
+                if (apart.x() > gap) break;
+                if (apart.norm() > gap || same.root(border[i]) == same.root(border[j])) continue;
+                same.unite(border[i], border[j]);
+                ++merged;
+            }
+        std::vector<char> keep;
+        for (Corners& t : mesh.triangle) {
+            for (int& i : t) i = same.root(i);
+            keep.push_back(t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        }
+        keep_triangles(mesh, keep);
+        return merged;
+    }
+
+    // Turns triangles so that neighbours agree, in each sheet the smaller number of them.
+    void orient() {
+        const std::size_t count = mesh_.triangle.size();
+        struct Link {
+            int from, to;
+            bool agrees;
+        };
+        std::vector<Link> links;
+        for_each_edge(edge_uses(mesh_.triangle, mesh_.position.size()), [&](auto uses) {
+            if (uses.size() != 2) return;
+            const bool agrees = uses[0].forward != uses[1].forward;
+            links.push_back({uses[0].triangle, uses[1].triangle, agrees});
+            links.push_back({uses[1].triangle, uses[0].triangle, agrees});
+        });
+        std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
+            return a.from != b.from ? a.from < b.from : a.to < b.to;
+        });
+        std::vector<std::size_t> first(count + 1, 0);
+        for (const Link& link : links) ++first[link.from + 1];
+        for (std::size_t t = 0; t < count; ++t) first[t + 1] += first[t];
+        std::vector<signed char> turned(count, -1);
+        std::size_t all_turned = 0;
+        std::vector<int> sheet;
+        for (std::size_t seed = 0; seed < count; ++seed) {
+            if (turned[seed] >= 0) continue;
+            sheet.assign(1, static_cast<int>(seed));
+            turned[seed] = 0;
+            std::size_t here = 0;
+            for (std::size_t i = 0; i < sheet.size(); ++i) {
+                here += turned[sheet[i]] == 1;
+                for (std::size_t l = first[sheet[i]]; l < first[sheet[i] + 1]; ++l) {
+                    signed char& other = turned[links[l].to];
+                    if (other >= 0) continue;  // a sheet of one side fails the final check
+                    other = links[l].agrees ? turned[sheet[i]] : 1 - turned[sheet[i]];
+                    sheet.push_back(links[l].to);
+                }
+            }
+            const bool turn_others = 2 * here > sheet.size();
+            for (const int t : sheet)
+                if ((turned[t] == 1) != turn_others) {
+                    flip_triangle(mesh_, static_cast<std::size_t>(t));
+                    ++all_turned;
+                }
+        }
+        if (all_turned > 0)
+            say(fmt::format("turned {} to agree with their neighbours",
+                            counted(all_turned, "triangle", "triangles")));
+    }
+
+    // Border edges of each shell, as outlines that run around the holes.
+    std::vector<std::vector<EdgeUse>> outlines() const {
+        std::vector<EdgeUse> border;
+        for_each_edge(edge_uses(mesh_.triangle, mesh_.position.size()), [&](auto uses) {
+            if (uses.size() == 1) border.push_back(uses[0]);
+        });
+        // A hole's outline runs against the triangles beside it.
+        const auto start = [](const EdgeUse& e) { return e.forward ? e.high : e.low; };
+        const auto goal = [](const EdgeUse& e) { return e.forward ? e.low : e.high; };
+        std::multimap<int, EdgeUse> leaving;
+        for (const EdgeUse& e : border) leaving.emplace(start(e), e);
+        std::vector<std::vector<EdgeUse>> loops;
+        while (!leaving.empty()) {
+            std::vector<EdgeUse> path;
+            std::map<int, std::size_t> visited;  // position: its place in the path
+            for (int at = leaving.begin()->first;;) {
+                const auto next = leaving.find(at);
+                if (next == leaving.end()) break;  // no loop: the border does not close
+                visited[at] = path.size();
+                path.push_back(next->second);
+                leaving.erase(next);
+                at = goal(path.back());
+                const auto seen = visited.find(at);
+                if (seen == visited.end()) continue;
+                const auto from = path.begin() + static_cast<std::ptrdiff_t>(seen->second);
+                loops.emplace_back(from, path.end());
+                for (auto e = from; e != path.end(); ++e) visited.erase(start(*e));
+                path.erase(from, path.end());
+                if (path.empty()) break;
+            }
+        }
+        return loops;
+    }
+
+    void close_holes() {
+        const std::vector<int> shell = shells_of(mesh_);
+        const int shell_count =
+            shell.empty() ? 0 : *std::max_element(shell.begin(), shell.end()) + 1;
+        std::vector<double> area(shell_count, 0), filled(shell_count, 0);
+        std::vector<std::size_t> triangles(shell_count, 0);
+        double all_area = 0;
+        for (std::size_t t = 0; t < shell.size(); ++t) {
+            area[shell[t]] += area_of(mesh_, t);
+            ++triangles[shell[t]];
+        }
+        for (const double a : area) all_area += a;
+        struct Filling {
+            int shell;
+            std::vector<int> place;
+            std::vector<Corners> triangle;
+            std::size_t like;
+        };
+        std::vector<Filling> fillings;
+        for (const auto& loop : outlines()) {
+            Filling filling;
+            filling.shell = shell[loop[0].triangle];
+            filling.like = static_cast<std::size_t>(loop[0].triangle);
+            std::vector<Vec3> point;
+            for (const EdgeUse& e : loop) {
+                filling.place.push_back(e.forward ? e.high : e.low);
+                point.push_back(mesh_.position[filling.place.back()]);
+            }
+            filling.triangle = fill_outline(point);
+            for (const Corners& c : filling.triangle)
+                filled[filling.shell] +=
+                    0.5 * (point[c[1]] - point[c[0]]).cross(point[c[2]] - point[c[0]]).norm();
+            fillings.push_back(std::move(filling));
+        }
+        // A sheet is what would be closed by little less than its own area once more.
+        std::vector<char> is_sheet(shell_count, 0);
+        double sheet_area = 0, worst = 0;
+        std::size_t sheets = 0, sheet_triangles = 0;
+        for (int s = 0; s < shell_count; ++s) {
+            const double share = filled[s] > 0 ? filled[s] / (area[s] + filled[s]) : 0;
+            if (share <= kMostFilled) continue;
+            is_sheet[s] = 1;
+            ++sheets;
+            sheet_triangles += triangles[s];
+            sheet_area += area[s];
+            worst = std::max(worst, share);
+        }
+        if (sheet_area > kMostLeftOut * all_area)
+            fail(ExitCode::mesh,
+                 "an open sheet encloses no volume: closing it would make {:.0f} % of its surface "
+                 "up; give it thickness first (in Blender: the Solidify modifier), or close it",
+                 100 * worst);
+        std::size_t holes = 0, hole_edges = 0, hole_triangles = 0, failed = 0;
+        double hole_area = 0;
+        for (const Filling& f : fillings) {
+            if (is_sheet[f.shell]) continue;
+            if (f.triangle.empty()) {
+                ++failed;
+                continue;
+            }
+            const int group = mesh_.smooth_group_count;
+            if (!mesh_.triangle_smooth.empty())
+                mesh_.smooth_group_count += static_cast<int>(f.place.size());
+            for (const Corners& c : f.triangle) {
+                add_triangle(mesh_, {f.place[c[0]], f.place[c[1]], f.place[c[2]]}, f.like,
+                             {group + c[0], group + c[1], group + c[2]});
+            }
+            ++holes;
+            hole_edges += f.place.size();
+            hole_triangles += f.triangle.size();
+        }
+        for (int s = 0; s < shell_count; ++s)
+            if (!is_sheet[s]) hole_area += filled[s];
+        if (holes > 0)
+            say(fmt::format("closed {} of {} edges in all with {}, {:.2g} % of the surface",
+                            counted(holes, "hole", "holes"), hole_edges,
+                            counted(hole_triangles, "triangle", "triangles"),
+                            100 * hole_area / (all_area + hole_area)));
+        if (failed > 0)
+            say(fmt::format("{} could not be closed", counted(failed, "hole", "holes")));
+        if (sheets == 0) return;
+        std::vector<char> keep(mesh_.triangle.size(), 1);
+        for (std::size_t t = 0; t < shell.size(); ++t) keep[t] = !is_sheet[shell[t]];
+        keep_triangles(mesh_, keep);
+        say(fmt::format("left out {} of {}, {:.2g} % of the surface: they enclose nothing",
+                        counted(sheets, "open sheet", "open sheets"),
+                        counted(sheet_triangles, "triangle", "triangles"),
+                        100 * sheet_area / all_area));
+    }
+
+    void wrap(const char* reason) {
+        const double diagonal = box_of(mesh_.position).size().norm();
+        const double offset = diagonal / 600;
+        for (const double alpha : {diagonal / 100, diagonal / 20}) {
+            log_info("repair: wrapping {} anew, openings below {} are closed",
+                     counted(mesh_.triangle.size(), "triangle", "triangles"), length_text(alpha));
+            TriMesh wrapped = wrap_triangles(mesh_, alpha, offset);
+            const double volume = signed_volume(wrapped), area = surface_area(wrapped);
+            // Twice the volume by the area is about the wall's thickness: of a bare sheet, the
+            // offset to both sides.
+            if (!(volume > 0) || 2 * volume / area < 3 * (2 * offset)) continue;
+            const bool one_material = mesh_.material.size() == 1;
+            if (one_material) {
+                wrapped.material = mesh_.material;
+                wrapped.material[0].texture.clear();
+                wrapped.material[0].embedded_texture.reset();
+                wrapped.triangle_material.assign(wrapped.triangle.size(), 0);
+            }
+            smooth_by_crease_angle(wrapped, kCreaseAngle);
+            say(fmt::format(
+                "wrapped the whole mesh anew, {} outside of it and over openings below {}, because "
+                "{}: {} became {}; texture coordinates, {}parts and vertex colours are lost",
+                length_text(offset), length_text(alpha), reason,
+                counted(mesh_.triangle.size(), "triangle", "triangles"), wrapped.triangle.size(),
+                one_material ? "" : "materials, "));
+            mesh_ = std::move(wrapped);
+            return;
+        }
+        fail(ExitCode::mesh,
+             "no volume can be made of this mesh: {}, and a wrap around it encloses only its thin "
+             "sheets; close its openings or give it thickness first",
+             reason);
+    }
+
+    TriMesh mesh_;
+    std::vector<std::string> account_;
+};
+
+}  // namespace
+
+Repair repair_mesh(const TriMesh& mesh) { return Repairer(mesh).run(); }
+
+}  // namespace swage

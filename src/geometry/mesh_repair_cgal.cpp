@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sources: hole filling, P. Liepa, "Filling holes in meshes", 2003; wrapping, C. Portaneri et al.,
+// "Alpha wrapping with an offset", 2022; both as in CGAL 5.5.
+#include "geometry/mesh_repair_cgal.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/intersection.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/alpha_wrap_3.h>
+
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <memory>
+
+#include "geometry/polygon.h"
+
+namespace swage {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Surface = CGAL::Surface_mesh<Point>;
+using Face = Surface::Face_index;
+
+// Beyond it, the search for the best filling takes too long; ears do.
+constexpr std::size_t kLargestOutline = 1000;
+
+Point to_cgal(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+// False when the triangles do not form a manifold.
+bool to_surface(const TriMesh& mesh, Surface& surface) {
+    surface.reserve(static_cast<unsigned>(mesh.position.size()),
+                    static_cast<unsigned>(3 * mesh.triangle.size()),
+                    static_cast<unsigned>(mesh.triangle.size()));
+    for (const Vec3& p : mesh.position) surface.add_vertex(to_cgal(p));
+    for (const Corners& t : mesh.triangle)
+        if (surface.add_face(Surface::Vertex_index(static_cast<unsigned>(t[0])),
+                             Surface::Vertex_index(static_cast<unsigned>(t[1])),
+                             Surface::Vertex_index(static_cast<unsigned>(t[2]))) ==
+            Surface::null_face())
+            return false;
+    return true;
+}
+
+TriMesh from_surface(const Surface& surface) {
+    TriMesh mesh;
+    std::map<Surface::Vertex_index, int> place;
+    for (const auto v : surface.vertices()) {
+        place[v] = static_cast<int>(mesh.position.size());
+        const Point& p = surface.point(v);
+        mesh.position.emplace_back(p.x(), p.y(), p.z());
+    }
+    for (const Face f : surface.faces()) {
+        Corners corners{};
+        int k = 0;
+        for (const auto v : surface.vertices_around_face(surface.halfedge(f)))
+            corners[k++] = place.at(v);
+        mesh.triangle.push_back(corners);
+    }
+    return mesh;
+}
+
+// Follows each face through cuts and copies back to the face it came from.
+struct OriginVisitor : CGAL::Polygon_mesh_processing::Corefinement::Default_visitor<Surface> {
+    using Origin = std::map<std::pair<const Surface*, Face>, int>;
+    std::shared_ptr<Origin> origin = std::make_shared<Origin>();
+    int cut = -1;  // origin of the face being cut
+
+    void before_subface_creations(Face face, const Surface& surface) {
+        cut = origin->at({&surface, face});
+    }
+    void after_subface_created(Face face, const Surface& surface) {
+        (*origin)[{&surface, face}] = cut;
+    }
+    void after_face_copy(Face from, const Surface& source, Face to, const Surface& target) {
+        (*origin)[{&target, to}] = origin->at({&source, from});
+    }
+};
+
+}  // namespace
+
+std::vector<Corners> fill_outline(const std::vector<Vec3>& outline) {
+    std::vector<Corners> triangle;
+    if (outline.size() <= kLargestOutline) {
+        std::vector<Point> points;
+        for (const Vec3& p : outline) points.push_back(to_cgal(p));
+        std::vector<CGAL::Triple<int, int, int>> filling;
+        try {
+            CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points,
+                                                                     std::back_inserter(filling));
+        } catch (const std::exception&) {
+            filling.clear();
+        }
+        for (const auto& t : filling) {
+            Corners corners = {t.first, t.second, t.third};
+            std::sort(corners.begin(), corners.end());  // the sense of the outline
+            triangle.push_back(corners);
+        }
+    }
+    if (triangle.size() + 2 == outline.size()) return triangle;
+    triangle.clear();
+    if (!cut_polygon(outline, triangle)) triangle.clear();
+    return triangle;
+}
+
+TriMesh wrap_triangles(const TriMesh& mesh, double alpha, double offset) {
+    std::vector<Point> points;
+    for (const Vec3& p : mesh.position) points.push_back(to_cgal(p));
+    Surface wrap;
+    CGAL::alpha_wrap_3(points, mesh.triangle, alpha, offset, wrap);
+    return from_surface(wrap);
+}
+
+bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+    namespace pmp = CGAL::Polygon_mesh_processing;
+    Surface first, second, both;
+    if (!to_surface(a, first) || !to_surface(b, second)) return false;
+    OriginVisitor visitor;
+    for (const Face f : first.faces()) (*visitor.origin)[{&first, f}] = static_cast<int>(f.idx());
+    for (const Face f : second.faces())
+        (*visitor.origin)[{&second, f}] =
+            static_cast<int>(a.triangle.size()) + static_cast<int>(f.idx());
+    try {
+        if (!pmp::corefine_and_compute_union(
+                first, second, both,
+                pmp::parameters::visitor(visitor).throw_on_self_intersection(true)))
+            return false;
+    } catch (const std::exception&) {
+        return false;
+    }
+    result = from_surface(both);
+    origin.clear();
+    for (const Face f : both.faces()) {
+        const auto at = visitor.origin->find({&both, f});
+        if (at == visitor.origin->end()) return false;
+        origin.push_back(at->second);
+    }
+    return true;
+}
+
+bool surfaces_meet(const TriMesh& a, const TriMesh& b) {
+    Surface first, second;
+    if (!to_surface(a, first) || !to_surface(b, second)) return true;
+    return CGAL::Polygon_mesh_processing::do_intersect(first, second);
+}
+
+}  // namespace swage

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The two repairs that CGAL does; kept apart because its headers take a minute to compile.
+#pragma once
+
+#include <vector>
+
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+// Triangles over an outline of points that close it, turning with the outline; indices into
+// `outline`. Empty when no triangulation was found.
+std::vector<Corners> fill_outline(const std::vector<Vec3>& outline);
+
+// A closed surface around the triangles that enters no opening narrower than `alpha` [m] and keeps
+// `offset` [m] away from them. Positions and triangles only.
+TriMesh wrap_triangles(const TriMesh& mesh, double alpha, double offset);
+
+// The union of two closed, oriented surfaces that cross. `origin` tells for each triangle of the
+// result which triangle it is a piece of: t of a, or a.triangle.size() + t of b. False when it
+// cannot be made (a surface that crosses itself, say). Positions and triangles only.
+bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
+
+// Whether the two surfaces cross or touch.
+bool surfaces_meet(const TriMesh& a, const TriMesh& b);
+
+}  // namespace swage

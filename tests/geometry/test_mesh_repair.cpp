@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "geometry/mesh_check.h"
+#include "geometry/mesh_edit.h"
+#include "geometry/mesh_repair.h"
+#include "tests/catch.h"
+#include "tests/geometry/mesh_fixtures.h"
+
+using namespace swage;
+using fixtures::append;
+using fixtures::ball_mesh;
+using fixtures::box_mesh;
+
+namespace {
+
+bool told(const Repair& repair, const std::string& what) {
+    for (const std::string& line : repair.account)
+        if (line.find(what) != std::string::npos) return true;
+    for (const std::string& line : repair.account) UNSCOPED_INFO(line);
+    return false;
+}
+
+std::string refusal(const TriMesh& mesh) {
+    try {
+        const Repair repair = repair_mesh(mesh);
+        for (const std::string& line : repair.account) UNSCOPED_INFO(line);
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::mesh);
+        return error.what();
+    }
+    return {};
+}
+
+void drop(TriMesh& mesh, std::initializer_list<int> triangles) {
+    std::vector<char> keep(mesh.triangle.size(), 1);
+    for (const int t : triangles) keep[t] = 0;
+    keep_triangles(mesh, keep);
+}
+
+}  // namespace
+
+TEST_CASE("a good mesh comes out of repair untouched") {
+    TriMesh ball = ball_mesh(10, 0.3);
+    smooth_by_crease_angle(ball, 0.7);
+    const Repair repair = repair_mesh(ball);
+    CHECK(repair.account.empty());
+    CHECK(repair.mesh.triangle == ball.triangle);
+    CHECK(repair.mesh.position == ball.position);
+    CHECK(repair.mesh.triangle_uv == ball.triangle_uv);
+}
+
+TEST_CASE("a hole is filled, and all that stood keeps its attributes") {
+    TriMesh ball = ball_mesh(10, 0.3);
+    smooth_by_crease_angle(ball, 0.7);
+    const double volume = signed_volume(ball);
+    drop(ball, {40, 41, 42, 43, 44, 45});
+    const Repair repair = repair_mesh(ball);
+    CHECK(told(repair, "closed"));
+    CHECK(check_mesh(repair.mesh).bounds_a_volume());
+    CHECK(check_mesh(repair.mesh).manifold);
+    CHECK(signed_volume(repair.mesh) == Approx(volume).epsilon(0.02));
+    const std::size_t kept = ball.triangle.size();
+    REQUIRE(repair.mesh.triangle.size() > kept);
+    for (std::size_t t = 0; t < kept; ++t) {
+        CHECK(repair.mesh.triangle[t] == ball.triangle[t]);
+        CHECK(repair.mesh.triangle_uv[t] == ball.triangle_uv[t]);
+    }
+    CHECK(repair.mesh.triangle_material.size() == repair.mesh.triangle.size());
+    CHECK(repair.mesh.triangle_smooth.size() == repair.mesh.triangle.size());
+    for (const Vec3& n : smooth_normals(repair.mesh, repair.mesh.position))
+        CHECK(n.norm() == Approx(1));
+}
+
+TEST_CASE("an open box is closed to its true volume; two holes are two fillings") {
+    TriMesh box = box_mesh({0, 0, 0}, {1, 2, 3});
+    drop(box, {0, 1, 2, 3});  // bottom and top
+    const Repair repair = repair_mesh(box);
+    CHECK(told(repair, "closed 2 holes of 8 edges in all with 4 triangles"));
+    CHECK(signed_volume(repair.mesh) == Approx(6));
+}
+
+TEST_CASE("triangles turned at random are turned back") {
+    TriMesh ball = ball_mesh(12, 1);
+    const double volume = signed_volume(ball);
+    std::mt19937 random(7);
+    for (std::size_t t = 0; t < ball.triangle.size(); ++t)
+        if (random() % 2) flip_triangle(ball, t);
+    const Repair repair = repair_mesh(ball);
+    CHECK(told(repair, "agree with their neighbours"));
+    CHECK(signed_volume(repair.mesh) == Approx(volume));
+    // Texture coordinates turned with their triangles.
+    for (std::size_t t = 0; t < repair.mesh.triangle.size(); ++t)
+        CHECK(repair.mesh.triangle[t] == repair.mesh.triangle_uv[t]);
+}
+
+TEST_CASE("a soup of unwelded, slightly jittered triangles is stitched") {
+    const TriMesh ball = ball_mesh(8, 1);
+    TriMesh soup;
+    std::mt19937 random(3);
+    const auto jitter = [&] { return 1e-7 * (random() / 4294967296.0 - 0.5); };
+    for (const Corners& t : ball.triangle) {
+        const int base = static_cast<int>(soup.position.size());
+        for (const int i : t)
+            soup.position.push_back(ball.position[i] + Vec3(jitter(), jitter(), jitter()));
+        soup.triangle.push_back({base, base + 1, base + 2});
+    }
+    const Repair repair = repair_mesh(soup);
+    CHECK(told(repair, "stitched"));
+    CHECK(check_mesh(repair.mesh).manifold);
+    CHECK(signed_volume(repair.mesh) == Approx(signed_volume(ball)));
+}
+
+TEST_CASE("an inside-out body is turned, and said") {
+    const Repair repair = repair_mesh(box_mesh({0, 0, 0}, {1, 1, 1}, true));
+    CHECK(told(repair, "inside out"));
+    CHECK(signed_volume(repair.mesh) == Approx(1));
+}
+
+TEST_CASE("a cavity stays a cavity; a hollow body inside out is turned with it") {
+    TriMesh hollow = box_mesh({0, 0, 0}, {3, 3, 3});
+    append(hollow, box_mesh({1, 1, 1}, {2, 2, 2}, true));
+    const Repair good = repair_mesh(hollow);
+    CHECK(good.account.empty());
+    CHECK(signed_volume(good.mesh) == Approx(26));
+
+    TriMesh inverted = box_mesh({0, 0, 0}, {3, 3, 3}, true);
+    append(inverted, box_mesh({1, 1, 1}, {2, 2, 2}));
+    const Repair turned = repair_mesh(inverted);
+    CHECK(told(turned, "inside out"));
+    CHECK(signed_volume(turned.mesh) == Approx(26));
+
+    // An island in the cavity is matter again.
+    append(hollow, box_mesh({1.25, 1.25, 1.25}, {1.75, 1.75, 1.75}));
+    const Repair island = repair_mesh(hollow);
+    CHECK(island.account.empty());
+    CHECK(signed_volume(island.mesh) == Approx(26.125));
+}
+
+TEST_CASE("a body inside another of the same sense does not count twice") {
+    TriMesh mesh = box_mesh({0, 0, 0}, {3, 3, 3});
+    append(mesh, box_mesh({1, 1, 1}, {2, 2, 2}));
+    const Repair repair = repair_mesh(mesh);
+    CHECK(told(repair, "counted twice"));
+    CHECK(signed_volume(repair.mesh) == Approx(27));
+}
+
+TEST_CASE("two bodies apart stay as they are; one inside out is turned") {
+    TriMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+    append(mesh, box_mesh({2, 0, 0}, {4, 1, 1}));
+    CHECK(repair_mesh(mesh).account.empty());
+    append(mesh, box_mesh({5, 0, 0}, {6, 1, 1}, true));
+    const Repair repair = repair_mesh(mesh);
+    CHECK(told(repair, "turned 1 of 3 bodies"));
+    CHECK(signed_volume(repair.mesh) == Approx(4));
+}
+
+TEST_CASE("crossing bodies are united to their true volume and keep their looks") {
+    // Two crossing bars: neither has a vertex inside the other.
+    TriMesh bars = box_mesh({-3, -0.5, -0.5}, {3, 0.5, 0.5});
+    append(bars, box_mesh({-0.4, -3, -0.4}, {0.4, 3, 0.4}));
+    bars.material.resize(2);
+    bars.triangle_material.assign(12, 0);
+    bars.triangle_material.resize(24, 1);
+    for (const Vec3& p : bars.position) bars.uv.emplace_back(p.x(), p.y() + p.z());
+    bars.triangle_uv = bars.triangle;
+    const Repair repair = repair_mesh(bars);
+    CHECK(told(repair, "united 2 crossing bodies"));
+    CHECK(signed_volume(repair.mesh) == Approx(6 + 0.64 * 6 - 0.64));
+    CHECK(check_mesh(repair.mesh).manifold);
+    REQUIRE(repair.mesh.triangle_uv.size() == repair.mesh.triangle.size());
+    REQUIRE(repair.mesh.triangle_material.size() == repair.mesh.triangle.size());
+    for (std::size_t t = 0; t < repair.mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {  // a linear map stays linear through the cut
+            const Vec3& p = repair.mesh.position[repair.mesh.triangle[t][k]];
+            const Vec2& uv = repair.mesh.uv[repair.mesh.triangle_uv[t][k]];
+            CHECK((uv - Vec2(p.x(), p.y() + p.z())).norm() < 1e-9);
+        }
+}
+
+TEST_CASE("bodies that share a face or a corner are left as they are") {
+    // Welded: the inner wall is there twice, once each way.
+    TriMesh pair = box_mesh({0, 0, 0}, {1, 1, 1});
+    TriMesh next = box_mesh({1, 0, 0}, {2, 1, 1});
+    const int match[8] = {1, -1, 3, -1, 5, -1, 7, -1};
+    std::vector<int> place(8);
+    for (int i = 0; i < 8; ++i) {
+        place[i] = match[i] >= 0 ? match[i] : static_cast<int>(pair.position.size());
+        if (match[i] < 0) pair.position.push_back(next.position[i]);
+    }
+    for (const Corners& t : next.triangle)
+        pair.triangle.push_back({place[t[0]], place[t[1]], place[t[2]]});
+    const Repair repair = repair_mesh(pair);
+    CHECK(repair.account.empty());
+    CHECK(signed_volume(repair.mesh) == Approx(2));
+}
+
+TEST_CASE("every face given twice, back to back, becomes one closed surface") {
+    TriMesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+    const TriMesh back = box_mesh({0, 0, 0}, {1, 1, 1}, true);
+    box.triangle.insert(box.triangle.end(), back.triangle.begin(), back.triangle.end());
+    const Repair repair = repair_mesh(box);
+    CHECK(told(repair, "duplicate"));
+    CHECK(signed_volume(repair.mesh) == Approx(1));
+}
+
+TEST_CASE("an open sheet is refused with what to do; beside a body it is left out") {
+    TriMesh sheet;
+    for (int y = 0; y <= 10; ++y)
+        for (int x = 0; x <= 10; ++x)
+            sheet.position.emplace_back(0.1 * x, 0.1 * y, 0.02 * std::sin(0.5 * x));
+    for (int y = 0; y < 10; ++y)
+        for (int x = 0; x < 10; ++x) {
+            const int a = 11 * y + x;
+            sheet.triangle.push_back({a, a + 1, a + 12});
+            sheet.triangle.push_back({a, a + 12, a + 11});
+        }
+    CHECK(refusal(sheet).find("thickness") != std::string::npos);
+
+    TriMesh both = box_mesh({0, 0, -5}, {3, 3, -2});
+    append(both, sheet);
+    const Repair repair = repair_mesh(both);
+    CHECK(told(repair, "left out 1 open sheet"));
+    CHECK(signed_volume(repair.mesh) == Approx(27));
+    CHECK(repair.mesh.position.size() == 8);  // nothing stray is left to spoil the box
+
+    TriMesh double_sided = sheet;
+    for (Corners t : sheet.triangle) {
+        std::swap(t[0], t[1]);
+        double_sided.triangle.push_back(t);
+    }
+    CHECK(refusal(double_sided).find("thickness") != std::string::npos);
+    CHECK(!refusal(TriMesh{}).empty());
+}
+
+TEST_CASE("what cannot be oriented is wrapped as a last resort, and its losses named") {
+    set_log_level(LogLevel::quiet);
+    // A ball with a fin: three triangles at the fin's root.
+    TriMesh ball = ball_mesh(12, 1);
+    const Corners root = ball.triangle[50];
+    ball.position.push_back(1.2 * ball.position[root[0]]);
+    const int tip = static_cast<int>(ball.position.size()) - 1;
+    ball.triangle.push_back({root[0], root[1], tip});
+    ball.triangle_uv.push_back({0, 0, 0});
+    ball.triangle_material.push_back(0);
+    const Repair repair = repair_mesh(ball);
+    set_log_level(LogLevel::normal);
+    CHECK(told(repair, "wrapped"));
+    CHECK(told(repair, "are lost"));
+    CHECK(check_mesh(repair.mesh).bounds_a_volume());
+    CHECK(signed_volume(repair.mesh) == Approx(4.1).epsilon(0.05));
+    CHECK(repair.mesh.triangle_uv.empty());
+}
+
+TEST_CASE("random damage is either repaired to a closed volume or refused") {
+    set_log_level(LogLevel::quiet);
+    std::mt19937 random(11);
+    int repaired = 0;
+    for (int round = 0; round < 12; ++round) {
+        TriMesh ball = ball_mesh(8, 1);
+        const double volume = signed_volume(ball);
+        std::vector<char> keep(ball.triangle.size(), 1);
+        for (int i = 0; i < 4; ++i) keep[random() % keep.size()] = 0;
+        keep_triangles(ball, keep);
+        for (int i = 0; i < 20; ++i) flip_triangle(ball, random() % ball.triangle.size());
+        try {
+            const Repair repair = repair_mesh(ball);
+            CHECK(check_mesh(repair.mesh).bounds_a_volume());
+            CHECK(signed_volume(repair.mesh) == Approx(volume).epsilon(0.1));
+            CHECK(!repair.account.empty());
+            ++repaired;
+        } catch (const Error&) {
+        }
+    }
+    set_log_level(LogLevel::normal);
+    CHECK(repaired == 12);
+}
