@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The machine files that swage ships do what they say (S2.13 to S2.15).
+#include <algorithm>
+
+#include "machines/machine.h"
+#include "machines/touch.h"
+#include "scene/read_machine.h"
+#include "tests/catch.h"
+#include "tests/machines/bodies.h"
+
+using namespace swage;
+
+namespace {
+
+using Given = std::map<std::string, double>;
+
+const std::filesystem::path kMachines = std::filesystem::path(SWAGE_SOURCE_DIR) / "machines";
+
+MachineSpec shipped(const std::string& name) {
+    const MachineReading reading = read_machine(kMachines / (name + ".toml"));
+    for (const Mistake& mistake : reading.mistakes) FAIL_CHECK(mistake.text);
+    REQUIRE(reading.machine);
+    return *reading.machine;
+}
+
+Machine at_bar(const std::string& name, const Given& given = {}, const Aggregate& body = bar()) {
+    return build_machine(shipped(name), given, place_work_frame(body, "auto", "auto"), body);
+}
+
+int index_of(const std::vector<Tool>& tools, const std::string& name) {
+    const auto found = std::find_if(tools.begin(), tools.end(),
+                                    [&](const Tool& tool) { return tool.name == name; });
+    REQUIRE(found != tools.end());
+    return static_cast<int>(found - tools.begin());
+}
+
+// Of the pose since the start, about the world's z axis.
+double turned(const Pose& start, const Pose& now) {
+    const Vec3 x = (now.rotation * start.rotation.conjugate()) * Vec3::UnitX();
+    return std::atan2(x.y(), x.x());
+}
+
+}  // namespace
+
+TEST_CASE("every shipped machine can be read, and stands at a bar without a doubt") {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(kMachines)) {
+        INFO(entry.path());
+        const Machine machine = at_bar(entry.path().stem().string());
+        for (const std::string& note : machine.notes) FAIL_CHECK(note);
+        CHECK_FALSE(machine.spec.help.empty());
+        for (const ParameterSpec& parameter : machine.spec.parameter) {
+            CHECK_FALSE(parameter.help.empty());
+            CHECK_FALSE(parameter.low.empty());
+            CHECK_FALSE(parameter.high.empty());
+        }
+        ++count;
+    }
+    CHECK(count >= 3);
+}
+
+TEST_CASE("the bender's pushers turn about the support by half the angle each, and open again") {
+    for (const double angle : {0.3, kPi / 3, kPi}) {
+        for (const double place : {-0.1, 0.0, 0.2}) {
+            const double radius = 0.07, pusher_radius = 0.03, overhang = 0.15, clearance = 0.04;
+            const Machine machine = at_bar("bend", {{"angle", angle},
+                                                    {"radius", radius},
+                                                    {"pusher_radius", pusher_radius},
+                                                    {"overhang", overhang},
+                                                    {"place", place},
+                                                    {"clearance", clearance},
+                                                    {"press", 0.5},
+                                                    {"hold", 0.1},
+                                                    {"release", 0.3}});
+            const int support = index_of(machine.apparatus.tool, "support");
+            const Drive start = drive_at(machine, 0, 1);
+            const Vec3 axis = start.world_from_tool[support].translation;
+            CHECK((axis - Vec3(place, -0.05 - radius, 0)).norm() < 1e-8);
+            for (const int side : {-1, 1}) {
+                const int pusher = index_of(machine.apparatus.tool, side < 0 ? "left" : "right");
+                const Pose from = start.world_from_tool[pusher];
+                CHECK((from.translation - Vec3(place + side * overhang, 0.05 + pusher_radius, 0))
+                          .norm() < 1e-8);
+                for (const double t : {0.5, 0.55, 0.6}) {
+                    const Drive pressed = drive_at(machine, t, 1);
+                    const Pose to = pressed.world_from_tool[pusher];
+                    CHECK(turned(from, to) == Approx(-side * angle / 2));
+                    const Vec3 arm = Eigen::AngleAxisd(-side * angle / 2, Vec3::UnitZ()) *
+                                     (from.translation - axis);
+                    CHECK((to.translation - axis - arm).norm() < 1e-12);
+                    CHECK((pressed.world_from_tool[support].translation - axis).norm() == 0);
+                }
+                const Pose half = drive_at(machine, 0.25, 1).world_from_tool[pusher];
+                CHECK(turned(from, half) == Approx(-side * angle / 4));
+                const Pose back = drive_at(machine, 0.9, 1).world_from_tool[pusher];
+                CHECK((back.translation - from.translation).norm() < 1e-12);
+                const Pose open = drive_at(machine, 1, 1).world_from_tool[pusher];
+                CHECK((open.translation - from.translation - Vec3(0, clearance, 0)).norm() < 1e-12);
+            }
+        }
+    }
+}
+
+TEST_CASE("a bender that does not release keeps its pushers where they are to the end") {
+    for (const double press : {0.6, 1.0}) {
+        const Machine machine = at_bar("bend", {{"press", press}, {"hold", 0}, {"release", 0}});
+        const Drive pressed = drive_at(machine, press, 1), end = drive_at(machine, 1, 1);
+        for (std::size_t n = 0; n < end.world_from_tool.size(); ++n) {
+            CHECK((pressed.world_from_tool[n].translation - end.world_from_tool[n].translation)
+                      .norm() < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("the bender warns of a work-piece that would slip out, by where its tools stand") {
+    CHECK(at_bar("bend", {{"overhang", 0.3}, {"angle", 2.0}, {"radius", 0.12}}).notes.empty());
+    CHECK(at_bar("bend", {{"overhang", 0.4}, {"angle", 2.0}, {"radius", 0.12}}).notes.size() == 1);
+    CHECK(at_bar("bend", {{"overhang", 0.05}, {"pusher_radius", 0.03}}).notes.size() == 1);
+    for (const double degrees : {30.0, 90.0, 135.0, 180.0}) {
+        CHECK(at_bar("bend", {{"angle", degrees * kPi / 180}}).notes.empty());
+    }
+}
+
+TEST_CASE("the bender's tools follow the body's outline, not its box") {
+    // A bar with a tall block on its left half.
+    std::vector<Vec3> points = box_points({-0.5, -0.05, -0.05}, {0.5, 0.05, 0.05}, {80, 8, 8});
+    const auto block = box_points({-0.5, 0.05, -0.05}, {-0.2, 0.15, 0.05}, {24, 8, 8});
+    points.insert(points.end(), block.begin(), block.end());
+    const Machine machine =
+        at_bar("bend", {{"pusher_radius", 0.03}, {"overhang", 0.3}}, body_of(points, 0.0125));
+    const Drive start = drive_at(machine, 0, 1);
+    const auto height = [&](const char* tool) {
+        return start.world_from_tool[index_of(machine.apparatus.tool, tool)].translation.y();
+    };
+    CHECK(height("left") == Approx(0.15 + 0.03).margin(1e-8));
+    CHECK(height("right") == Approx(0.05 + 0.03).margin(1e-8));
+}
+
+TEST_CASE("the twister's second grip turns by the angle about the bar, the first one stays") {
+    const Aggregate body = bar(2, {1, 2, 3});
+    for (const double angle : {-1.0, kPi / 2, 7.5 * kPi}) {
+        const Machine machine = at_bar("twist", {{"angle", angle}, {"lift", 0.02}}, body);
+        const Drive end = drive_at(machine, 1, 1);
+        const Pose& world_from_work = machine.frame.world_from_work;
+        for (int g = 0; g < 2; ++g) {
+            const Grip& grip = machine.apparatus.grip[g];
+            REQUIRE(grip.point.size() > 200);
+            for (std::size_t n = 0; n < grip.point.size(); n += 7) {
+                const Vec3 from = world_from_work.inverse() * body.surface_position(grip.point[n]);
+                const Vec3 to =
+                    world_from_work.inverse() * (end.world_from_grip[g] * grip.anchor[n]);
+                const Vec3 pivot(0, 0.02, 0);
+                const Vec3 wanted =
+                    g == 0 ? from
+                           : Vec3(pivot + Eigen::AngleAxisd(angle, Vec3::UnitX()) * (from - pivot));
+                CHECK((to - wanted).norm() < 1e-11);
+                CHECK(std::abs(from.x()) >= 0.38 - 1e-9);
+                CHECK((from.x() > 0) == (g == 1));
+            }
+        }
+    }
+}
+
+TEST_CASE("the twister's grips leave the free part free, wherever it lies") {
+    const Aggregate body = bar();
+    const Machine machine =
+        at_bar("twist", {{"grip_length", 0.1}, {"free", 0.3}, {"place", 0.15}}, body);
+    const std::array<std::array<double, 2>, 2> wanted = {{{-0.1, 0.0}, {0.3, 0.4}}};
+    for (int g = 0; g < 2; ++g) {
+        Box held;
+        for (int p : machine.apparatus.grip[g].point) held.grow(body.surface_position(p));
+        CHECK(held.low.x() == Approx(wanted[g][0]).margin(0.0126));
+        CHECK(held.high.x() == Approx(wanted[g][1]).margin(0.0126));
+    }
+}
+
+TEST_CASE("the cutter's edge sweeps the whole section, in one plane through its place") {
+    for (const double tilt : {-0.6, 0.0, 0.4}) {
+        for (const double rake : {-0.3, 0.0, 0.09}) {
+            const double place = 0.1, cutting = 0.7;
+            const Machine machine = at_bar(
+                "cut", {{"tilt", tilt}, {"rake", rake}, {"place", place}, {"cutting", cutting}});
+            CHECK(machine.notes.empty());
+            const Vec3 way(std::sin(tilt), -std::cos(tilt), 0);
+            const Vec3 normal(std::cos(tilt), std::sin(tilt), 0);
+            const std::vector<Vec3>& edge = machine.apparatus.blade[0].edge;
+            // How far along its way the edge is at the height z across, relative to the place.
+            const auto reached = [&](double t, double z) {
+                const Pose pose = drive_at(machine, t, 1).world_from_blade[0];
+                const Vec3 a = pose * edge[0], b = pose * edge[1];
+                CHECK(std::abs(normal.dot(a - Vec3(place, 0, 0))) < 1e-12);
+                CHECK(std::abs(normal.dot(b - Vec3(place, 0, 0))) < 1e-12);
+                CHECK(a.z() < -0.05);
+                CHECK(b.z() > 0.05);
+                const double share = (z - a.z()) / (b.z() - a.z());
+                return way.dot((1 - share) * a + share * b - Vec3(place, 0, 0));
+            };
+            const double section = 0.05 / std::cos(tilt);  // half of its height, in the plane
+            for (const double z : {-0.05, 0.0, 0.05}) {
+                CHECK(reached(0, z) < -section);
+                CHECK(reached(cutting, z) > section);
+                CHECK(reached(1, z) == Approx(reached(cutting, z)));
+                CHECK(reached(0.3, z) > reached(0.2, z));
+            }
+            // The piece is drawn away only when it is free.
+            const Pose start = drive_at(machine, 0, 1).world_from_grip[1];
+            CHECK((drive_at(machine, cutting, 1).world_from_grip[1].translation - start.translation)
+                      .norm() < 1e-12);
+            CHECK((drive_at(machine, 1, 1).world_from_grip[1].translation - start.translation -
+                   Vec3(0.15, 0, 0))
+                      .norm() < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("the cutter warns of a cut that runs into a grip") {
+    CHECK(at_bar("cut", {{"place", 0.36}, {"tilt", 0.5}}).notes.size() == 1);
+}
+
+TEST_CASE("the stretcher draws by the strain of the free part, and returns if asked to") {
+    const Machine machine = at_bar(
+        "stretch", {{"strain", 0.5}, {"grip_length", 0.1}, {"drawing", 0.5}, {"release", 0.25}});
+    const auto drawn = [&](double t) {
+        return (drive_at(machine, t, 1).world_from_grip[1].translation -
+                drive_at(machine, 0, 1).world_from_grip[1].translation)
+            .x();
+    };
+    CHECK(drawn(0.5) == Approx(0.5 * 0.8));
+    CHECK(drawn(0.7) == Approx(0.5 * 0.8));
+    CHECK(drawn(1) == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("the press leaves the part of the height it says between its plates") {
+    const Machine machine = at_bar("press", {{"depth", 0.3}, {"press", 0.5}, {"release", 0.25}});
+    const int anvil = index_of(machine.apparatus.tool, "anvil");
+    const int plate = index_of(machine.apparatus.tool, "plate");
+    const double thick = bounds_of(machine.apparatus.tool[plate].shape).size().y();
+    const auto between_plates = [&](double t) {
+        const Drive drive = drive_at(machine, t, 1);
+        return drive.world_from_tool[plate].translation.y() -
+               drive.world_from_tool[anvil].translation.y() - thick;
+    };
+    CHECK(between_plates(0) == Approx(0.1).margin(1e-8));
+    CHECK(between_plates(0.5) == Approx(0.07).margin(1e-8));
+    CHECK(between_plates(0.75) == Approx(0.07).margin(1e-8));
+    CHECK(between_plates(1) == Approx(0.12).margin(1e-8));
+}
+
+TEST_CASE("the jaws of the wringer press in at first, turn with the bar and open at the end") {
+    const Aggregate body = bar();
+    const double squeeze = 0.002, angle = 1.1;
+    const Machine machine =
+        at_bar("wring", {{"squeeze", squeeze}, {"angle", angle}, {"clearance", 0.03}}, body);
+    REQUIRE(machine.apparatus.tool.size() == 8);
+    // The bar as it would be if it were rigid and its right half turned with the jaws.
+    std::vector<Vec3> turned_bar = surface_positions(body);
+    const Eigen::AngleAxisd turn(angle, Vec3::UnitX());
+    for (Vec3& p : turned_bar) p = p.x() > 0 ? Vec3(turn * p) : p;
+    for (std::size_t n = 0; n < 8; ++n) {
+        const Shape& jaw = machine.apparatus.tool[n].shape;
+        CHECK(nearest_distance(jaw, drive_at(machine, 0, 1).world_from_tool[n],
+                               surface_positions(body)) == Approx(-squeeze).margin(1e-8));
+        CHECK(nearest_distance(jaw, drive_at(machine, 0.8, 1).world_from_tool[n], turned_bar) ==
+              Approx(-squeeze).margin(1e-8));
+        CHECK(nearest_distance(jaw, drive_at(machine, 1, 1).world_from_tool[n], turned_bar) ==
+              Approx(0.03 - squeeze).margin(1e-8));
+    }
+}
