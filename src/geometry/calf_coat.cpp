@@ -37,9 +37,9 @@ double patches(const Vec3& p, const Vec3& mirrored) {
                          0.03 * rise(0.79, 0.84, p.y()) + 0.012 * gradient_noise(22 * p, 17);
     v = mix(Vec3::Constant(v), Vec3::Constant(14 * blaze), head).x();
     // The border is a fringe of hair.
-    v += 0.035 * gradient_noise(Vec3(60, 90, 90).cwiseProduct(p), 21) +
-         0.025 * gradient_noise(Vec3(140, 190, 190).cwiseProduct(p), 22);
-    return rise(-0.03, 0.05, v + 0.02);
+    v += 0.022 * gradient_noise(Vec3(60, 90, 90).cwiseProduct(p), 21) +
+         0.016 * gradient_noise(Vec3(140, 190, 190).cwiseProduct(p), 22);
+    return rise(-0.03, 0.05, v + 0.055);
 }
 
 Vec3 hide(const Vec3& p, const Vec3& mirrored) {
