@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "mold/caps.h"
 #include "mold/prepare.h"
 #include "mold/shares.h"
 #include "mold/surface.h"
@@ -46,27 +47,6 @@ TriMesh block_around(const TriMesh& mesh, double spacing) {
     block.grow(box.center() - half);
     block.grow(box.center() + half);
     return box_surface(block);
-}
-
-// The lower end's corner and the direction of a cell's 12 edges and 12 face diagonals.
-struct CellConnection {
-    int direction, lower_corner;
-    float share;  // of a whole connection
-};
-
-std::vector<CellConnection> cell_connections() {
-    std::vector<CellConnection> all;
-    for (int d = 0; d < kForwardCount; ++d) {
-        for (int c = 0; c < 8; ++c) {
-            bool fits = true;
-            for (int axis = 0; axis < 3; ++axis) {
-                const int end = (c >> axis & 1) + kForward[d][axis];
-                fits = fits && (end == 0 || end == 1);
-            }
-            if (fits) all.push_back({d, c, d < kEdgeCount ? 0.25f : 0.5f});
-        }
-    }
-    return all;
 }
 
 void fill_cells(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
@@ -111,7 +91,6 @@ void place_particles(const MoldFrame& frame, Aggregate& matter) {
 // NOTE: mass goes to the corners in equal parts. Parts by the material's own place would keep its
 // centre of mass, but leave corners of nearly empty cells so light that no step is small enough.
 void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
-    const std::vector<CellConnection> connections = cell_connections();
     const double corner_mass = matter.material.density * frame.cell_volume() / 8;
     auto layer = layers.begin();
     std::size_t in_layer = 0;
@@ -121,9 +100,10 @@ void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Agg
             const double fill = layer->share[in_layer].fill;
             const auto corner = [&](int c) { return run.row[c >> 1] + n + (c & 1); };
             for (int c = 0; c < 8; ++c) matter.particle_mass[corner(c)] += corner_mass * fill;
-            for (const CellConnection& c : connections) {
-                matter.connection[c.direction].weight[corner(c.lower_corner)] +=
-                    c.share * static_cast<float>(fill);
+            for (const auto& [direction, lower] : kCellConnection) {
+                const float share = direction < kEdgeCount ? 0.25f : 0.5f;
+                matter.connection[direction].weight[corner(lower)] +=
+                    share * static_cast<float>(fill);
             }
         }
     }
@@ -140,16 +120,11 @@ double filled_cells(const std::vector<CellLayer>& layers) {
 void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
                    const std::vector<CellLayer>& layers, double lost, const Aggregate& matter) {
     double surplus = 0, deficit = 0;
-    int open_rows = 0;
     for (const CellLayer& layer : layers) {
-        surplus += layer.surplus, deficit += layer.deficit, open_rows += layer.open_rows;
+        surplus += layer.surplus, deficit += layer.deficit;
     }
     const double cell = frame.cell_volume();
     const double filled = filled_cells(layers) * cell;
-    if (open_rows > 0) {
-        log_warning("mold: the surface is open: {} rows of cells were filled by sampling",
-                    open_rows);
-    }
     if (surplus * cell > 1e-6 * volume || deficit * cell > 1e-6 * volume) {
         log_warning(
             "mold: parts of the surface overlap or are turned inside out: {:.4g} m3 filled more "
@@ -226,8 +201,17 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
 Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings) {
     const double spacing = spacing_for(mesh, settings);
     refuse_too_many_cells(mesh, settings);
-    return mold_surface(settings.kind == MoldKind::block ? block_around(mesh, spacing) : mesh,
-                        material, spacing);
+    if (settings.kind == MoldKind::block) {
+        return mold_surface(block_around(mesh, spacing), material, spacing);
+    }
+    const Caps caps = caps_over_holes(mesh);
+    if (caps.apex.empty()) return mold_surface(mesh, material, spacing);
+    const TriMesh closed = with_caps(mesh, caps);
+    log_warning(
+        "mold: the surface is open: {} closed by flat cones of {:.3g} % of its area",
+        caps.apex.size() == 1 ? "one hole was" : fmt::format("{} holes were", caps.apex.size()),
+        100 * (surface_area(closed) / surface_area(mesh) - 1));
+    return mold_surface(closed, material, spacing);
 }
 
 }  // namespace swage

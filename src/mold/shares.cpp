@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sources: the divergence theorem along x; exact moments of polyhedra by their faces, B. Mirtich,
-// "Fast and accurate computation of polyhedral mass properties", 1996. Open surfaces by winding
-// numbers, A. Jacobson, L. Kavan, O. Sorkine-Hornung, "Robust inside-outside segmentation using
-// generalized winding numbers", 2013.
+// "Fast and accurate computation of polyhedral mass properties", 1996.
 //
 // A patch of surface with outward area s along x bounds the material on its low side: within its
 // own row of cells it adds the volume between its cell's low face and itself to its own cell, and
@@ -12,20 +10,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <mutex>
 
 #include "base/parallel.h"
-#include "geometry/triangle_tree.h"
 #include "mold/clip.h"
 
 namespace swage {
 
 namespace {
 
-constexpr double kRoundOff = 1e-9;  // [cells], of a fill
-constexpr double kOpen = 1e-6;      // [cells], of a row's total area along x
-constexpr int kSamples = 4;         // along each side of a cell on an open surface
+constexpr double kRoundOff = 1e-12;  // [cells], of a fill
+// Where a surface crosses itself a little, a cell may hold that much less than nothing or more than
+// all. Such shares are kept, for the total's sake; the negative ones go with the slivers.
+constexpr double kWrinkle = 0.05;
 
 // What the surface inside one cell says about its row, lengths in cells; y and z from the
 // cell's centre, x from its low face.
@@ -49,25 +45,9 @@ int direction_of(const Vec3& normal) {
     return 2 * axis + (normal[axis] < 0);
 }
 
-// Winding numbers on demand: closed meshes never pay for the tree.
-class Winding {
-  public:
-    explicit Winding(const TriMesh& mesh) : mesh_(mesh) {}
-    bool inside(const Vec3& point) {
-        std::call_once(made_, [&] { tree_ = std::make_unique<TriangleTree>(mesh_); });
-        return tree_->winding_number(point) > 0.5;
-    }
-
-  private:
-    const TriMesh& mesh_;
-    std::once_flag made_;
-    std::unique_ptr<TriangleTree> tree_;
-};
-
 class LayerSharer {
   public:
-    LayerSharer(const MoldFrame& frame, int k, Winding& winding)
-        : frame_(frame), k_(k), winding_(winding) {
+    LayerSharer(const MoldFrame& frame, int k) : frame_(frame), k_(k) {
         const std::size_t columns =
             static_cast<std::size_t>(frame.cell_count.x()) * frame.cell_count.y();
         term_of_column_.assign(columns, -1);
@@ -171,73 +151,58 @@ class LayerSharer {
     }
 
     void finish_row(int j, CellLayer& layer) {
-        double total = 0;
-        for (int i = 0; i < frame_.cell_count.x(); ++i) {
-            const int t = term_of_column_[column(i, j)];
-            if (t >= 0) total += term_[t].area;
-        }
-        const bool open = std::abs(total) > kOpen;
-        layer.open_rows += open;
         const std::size_t begin = layer.share.size();
         double area = 0, area_y = 0, area_z = 0;  // of all surface at higher x
-        bool in_gap = false;
-        double gap_fill = 0;
         for (int i = frame_.cell_count.x() - 1; i >= 0; --i) {
             const int t = term_of_column_[column(i, j)];
-            CellShare share{i, j, area, {0, area_y, area_z}};
-            if (open && t >= 0) {
-                sample(share);
-            } else if (open) {  // no surface between neighbours: all inside or all outside
-                if (!in_gap) gap_fill = winding_.inside(center_of(i, j));
-                share = {i, j, gap_fill, Vec3::Zero()};
-            } else if (t >= 0) {
-                const RowTerms& term = term_[t];
-                share.fill += term.fill;
-                share.moment += Vec3(term.fill_x, term.fill_y, term.fill_z);
-                area += term.area, area_y += term.area_y, area_z += term.area_z;
-            } else if (std::abs(area - std::round(area)) < kOpen) {
-                share = {i, j, std::round(area), Vec3::Zero()};
+            if (t < 0) {  // all inside or all outside
+                add_share({i, j, std::round(area), Vec3::Zero()}, layer);
+                continue;
             }
-            in_gap = t < 0;
-            add_share(share, layer);
+            const RowTerms& term = term_[t];
+            const Vec3 moment(term.fill_x, term.fill_y + area_y, term.fill_z + area_z);
+            add_share({i, j, term.fill + area, moment}, layer);
+            area += term.area, area_y += term.area_y, area_z += term.area_z;
         }
         std::reverse(layer.share.begin() + begin, layer.share.end());
     }
 
     static void add_share(CellShare share, CellLayer& layer) {
-        if (share.fill < -kRoundOff) layer.deficit -= share.fill;
-        if (share.fill < 1e-12) return;
-        if (share.fill > 1 + kRoundOff) {
+        if (std::abs(share.fill) < kRoundOff) return;
+        if (share.fill < -kWrinkle) {
+            layer.deficit -= share.fill;
+            return;
+        }
+        if (share.fill > 1 + kWrinkle) {
             layer.surplus += share.fill - 1;
             share = {share.i, share.j, 1, Vec3::Zero()};
         }
-        if (share.fill > 1 - 1e-12) share = {share.i, share.j, 1, Vec3::Zero()};
+        if (std::abs(share.fill - 1) < kRoundOff) share = {share.i, share.j, 1, Vec3::Zero()};
         layer.share.push_back(share);
     }
 
-    Vec3 center_of(int i, int j) const {
-        return frame_.point(Vec3(2 * i + 1, 2 * j + 1, 2 * k_ + 1));
-    }
-
-    void sample(CellShare& share) {
-        int inside = 0;
-        Vec3 moment = Vec3::Zero();
-        for (int n = 0; n < kSamples * kSamples * kSamples; ++n) {
-            const Vec3i at(n % kSamples, n / kSamples % kSamples, n / (kSamples * kSamples));
-            const Vec3 local = (at.cast<double>().array() + 0.5) / kSamples - 0.5;
-            if (!winding_.inside(center_of(share.i, share.j) + local.cwiseProduct(frame_.step)))
-                continue;
-            ++inside;
-            moment += local;
-        }
-        const double sample_share = 1.0 / (kSamples * kSamples * kSamples);
-        share.fill = inside * sample_share;
-        share.moment = moment * sample_share;
-    }
-
+    // Patches that are small beside a quarter of a cell's face go to the largest of their
+    // direction: each point costs contact the same, whatever its area.
     void finish_patches(int i, int j, const RowTerms& term, CellLayer& layer) {
+        const double small = 0.25 * (frame_.spacing * frame_.spacing / 4);
         order_.clear();
-        for (int p = term.first_patch; p >= 0; p = patch_[p].next) order_.push_back(p);
+        std::array<int, 6> largest;
+        largest.fill(-1);
+        for (int p = term.first_patch; p >= 0; p = patch_[p].next) {
+            int& best = largest[patch_[p].key % 6];
+            const auto rank = [&](int q) { return std::pair(patch_[q].area, -patch_[q].key); };
+            if (best < 0 || rank(p) > rank(best)) best = p;
+        }
+        for (int p = term.first_patch; p >= 0; p = patch_[p].next) {
+            const int best = largest[patch_[p].key % 6];
+            if (patch_[p].area < small && best != p) {
+                patch_[best].area += patch_[p].area;
+                patch_[best].moment += patch_[p].moment;
+                patch_[best].normal += patch_[p].normal;
+            } else {
+                order_.push_back(p);
+            }
+        }
         std::sort(order_.begin(), order_.end(),
                   [&](int a, int b) { return patch_[a].key < patch_[b].key; });
         for (int p : order_) {
@@ -248,7 +213,6 @@ class LayerSharer {
 
     const MoldFrame& frame_;
     int k_;
-    Winding& winding_;
     std::vector<int> term_of_column_;  // -1 where no surface passes
     std::vector<RowTerms> term_;
     std::vector<RawPatch> patch_;
@@ -285,10 +249,9 @@ std::vector<CellLayer> share_cells(const TriMesh& mesh, const MoldFrame& frame) 
         for (int k = range.first; k <= range.last; ++k) member[next[k]++] = static_cast<int>(t);
     }
 
-    Winding winding(mesh);
     std::vector<CellLayer> layers(layer_count);
     parallel_for(layer_count, [&](std::size_t k) {
-        LayerSharer sharer(frame, static_cast<int>(k), winding);
+        LayerSharer sharer(frame, static_cast<int>(k));
         for (std::size_t m = begin[k]; m < begin[k + 1]; ++m) {
             const Corners& t = mesh.triangle[member[m]];
             const Vec3 cross = (mesh.position[t[1]] - mesh.position[t[0]])

@@ -12,7 +12,7 @@ namespace swage {
 // A cell that holds material.
 struct CellShare {
     int i, j;
-    double fill;  // share of its volume
+    double fill;  // share of its volume; may pass 0 or 1 a little where the surface crosses itself
     Vec3 moment;  // fill times the centroid, in cells from the cell's centre
 };
 
@@ -30,9 +30,9 @@ struct CellLayer {
     std::vector<SurfacePatch> patch;  // sorted by j, i
     double surplus = 0;               // [cells], filled more than once by overlapping parts
     double deficit = 0;  // [cells], filled less than not at all by parts turned inside out
-    int open_rows = 0;   // rows that the surface does not close
 };
 
+// The surface must be closed (mold/caps.h).
 std::vector<CellLayer> share_cells(const TriMesh& mesh, const MoldFrame& frame);
 
 inline constexpr double kLeastFill = 1e-3;

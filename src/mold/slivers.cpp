@@ -51,7 +51,9 @@ double drop_slivers(std::vector<CellLayer>& layers) {
             taker = other;
             offset = Vec3(di, dj, dk);
         }
-        if (taker == nullptr) {
+        if (share->fill < 0 && (taker == nullptr || taker->fill < -2 * share->fill)) {
+            layers[sliver.k].deficit -= share->fill;
+        } else if (taker == nullptr) {
             lost += share->fill;
         } else {
             taker->fill += share->fill;
