@@ -49,9 +49,10 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_reference) + bytes_of(particle_position) +
                       bytes_of(particle_velocity) + bytes_of(particle_mass) + bytes_of(cell_fill) +
-                      bytes_of(cell_centroid) + bytes_of(surface.corner) +
-                      bytes_of(surface.weight) + bytes_of(surface.area) +
+                      bytes_of(cell_centroid) + bytes_of(cell_hardening) +
+                      bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
+    for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const ConnectionArrays& direction : connection) {
         sum += bytes_of(direction.weight) + bytes_of(direction.plastic);
     }
@@ -100,6 +101,10 @@ std::uint64_t state_hash(const Aggregate& matter) {
         hasher.add(std::span<const float>(direction.weight));
         hasher.add(std::span<const float>(direction.plastic));
     }
+    for (const std::vector<float>& slot : matter.cell_plastic) {
+        hasher.add(std::span<const float>(slot));
+    }
+    hasher.add(std::span<const float>(matter.cell_hardening));
     return hasher.value();
 }
 

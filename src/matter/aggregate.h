@@ -37,6 +37,27 @@ inline constexpr std::array<std::array<int, 3>, kForwardCount> kForward = {{
     {0, -1, 1},
 }};
 
+// The 24 connections that lie in a cell: direction, and the corner at the lower end.
+inline constexpr int kCellConnectionCount = 24;
+struct CellConnection {
+    int direction, corner;
+};
+inline constexpr std::array<CellConnection, kCellConnectionCount> kCellConnection = [] {
+    std::array<CellConnection, kCellConnectionCount> table{};
+    int slot = 0;
+    for (int d = 0; d < kForwardCount; ++d) {
+        for (int corner = 0; corner < 8; ++corner) {
+            bool inside = true;
+            for (int axis = 0; axis < 3; ++axis) {
+                const int at = (corner >> axis & 1) + kForward[d][axis];
+                inside = inside && at >= 0 && at <= 1;
+            }
+            if (inside) table[slot++] = {d, corner};
+        }
+    }
+    return table;
+}();
+
 struct Vec3Array {
     std::vector<double> x, y, z;
 
@@ -91,7 +112,7 @@ struct Lattice {
 // History and strength of the connections of one direction, indexed by the lower particle.
 struct ConnectionArrays {
     std::vector<float> weight;   // share of the full connection's section, 0: none (or no longer)
-    std::vector<float> plastic;  // rest_length - reference_length, over reference_length
+    std::vector<float> plastic;  // rest_length / reference_length - 1
 };
 
 // A point of the body's true surface, carried by a cell: x = sum N_c x_c. What touches and is
@@ -118,6 +139,12 @@ struct Aggregate {
 
     std::vector<float> cell_fill;  // share of the cell's volume inside the mesh, (0, 1]
     std::vector<Eigen::Vector3f> cell_centroid;  // of that share, in the cell, each -0.5 to 0.5
+
+    // Committed logarithmic plastic strain that each cell gives each of its 24 connections, by slot
+    // (kCellConnection), then cell, and the accumulated plastic strain; all empty while nothing has
+    // ever yielded.
+    std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
+    std::vector<float> cell_hardening;
 
     SurfacePoints surface;
 

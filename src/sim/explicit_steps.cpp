@@ -40,6 +40,7 @@ ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
       settings_(settings),
       law_(lattice_law(matter)),
       sweep_(matter),
+      flow_(matter),
       contacts_(matter, apparatus, settings),
       step_(explicit_step(matter, settings)),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
@@ -64,7 +65,8 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
     for (long n = 1; n <= count; ++n) {
         const Drive now = n == count ? to : drive_between(from, to, double(n) / double(count));
         contacts_.begin_move(matter_, before);
-        outcome.damped_work += dt * sweep_.forces(matter_, law_, force_);
+        // Flow is committed after every step, so the committed rest strains are the present ones.
+        outcome.damped_work += dt * sweep_.forces(matter_, law_, nullptr, force_);
         contacts_.add_forces(matter_, now, force_);
         double farthest = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {
@@ -79,7 +81,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
                                  std::abs(x.y[p] - listed.y[p]), std::abs(x.z[p] - listed.z[p])});
         }
         if (!finite(x)) return false;
-        outcome.plastic_work += commit_plastic(matter_, law_);
+        outcome.plastic_work += flow_.commit(matter_);
         contacts_.commit(matter_, now);
         std::vector<LoadSum> load = contacts_.loads(matter_, now);
         add_work(before, now, load_, load, outcome.work);
@@ -99,6 +101,8 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     const Vec3Array start_x = matter_.particle_position, start_v = matter_.particle_velocity;
     const auto start_connections = matter_.connection;
+    const auto start_plastic = matter_.cell_plastic;
+    const auto start_hardening = matter_.cell_hardening;
     const ContactSet start_contacts = contacts_;
     double dt = step_;
     for (;; dt *= 0.5, ++outcome.halvings) {
@@ -108,6 +112,8 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         matter_.particle_position = start_x;
         matter_.particle_velocity = start_v;
         matter_.connection = start_connections;
+        matter_.cell_plastic = start_plastic;
+        matter_.cell_hardening = start_hardening;
         contacts_ = start_contacts;
         if (outcome.halvings == settings_.halving_limit) {
             fail(ExitCode::stopped,

@@ -10,6 +10,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/cell_flow.h"
 #include "sim/contact_set.h"
 #include "sim/lattice_sweep.h"
 #include "sim/move_outcome.h"
@@ -37,6 +38,7 @@ class ExplicitSolver {
     const SimSettings& settings_;
     LatticeLaw law_;
     LatticeSweep sweep_;
+    CellFlow flow_;
     ContactSet contacts_;
     double step_;
     Vec3Array force_;

@@ -5,15 +5,7 @@
 
 #include "base/parallel.h"
 #include "laws/spring_damper.h"
-#include "laws/yield.h"
-
-// One binary for every x86-64: the widest vectors are chosen when it starts. All kernels do the
-// same exact operations lane by lane, so they give the same bytes.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define SWAGE_VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define SWAGE_VECTOR_CLONES
-#endif
+#include "sim/vector_clones.h"
 
 namespace swage {
 
@@ -25,10 +17,9 @@ constexpr std::size_t kSlabParticles = 8192;
 struct SpanArrays {
     const double *x, *y, *z;     // positions of the lower ends
     const double *ux, *uy, *uz;  // of the upper ends
-    const float *weight, *plastic;
+    const float *weight, *rest;
     double inverse_reference;
     double force_scale;  // stiffness * reference_length
-    double yield_strain;
 };
 
 // Force on the lower end of `count` connections.
@@ -38,9 +29,7 @@ void spring_block(const SpanArrays& s, int count, double* __restrict fx, double*
     for (int n = 0; n < count; ++n) {
         const double dx = s.ux[n] - s.x[n], dy = s.uy[n] - s.y[n], dz = s.uz[n] - s.z[n];
         const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-        const double strain = distance * s.inverse_reference - 1.0 - s.plastic[n];
-        const double low = strain < -s.yield_strain ? -s.yield_strain : strain;
-        const double elastic = low > s.yield_strain ? s.yield_strain : low;
+        const double elastic = distance * s.inverse_reference - 1.0 - s.rest[n];
         // Coincident ends have no direction and get no force.
         const double pull = s.force_scale * s.weight[n] * elastic / (distance + 1e-300);
         fx[n] = pull * dx;
@@ -84,20 +73,10 @@ SpanArrays arrays_at(const Vec3Array& a, ParticleId lower, ParticleId upper) {
     return s;
 }
 
-double yield_strain_of(const LatticeLaw& law, int direction) {
-    return direction < kEdgeCount ? law.yield_strain_edge : law.yield_strain_diagonal;
-}
-
 }  // namespace
 
 LatticeLaw lattice_law(const Aggregate& matter) {
-    LatticeLaw law;
-    law.stiffness = lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing);
-    if (std::isfinite(matter.material.yield_stress)) {
-        law.yield_strain_edge = matter.material.yield_stress / matter.material.young_modulus;
-        law.yield_strain_diagonal = kDiagonalYieldShare * law.yield_strain_edge;
-    }
-    return law;
+    return {lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing), 0};
 }
 
 LatticeSweep::LatticeSweep(const Aggregate& matter) {
@@ -124,7 +103,8 @@ LatticeSweep::LatticeSweep(const Aggregate& matter) {
     }
 }
 
-double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3Array& force) {
+double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
+                            Vec3Array& force) {
     const std::size_t particles = matter.particle_count();
     force.resize(particles);
     parallel_for(slab_.size(), [&](std::size_t index) {
@@ -143,10 +123,9 @@ double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, Vec3
                 const ParticleId lower = span.lower + at, upper = span.upper + at;
                 SpanArrays s = arrays_at(matter.particle_position, lower, upper);
                 s.weight = history.weight.data() + lower;
-                s.plastic = history.plastic.data() + lower;
+                s.rest = (rest ? (*rest)[span.direction] : history.plastic).data() + lower;
                 s.inverse_reference = 1.0 / reference;
                 s.force_scale = law.stiffness * reference;
-                s.yield_strain = yield_strain_of(law, span.direction);
                 spring_block(s, count, fx, fy, fz);
                 if (law.damping > 0) {
                     const SpanArrays v = arrays_at(matter.particle_velocity, lower, upper);
@@ -205,29 +184,12 @@ void for_each_connection(const Aggregate& matter, const Act& act) {
 
 }  // namespace
 
-double commit_plastic(Aggregate& matter, const LatticeLaw& law) {
-    if (!law.yields()) return 0;
-    double lost = 0;
-    for_each_connection(
-        matter, [&](int d, ParticleId lower, ParticleId, double reference, double distance) {
-            const double limit = yield_strain_of(law, d);
-            float& plastic = matter.connection[d].plastic[lower];
-            const double strain = distance / reference - 1;
-            const double after = committed_plastic_strain(strain, double(plastic), limit);
-            lost += law.stiffness * matter.connection[d].weight[lower] * reference * reference *
-                    plastic_work(plastic, after, limit);
-            plastic = static_cast<float>(after);
-        });
-    return lost;
-}
-
 double elastic_energy(const Aggregate& matter, const LatticeLaw& law) {
     double sum = 0;
     for_each_connection(
         matter, [&](int d, ParticleId lower, ParticleId, double reference, double distance) {
-            const double strain = returned_strain(distance / reference - 1,
-                                                  double(matter.connection[d].plastic[lower]),
-                                                  yield_strain_of(law, d));
+            const double strain =
+                distance / reference - 1 - double(matter.connection[d].plastic[lower]);
             sum += 0.5 * law.stiffness * matter.connection[d].weight[lower] * reference *
                    reference * strain * strain;
         });

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sweep over all connections of a lattice: forces of the spring-damper law with
-// connection-wise yield.
+// The sweep over all connections of a lattice: forces of the spring-damper law.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -14,11 +12,11 @@ namespace swage {
 struct LatticeLaw {
     double stiffness;    // of a full connection [N/m]
     double damping = 0;  // of a full connection [N s/m]; 0 in quasi-static relaxation
-    double yield_strain_edge = std::numeric_limits<double>::infinity();
-    double yield_strain_diagonal = std::numeric_limits<double>::infinity();
-    bool yields() const { return yield_strain_edge < std::numeric_limits<double>::infinity(); }
 };
 LatticeLaw lattice_law(const Aggregate& matter);
+
+// rest_length / reference_length - 1 of every connection, by direction and lower particle.
+using RestStrains = std::array<std::vector<float>, kForwardCount>;
 
 // The lattice cut into slabs of particles by its size alone, so that the order of all sums, and so
 // every bit of the result, is the same for any number of threads.
@@ -26,10 +24,11 @@ class LatticeSweep {
   public:
     explicit LatticeSweep(const Aggregate& matter);
 
-    // force = sum of the connections' forces on each particle [N]. Plastic strain is returned from
-    // its committed value and left untouched. Velocities are read only when the law has damping.
+    // force = sum of the connections' forces on each particle [N], with the given rest strains or
+    // else the committed ones. Velocities are read only when the law has damping.
     // Returns the power that the dashpots take [W].
-    double forces(const Aggregate& matter, const LatticeLaw& law, Vec3Array& force);
+    double forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
+                  Vec3Array& force);
 
   private:
     struct Slab {
@@ -41,9 +40,6 @@ class LatticeSweep {
     };
     std::vector<Slab> slab_;
 };
-
-// Remembers the plastic flow of a converged state; returns the work it dissipated [J].
-double commit_plastic(Aggregate& matter, const LatticeLaw& law);
 
 // Elastic energy stored in the connections [J].
 double elastic_energy(const Aggregate& matter, const LatticeLaw& law);

@@ -16,6 +16,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/cell_flow.h"
 #include "sim/contact_set.h"
 #include "sim/lattice_sweep.h"
 #include "sim/move_outcome.h"
@@ -55,6 +56,7 @@ class QuasistaticSolver {
     const SimSettings& settings_;
     LatticeLaw law_;
     LatticeSweep sweep_;
+    CellFlow flow_;
     ContactSet contacts_;
     double body_size_;  // [m]
     std::vector<double> lattice_bound_;

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cell_flow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "laws/spring_damper.h"
+#include "laws/yield.h"
+#include "sim/vector_clones.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kBlock = 64;
+constexpr std::size_t kRunsPerChunk = 256;
+constexpr std::size_t kSpansPerChunk = 1024;
+
+double share_of(int slot) {
+    return kCellConnection[slot].direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
+}
+
+ParticleId lower_end(const std::array<ParticleId, 4>& row, int slot) {
+    const int corner = kCellConnection[slot].corner;
+    return row[corner >> 1] + (corner & 1);
+}
+
+SWAGE_VECTOR_CLONES
+void strain_block(const double* x, const double* y, const double* z, const double* ux,
+                  const double* uy, const double* uz, int count, double inverse_reference,
+                  float* __restrict strain) {
+    for (int n = 0; n < count; ++n) {
+        const double dx = ux[n] - x[n], dy = uy[n] - y[n], dz = uz[n] - z[n];
+        const double ratio = std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_reference;
+        strain[n] = static_cast<float>(log_ratio(ratio));
+    }
+}
+
+// theta of consecutive cells: a third of the logarithm of the volume ratio, from the mean
+// deformation gradient.
+struct CellRows {
+    const double* at[3][4];  // component, row: position of the row's low end in the first cell
+};
+SWAGE_VECTOR_CLONES
+void size_block(const CellRows& rows, int count, double inverse_spacing, double* __restrict theta) {
+    const double scale = 0.25 * inverse_spacing;
+    for (int n = 0; n < count; ++n) {
+        double f[3][3];
+        for (int i = 0; i < 3; ++i) {
+            const double* const* r = rows.at[i];
+            const double a0 = r[0][n], a1 = r[0][n + 1], b0 = r[1][n], b1 = r[1][n + 1];
+            const double c0 = r[2][n], c1 = r[2][n + 1], d0 = r[3][n], d1 = r[3][n + 1];
+            f[i][0] = scale * ((a1 - a0) + (b1 - b0) + (c1 - c0) + (d1 - d0));
+            f[i][1] = scale * ((b0 - a0) + (b1 - a1) + (d0 - c0) + (d1 - c1));
+            f[i][2] = scale * ((c0 - a0) + (c1 - a1) + (d0 - b0) + (d1 - b1));
+        }
+        const double volume = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) -
+                              f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
+                              f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+        theta[n] = log_ratio(volume > 0.01 ? volume : 0.01) / 3;
+    }
+}
+
+SWAGE_VECTOR_CLONES
+void distortion_block(const float* strain, const float* weight, const float* plastic,
+                      const double* theta, double share, int count, double* __restrict distortion) {
+    for (int n = 0; n < count; ++n) {
+        const double s = double(strain[n]) - double(plastic[n]) - theta[n];
+        distortion[n] += weight[n] > 0 ? share * s * s : 0.0;
+    }
+}
+
+}  // namespace
+
+CellFlow::CellFlow(const Aggregate& matter) {
+    if (!std::isfinite(matter.material.yield_stress)) return;
+    law_ = {matter.material.yield_stress, matter.material.hardening,
+            lattice_stiffness(matter.material.young_modulus, 1.0)};
+    yield_distortion_ = yield_distortion(law_);
+    for (int d = 0; d < kForwardCount; ++d) {
+        rest_[d] = matter.connection[d].plastic;
+        strain_[d].resize(rest_[d].size());
+    }
+}
+
+void CellFlow::find_strains(const Aggregate& matter) {
+    const Vec3Array& x = matter.particle_position;
+    const std::vector<Span>& spans = matter.lattice.span;
+    parallel_for((spans.size() + kSpansPerChunk - 1) / kSpansPerChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(spans.size(), (chunk + 1) * kSpansPerChunk);
+        for (std::size_t n = chunk * kSpansPerChunk; n < end; ++n) {
+            const Span& s = spans[n];
+            strain_block(x.x.data() + s.lower, x.y.data() + s.lower, x.z.data() + s.lower,
+                         x.x.data() + s.upper, x.y.data() + s.upper, x.z.data() + s.upper, s.count,
+                         1 / reference_length(matter.lattice, s.direction),
+                         strain_[s.direction].data() + s.lower);
+        }
+    });
+}
+
+void CellFlow::find_flowing(const Aggregate& matter) {
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const bool fresh = matter.cell_plastic[0].empty();
+    const std::array<float, kBlock> unyielded{};
+    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
+    std::vector<std::vector<FlowingCell>> part(chunks);
+    parallel_for(chunks, [&](std::size_t chunk) {
+        double theta[kBlock], distortion[kBlock];
+        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
+        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
+            const CellRun& run = runs[r];
+            for (int at = 0; at < run.count; at += kBlock) {
+                const int count = std::min(kBlock, run.count - at);
+                const auto plastic = [&](int slot) {
+                    return fresh ? unyielded.data()
+                                 : matter.cell_plastic[slot].data() + run.first + at;
+                };
+                CellRows rows;
+                for (int q = 0; q < 4; ++q) {
+                    rows.at[0][q] = matter.particle_position.x.data() + run.row[q] + at;
+                    rows.at[1][q] = matter.particle_position.y.data() + run.row[q] + at;
+                    rows.at[2][q] = matter.particle_position.z.data() + run.row[q] + at;
+                }
+                size_block(rows, count, 1 / matter.lattice.spacing, theta);
+                std::fill_n(distortion, count, 0.0);
+                for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+                    const int d = kCellConnection[slot].direction;
+                    const ParticleId lower = lower_end(run.row, slot) + at;
+                    distortion_block(strain_[d].data() + lower,
+                                     matter.connection[d].weight.data() + lower, plastic(slot),
+                                     theta, share_of(slot), count, distortion);
+                }
+                for (int n = 0; n < count; ++n) {
+                    if (!(distortion[n] > yield_distortion_)) continue;
+                    const CellId id = run.first + at + n;
+                    const double d_alpha =
+                        flow(law_, distortion[n], fresh ? 0.0 : double(matter.cell_hardening[id]));
+                    if (!(d_alpha > 0)) continue;
+                    FlowingCell cell{id, run.row, theta[n],
+                                     flow_share(law_, distortion[n], d_alpha), d_alpha};
+                    for (ParticleId& p : cell.row) p += at + n;
+                    part[chunk].push_back(cell);
+                }
+            }
+        }
+    });
+    flowing_.clear();
+    for (const auto& p : part) flowing_.insert(flowing_.end(), p.begin(), p.end());
+}
+
+// How much the cell's plastic strain of one of its connections grows.
+double CellFlow::flow_of(const Aggregate& matter, const FlowingCell& cell, int slot) const {
+    const int d = kCellConnection[slot].direction;
+    const ParticleId lower = lower_end(cell.row, slot);
+    const double plastic =
+        matter.cell_plastic[slot].empty() ? 0.0 : double(matter.cell_plastic[slot][cell.cell]);
+    return cell.share * (double(strain_[d][lower]) - plastic - cell.theta);
+}
+
+const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
+    // Only what flowed last time has to be put back.
+    for (const FlowingCell& cell : flowing_) {
+        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+            const int d = kCellConnection[slot].direction;
+            const ParticleId lower = lower_end(cell.row, slot);
+            rest_[d][lower] = matter.connection[d].plastic[lower];
+        }
+    }
+    find_strains(matter);
+    find_flowing(matter);
+    for (const FlowingCell& cell : flowing_) {
+        const double fill = matter.cell_fill[cell.cell];
+        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+            const int d = kCellConnection[slot].direction;
+            const ParticleId lower = lower_end(cell.row, slot);
+            const double weight = matter.connection[d].weight[lower];
+            if (weight <= 0) continue;  // severed: its rest length no longer matters
+            const double share = (d < kEdgeCount ? 0.25 : 0.5) * fill / weight;
+            // The rest ratio grows by the factor exp(share * flow).
+            rest_[d][lower] = static_cast<float>(
+                (1.0 + rest_[d][lower]) * std::exp(share * flow_of(matter, cell, slot)) - 1.0);
+        }
+    }
+    return rest_;
+}
+
+// What a growing rest length takes from a connection's elastic energy: its tension times the
+// growth.
+double CellFlow::plastic_work(const Aggregate& matter, int d, ParticleId lower,
+                              double growth) const {
+    const double reference = reference_length(matter.lattice, d);
+    const double elastic = std::exp(double(strain_[d][lower])) - 1 - rest_[d][lower];
+    return lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing) *
+           matter.connection[d].weight[lower] * reference * reference * elastic * growth;
+}
+
+double CellFlow::commit(Aggregate& matter) {
+    if (!active()) return 0;
+    rest_strains(matter);
+    if (flowing_.empty()) return 0;
+    double lost = 0;
+    std::vector<std::array<double, kCellConnectionCount>> flow(flowing_.size());
+    for (std::size_t n = 0; n < flowing_.size(); ++n) {
+        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+            flow[n][slot] = flow_of(matter, flowing_[n], slot);
+        }
+    }
+    for (std::vector<float>& slot : matter.cell_plastic) slot.resize(matter.cell_fill.size());
+    matter.cell_hardening.resize(matter.cell_fill.size());
+    for (std::size_t n = 0; n < flowing_.size(); ++n) {
+        const FlowingCell& cell = flowing_[n];
+        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+            const int d = kCellConnection[slot].direction;
+            const ParticleId lower = lower_end(cell.row, slot);
+            float& plastic = matter.connection[d].plastic[lower];
+            if (plastic != rest_[d][lower]) {
+                lost += plastic_work(matter, d, lower, rest_[d][lower] - plastic);
+                plastic = rest_[d][lower];
+            }
+            matter.cell_plastic[slot][cell.cell] += static_cast<float>(flow[n][slot]);
+        }
+        matter.cell_hardening[cell.cell] += static_cast<float>(cell.d_alpha);
+    }
+    flowing_.clear();
+    return lost;
+}
+
+}  // namespace swage

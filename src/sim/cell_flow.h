@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plastic flow of the lattice: cells that yield hand their connections new rest lengths.
+#pragma once
+
+#include <vector>
+
+#include "laws/yield.h"
+#include "matter/aggregate.h"
+#include "sim/lattice_sweep.h"
+
+namespace swage {
+
+class CellFlow {
+  public:
+    explicit CellFlow(const Aggregate& matter);
+
+    bool active() const { return yield_distortion_ > 0; }
+
+    // The rest strains that the connections have at the present positions: the committed ones,
+    // and on top what flows. Valid until the next call.
+    const RestStrains& rest_strains(const Aggregate& matter);
+
+    // Remembers the flow of a converged state; returns the work that it took [J].
+    double commit(Aggregate& matter);
+
+  private:
+    struct FlowingCell {
+        CellId cell;
+        std::array<ParticleId, 4> row;  // low ends of its four edges along x
+        double theta;                   // logarithm of its size ratio
+        double share;                   // of its connections' distortion that flows
+        double d_alpha;                 // growth of its accumulated plastic strain
+    };
+    void find_strains(const Aggregate& matter);
+    void find_flowing(const Aggregate& matter);
+    double plastic_work(const Aggregate& matter, int d, ParticleId lower, double growth) const;
+    double flow_of(const Aggregate& matter, const FlowingCell& cell, int slot) const;
+
+    Yield law_{};
+    double yield_distortion_ = 0;  // of a cell that has not yielded yet; 0: never yields
+    std::array<std::vector<float>, kForwardCount> strain_;  // logarithmic, of each connection now
+    RestStrains rest_;
+    std::vector<FlowingCell> flowing_;  // what rest_ holds beyond the committed strains
+};
+
+}  // namespace swage

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cell_flow.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+const Material kMetal{.young_modulus = 1e6, .yield_stress = 1e3};  // yields at 0.1 % strain
+
+void strain_uniformly(Aggregate& m, const Mat3& gradient) {
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_position.set(p, gradient * m.particle_reference.at(p));
+    }
+}
+
+// Cauchy stress of a uniformly strained block from the forces on its particles (virial).
+Mat3 stress_of(const Aggregate& m, CellFlow& flow) {
+    Vec3Array f;
+    LatticeSweep(m).forces(m, lattice_law(m), &flow.rest_strains(m), f);
+    Mat3 sum = Mat3::Zero();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        sum -= f.at(p) * m.particle_position.at(p).transpose();
+    }
+    return sum / m.volume();
+}
+
+double von_mises(const Mat3& stress) {
+    const Mat3 s = stress - stress.trace() / 3 * Mat3::Identity();
+    return std::sqrt(1.5 * s.squaredNorm());
+}
+
+}  // namespace
+
+TEST_CASE("a lattice yields at sigma_y after von Mises in tension, in shear and along diagonals") {
+    Aggregate m = make_block(3, 3, 3, 0.1, kMetal);
+    const double e = 0.002;
+    Mat3 tension = Mat3::Identity(), shear = Mat3::Identity(), diagonal = Mat3::Identity();
+    tension.diagonal() += Vec3(e, -e / 4, -e / 4);
+    shear(0, 1) = shear(1, 0) = e;
+    diagonal(0, 1) = diagonal(1, 0) = diagonal(1, 2) = diagonal(2, 1) = e;
+    for (const Mat3& gradient : {tension, shear, diagonal}) {
+        strain_uniformly(m, gradient);
+        CellFlow flow(m);
+        CHECK(von_mises(stress_of(m, flow)) == Approx(kMetal.yield_stress).epsilon(0.01));
+    }
+    Mat3 below = Mat3::Identity();
+    below.diagonal() += 0.4 * Vec3(e, -e / 4, -e / 4);
+    strain_uniformly(m, below);
+    CellFlow flow(m);
+    CHECK(stress_of(m, flow)(0, 0) == Approx(0.4 * e * kMetal.young_modulus).epsilon(0.01));
+}
+
+TEST_CASE("pressure never yields") {
+    Aggregate m = make_block(2, 2, 2, 0.1, kMetal);
+    strain_uniformly(m, 0.8 * Mat3::Identity());
+    CellFlow flow(m);
+    CHECK(flow.commit(m) == 0);
+    CHECK(m.cell_plastic[0].empty());
+}
+
+TEST_CASE("flow is remembered only when committed, keeps the volume and leaves a set") {
+    Aggregate m = make_block(2, 1, 1, 0.1, kMetal);
+    const double stretch = 1.05;
+    Mat3 gradient = Mat3::Identity();
+    gradient.diagonal() = Vec3(stretch, 1 / std::sqrt(stretch), 1 / std::sqrt(stretch));
+    strain_uniformly(m, gradient);
+    CellFlow flow(m);
+    const auto before = state_hash(m);
+    flow.rest_strains(m);
+    CHECK(state_hash(m) == before);
+    const double lost = flow.commit(m);
+    // Work of the yield stress along the plastic strain.
+    CHECK(lost == Approx(m.volume() * 1e3 * (std::log(stretch) - 0.00083)).epsilon(0.03));
+    CHECK(flow.commit(m) == Approx(0).margin(1e-5 * lost));
+    // Unloaded to the set, hardly anything is left of the stress, and the volume is the old one.
+    const double set = m.connection[0].plastic[0];
+    CHECK(set == Approx(stretch - 1 - 0.00083).epsilon(0.01));
+    gradient.diagonal() =
+        Vec3(1 + set, 1 + m.connection[1].plastic[0], 1 + m.connection[2].plastic[0]);
+    CHECK(gradient.determinant() == Approx(1).epsilon(1e-5));
+    strain_uniformly(m, gradient);
+    CHECK(stress_of(m, flow).norm() < 0.05 * kMetal.yield_stress);
+}
+
+TEST_CASE("hardening raises the stress with the plastic strain") {
+    Material metal = kMetal;
+    metal.hardening = 0.02 * metal.young_modulus;
+    Aggregate m = make_block(2, 2, 2, 0.1, metal);
+    CellFlow flow(m);
+    for (double e : {0.005, 0.01, 0.02}) {
+        Mat3 gradient = Mat3::Identity();
+        gradient.diagonal() = Vec3(1 + e, 1 / std::sqrt(1 + e), 1 / std::sqrt(1 + e));
+        strain_uniformly(m, gradient);
+        flow.commit(m);
+        const double expected = metal.yield_stress + metal.hardening * (std::log(1 + e) - 0.001);
+        CHECK(von_mises(stress_of(m, flow)) == Approx(expected).epsilon(0.03));
+    }
+}
+
+TEST_CASE("rotation does not flow") {
+    Aggregate m = make_block(2, 2, 2, 0.1, kMetal);
+    strain_uniformly(m, Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())).toRotationMatrix());
+    CellFlow flow(m);
+    CHECK(flow.commit(m) == 0);
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
+
+#include "sim/advance.h"
+#include "sim/sever.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+// A blade wide enough for the block, edge along y', moving along z' of a frame whose x' is normal.
+void cut_along(Aggregate& m, const Vec3& point, const Vec3& normal, double reach, int sweeps) {
+    const Quat world_from_plane = Quat::FromTwoVectors(Vec3::UnitX(), normal.normalized());
+    const Blade blade{"blade", {Vec3(0, -reach, 0), Vec3(0, reach, 0)}, {}};
+    for (int s = 0; s < sweeps; ++s) {
+        const auto pose = [&](int step) {
+            return Pose{world_from_plane,
+                        point + world_from_plane * Vec3(0, 0, reach * (2.0 * step / sweeps - 1))};
+        };
+        sever(m, swept_triangles(blade, pose(s), pose(s + 1)));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("any plane through a body leaves exactly two pieces, however it meets the lattice") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int trial = 0; trial < 120; ++trial) {
+        Aggregate m = make_block(10, 6, 6, 0.1, Material{});
+        Vec3 normal(unit(random), unit(random), unit(random));
+        Vec3 point(0.3 * unit(random), 0.2 * unit(random), 0.2 * unit(random));
+        if (trial % 2 == 0) {
+            // Through particles, along faces and diagonals of the cells.
+            const auto third = [&] { return std::round(1.4 * unit(random)); };
+            do normal = Vec3(third(), third(), third());
+            while (normal.norm() == 0);
+            point = 0.05 * Vec3(std::round(4 * unit(random)), std::round(2 * unit(random)),
+                                std::round(2 * unit(random)));
+        }
+        const int sweeps = trial % 3 == 0 ? 1 : trial % 3 == 1 ? 7 : 23;
+        cut_along(m, point, normal, 3, sweeps);
+        CHECK(find_pieces(m).count == 2);
+    }
+}
+
+TEST_CASE("a blade that misses, or rests, severs nothing") {
+    Aggregate m = make_block(4, 4, 4, 0.1, Material{});
+    const std::size_t all = m.connection_count();
+    cut_along(m, Vec3(0.5, 0, 0), Vec3::UnitX(), 3, 4);
+    const Blade blade{"blade", {Vec3(0, -1, 0), Vec3(0, 1, 0)}, {}};
+    CHECK(sever(m, swept_triangles(blade, Pose{}, Pose{})).empty());
+    CHECK(m.connection_count() == all);
+}
+
+TEST_CASE("half a sweep severs only what the blade has passed") {
+    Aggregate m = make_block(8, 4, 4, 0.1, Material{});
+    const Blade blade{"blade", {Vec3(0.01, 0, -1), Vec3(0.01, 0, 1)}, {}};
+    const auto pose = [](double y) { return Pose{Quat::Identity(), Vec3(0, y, 0)}; };
+    const auto events = sever(m, swept_triangles(blade, pose(1), pose(0.001)));
+    CHECK_FALSE(events.empty());
+    CHECK(find_pieces(m).count == 1);
+    for (const SeverEvent& e : events) {
+        CHECK(m.connection[e.direction].weight[e.lower] == 0);
+        CHECK(e.weight > 0);
+        CHECK(m.particle_reference.y[e.lower] > -0.11);
+    }
+    sever(m, swept_triangles(blade, pose(0.001), pose(-1)));
+    CHECK(find_pieces(m).count == 2);
+}
+
+TEST_CASE("pieces part freely: a severed half follows its grip and feels no force") {
+    Aggregate m = make_block(8, 2, 2, 0.1, Material{});
+    Apparatus apparatus;
+    apparatus.name = "cut";
+    for (int side : {-1, 1}) {
+        Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
+        grip.point = points_where(m, [&](const Vec3& x) { return side * x.x() > 0.3; });
+        for (int p : grip.point) grip.anchor.push_back(m.surface_position(p));
+        apparatus.grip.push_back(grip);
+    }
+    apparatus.blade.push_back({"blade", {Vec3(0.02, 0, -1), Vec3(0.02, 0, 1)}, {}});
+    const auto drive = [](double y, double pull) {
+        Drive d;
+        d.world_from_grip = {Pose{}, Pose{Quat::Identity(), Vec3(pull, 0, 0)}};
+        d.world_from_blade = {Pose{Quat::Identity(), Vec3(0, y, 0)}};
+        return d;
+    };
+    const SimSettings settings;
+    Simulation simulation(m, apparatus, settings);
+    FrameReport r = simulation.advance(drive(0.5, 0), drive(-0.5, 0));
+    CHECK(r.severed > 0);
+    CHECK(r.pieces == 2);
+    r = simulation.advance(drive(-0.5, 0), drive(-0.5, 0.25));
+    const double scale = m.material.young_modulus * 0.01;
+    for (const ToolLoad& load : r.load) CHECK(load.force.norm() < 1e-3 * scale);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 moved = m.particle_position.at(p) - m.particle_reference.at(p);
+        const double wanted = m.particle_reference.x[p] > 0.01 ? 0.25 : 0;
+        CHECK((moved - Vec3(wanted, 0, 0)).norm() < 0.01);
+    }
+}
