@@ -44,7 +44,8 @@ void main() {
     float q = nh * nh * (a2 - 1.0) + 1.0;
     float masking = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) +
                               nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-3);
-    float fresnel = pow(1.0 - max(dot(h, v), 0.0), 5.0);
+    float away = 1.0 - max(dot(h, v), 0.0), away2 = away * away;
+    float fresnel = away2 * away2 * away;
     vec3 mirror = (f0 + (1.0 - f0) * fresnel) * (a2 / (q * q) * masking);
 
     vec3 light = KEY * nl * seen.y * (matt + mirror);

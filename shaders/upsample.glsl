@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Occlusion and shadow at a full-size pixel, from the half-size samples around it that lie on the
 // same surface. `depth` must be smooth over the primitive.
+#include "packing.glsl"
 uniform sampler2D visibility;
 
 vec2 visibility_at(vec2 pixel, float depth) {
@@ -12,7 +13,8 @@ vec2 visibility_at(vec2 pixel, float depth) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; ++i) {
         ivec2 corner = ivec2(i & 1, i >> 1);
-        vec3 v = texelFetch(visibility, clamp(base + corner, ivec2(0), last), 0).xyz;
+        vec3 v = unpacked_visibility(
+            texelFetch(visibility, clamp(base + corner, ivec2(0), last), 0));
         vec2 share = mix(1.0 - f, f, vec2(corner));
         float off = abs(v.z - depth - dot(slope, vec2(corner) - f)) / (0.01 * depth);
         float weight = (share.x * share.y + 0.01) / (1e-3 + off * off);

@@ -5,9 +5,10 @@
 // Shadow after R. Fernando, "Percentage-Closer Soft Shadows", SIGGRAPH sketches 2005.
 // Samples are turned by a 4 by 4 pattern, which the blur after this pass takes out again.
 #include "frame.glsl"
+#include "packing.glsl"
 uniform sampler2D normal_and_depth;
 uniform sampler2D shadow_depth;
-layout(location = 0) out vec4 visibility;  // occlusion, shadow, depth
+layout(location = 0) out vec4 visibility;
 
 const int OCCLUSION_TAPS = 12;
 const int SEARCH_TAPS = 12;
@@ -99,6 +100,6 @@ void main() {
     vec3 p = view_position(gl_FragCoord.xy, here.w);
     float turn = pattern();
     vec3 at = (stage_from_view * vec4(p, 1.0)).xyz;
-    visibility = vec4(occlusion(p, here.xyz, turn), lit(at, mat3(stage_from_view) * here.xyz, turn),
-                      here.w, 1.0);
+    visibility = packed_visibility(vec2(occlusion(p, here.xyz, turn),
+                                        lit(at, mat3(stage_from_view) * here.xyz, turn)), here.w);
 }

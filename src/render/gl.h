@@ -21,7 +21,6 @@ namespace swage {
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                 \
     X(PFNGLCLEARPROC, Clear)                                                   \
     X(PFNGLCLEARCOLORPROC, ClearColor)                                         \
-    X(PFNGLCOLORMASKPROC, ColorMask)                                           \
     X(PFNGLCOMPILESHADERPROC, CompileShader)                                   \
     X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                   \
     X(PFNGLCREATESHADERPROC, CreateShader)                                     \
@@ -33,7 +32,6 @@ namespace swage {
     X(PFNGLDELETETEXTURESPROC, DeleteTextures)                                 \
     X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                         \
     X(PFNGLDEPTHFUNCPROC, DepthFunc)                                           \
-    X(PFNGLDEPTHMASKPROC, DepthMask)                                           \
     X(PFNGLDISABLEPROC, Disable)                                               \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                         \
     X(PFNGLDRAWBUFFERPROC, DrawBuffer)                                         \
@@ -50,7 +48,6 @@ namespace swage {
     X(PFNGLGENTEXTURESPROC, GenTextures)                                       \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                               \
     X(PFNGLGETERRORPROC, GetError)                                             \
-    X(PFNGLGETINTEGERVPROC, GetIntegerv)                                       \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                           \
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                     \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                             \
@@ -69,7 +66,6 @@ namespace swage {
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                           \
-    X(PFNGLUNIFORM3FVPROC, Uniform3fv)                                         \
     X(PFNGLUNIFORM4FVPROC, Uniform4fv)                                         \
     X(PFNGLUNIFORMBLOCKBINDINGPROC, UniformBlockBinding)                       \
     X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                             \

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "geometry/edges.h"
 
 namespace swage {
 
@@ -48,6 +49,17 @@ void attribute(const Gl& gl, GLuint place, GLint size, std::size_t stride, std::
                            reinterpret_cast<const void*>(offset));
 }
 
+bool is_closed(const TriMesh& mesh) {
+    bool closed = !mesh.triangle.empty();
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](const auto& uses) {
+        int balance = 0;
+        for (const EdgeUse& use : uses) balance += use.forward ? 1 : -1;
+        closed = closed && balance == 0;
+    });
+    // Inside out, the far side would show.
+    return closed && signed_volume(mesh) > 0;
+}
+
 }  // namespace
 
 void GpuMesh::draw(const Gl& gl, const DrawMesh::Range& range) const {
@@ -89,6 +101,7 @@ std::unique_ptr<GpuMesh> MeshCache::made(const TriMesh& mesh) const {
     } else {
         gpu->split = split_corners(mesh);
     }
+    gpu->closed = is_closed(mesh);
     const Box box = box_of(mesh.position);
     if (!box.empty()) gpu->origin = box.center();
 

@@ -20,6 +20,9 @@ struct GpuMesh {
     DrawMesh split;
     std::unique_ptr<TriMesh> smoothed;  // of a mesh that came without smooth groups
     Vec3 origin = Vec3::Zero();         // subtracted from positions, which keeps floats exact
+    // Every side of a triangle has a counterpart that runs the other way: from outside, the inside
+    // of the surface is never seen.
+    bool closed = false;
     bool filled = false;
     int last_used = 0;
 

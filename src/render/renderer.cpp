@@ -26,11 +26,28 @@ constexpr std::size_t kMostMultisampledTriangles = 300'000;
 constexpr long kMostMultisampledPixels = 4096l * 4096l;
 constexpr float kNowhere = 1e4f;  // depth of the backdrop in the half-size pass [stage]
 
-// Beside triangles of two sides: what a GPU is told of one item.
+// An item, ready to draw.
 struct Drawable {
     const GpuMesh* mesh;
     const DrawItem* item;
     Eigen::Matrix4f stage_from_mesh;
+};
+
+// Back faces of closed bodies are left out, which halves the work.
+class Culling {
+  public:
+    Culling(const Gl& gl, bool cull) : gl_(gl), cull_(cull) {
+        if (cull_) gl_.Enable(GL_CULL_FACE);
+    }
+    ~Culling() {
+        if (cull_) gl_.Disable(GL_CULL_FACE);
+    }
+    Culling(const Culling&) = delete;
+    Culling& operator=(const Culling&) = delete;
+
+  private:
+    const Gl& gl_;
+    bool cull_;
 };
 
 void set_unit(const Gl& gl, GLenum unit, GLuint texture) {
@@ -74,7 +91,7 @@ struct Renderer::Parts {
           half(make_target(gl, (settings.width + 1) / 2, (settings.height + 1) / 2,
                            {.color = GL_RGBA32F, .depth_buffer = true})) {
         for (Target& target : visibility) {
-            target = make_target(gl, half.width, half.height, {.color = GL_RGBA16F});
+            target = make_target(gl, half.width, half.height, {.color = GL_RGBA8});
         }
         plain = make_target(gl, settings.width, settings.height,
                             {.color = GL_RGBA8, .depth_buffer = true});
@@ -99,6 +116,7 @@ struct Renderer::Parts {
     Target shadow, half;
     std::array<Target, 2> visibility;
     Target plain, sampled, smoothed;  // the latter two are made when first needed
+    bool eye_is_outside = true;       // of the box of all that is drawn, in this picture
     Stopwatch* watch = nullptr;
 
     template <typename Pass>
@@ -121,6 +139,7 @@ struct Renderer::Parts {
         shader.use();
         for (const Drawable& d : drawables) {
             shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
+            const Culling culling(gl, d.mesh->closed && eye_is_outside);
             const auto count = static_cast<std::uint32_t>(d.mesh->split.index.size());
             d.mesh->draw(gl, {-1, 0, count});
         }
@@ -202,6 +221,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
     for (const Drawable& d : drawables) {
         const TriMesh& mesh = *d.item->mesh;
         surface_shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
+        const Culling culling(gl, d.mesh->closed && eye_is_outside);
         for (const DrawMesh::Range& range : d.mesh->split.range) {
             const bool named =
                 range.material >= 0 && range.material < static_cast<int>(mesh.material.size());
@@ -287,6 +307,8 @@ Image Renderer::Parts::draw(const Picture& picture) {
     }
 
     const View view = camera.at(picture.film_share);
+    eye_is_outside = (view.eye.array() < shown.low.array()).any() ||
+                     (view.eye.array() > shown.high.array()).any();
     const FrameBlock frame = frame_block(settings, stage, shown, view, ground_height, front);
     gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());
     gl.BufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);

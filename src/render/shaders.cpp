@@ -143,9 +143,6 @@ GLint Shader::location(const char* uniform) const {
 }
 
 void Shader::set(const char* uniform, int value) const { gl_->Uniform1i(location(uniform), value); }
-void Shader::set3(const char* uniform, const float* value) const {
-    gl_->Uniform3fv(location(uniform), 1, value);
-}
 void Shader::set4(const char* uniform, const float* value) const {
     gl_->Uniform4fv(location(uniform), 1, value);
 }

@@ -36,7 +36,6 @@ class Shader {
 
     void use() const;
     void set(const char* uniform, int value) const;
-    void set3(const char* uniform, const float* value) const;
     void set4(const char* uniform, const float* value) const;
     void set_matrix(const char* uniform, const float* column_major) const;
 
