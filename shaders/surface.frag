@@ -12,7 +12,9 @@ in vec3 position;
 in vec3 normal;
 in vec2 uv;
 in vec3 color;
+#ifdef TEXTURED
 uniform sampler2D surface_texture;
+#endif
 uniform vec4 material_color;
 uniform vec4 material_finish;  // roughness, metallic
 layout(location = 0) out vec4 pixel_color;
@@ -25,7 +27,10 @@ vec3 environment_share(vec3 f0, float roughness, float nv) {
 }
 
 void main() {
-    vec3 base = material_color.rgb * color * texture(surface_texture, uv).rgb;
+    vec3 base = material_color.rgb * color;
+#ifdef TEXTURED
+    base *= texture(surface_texture, uv).rgb;
+#endif
     float roughness = clamp(material_finish.x, 0.08, 1.0), metallic = material_finish.y;
     vec3 n = facing_normal(normal, position, eye.xyz);
     vec3 v = normalize(eye.xyz - position);

@@ -10,9 +10,9 @@ uniform sampler2D normal_and_depth;
 uniform sampler2D shadow_depth;
 layout(location = 0) out vec4 visibility;
 
-const int OCCLUSION_TAPS = 12;
+const int OCCLUSION_TAPS = 10;
 const int SEARCH_TAPS = 12;
-const int SHADOW_TAPS = 14;
+const int SHADOW_TAPS = 12;
 const float REACH = 0.22;      // of occlusion [stage]
 
 // Samples go round by the golden angle, which fills a disc evenly at any count.

@@ -81,7 +81,9 @@ struct Renderer::Parts {
           visibility_shader(gl, "screen.vert", "visibility.frag",
                             {"normal_and_depth", "shadow_depth"}),
           blur_shader(gl, "screen.vert", "blur.frag", {"visibility"}),
-          surface_shader(gl, "surface.vert", "surface.frag", {"visibility", "surface_texture"}),
+          surface_shader(gl, "surface.vert", "surface.frag", {"visibility"}),
+          textured_shader(gl, "surface.vert", "surface.frag", {"visibility", "surface_texture"},
+                          "TEXTURED"),
           ground_shader(gl, "ground.vert", "ground.frag", {"visibility"}),
           backdrop_shader(gl, "screen.vert", "backdrop.frag"),
           smooth_shader(gl, "screen.vert", "smooth.frag", {"picture"}),
@@ -111,7 +113,7 @@ struct Renderer::Parts {
     MeshCache meshes;
     TextureCache textures;
     Shader shadow_shader, depth_shader, ground_depth_shader, visibility_shader, blur_shader,
-        surface_shader, ground_shader, backdrop_shader, smooth_shader;
+        surface_shader, textured_shader, ground_shader, backdrop_shader, smooth_shader;
     GlHandle nothing, frame_buffer;
     Target shadow, half;
     std::array<Target, 2> visibility;
@@ -216,11 +218,9 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
     target.bind(gl);
     gl.Clear(GL_DEPTH_BUFFER_BIT);  // the backdrop covers every pixel
     set_unit(gl, 0, visibility[0].color.id());
-    surface_shader.use();
     static const SurfaceMaterial plain_material;
     for (const Drawable& d : drawables) {
         const TriMesh& mesh = *d.item->mesh;
-        surface_shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
         const Culling culling(gl, d.mesh->closed && eye_is_outside);
         for (const DrawMesh::Range& range : d.mesh->split.range) {
             const bool named =
@@ -235,9 +235,13 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
                                         static_cast<float>(material.color.z()), 1);
             const Eigen::Vector4f finish(static_cast<float>(material.roughness),
                                          static_cast<float>(material.metallic), 0, 0);
-            surface_shader.set4("material_color", color.data());
-            surface_shader.set4("material_finish", finish.data());
-            set_unit(gl, 1, textures.texture(mesh.uv.empty() ? "" : material.texture));
+            const GLuint texture = mesh.uv.empty() ? 0 : textures.texture(material.texture);
+            const Shader& shader = texture != 0 ? textured_shader : surface_shader;
+            shader.use();
+            shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
+            shader.set4("material_color", color.data());
+            shader.set4("material_finish", finish.data());
+            if (texture != 0) set_unit(gl, 1, texture);
             d.mesh->draw(gl, range);
         }
     }

@@ -68,9 +68,10 @@ void append(const std::string& name, std::vector<std::string>& files, std::strin
     }
 }
 
-GlHandle compiled(const Gl& gl, GLenum kind, const std::string& name) {
+GlHandle compiled(const Gl& gl, GLenum kind, const std::string& name, const std::string& define) {
     std::vector<std::string> files;
-    const std::string text = shader_text(name, files);
+    std::string text = shader_text(name, files);
+    if (!define.empty()) text.insert(text.find('\n') + 1, "#define " + define + "\n");
     GlHandle shader(gl, gl.CreateShader(kind), [](const Gl& g, GLuint i) { g.DeleteShader(i); });
     const char* source = text.c_str();
     gl.ShaderSource(shader.id(), 1, &source, nullptr);
@@ -109,11 +110,11 @@ std::string with_file_names(const std::string& log, const std::vector<std::strin
 }
 
 Shader::Shader(const Gl& gl, const std::string& vertex, const std::string& fragment,
-               const std::vector<const char*>& samplers)
+               const std::vector<const char*>& samplers, const std::string& define)
     : gl_(&gl),
       program_(gl, gl.CreateProgram(), [](const Gl& g, GLuint i) { g.DeleteProgram(i); }) {
-    const GlHandle v = compiled(gl, GL_VERTEX_SHADER, vertex);
-    const GlHandle f = compiled(gl, GL_FRAGMENT_SHADER, fragment);
+    const GlHandle v = compiled(gl, GL_VERTEX_SHADER, vertex, define);
+    const GlHandle f = compiled(gl, GL_FRAGMENT_SHADER, fragment, define);
     gl.AttachShader(program_.id(), v.id());
     gl.AttachShader(program_.id(), f.id());
     gl.LinkProgram(program_.id());

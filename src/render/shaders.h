@@ -30,9 +30,10 @@ std::string with_file_names(const std::string& log, const std::vector<std::strin
 class Shader {
   public:
     // Texture samplers are bound to units in the order of `samplers`; the uniform block Frame, if
-    // there is one, to binding 0. Throws Error(output) with file and line.
+    // there is one, to binding 0. `define`, if not empty, is defined in both. Throws
+    // Error(output) with file and line.
     Shader(const Gl& gl, const std::string& vertex, const std::string& fragment,
-           const std::vector<const char*>& samplers = {});
+           const std::vector<const char*>& samplers = {}, const std::string& define = {});
 
     void use() const;
     void set(const char* uniform, int value) const;

@@ -39,14 +39,11 @@ GlHandle uploaded(const Gl& gl, const Image& image) {
 
 }  // namespace
 
-TextureCache::TextureCache(const Gl& gl)
-    : gl_(&gl), white_(uploaded(gl, Image{1, 1, {255, 255, 255}})) {}
-
 GLuint TextureCache::texture(const std::filesystem::path& file) {
-    if (file.empty()) return white_.id();
+    if (file.empty()) return 0;
     const auto [entry, is_new] = by_name_.try_emplace(file.string());
     if (is_new) entry->second = loaded(file);
-    return entry->second.id() != 0 ? entry->second.id() : white_.id();
+    return entry->second.id();
 }
 
 GlHandle TextureCache::loaded(const std::filesystem::path& file) const {

@@ -14,16 +14,15 @@ namespace swage {
 
 class TextureCache {
   public:
-    explicit TextureCache(const Gl& gl);
+    explicit TextureCache(const Gl& gl) : gl_(&gl) {}
 
-    // The texture to bind: white for an empty path and for what cannot be read.
+    // The texture to bind; 0 for an empty path and for what cannot be read.
     GLuint texture(const std::filesystem::path& file);
 
   private:
     GlHandle loaded(const std::filesystem::path& file) const;
 
     const Gl* gl_;
-    GlHandle white_;
     std::map<std::string, GlHandle> by_name_;
 };
 
