@@ -2,9 +2,9 @@
 // Scene files. Quantities carry units ("18 cm"); a bare number is SI.
 //
 //     [mesh]      file, length
-//     [material]  name; young_modulus, poisson_ratio, density, yield_stress, damping_ratio, friction
-//     [mold]      across or spacing, kind ("shape", "block"), cell_limit
-//     [skin]      kind ("mount", "frame4", "boundary")
+//     [material]  name; young_modulus, poisson_ratio, density, yield_stress, damping_ratio,
+//     friction [mold]      across or spacing, kind ("shape", "block"), cell_limit [skin]      kind
+//     ("mount", "frame4", "boundary")
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",
 //                 "explicit"), gravity; tolerance, iteration_limit, halving_limit,
 //                 contact_stiffness, grip_stiffness, step_safety (see sim/settings.h); and the
@@ -35,7 +35,8 @@ struct SceneReading {
 
 // `overrides`: "stage.1.angle=45 deg", "material.young_modulus=2 GPa", "render.size=[640, 360]". A
 // stage goes by its number, its name, its machine, or * for all. Everything that is wrong in the
-// scene and in the files it names is found in one reading; throws nothing for what a user may write.
+// scene and in the files it names is found in one reading; throws nothing for what a user may
+// write.
 SceneReading read_scene(const std::filesystem::path& file,
                         const std::vector<std::string>& overrides, const AssetPaths& assets);
 

@@ -18,19 +18,19 @@
 namespace swage {
 
 struct MeshSpec {
-    std::filesystem::path file;          // absolute
-    std::optional<double> length;        // [m] of the longest side of the box; none: file's own
+    std::filesystem::path file;    // absolute
+    std::optional<double> length;  // [m] of the longest side of the box; none: file's own
 };
 
 struct StageSpec {
-    std::string name;          // "1-bend": number and machine, or the user's own; a file name
+    std::string name;  // "1-bend": number and machine, or the user's own; a file name
     MachineSpec machine;
     std::map<std::string, double> parameter;  // only those that the scene gives, SI
-    std::string axis = "auto"; // work frame's x: "auto" (longest side of the box), "x", "y", "z"
-    std::string up = "auto";   // work frame's y: "auto", or "x", "-x", "y", ...
-    int frames = 60;           // >= 1
-    double duration = 0;       // [s] of machine time; 0: frames / frames_per_second
-    bool remold = false;       // mold the deformed mesh anew before this stage
+    std::string axis = "auto";  // work frame's x: "auto" (longest side of the box), "x", "y", "z"
+    std::string up = "auto";    // work frame's y: "auto", or "x", "-x", "y", ...
+    int frames = 60;            // >= 1
+    double duration = 0;        // [s] of machine time; 0: frames / frames_per_second
+    bool remold = false;        // mold the deformed mesh anew before this stage
     SimSettings sim;
 };
 

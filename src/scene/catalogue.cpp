@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/catalogue.h"
+
+#include "scene/document.h"
+#include "scene/read_material.h"
+#include "scene/table_reader.h"
+
+namespace swage {
+
+MachineCatalogue machine_catalogue(const AssetPaths& assets) {
+    MachineCatalogue catalogue;
+    for (const MachineFile& known : known_machines(assets)) {
+        MachineReading reading = read_machine(known.file);
+        if (reading.machine) catalogue.machine.push_back(std::move(*reading.machine));
+        catalogue.mistakes.insert(catalogue.mistakes.end(), reading.mistakes.begin(),
+                                  reading.mistakes.end());
+    }
+    return catalogue;
+}
+
+MaterialCatalogue material_catalogue(const AssetPaths& assets,
+                                     const std::filesystem::path& scene_folder) {
+    MaterialCatalogue catalogue;
+    for (const std::filesystem::path& file : material_files(assets, scene_folder)) {
+        MistakeList mistakes;
+        Reading reading(mistakes);
+        const std::filesystem::path shown = shown_path(file);
+        const std::optional<Document> document = read_document(file, shown, mistakes);
+        if (document) {
+            reading.is_complete = document->is_complete;
+            for (const Entry& entry : document->root.entry) {
+                if (entry.value.kind != Node::Kind::table) {
+                    mistakes.add(entry.place, fmt::format("\"{}\" stands outside a material: write "
+                                                          "[NAME] above it",
+                                                          entry.key));
+                    continue;
+                }
+                Material material;
+                material.name = entry.key;
+                TableReader table(entry.value, "[" + entry.key + "]", reading);
+                read_material_numbers(table, true, material);
+                table.finish();
+                catalogue.material.push_back(material);
+            }
+            reading.known.clear();  // one material's keys belong in no other
+            reading.report_unknown();
+            catalogue.files.push_back(file);
+        }
+        const std::vector<Mistake> found = mistakes.take(shown);
+        catalogue.mistakes.insert(catalogue.mistakes.end(), found.begin(), found.end());
+    }
+    return catalogue;
+}
+
+}  // namespace swage

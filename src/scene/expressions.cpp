@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/expressions.h"
+
+#include <cmath>
+
+namespace swage {
+
+void ExpressionReader::add_names(const std::vector<std::string>& names) {
+    known_.insert(known_.end(), names.begin(), names.end());
+}
+
+void ExpressionReader::read_one(TableReader& table, const std::string& key, const Node& node,
+                                Expression& into) {
+    MistakeList& mistakes = table.reading().mistakes;
+    if (node.kind == Node::Kind::whole || node.kind == Node::Kind::real) {
+        if (std::isfinite(node.number)) {
+            into = fmt::format("{}", node.number);
+        } else {
+            mistakes.add(node.place, key + " is not a finite number");
+        }
+        return;
+    }
+    if (node.kind != Node::Kind::text) {
+        mistakes.add(node.place, fmt::format("{} is {}; a number or an expression is wanted", key,
+                                             kind_text(node)));
+        return;
+    }
+    try {
+        const Formula formula(node.text, known_);
+        for (const std::string& name : formula.used()) used_.insert(name);
+        if (formula.is_constant()) {
+            formula.evaluate(std::vector<double>(known_.size(), 0.0));  // finite or refused
+        }
+        into = node.text;
+    } catch (const TextError& error) {
+        mistakes.add(place_inside(node, error.at()), key + ": " + error.what());
+    }
+}
+
+bool ExpressionReader::read(TableReader& table, const std::string& key, Expression& into) {
+    const Node* node = table.find(key);
+    if (node != nullptr) read_one(table, key, *node, into);
+    return node != nullptr;
+}
+
+bool ExpressionReader::read(TableReader& table, const std::string& key, Expression3& into) {
+    const Node* node = table.find(key);
+    if (node != nullptr) read_item(table, key, *node, into);
+    return node != nullptr;
+}
+
+void ExpressionReader::read_item(TableReader& table, const std::string& key, const Node& item,
+                                 Expression3& into) {
+    if (item.kind != Node::Kind::array || item.item.size() != 3) {
+        table.reading().mistakes.add(
+            item.place,
+            key + " has to be three numbers or expressions, such as [0, \"height\", 0]");
+        return;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) read_one(table, key, item.item[axis], into[axis]);
+}
+
+void ExpressionReader::expect_positive(TableReader& table, const std::string& key,
+                                       const Expression& text) {
+    try {
+        const Formula formula(text, known_);
+        if (!formula.is_constant()) return;
+        const double value = formula.evaluate(std::vector<double>(known_.size(), 0.0));
+        if (!(value > 0)) {
+            table.mistake(key, fmt::format("{} = {} has to be more than 0", key, value));
+        }
+    } catch (const TextError&) {
+        // reported when it was read
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Expressions in machine files: compiled as they are read, so that every mistake in them is found
+// at its letter, and no variable stands for nothing.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/expression.h"
+#include "machines/machine_spec.h"
+#include "scene/table_reader.h"
+
+namespace swage {
+
+class ExpressionReader {
+  public:
+    // The names that expressions see from now on, beside those of before.
+    void add_name(const std::string& name) { known_.push_back(name); }
+    void add_names(const std::vector<std::string>& names);
+    const std::vector<std::string>& names() const { return known_; }
+
+    // Look up a number or an expression; `into` keeps its text. Return whether the key is there.
+    bool read(TableReader& table, const std::string& key, Expression& into);
+    bool read(TableReader& table, const std::string& key, Expression3& into);
+    void read_item(TableReader& table, const std::string& key, const Node& item, Expression3& into);
+
+    // Reports unless the expression, when its value is already certain, is more than 0.
+    void expect_positive(TableReader& table, const std::string& key, const Expression& text);
+
+    // What another reader's expressions named counts as named here.
+    void take_used(const ExpressionReader& other) {
+        used_.insert(other.used_.begin(), other.used_.end());
+    }
+    // Whether some expression that was read names the variable.
+    bool is_used(const std::string& name) const { return used_.contains(name); }
+
+  private:
+    void read_one(TableReader& table, const std::string& key, const Node& node, Expression& into);
+
+    std::vector<std::string> known_;
+    std::set<std::string> used_;
+};
+
+}  // namespace swage

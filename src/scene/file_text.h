@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files before they are understood: whether they can be read at all, and whether they are text.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "scene/document.h"
+
+namespace swage {
+
+// Why a file cannot be read ("does not exist", "is a folder", ...); never opens what could block.
+std::optional<std::string> why_unreadable(const std::filesystem::path& file);
+
+// The whole file. Reports and gives nothing when it cannot be read, is larger than `limit` or holds
+// bytes that are no UTF-8 text.
+std::optional<std::string> read_text(const std::filesystem::path& file, const Place& place,
+                                     std::uint64_t limit, MistakeList& mistakes);
+
+}  // namespace swage

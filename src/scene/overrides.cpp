@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/overrides.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "base/suggest.h"
+#include "base/text.h"
+
+namespace swage {
+
+namespace {
+
+std::vector<std::string> parts_of(const std::string& path) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= path.size();) {
+        const std::size_t end = std::min(path.find('.', begin), path.size());
+        parts.push_back(path.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
+std::string text_under(const Node& table, std::string_view key) {
+    const Entry* entry = table.find(key);
+    return entry != nullptr && entry->value.kind == Node::Kind::text ? entry->value.text : "";
+}
+
+// The tables of an array that `which` means.
+std::vector<Node*> chosen(Node& array, const std::string& of, const std::string& which,
+                          const Place& place, MistakeList& mistakes) {
+    std::vector<Node*> found;
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), number);
+    const bool is_number = error == std::errc() && end == which.data() + which.size();
+    std::vector<std::string> names;
+    for (std::size_t n = 0; n < array.item.size(); ++n) {
+        Node& item = array.item[n];
+        if (item.kind != Node::Kind::table) continue;
+        const std::string name = text_under(item, "name"), machine = text_under(item, "machine");
+        const bool is_meant =
+            is_number ? number == n + 1
+                      : which == "*" || (!which.empty() && (which == name || which == machine));
+        if (is_meant) found.push_back(&item);
+        for (const std::string& one : {name, machine}) {
+            if (!one.empty()) names.push_back(one);
+        }
+    }
+    if (found.empty()) {
+        mistakes.add(place, fmt::format("there is no {} \"{}\"{}; there {} {}: 1 to {}, or * for "
+                                        "all",
+                                        of, which, did_you_mean(which, names),
+                                        array.item.size() == 1 ? "is" : "are", array.item.size(),
+                                        array.item.size()));
+    }
+    return found;
+}
+
+// The tables under `key`; a table that is absent is made.
+std::vector<Node*> descended(Node& table, const std::string& key, const Place& place) {
+    Entry* entry = table.find(key);
+    if (entry == nullptr) {
+        Node made;
+        made.place = place;
+        table.entry.push_back({key, place, std::move(made)});
+        entry = &table.entry.back();
+    }
+    return {&entry->value};
+}
+
+void apply(const std::string& text, Node& root, MistakeList& mistakes) {
+    const auto source = std::make_shared<const Source>(Source{"--set " + text, text});
+    const Place place{source, 0, 0};
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+        mistakes.add(place, "an override is KEY=VALUE, such as stage.1.angle=45 deg");
+        return;
+    }
+    const std::vector<std::string> parts = parts_of(text.substr(0, equals));
+    const bool is_whole = std::none_of(parts.begin(), parts.end(),
+                                       [](const std::string& part) { return part.empty(); });
+    if (!is_whole || parts.size() < 2) {
+        mistakes.add(place,
+                     "the key of an override is SECTION.KEY, such as material.name or "
+                     "stage.1.angle");
+        return;
+    }
+    std::vector<Node*> here = {&root};
+    for (std::size_t n = 0; n + 1 < parts.size(); ++n) {
+        std::vector<Node*> below;
+        for (Node* node : here) {
+            const std::vector<Node*> found =
+                node->kind == Node::Kind::array
+                    ? chosen(*node, parts[n - 1], parts[n], place, mistakes)
+                    : descended(*node, parts[n], place);
+            below.insert(below.end(), found.begin(), found.end());
+        }
+        here = std::move(below);
+        for (const Node* node : here) {
+            if (node->kind == Node::Kind::table || node->kind == Node::Kind::array) continue;
+            mistakes.add(place,
+                         fmt::format("\"{}\" is {}, it has no keys", parts[n], kind_text(*node)));
+            return;
+        }
+    }
+    const Node value = parse_value(text.substr(equals + 1), place);
+    for (Node* node : here) {
+        if (node->kind == Node::Kind::array) {
+            mistakes.add(place, fmt::format("which {0}? Write {0}.1.{1}, or {0}.*.{1} for all",
+                                            parts[parts.size() - 2], parts.back()));
+            return;
+        }
+        if (Entry* entry = node->find(parts.back())) {
+            entry->value = value;
+            entry->place = place;
+        } else {
+            node->entry.push_back({parts.back(), place, value});
+        }
+    }
+}
+
+}  // namespace
+
+void apply_overrides(const std::vector<std::string>& overrides, Node& root, MistakeList& mistakes) {
+    for (const std::string& text : overrides) apply(text, root, mistakes);
+}
+
+}  // namespace swage

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_machine.h"
+
+#include <algorithm>
+
+#include "base/suggest.h"
+#include "base/text.h"
+#include "scene/expressions.h"
+#include "scene/file_text.h"
+#include "scene/stage_keys.h"
+
+namespace swage {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kBoxNames = {"length", "height", "width", "spacing",
+                                            "material_friction"};
+
+bool is_name(const std::string& text) {
+    const auto letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    };
+    return !text.empty() && letter(text[0]) && text.size() <= 64 &&
+           std::all_of(text.begin(), text.end(),
+                       [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+
+class MachineReader {
+  public:
+    MachineReader(const fs::path& folder, MistakeList& mistakes)
+        : folder_(folder), mistakes_(mistakes), reading_(mistakes) {
+        expression_.add_names(kBoxNames);
+    }
+
+    void read(const Document& document, MachineSpec& machine) {
+        reading_.is_complete = document.is_complete;
+        TableReader root(document.root, "the machine file", reading_);
+        root.text("help", machine.help);
+        read_parameters(root.table("parameter"), machine);
+        for (const Node* node : root.tables("tool", "[[tool]]")) read_tool(*node, machine);
+        // From here on the places of all tools are known, and motions also see the time.
+        std::size_t number = 0;
+        for (const Node* node : root.tables("tool", "[[tool]]")) {
+            TableReader table(*node, "[[tool]]", reading_);
+            read_motion(table, "[tool.motion]", machine.tool[number++].motion);
+        }
+        for (const Node* node : root.tables("grip", "[[grip]]")) read_grip(*node, machine);
+        for (const Node* node : root.tables("blade", "[[blade]]")) read_blade(*node, machine);
+        for (const Node* node : root.tables("check", "[[check]]")) read_check(*node, machine);
+        root.finish();
+        if (machine.tool.empty() && machine.grip.empty() && machine.blade.empty() &&
+            reading_.is_complete) {
+            mistakes_.add({document.source, 0, 0},
+                          "this machine has no [[tool]], no [[grip]] and no [[blade]]");
+        }
+        warn_of_unused(document.root);
+        reading_.report_unknown();
+    }
+
+  private:
+    void read_parameters(const Node& all, MachineSpec& machine) {
+        for (const Entry& entry : all.entry) {
+            const std::string section = "[parameter." + entry.key + "]";
+            if (!check_parameter_name(entry)) continue;
+            if (entry.value.kind != Node::Kind::table) {
+                mistakes_.add(entry.place, fmt::format("write {} and below it quantity, default, "
+                                                       "low, high and help",
+                                                       section));
+                continue;
+            }
+            TableReader table(entry.value, section, reading_);
+            ParameterSpec parameter;
+            parameter.name = entry.key;
+            std::vector<std::pair<std::string, Quantity>> quantities;
+            for (const std::string& name : quantity_names()) {
+                quantities.emplace_back(name, *quantity_named(name));
+            }
+            if (!table.choice("quantity", quantities, parameter.quantity)) {
+                table.missing("quantity", joined(quantity_names(), ", "));
+            }
+            if (!expression_.read(table, "default", parameter.default_value)) {
+                table.missing("default", "the value when the scene gives none");
+            }
+            expression_.read(table, "low", parameter.low);
+            expression_.read(table, "high", parameter.high);
+            check_range(table, parameter);
+            table.text("help", parameter.help);
+            table.finish();
+            reading_.known.erase(section);  // its keys belong in every parameter: no hint
+            expression_.add_name(parameter.name);
+            machine.parameter.push_back(std::move(parameter));
+        }
+    }
+
+    bool check_parameter_name(const Entry& entry) {
+        std::string reason;
+        if (!is_name(entry.key)) {
+            reason = "has to be letters, digits and _, beginning with a letter";
+        } else if (entry.key == "t") {
+            reason = "is the time";
+        } else if (std::find(kBoxNames.begin(), kBoxNames.end(), entry.key) != kBoxNames.end()) {
+            reason = "is that of the work-piece";
+        } else if (is_reserved_name(entry.key)) {
+            reason = "is a function, a constant or a unit";
+        } else if (is_stage_key(entry.key)) {
+            reason = "is a key of every [[stage]]";
+        } else {
+            return true;
+        }
+        mistakes_.add(entry.place, fmt::format("the parameter's name \"{}\" {}; choose another",
+                                               entry.key, reason));
+        return false;
+    }
+
+    // Where all three are plain numbers, they have to be in order.
+    void check_range(TableReader& table, const ParameterSpec& parameter) {
+        const auto certain = [](const Expression& text) -> std::optional<double> {
+            try {
+                if (!text.empty()) return evaluate_text(text, {});
+            } catch (const TextError&) {
+            }
+            return std::nullopt;
+        };
+        const auto low = certain(parameter.low), high = certain(parameter.high);
+        const auto value = certain(parameter.default_value);
+        const auto shown = [&](double v) { return quantity_text(v, parameter.quantity); };
+        if (low && high && *low > *high) {
+            table.mistake(
+                "low", fmt::format("low = {} is more than high = {}", shown(*low), shown(*high)));
+        } else if ((low && value && *value < *low) || (high && value && *value > *high)) {
+            table.mistake("default", fmt::format("default = {} is not in the range from {} to {}",
+                                                 shown(*value), low ? shown(*low) : "anything",
+                                                 high ? shown(*high) : "anything"));
+        }
+    }
+
+    std::string read_part_name(TableReader& table) {
+        std::string name;
+        if (!table.text("name", name)) {
+            table.missing("name", "letters, digits and _");
+        } else if (!is_name(name)) {
+            table.mistake("name", fmt::format("\"{}\" has to be letters, digits and _, beginning "
+                                              "with a letter",
+                                              name));
+        } else if (!part_names_.insert(name).second) {
+            table.mistake("name", fmt::format("two parts are called \"{}\"", name));
+        }
+        return name;
+    }
+
+    void read_tool(const Node& node, MachineSpec& machine) {
+        TableReader table(node, "[[tool]]", reading_);
+        ToolSpec tool;
+        tool.name = read_part_name(table);
+        const std::vector<std::pair<std::string, std::string>> shapes = {
+            {"cylinder", "cylinder"}, {"box", "box"}, {"sphere", "sphere"}, {"mesh", "mesh"}};
+        if (!table.choice("shape", shapes, tool.shape)) {
+            table.missing("shape", "\"cylinder\", \"box\", \"sphere\" or \"mesh\"");
+        }
+        const bool is_round = tool.shape == "cylinder" || tool.shape == "sphere";
+        const bool is_long = tool.shape == "cylinder" || tool.shape == "mesh";
+        read_size(table, "radius", is_round, tool.radius);
+        read_size(table, "length", is_long, tool.length);
+        if (tool.shape == "box") {
+            if (!expression_.read(table, "size", tool.size)) {
+                table.missing("size", "three lengths along x, y and z");
+            }
+            for (const Expression& side : tool.size)
+                expression_.expect_positive(table, "size", side);
+            expression_.read(table, "rounding", tool.rounding);
+        }
+        if (tool.shape == "mesh") read_tool_mesh(table, tool.mesh);
+        if (table.vector("axis", Quantity::number, tool.axis)) expect_direction(table, tool.axis);
+        if (!expression_.read(table, "at", tool.at)) {
+            table.missing("at", "where its centre is, such as [0, \"-height\", 0]");
+        }
+        table.vector("touch", Quantity::number, tool.touch);
+        expression_.read(table, "gap", tool.gap);
+        if (table.find("gap") != nullptr && table.find("touch") == nullptr) {
+            table.warn("gap", "gap has no effect without touch");
+        }
+        expression_.read(table, "friction", tool.friction);
+        table.find("motion");
+        if (tool.shape.empty()) table.leave_unknown();
+        table.finish();
+        for (const char* axis : {"_x", "_y", "_z"}) expression_.add_name(tool.name + axis);
+        machine.tool.push_back(std::move(tool));
+    }
+
+    void read_size(TableReader& table, const std::string& key, bool is_wanted, Expression& into) {
+        if (!is_wanted) return;  // and then an unknown key where it stands
+        if (expression_.read(table, key, into)) {
+            expression_.expect_positive(table, key, into);
+        } else {
+            table.missing(key, "a length");
+        }
+    }
+
+    void read_tool_mesh(TableReader& table, fs::path& mesh) {
+        std::string name;
+        if (!table.text("file", name)) {
+            table.missing("file", "the mesh, relative to the machine file");
+            return;
+        }
+        mesh = (folder_ / name).lexically_normal();
+        if (const auto reason = why_unreadable(mesh)) {
+            table.mistake("file",
+                          fmt::format("the mesh \"{}\" {} ({})", name, *reason, mesh.string()),
+                          ExitCode::mesh);
+        }
+    }
+
+    void expect_direction(TableReader& table, const Vec3& axis) {
+        if (!(axis.norm() > 0)) table.mistake("axis", "axis = [0, 0, 0] has no direction");
+    }
+
+    void read_motion(TableReader& part, const std::string& section, MotionSpec& motion) {
+        TableReader table(part.table("motion"), section, reading_);
+        ExpressionReader timed = expression_;
+        timed.add_name("t");
+        timed.read(table, "move", motion.move);
+        const bool turns = timed.read(table, "turn", motion.turn);
+        const bool has_axis = table.vector("axis", Quantity::number, motion.axis);
+        if (has_axis) expect_direction(table, motion.axis);
+        const bool has_pivot = timed.read(table, "pivot", motion.pivot);
+        if (!turns && (has_axis || has_pivot)) {
+            table.warn(has_axis ? "axis" : "pivot", "axis and pivot have no effect without turn");
+        }
+        expression_.take_used(timed);
+        table.finish();
+    }
+
+    void read_grip(const Node& node, MachineSpec& machine) {
+        TableReader table(node, "[[grip]]", reading_);
+        GripSpec grip;
+        grip.name = read_part_name(table);
+        if (!expression_.read(table, "from", grip.from)) table.missing("from", "a corner of a box");
+        if (!expression_.read(table, "to", grip.to)) table.missing("to", "the opposite corner");
+        read_motion(table, "[grip.motion]", grip.motion);
+        table.finish();
+        machine.grip.push_back(std::move(grip));
+    }
+
+    void read_blade(const Node& node, MachineSpec& machine) {
+        TableReader table(node, "[[blade]]", reading_);
+        BladeSpec blade;
+        blade.name = read_part_name(table);
+        const Node* edge = table.find("edge");
+        if (edge == nullptr) {
+            table.missing("edge", "two points or more, such as [[0, 0, -1], [0, 0, 1]]");
+        } else if (edge->kind != Node::Kind::array || edge->item.size() < 2) {
+            table.mistake("edge", "edge has to be two points or more, each of three numbers");
+        } else {
+            for (const Node& point : edge->item) {
+                blade.edge.emplace_back();
+                expression_.read_item(table, "edge", point, blade.edge.back());
+            }
+            if (mistakes_.is_clean() && blade.edge.front() == blade.edge.back()) {
+                table.mistake("edge", "edge begins and ends at the same point");
+            }
+        }
+        if (expression_.read(table, "thickness", blade.thickness)) {
+            expression_.expect_positive(table, "thickness", blade.thickness);
+        }
+        read_motion(table, "[blade.motion]", blade.motion);
+        table.finish();
+        machine.blade.push_back(std::move(blade));
+    }
+
+    void read_check(const Node& node, MachineSpec& machine) {
+        TableReader table(node, "[[check]]", reading_);
+        CheckSpec check;
+        if (!expression_.read(table, "holds", check.holds)) {
+            table.missing("holds", "a condition, such as \"radius < length\"");
+        }
+        if (!table.text("otherwise", check.otherwise)) {
+            table.missing("otherwise", "what the user is told when it does not hold");
+        }
+        table.finish();
+        machine.check.push_back(std::move(check));
+    }
+
+    void warn_of_unused(const Node& root) {
+        const Entry* all = root.find("parameter");
+        if (all == nullptr || !mistakes_.is_clean()) return;
+        for (const Entry& entry : all->value.entry) {
+            if (expression_.is_used(entry.key)) continue;
+            mistakes_.warn(entry.place,
+                           fmt::format("no expression uses the parameter \"{}\"", entry.key));
+        }
+    }
+
+    fs::path folder_;
+    MistakeList& mistakes_;
+    Reading reading_;
+    ExpressionReader expression_;
+    std::set<std::string> part_names_;
+};
+
+}  // namespace
+
+MachineReading read_machine(const fs::path& file) {
+    std::error_code error;
+    const fs::path absolute = fs::absolute(file, error).lexically_normal();
+    const fs::path shown = shown_path(file);
+    MachineReading result;
+    MistakeList mistakes;
+    if (const auto document = read_document(file, shown, mistakes)) {
+        MachineSpec machine;
+        machine.name = file.stem().string();
+        machine.file = absolute;
+        MachineReader(absolute.parent_path(), mistakes).read(*document, machine);
+        if (mistakes.is_clean()) result.machine = std::move(machine);
+    }
+    result.mistakes = mistakes.take(shown);
+    return result;
+}
+
+}  // namespace swage

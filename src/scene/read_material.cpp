@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_material.h"
+
+#include <cmath>
+
+#include "base/suggest.h"
+#include "base/text.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kLatticePoisson = 0.25;  // of central springs, whatever is asked
+constexpr double kPoissonSlack = 0.005;
+constexpr double kMuchFriction = 2;
+
+// Materials that never yield say so by leaving yield_stress out; a scene turns a yielding one into
+// such by `yield_stress = inf`.
+bool is_infinite(const Node* node) {
+    return node != nullptr && node->kind == Node::Kind::real && std::isinf(node->number) &&
+           node->number > 0;
+}
+
+}  // namespace
+
+void read_material_numbers(TableReader& table, bool needs_all, Material& material) {
+    const bool has_modulus =
+        table.quantity("young_modulus", Quantity::stress, above(0), material.young_modulus);
+    table.quantity("poisson_ratio", Quantity::number, inside(-1, 0.5), material.poisson_ratio);
+    const bool has_density =
+        table.quantity("density", Quantity::density, above(0), material.density);
+    if (is_infinite(table.find("yield_stress"))) {
+        material.yield_stress = std::numeric_limits<double>::infinity();
+    } else {
+        table.quantity("yield_stress", Quantity::stress, above(0), material.yield_stress);
+    }
+    if (table.quantity("damping_ratio", Quantity::number, at_least(0), material.damping_ratio) &&
+        material.damping_ratio > 1) {
+        table.warn("damping_ratio", "damping_ratio is more than 1: nothing swings any more");
+    }
+    if (table.quantity("friction", Quantity::number, at_least(0), material.friction) &&
+        material.friction > kMuchFriction) {
+        table.warn("friction",
+                   fmt::format("friction = {:g} is more than any known pair of materials "
+                               "has; 0.1 to 1 is usual",
+                               material.friction));
+    }
+    if (!needs_all) return;
+    if (!has_modulus) table.missing("young_modulus", "a stress, such as \"2 GPa\"");
+    if (!has_density) table.missing("density", "such as \"1200 kg/m3\"");
+}
+
+void read_material(TableReader& table, const AssetPaths& assets,
+                   const std::filesystem::path& scene_folder, Material& material,
+                   std::vector<std::filesystem::path>& inputs) {
+    const Node* node = table.find("name");
+    std::string name;
+    const bool is_named = table.text("name", name);
+    bool is_custom = !is_named;
+    if (!name.empty()) {
+        MaterialCatalogue catalogue = material_catalogue(assets, scene_folder);
+        inputs.insert(inputs.end(), catalogue.files.begin(), catalogue.files.end());
+        std::vector<std::string> known;
+        bool is_known = false;
+        for (const Material& one : catalogue.material) {
+            known.push_back(one.name);
+            if (is_known || one.name != name) continue;
+            material = one;
+            is_known = true;
+        }
+        table.reading().mistakes.add(std::move(catalogue.mistakes));
+        if (!is_known) {
+            table.mistake("name", fmt::format("no material \"{}\"{} known are {}", name,
+                                              known.empty() ? ": no file of materials was found;"
+                                                            : did_you_mean(name, known) + ";",
+                                              known.empty() ? "none" : joined(known, ", ")));
+        }
+    } else if (is_named && node->kind == Node::Kind::text) {
+        table.mistake("name", "the material's name is empty");
+    } else if (table.place().line == 0) {
+        if (table.reading().is_complete) {
+            table.mistake("name",
+                          "the section [material] is missing: give it a name, such as "
+                          "name = \"rubber\", or young_modulus and density");
+        }
+        is_custom = false;
+    }
+    const double ratio_of_name = material.poisson_ratio;
+    material.poisson_ratio = std::numeric_limits<double>::quiet_NaN();
+    read_material_numbers(table, is_custom, material);
+    if (std::isnan(material.poisson_ratio)) {
+        material.poisson_ratio = ratio_of_name;
+    } else if (std::abs(material.poisson_ratio - kLatticePoisson) > kPoissonSlack) {
+        table.warn("poisson_ratio", fmt::format("poisson_ratio = {} has no effect: a lattice of "
+                                                "springs has {}",
+                                                material.poisson_ratio, kLatticePoisson));
+    }
+    table.finish();
+}
+
+}  // namespace swage

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "matter/material.h"
+#include "scene/catalogue.h"
+#include "scene/table_reader.h"
+
+namespace swage {
+
+// Reads the numbers of a material over those that `material` has; `needs_all` asks for those that
+// nothing can stand in for.
+void read_material_numbers(TableReader& table, bool needs_all, Material& material);
+
+// The section [material] of a scene: a known material, with its own numbers over it, or a custom
+// one. `catalogue` is read when a name asks for it.
+void read_material(TableReader& table, const AssetPaths& assets,
+                   const std::filesystem::path& scene_folder, Material& material,
+                   std::vector<std::filesystem::path>& inputs);
+
+}  // namespace swage

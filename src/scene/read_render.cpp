@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_render.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swage {
+
+namespace {
+
+constexpr int kLargestSide = 16384;  // GL_MAX_TEXTURE_SIZE of the software renderers
+
+void read_size(TableReader& table, RenderSettings& settings) {
+    const Node* node = table.find("size");
+    if (node == nullptr) return;
+    const bool is_pair = node->kind == Node::Kind::array && node->item.size() == 2 &&
+                         node->item[0].kind == Node::Kind::whole &&
+                         node->item[1].kind == Node::Kind::whole;
+    if (!is_pair) {
+        table.mistake("size", "size has to be two whole numbers, such as [1280, 720]");
+        return;
+    }
+    const double width = node->item[0].number, height = node->item[1].number;
+    if (width < 1 || height < 1) {
+        table.mistake("size",
+                      fmt::format("size = [{}, {}] is out of range: both have to be 1 to {}", width,
+                                  height, kLargestSide));
+    } else if (width > kLargestSide || height > kLargestSide) {
+        table.mistake("size",
+                      fmt::format("size = [{}, {}] is more than OpenGL draws: both have to be 1 to "
+                                  "{}",
+                                  width, height, kLargestSide),
+                      ExitCode::resources);
+    } else {
+        settings.width = static_cast<int>(width);
+        settings.height = static_cast<int>(height);
+    }
+}
+
+// Where the camera stands, from [render.camera] or one of its keys.
+void read_view(TableReader& table, CameraKey& key) {
+    const Range quarter = between(-kPi / 2 - 1e-12, kPi / 2 + 1e-12);
+    const bool orbits[] = {table.quantity("azimuth", Quantity::angle, {}, key.azimuth),
+                           table.quantity("elevation", Quantity::angle, quarter, key.elevation),
+                           table.quantity("zoom", Quantity::number, above(0), key.zoom)};
+    Vec3 eye = Vec3::Zero(), target = Vec3::Zero();
+    const bool has_eye = table.vector("eye", Quantity::length, eye);
+    const bool has_target = table.vector("target", Quantity::length, target);
+    if (!has_eye && !has_target) return;
+    if (has_eye != has_target) {
+        table.mistake(has_eye ? "eye" : "target",
+                      "eye and target are given together or not at all");
+        return;
+    }
+    if (orbits[0] || orbits[1] || orbits[2]) {
+        table.mistake("eye",
+                      "eye and target stand instead of azimuth, elevation and zoom: give "
+                      "the ones or the others");
+    }
+    if (eye == target) table.mistake("eye", "eye and target are the same point");
+    key.eye = eye;
+    key.target = target;
+}
+
+void read_camera(TableReader& table, std::vector<CameraKey>& camera) {
+    CameraKey fixed;
+    read_view(table, fixed);
+    double orbit = 0;
+    const bool orbits = table.quantity("orbit", Quantity::angle, {}, orbit);
+    if (orbits && fixed.eye) {
+        table.mistake("orbit", "an orbit goes about the azimuth, not from an eye");
+    }
+    const bool has_keys = table.find("keys") != nullptr;
+    const std::vector<const Node*> keys = table.tables("keys", "[[render.camera.keys]]");
+    if (has_keys && table.has_other_keys("keys")) {
+        table.mistake("keys", "keys stand alone in [render.camera]: the rest goes into each key");
+    }
+    if (!has_keys) {
+        camera = {fixed};
+        if (orbits) {
+            CameraKey last = fixed;
+            last.at = 1;
+            last.azimuth += orbit;
+            camera.push_back(last);
+        }
+        return;
+    }
+    camera.clear();
+    for (const Node* node : keys) {
+        TableReader one(*node, "a key of [render.camera]", table.reading());
+        CameraKey key;
+        if (!one.quantity("at", Quantity::number, between(0, 1), key.at)) {
+            one.missing("at", "the share of the film, 0 to 1");
+        }
+        read_view(one, key);
+        one.finish();
+        camera.push_back(key);
+    }
+    if (camera.empty()) {
+        table.mistake("keys", "keys is empty");
+        camera = {fixed};
+    }
+    std::stable_sort(camera.begin(), camera.end(),
+                     [](const CameraKey& a, const CameraKey& b) { return a.at < b.at; });
+    for (std::size_t n = 1; n < camera.size(); ++n) {
+        if (camera[n].at != camera[n - 1].at) continue;
+        table.mistake("keys", fmt::format("two keys stand at {}", camera[n].at));
+        break;
+    }
+}
+
+}  // namespace
+
+void read_render(TableReader& table, RenderSettings& settings) {
+    read_size(table, settings);
+    table.whole("fps", 1, 240, settings.frames_per_second);
+    table.truth("film", settings.film);
+    table.truth("tools", settings.tools);
+    table.truth("ground", settings.ground);
+    table.choice<GlProviderKind>("gl",
+                                 {{"auto", GlProviderKind::automatic},
+                                  {"osmesa", GlProviderKind::osmesa},
+                                  {"egl", GlProviderKind::egl}},
+                                 settings.gl);
+    table.quantity("field_of_view", Quantity::angle, inside(0, kPi), settings.field_of_view);
+    TableReader camera(table.table("camera"), "[render.camera]", table.reading());
+    read_camera(camera, settings.camera);
+    camera.finish();
+    table.finish();
+}
+
+}  // namespace swage

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_scene.h"
+
+#include <algorithm>
+
+#include "base/suggest.h"
+#include "base/text.h"
+#include "scene/document.h"
+#include "scene/file_text.h"
+#include "scene/overrides.h"
+#include "scene/read_material.h"
+#include "scene/read_render.h"
+#include "scene/read_stage.h"
+
+namespace swage {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDefaultAcross = 6;
+
+void read_mesh_section(TableReader& table, const fs::path& folder, MeshSpec& mesh) {
+    std::string file;
+    if (table.text("file", file)) {
+        mesh.file = (folder / file).lexically_normal();
+        if (file.empty()) {
+            if (table.find("file")->kind == Node::Kind::text) {
+                table.mistake("file", "the mesh's file name is empty");
+            }
+        } else if (const auto reason = why_unreadable(mesh.file)) {
+            table.mistake("file",
+                          fmt::format("the mesh \"{}\" {} ({})", file, *reason, mesh.file.string()),
+                          ExitCode::mesh);
+        }
+    } else if (table.place().line == 0) {
+        if (table.reading().is_complete) {
+            table.mistake("file",
+                          "the section [mesh] is missing: it needs a file, such as "
+                          "file = \"bar.obj\"");
+        }
+    } else {
+        table.missing("file", "the mesh to be worked on");
+    }
+    double length = 0;
+    if (table.quantity("length", Quantity::length, above(0), length) && length > 0) {
+        mesh.length = length;
+    }
+    table.finish();
+}
+
+void read_mold(TableReader& table, MoldSettings& mold) {
+    table.choice<MoldKind>("kind", {{"shape", MoldKind::shape}, {"block", MoldKind::block}},
+                           mold.kind);
+    int across = kDefaultAcross;
+    double spacing = 0;
+    const bool has_across = table.whole("across", 1, 1'000'000, across);
+    const bool has_spacing = table.quantity("spacing", Quantity::length, above(0), spacing);
+    if (has_across && has_spacing) {
+        table.mistake("spacing", "across and spacing say the same: give one of them");
+    }
+    if (has_spacing) {
+        if (spacing > 0) mold.spacing = spacing;
+    } else {
+        mold.across = across;
+    }
+    int limit = static_cast<int>(mold.cell_limit);
+    table.whole("cell_limit", 1, 2'000'000'000, limit);
+    mold.cell_limit = static_cast<std::size_t>(limit);
+    table.finish();
+}
+
+void read_skin(TableReader& table, SkinSettings& skin) {
+    table.choice<SkinKind>("kind",
+                           {{"mount", SkinKind::mount},
+                            {"frame4", SkinKind::frame4},
+                            {"boundary", SkinKind::boundary}},
+                           skin.kind);
+    table.finish();
+}
+
+// Sections and keys at the top that nothing is known of.
+void report_unknown_sections(const Document& document, Reading& reading) {
+    const std::vector<std::string> sections = {"mesh",  "material", "mold",  "skin",
+                                               "stage", "render",   "output"};
+    for (const Entry& entry : document.root.entry) {
+        if (std::find(sections.begin(), sections.end(), entry.key) != sections.end()) continue;
+        const Node::Kind kind = entry.value.kind;
+        if (kind == Node::Kind::table || kind == Node::Kind::array) {
+            const std::string near = nearest_word(entry.key, sections);
+            const std::string hint = near.empty() ? "; known are " + joined(sections, ", ")
+                                                  : ", did you mean [" + near + "]?";
+            reading.mistakes.add(entry.place,
+                                 fmt::format("unknown section [{}]{}", entry.key, hint));
+        } else {
+            reading.unknown.push_back({"no section", entry.key, entry.place, {}});
+        }
+    }
+}
+
+void read_document_into(const Document& document, const AssetPaths& assets, Reading& reading,
+                        SceneSpec& scene) {
+    const fs::path folder = scene.file.parent_path();
+    Node absent;  // a section that is not there stands nowhere in the file
+    absent.place = {document.source, 0, 0};
+    TableReader root(document.root, "the scene", reading);
+    const auto section = [&](const std::string& name) {
+        const Node* node = root.find(name);
+        const bool is_there = node != nullptr && node->kind == Node::Kind::table;
+        if (node != nullptr && !is_there) {
+            root.mistake(name, fmt::format("{} is {}; write it as a section [{}]", name,
+                                           kind_text(*node), name));
+        }
+        return TableReader(is_there ? *node : absent, "[" + name + "]", reading);
+    };
+    TableReader mesh = section("mesh"), material = section("material"), mold = section("mold"),
+                skin = section("skin"), render = section("render"), output = section("output");
+    read_mesh_section(mesh, folder, scene.mesh);
+    read_material(material, assets, folder, scene.material, scene.inputs);
+    read_mold(mold, scene.mold);
+    read_skin(skin, scene.skin);
+    StageReader stages(reading, assets, folder);
+    for (const Node* node : root.tables("stage", "[[stage]]")) {
+        scene.stage.push_back(stages.read(*node));
+    }
+    scene.inputs.insert(scene.inputs.end(), stages.inputs().begin(), stages.inputs().end());
+    if (root.find("stage") == nullptr && reading.is_complete) {
+        reading.mistakes.add(absent.place,
+                             "nothing to do: the scene has no [[stage]], such as\n"
+                             "    [[stage]]\n    machine = \"bend\"\n    angle = \"60 deg\"");
+    }
+    read_render(render, scene.render);
+    output.truth("meshes_per_frame", scene.output.meshes_per_frame);
+    output.finish();
+    report_unknown_sections(document, reading);
+    reading.report_unknown();
+}
+
+}  // namespace
+
+SceneReading read_scene(const fs::path& file, const std::vector<std::string>& overrides,
+                        const AssetPaths& assets) {
+    SceneReading result;
+    SceneSpec scene;
+    std::error_code error;
+    scene.file = fs::absolute(file, error).lexically_normal();
+    scene.name = scene.file.stem().string();
+    scene.inputs = {scene.file};
+
+    MistakeList mistakes;
+    std::optional<Document> document = read_document(file, file, mistakes);
+    if (document && document->root.entry.empty() && document->is_complete) {
+        mistakes.add(
+            {document->source, 0, 0},
+            "nothing to do: the scene is empty; it needs [mesh], [material] and [[stage]]");
+    } else if (document) {
+        apply_overrides(overrides, document->root, mistakes);
+        Reading reading(mistakes);
+        reading.is_complete = document->is_complete;
+        read_document_into(*document, assets, reading, scene);
+    }
+    if (mistakes.is_clean()) result.scene = std::move(scene);
+    result.mistakes = mistakes.take(file);
+    return result;
+}
+
+}  // namespace swage

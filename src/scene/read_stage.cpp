@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/suggest.h"
+#include "base/text.h"
+#include "scene/file_text.h"
+#include "scene/read_machine.h"
+#include "scene/stage_keys.h"
+
+namespace swage {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostFrames = 1'000'000'000;  // of a scene; what a machine can hold is judged later
+constexpr double kRangeSlack = 1e-9;        // a value computed to lie at its limit may miss it
+
+const std::vector<std::string> kStageKeys = {"machine",
+                                             "name",
+                                             "frames",
+                                             "duration",
+                                             "axis",
+                                             "up",
+                                             "remold",
+                                             "solver",
+                                             "gravity",
+                                             "tolerance",
+                                             "iteration_limit",
+                                             "halving_limit",
+                                             "contact_stiffness",
+                                             "grip_stiffness",
+                                             "step_safety"};
+
+bool is_path(const std::string& machine) {
+    return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";
+}
+
+std::string names_of(const std::vector<MachineFile>& machines) {
+    std::vector<std::string> names;
+    for (const MachineFile& one : machines) names.push_back(one.name);
+    return names.empty() ? "none" : joined(names, ", ");
+}
+
+}  // namespace
+
+bool is_stage_key(const std::string& key) {
+    return std::find(kStageKeys.begin(), kStageKeys.end(), key) != kStageKeys.end();
+}
+
+std::optional<std::string> why_no_file_name(const std::string& text) {
+    constexpr std::size_t kLongest = 100;
+    if (text.empty()) return "is empty";
+    if (text.size() > kLongest) return fmt::format("is longer than {} bytes", kLongest);
+    if (text[0] == '.') return "begins with a point";
+    if (text.front() == ' ' || text.back() == ' ') return "begins or ends with a blank";
+    for (char c : text) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) return "has a control character";
+        if (std::string_view("/\\:*?\"<>|").find(c) != std::string_view::npos) {
+            return fmt::format("has a \"{}\"", c);
+        }
+    }
+    return std::nullopt;
+}
+
+StageReader::StageReader(Reading& reading, const AssetPaths& assets, fs::path scene_folder)
+    : reading_(reading), scene_folder_(std::move(scene_folder)) {
+    reading_.known["[[stage]]"].insert(kStageKeys.begin(), kStageKeys.end());
+    known_ = known_machines(assets, scene_folder_);
+    looked_in_.push_back((scene_folder_ / "machines").string());
+    for (const fs::path& root : assets.root) looked_in_.push_back((root / "machines").string());
+}
+
+const StageReader::Loaded* StageReader::load(const fs::path& file) {
+    const auto [at, is_new] = loaded_.try_emplace(file);
+    Loaded& loaded = at->second;
+    if (is_new) {
+        MachineReading read = read_machine(file);
+        reading_.mistakes.add(std::move(read.mistakes));
+        loaded.machine = std::move(read.machine);
+        inputs_.push_back(file);
+        if (loaded.machine) {
+            loaded.ranges.emplace(*loaded.machine);
+            for (const ToolSpec& tool : loaded.machine->tool) {
+                if (!tool.mesh.empty()) inputs_.push_back(tool.mesh);
+            }
+        }
+    }
+    return &loaded;
+}
+
+const StageReader::Loaded* StageReader::find_machine(TableReader& table, std::string& name) {
+    std::string wanted;
+    if (!table.text("machine", wanted)) {
+        table.missing("machine", "one of " + names_of(known_));
+        return nullptr;
+    }
+    if (wanted.empty()) {
+        if (table.find("machine")->kind == Node::Kind::text) {
+            table.mistake("machine", "machine is empty; known are " + names_of(known_));
+        }
+        return nullptr;
+    }
+    if (is_path(wanted)) {
+        const fs::path file = (scene_folder_ / wanted).lexically_normal();
+        name = file.stem().string();
+        if (const auto reason = why_unreadable(file)) {
+            table.mistake("machine", fmt::format("the machine file \"{}\" {} ({})", wanted, *reason,
+                                                 file.string()));
+            return nullptr;
+        }
+        return load(file);
+    }
+    name = wanted;
+    std::vector<std::string> names;
+    for (const MachineFile& one : known_) {
+        if (one.name == wanted) return load(one.file);
+        names.push_back(one.name);
+    }
+    table.mistake("machine", fmt::format("no machine \"{}\"{}; known are {}; looked in {}", wanted,
+                                         did_you_mean(wanted, names), names_of(known_),
+                                         joined(looked_in_, ", ")));
+    return nullptr;
+}
+
+void StageReader::read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage) {
+    for (const ParameterSpec& parameter : loaded.machine->parameter) {
+        double value = std::numeric_limits<double>::quiet_NaN();
+        table.quantity(parameter.name, parameter.quantity, {}, value);
+        if (!std::isnan(value)) stage.parameter[parameter.name] = value;
+    }
+    if (stage.parameter.empty()) return;
+    const std::vector<Range> ranges = loaded.ranges->ranges(stage.parameter);
+    for (std::size_t n = 0; n < ranges.size(); ++n) {
+        const ParameterSpec& parameter = loaded.machine->parameter[n];
+        const auto given = stage.parameter.find(parameter.name);
+        if (given == stage.parameter.end()) continue;
+        Range range = ranges[n];
+        const double slack = kRangeSlack * std::max(1e-6, std::abs(given->second));
+        range.low -= slack;
+        range.high += slack;
+        if (range.holds(given->second)) continue;
+        table.mistake(parameter.name,
+                      fmt::format("{} = {} is out of range: the machine {} takes {}",
+                                  parameter.name, quantity_text(given->second, parameter.quantity),
+                                  loaded.machine->name, ranges[n].text(parameter.quantity)));
+    }
+}
+
+void StageReader::read_solver(TableReader& table, SimSettings& sim) {
+    table.choice<Solver>(
+        "solver", {{"quasistatic", Solver::quasistatic}, {"explicit", Solver::explicit_steps}},
+        sim.solver);
+    const bool relaxes = sim.solver == Solver::quasistatic;
+    const auto only_for = [&](const std::string& key, bool is_given, bool is_used) {
+        if (!is_given || is_used) return;
+        table.warn(key, fmt::format("{} has no effect with solver = \"{}\"", key,
+                                    relaxes ? "quasistatic" : "explicit"));
+    };
+    const auto number = [&](const std::string& key, double low, double high, double& into) {
+        return table.quantity(key, Quantity::number, between(low, high), into);
+    };
+    only_for("tolerance", number("tolerance", 1e-4, 0.1, sim.tolerance), relaxes);
+    only_for("iteration_limit", table.whole("iteration_limit", 100, 1'000'000, sim.iteration_limit),
+             relaxes);
+    only_for("halving_limit", table.whole("halving_limit", 0, 8, sim.halving_limit), relaxes);
+    number("contact_stiffness", 0.5, 100, sim.contact_stiffness);
+    number("grip_stiffness", 1, 100, sim.grip_stiffness);
+    only_for("step_safety",
+             table.quantity("step_safety", Quantity::number,
+                            {.low = 0, .high = 1, .low_open = true}, sim.step_safety),
+             !relaxes);
+    const Node* gravity = table.find("gravity");
+    if (gravity != nullptr && gravity->kind != Node::Kind::array) {
+        double down = 0;  // a single number points down
+        table.quantity("gravity", Quantity::acceleration, {}, down);
+        sim.gravity = {0, -down + 0.0, 0};
+    } else {
+        table.vector("gravity", Quantity::acceleration, sim.gravity);
+    }
+}
+
+void StageReader::read_frame(TableReader& table, StageSpec& stage) {
+    const auto same = [](std::vector<std::string> names) {
+        std::vector<std::pair<std::string, std::string>> pairs;
+        for (const std::string& name : names) pairs.emplace_back(name, name);
+        return pairs;
+    };
+    table.choice("axis", same({"auto", "x", "y", "z"}), stage.axis);
+    table.choice("up", same({"auto", "x", "-x", "y", "-y", "z", "-z"}), stage.up);
+    if (stage.axis != "auto" && stage.up != "auto" && stage.axis.back() == stage.up.back()) {
+        table.mistake("up", fmt::format("up = \"{}\" lies along axis = \"{}\"; choose another",
+                                        stage.up, stage.axis));
+    }
+}
+
+void StageReader::name_stage(TableReader& table, const std::string& machine, StageSpec& stage) {
+    stage.name = fmt::format("{}-{}", count_, machine);
+    const bool is_named = table.text("name", stage.name);
+    if (const auto reason = why_no_file_name(stage.name); is_named && reason) {
+        table.mistake("name", fmt::format("the name {}; it becomes the name of files", *reason));
+        return;
+    }
+    const Place& place = table.find("name") != nullptr ? table.find("name")->place : table.place();
+    const auto [earlier, is_new] = line_of_name_.try_emplace(stage.name, place.line);
+    if (!is_new) {
+        table.mistake("name", fmt::format("two stages are called \"{}\"; the first is in line {}",
+                                          stage.name, earlier->second));
+    }
+}
+
+StageSpec StageReader::read(const Node& node) {
+    ++count_;
+    TableReader table(node, "[[stage]]", reading_);
+    StageSpec stage;
+    std::string machine;
+    const Loaded* loaded = find_machine(table, machine);
+    name_stage(table, machine, stage);
+    if (table.whole("frames", 1, kMostFrames, stage.frames)) {
+        frames_ += stage.frames;
+        if (frames_ - stage.frames <= kMostFrames && frames_ > kMostFrames) {
+            table.mistake("frames", fmt::format("the scene has more than {} frames", kMostFrames));
+        }
+    } else {
+        frames_ += stage.frames;
+    }
+    table.quantity("duration", Quantity::time, above(0), stage.duration);
+    table.truth("remold", stage.remold);
+    read_frame(table, stage);
+    read_solver(table, stage.sim);
+    if (loaded != nullptr && loaded->machine) {
+        stage.machine = *loaded->machine;
+        table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
+        read_parameters(table, *loaded, stage);
+    } else {
+        table.leave_unknown();
+    }
+    table.finish();
+    return stage;
+}
+
+}  // namespace swage

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/find.h"
+#include "scene/parameter_ranges.h"
+#include "scene/spec.h"
+#include "scene/table_reader.h"
+
+namespace swage {
+
+// Reads the [[stage]]s of one scene in their order; a machine file is read once.
+class StageReader {
+  public:
+    StageReader(Reading& reading, const AssetPaths& assets, std::filesystem::path scene_folder);
+
+    StageSpec read(const Node& node);
+
+    // The machine files, and the meshes that they name.
+    const std::vector<std::filesystem::path>& inputs() const { return inputs_; }
+
+  private:
+    struct Loaded {
+        std::optional<MachineSpec> machine;
+        std::optional<ParameterRanges> ranges;
+    };
+
+    const Loaded* find_machine(TableReader& table, std::string& name);
+    const Loaded* load(const std::filesystem::path& file);
+    void read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage);
+    void read_solver(TableReader& table, SimSettings& sim);
+    void read_frame(TableReader& table, StageSpec& stage);
+    void name_stage(TableReader& table, const std::string& machine, StageSpec& stage);
+
+    Reading& reading_;
+    std::filesystem::path scene_folder_;
+    std::vector<MachineFile> known_;
+    std::vector<std::string> looked_in_;
+    std::map<std::filesystem::path, Loaded> loaded_;
+    std::map<std::string, int> line_of_name_;
+    std::vector<std::filesystem::path> inputs_;
+    int count_ = 0;
+    double frames_ = 0;  // of all stages so far
+};
+
+// Whether a text can be the name of a file or folder in a run directory; else why not.
+std::optional<std::string> why_no_file_name(const std::string& text);
+
+}  // namespace swage

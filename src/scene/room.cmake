@@ -1,0 +1,2 @@
+pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
+target_link_libraries(swage_scene PRIVATE PkgConfig::TOMLPLUSPLUS)

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/syntax.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "base/suggest.h"
+#include "base/units.h"
+
+namespace swage {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+bool is_key_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+}
+
+struct KeyLine {  // KEY = VALUE
+    std::string key;
+    std::string value;  // without a comment
+    int key_column, value_column;
+};
+
+std::optional<KeyLine> as_key_line(std::string_view line) {
+    std::size_t at = line.find_first_not_of(" \t");
+    if (at == std::string_view::npos) return std::nullopt;
+    const std::size_t begin = at;
+    while (at < line.size() && is_key_letter(line[at])) ++at;
+    const std::size_t end = at;
+    while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
+    if (end == begin || at >= line.size() || line[at] != '=') return std::nullopt;
+    std::string_view value = line.substr(at + 1);
+    if (value.find('"') == std::string_view::npos && value.find('\'') == std::string_view::npos) {
+        value = value.substr(0, value.find('#'));
+    }
+    const std::string_view inner = trimmed(value);
+    const std::size_t column =
+        inner.empty() ? at + 1 : static_cast<std::size_t>(inner.data() - line.data());
+    return KeyLine{std::string(line.substr(begin, end - begin)), std::string(inner),
+                   static_cast<int>(begin) + 1, static_cast<int>(column) + 1};
+}
+
+// The first line of the same section that gives the same key, before `line`; or the first with
+// the same header. 0: none was found.
+int first_giver(std::string_view file_text, int line, const std::optional<KeyLine>& key) {
+    const std::string_view header = trimmed(line_of(file_text, line));
+    int found = 0, number = 1;
+    for (std::size_t begin = 0; number < line && begin < file_text.size(); ++number) {
+        const std::size_t end = std::min(file_text.find('\n', begin), file_text.size());
+        const std::string_view text = trimmed(file_text.substr(begin, end - begin));
+        begin = end + 1;
+        if (key) {
+            if (!text.empty() && text.front() == '[') {
+                found = 0;  // another section
+            } else if (const auto earlier = as_key_line(text);
+                       found == 0 && earlier && earlier->key == key->key) {
+                found = number;
+            }
+        } else if (found == 0 && text == header) {
+            found = number;
+        }
+    }
+    return found;
+}
+
+// What is wrong with a value that begins like a number; empty: nothing that is known here.
+std::string number_advice(const KeyLine& line) {
+    const std::string& value = line.value;
+    const std::size_t sign = value[0] == '-' || value[0] == '+' ? 1 : 0;
+    try {
+        const auto number = leading_number(value);
+        if (!number) return {};
+        const std::string_view rest = trimmed(std::string_view(value).substr(number->size));
+        if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') {
+            std::string meant = value;
+            std::replace(meant.begin(), meant.end(), ',', '.');
+            return fmt::format("{} has a decimal comma; write {}", value, meant);
+        }
+        const auto unit = leading_unit(rest);
+        if (unit && unit->size == rest.size()) {
+            return fmt::format("a value with a unit stands in quotes: {} = \"{}\"", line.key,
+                               value);
+        }
+        if (!rest.empty()) return fmt::format("{} is no number", value);
+        if (value[sign] == '0' && value.size() > sign + 1 && value[sign + 1] != '.') {
+            return fmt::format("a number does not begin with 0: write {}", number->value);
+        }
+        if (value[sign] == '.') return fmt::format("write {}", number->value);
+        if (value.back() == '.') return fmt::format("a digit is missing after the point");
+    } catch (const TextError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+std::string value_advice(const KeyLine& line) {
+    const std::string& value = line.value;
+    if (value.empty()) return fmt::format("{} has no value", line.key);
+    const char first = value[0];
+    if ((first >= '0' && first <= '9') || first == '.' || first == '-' || first == '+') {
+        return number_advice(line);
+    }
+    if (first == '"' || first == '\'') {
+        const bool is_open = value.find(first, 1) == std::string::npos;
+        return is_open ? "the text is not closed by a quote" : "";
+    }
+    if ((first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z')) {
+        for (const char* word : {"true", "yes", "on"}) {
+            if (edit_distance(value, word) == 0) return "write true";
+        }
+        for (const char* word : {"false", "no", "off"}) {
+            if (edit_distance(value, word) == 0) return "write false";
+        }
+        const bool is_plain = std::all_of(value.begin(), value.end(), [](char c) {
+            return is_key_letter(c) || c == ' ' || c == '/';
+        });
+        if (is_plain) return fmt::format("a text stands in quotes: {} = \"{}\"", line.key, value);
+    }
+    return {};
+}
+
+std::string plain(std::string text) {
+    const std::size_t colon = text.find(": ");
+    if (text.rfind("Error while parsing", 0) == 0 && colon != std::string::npos) {
+        text = text.substr(colon + 2);
+    }
+    std::string shown;
+    for (char c : text) {
+        if (c == '\n') {
+            shown += "the end of the line";
+        } else {
+            shown += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+        }
+    }
+    return "this cannot be read: " + shown;
+}
+
+}  // namespace
+
+std::string_view line_of(std::string_view file_text, int line) {
+    std::size_t begin = 0;
+    for (int number = 1; number < line; ++number) {
+        begin = file_text.find('\n', begin);
+        if (begin == std::string_view::npos) return {};
+        ++begin;
+    }
+    return file_text.substr(begin, file_text.find('\n', begin) - begin);
+}
+
+SyntaxAdvice explain_syntax(std::string_view file_text, const SyntaxMistake& mistake) {
+    const std::string_view line = line_of(file_text, mistake.line);
+    const std::optional<KeyLine> key = as_key_line(line);
+    const std::string_view bare = trimmed(line);
+    if (mistake.description.find("cannot redefine") != std::string::npos) {
+        const bool is_header = !bare.empty() && bare.front() == '[';
+        const int first = first_giver(file_text, mistake.line, key);
+        if (key || is_header) {
+            const std::string what = is_header ? std::string(bare) : "\"" + key->key + "\"";
+            return {key ? key->key_column : mistake.column,
+                    first > 0 ? fmt::format("{} is given twice, first in line {}", what, first)
+                              : fmt::format("{} is given twice, or in two ways", what),
+                    key.has_value()};
+        }
+    }
+    if (key) {
+        const std::string advice = value_advice(*key);
+        // An array or a table in braces may go on over lines, and so may what is wrong with it.
+        const char first = key->value.empty() ? ' ' : key->value[0];
+        const bool is_alone = first != '[' && first != '{' && key->value.find("\"\"\"") != 0 &&
+                              key->value.find("'''") != 0;
+        if (!advice.empty()) return {key->value_column, advice, is_alone};
+        return {mistake.column, plain(mistake.description), is_alone};
+    }
+    return {mistake.column, plain(mistake.description), false};
+}
+
+}  // namespace swage

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/table_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/suggest.h"
+#include "base/text.h"
+
+namespace swage {
+
+namespace {
+
+std::string example_of(Quantity quantity) {
+    const std::vector<std::string> units = unit_names(quantity);
+    if (quantity == Quantity::number || units.empty()) return "0.5";
+    return "\"2 " + units.front() + "\"";
+}
+
+bool contains(const std::vector<std::string>& list, const std::string& word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+// Names that people bring from elsewhere.
+const std::map<std::string, std::string> kOtherNames = {
+    {"E", "young_modulus"},
+    {"nu", "poisson_ratio"},
+    {"rho", "density"},
+    {"youngs", "young_modulus"},
+    {"stiffness", "young_modulus"},
+    {"mu", "friction"},
+    {"damping", "damping_ratio"},
+    {"resolution", "across"},
+    {"cells", "across"},
+    {"fov", "field_of_view"},
+    {"frame_rate", "fps"},
+    {"path", "file"},
+    {"type", "kind"},
+    {"width", "size"},
+    {"height", "size"},
+    {"seconds", "duration"},
+};
+
+}  // namespace
+
+bool Range::holds(double value) const {
+    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::text(Quantity quantity) const {
+    const std::string from = quantity_text(low, quantity), to = quantity_text(high, quantity);
+    if (std::isinf(high)) return (low_open ? "more than " : "at least ") + from;
+    if (std::isinf(low)) return (high_open ? "less than " : "at most ") + to;
+    if (low_open && high_open) return "between " + from + " and " + to + ", both excluded";
+    if (low_open) return "more than " + from + ", at most " + to;
+    if (high_open) return "at least " + from + ", less than " + to;
+    return from + " to " + to;
+}
+
+void Reading::report_unknown() {
+    for (const UnknownKey& one : unknown) {
+        if (mistakes.is_full()) {
+            mistakes.add(one.place, "unknown key");
+            continue;
+        }
+        std::string text = fmt::format("unknown key \"{}\" in {}", one.key, one.section);
+        std::vector<std::string> elsewhere;
+        for (const auto& [section, keys] : known) {
+            if (section != one.section && keys.contains(one.key)) elsewhere.push_back(section);
+        }
+        const auto other = kOtherNames.find(one.key);
+        if (!elsewhere.empty()) {
+            text += ", it belongs in " + joined(elsewhere, " or ");
+        } else if (other != kOtherNames.end() && contains(one.known, other->second)) {
+            text += fmt::format(", did you mean \"{}\"?", other->second);
+        } else if (const std::string hint = did_you_mean(one.key, one.known); !hint.empty()) {
+            text += hint;
+        } else if (!one.known.empty()) {
+            text += "; known are " + joined(one.known, ", ");
+        }
+        mistakes.add(one.place, text);
+    }
+    unknown.clear();
+}
+
+TableReader::TableReader(const Node& table, std::string section, Reading& reading)
+    : node_(table), section_(std::move(section)), reading_(reading) {}
+
+const Node* TableReader::find(const std::string& key) {
+    if (!contains(asked_, key)) asked_.push_back(key);
+    const Entry* entry = node_.find(key);
+    return entry == nullptr ? nullptr : &entry->value;
+}
+
+void TableReader::mistake(const std::string& key, const std::string& text, ExitCode code) {
+    const Entry* entry = node_.find(key);
+    reading_.mistakes.add(entry == nullptr ? node_.place : entry->value.place, text, code);
+}
+
+void TableReader::warn(const std::string& key, const std::string& text) {
+    const Entry* entry = node_.find(key);
+    reading_.mistakes.warn(entry == nullptr ? node_.place : entry->value.place, text);
+}
+
+void TableReader::missing(const std::string& key, const std::string& what) {
+    if (!reading_.is_complete) return;
+    reading_.mistakes.add(node_.place, fmt::format("{} needs \"{}\": {}", section_, key, what));
+}
+
+bool TableReader::number(const std::string& key, const Node& node, Quantity quantity,
+                         double& into) {
+    if (node.kind == Node::Kind::whole || node.kind == Node::Kind::real) {
+        if (!std::isfinite(node.number)) {
+            reading_.mistakes.add(node.place, key + " is not a finite number");
+            return false;
+        }
+        into = node.number;
+        return true;
+    }
+    if (node.kind == Node::Kind::text) {
+        try {
+            into = parse_quantity(node.text, quantity);
+            return true;
+        } catch (const TextError& error) {
+            reading_.mistakes.add(place_inside(node, error.at()), key + ": " + error.what());
+            return false;
+        }
+    }
+    const std::string kind = quantity_name(quantity);
+    reading_.mistakes.add(node.place, fmt::format("{} is {}; a {} is wanted, such as {}", key,
+                                                  kind_text(node), kind, example_of(quantity)));
+    return false;
+}
+
+bool TableReader::quantity(const std::string& key, Quantity quantity, const Range& range,
+                           double& into) {
+    const Node* node = find(key);
+    if (node == nullptr) return false;
+    double value = 0;
+    if (!number(key, *node, quantity, value)) return true;
+    if (range.holds(value)) {
+        into = value;
+    } else {
+        mistake(key, fmt::format("{} = {} is out of range: it has to be {}", key,
+                                 quantity_text(value, quantity), range.text(quantity)));
+    }
+    return true;
+}
+
+bool TableReader::whole(const std::string& key, int low, int high, int& into) {
+    const Node* node = find(key);
+    if (node == nullptr) return false;
+    double value = 0;
+    if (!number(key, *node, Quantity::number, value)) return true;
+    if (value != std::floor(value)) {
+        mistake(key,
+                fmt::format("{} = {} has to be a whole number, {} to {}", key, value, low, high));
+    } else if (value < low || value > high) {
+        mistake(key, fmt::format("{} = {} is out of range: it has to be {} to {}", key, value, low,
+                                 high));
+    } else {
+        into = static_cast<int>(value);
+    }
+    return true;
+}
+
+bool TableReader::truth(const std::string& key, bool& into) {
+    const Node* node = find(key);
+    if (node == nullptr) return false;
+    if (node->kind == Node::Kind::truth) {
+        into = node->truth;
+    } else {
+        mistake(key, fmt::format("{} has to be true or false, without quotes", key));
+    }
+    return true;
+}
+
+bool TableReader::text(const std::string& key, std::string& into) {
+    const Node* node = find(key);
+    if (node == nullptr) return false;
+    if (node->kind == Node::Kind::text) {
+        into = node->text;
+    } else {
+        mistake(key, fmt::format("{} is {}; a text in quotes is wanted", key, kind_text(*node)));
+    }
+    return true;
+}
+
+bool TableReader::vector(const std::string& key, Quantity quantity, Vec3& into) {
+    const Node* node = find(key);
+    if (node == nullptr) return false;
+    if (node->kind != Node::Kind::array || node->item.size() != 3) {
+        mistake(key, fmt::format("{} has to be three numbers, such as [0, 0, 1]", key));
+        return true;
+    }
+    Vec3 value;
+    bool is_right = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Node& item = node->item[static_cast<std::size_t>(axis)];
+        is_right = number(key, item, quantity, value[axis]) && is_right;
+    }
+    if (is_right) into = value;
+    return true;
+}
+
+int TableReader::chosen_name(const std::string& key, const std::vector<std::string>& names) {
+    const Node* node = find(key);
+    if (node == nullptr) return -1;
+    if (node->kind == Node::Kind::text) {
+        const auto found = std::find(names.begin(), names.end(), node->text);
+        if (found != names.end()) return static_cast<int>(found - names.begin());
+        std::vector<std::string> quoted;
+        for (const std::string& name : names) quoted.push_back("\"" + name + "\"");
+        mistake(key, fmt::format("{} = \"{}\" is not one of {}{}", key, node->text,
+                                 joined(quoted, ", "), did_you_mean(node->text, names)));
+    } else {
+        mistake(key, fmt::format("{} is {}; one of these texts is wanted: {}", key,
+                                 kind_text(*node), joined(names, ", ")));
+    }
+    return -1;
+}
+
+const Node& TableReader::table(const std::string& key) {
+    static const Node empty;
+    const Node* node = find(key);
+    if (node == nullptr) return empty;
+    if (node->kind == Node::Kind::table) return *node;
+    mistake(key, fmt::format("{} is {}; a section is wanted", key, kind_text(*node)));
+    return empty;
+}
+
+std::vector<const Node*> TableReader::tables(const std::string& key, const std::string& example) {
+    std::vector<const Node*> found;
+    const Node* node = find(key);
+    if (node == nullptr) return found;
+    if (node->kind != Node::Kind::array) {
+        mistake(key, fmt::format("write {} in double brackets: there may be several", example));
+        return found;
+    }
+    for (const Node& item : node->item) {
+        if (item.kind == Node::Kind::table) {
+            found.push_back(&item);
+        } else {
+            reading_.mistakes.add(item.place, fmt::format("{} is {}; a section {} is wanted", key,
+                                                          kind_text(item), example));
+        }
+    }
+    return found;
+}
+
+bool TableReader::has_other_keys(const std::string& than) const {
+    return std::any_of(node_.entry.begin(), node_.entry.end(),
+                       [&](const Entry& entry) { return entry.key != than; });
+}
+
+void TableReader::tell_known() {
+    std::set<std::string>& known = reading_.known[section_];
+    for (; told_ < asked_.size(); ++told_) known.insert(asked_[told_]);
+}
+
+void TableReader::narrow(std::string section) {
+    tell_known();
+    section_ = std::move(section);
+}
+
+void TableReader::finish() {
+    tell_known();
+    if (!judge_unknown_) return;
+    for (const Entry& entry : node_.entry) {
+        if (contains(asked_, entry.key)) continue;
+        reading_.unknown.push_back({section_, entry.key, entry.place, asked_});
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Typed look-up in a table of a file. Every look-up makes its key known; a key that nothing asked
+// for is reported, with the nearest known one and the section where it belongs.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/math.h"
+#include "base/units.h"
+#include "scene/document.h"
+
+namespace swage {
+
+// Allowed values. An open end is itself not allowed.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_open = false, high_open = false;
+
+    bool holds(double value) const;
+    // "more than 0 m", "1 mm to 2 cm", ...; `quantity` shows the ends.
+    std::string text(Quantity quantity) const;
+};
+inline Range above(double low) { return {.low = low, .low_open = true}; }
+inline Range at_least(double low) { return {.low = low}; }
+inline Range between(double low, double high) { return {.low = low, .high = high}; }
+inline Range inside(double low, double high) { return {low, high, true, true}; }
+
+// What all tables of a file share.
+struct Reading {
+    explicit Reading(MistakeList& list) : mistakes(list) {}
+
+    struct UnknownKey {
+        std::string section, key;
+        Place place;
+        std::vector<std::string> known;
+    };
+
+    MistakeList& mistakes;
+    bool is_complete = true;                             // see Document
+    std::map<std::string, std::set<std::string>> known;  // section -> keys that were asked for
+    std::vector<UnknownKey> unknown;
+
+    // Once, after everything was read.
+    void report_unknown();
+};
+
+class TableReader {
+  public:
+    // `section` is how the user writes it: "[mesh]", "[[stage]]".
+    TableReader(const Node& table, std::string section, Reading& reading);
+
+    // Each sets `into` when the key is there and right, reports when it is there and wrong, and
+    // returns whether it is there.
+    bool quantity(const std::string& key, Quantity quantity, const Range& range, double& into);
+    bool whole(const std::string& key, int low, int high, int& into);
+    bool truth(const std::string& key, bool& into);
+    bool text(const std::string& key, std::string& into);
+    bool vector(const std::string& key, Quantity quantity, Vec3& into);
+
+    template <typename T>
+    bool choice(const std::string& key, const std::vector<std::pair<std::string, T>>& choices,
+                T& into) {
+        std::vector<std::string> names;
+        for (const auto& [name, value] : choices) names.push_back(name);
+        const int chosen = chosen_name(key, names);
+        if (chosen >= 0) into = choices[static_cast<std::size_t>(chosen)].second;
+        return find(key) != nullptr;
+    }
+
+    const Node* find(const std::string& key);  // any kind; null when absent
+
+    // The table under a key; an empty one when it is absent or no table.
+    const Node& table(const std::string& key);
+    // The tables of an array; `example` shows how one is written ("[[stage]]").
+    std::vector<const Node*> tables(const std::string& key, const std::string& example);
+
+    // Reports that the key is needed, unless lines of the file were lost.
+    void missing(const std::string& key, const std::string& what);
+    void mistake(const std::string& key, const std::string& text,
+                 ExitCode code = ExitCode::scene);  // at the value, or at the table
+    void warn(const std::string& key, const std::string& text);
+
+    // Reports keys that nothing asked for.
+    void finish();
+    // They cannot be judged, as what would read them has failed.
+    void leave_unknown() { judge_unknown_ = false; }
+
+    const Place& place() const { return node_.place; }
+    const std::string& section() const { return section_; }
+    // What is looked up from now on belongs to this narrower section ("[[stage]] with ...").
+    void narrow(std::string section);
+    bool has_other_keys(const std::string& than) const;
+    Reading& reading() { return reading_; }
+
+  private:
+    void tell_known();
+    int chosen_name(const std::string& key, const std::vector<std::string>& names);
+    bool number(const std::string& key, const Node& node, Quantity quantity, double& into);
+
+    const Node& node_;
+    std::string section_;
+    Reading& reading_;
+    std::vector<std::string> asked_;
+    std::size_t told_ = 0;  // of asked_, those that the reading knows of
+    bool judge_unknown_ = true;
+};
+
+}  // namespace swage

@@ -1,0 +1,438 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scenes with something wrong in them: every mistake is found, at its place, with what to do.
+#include <sys/stat.h>
+
+#include "tests/catch.h"
+#include "tests/scene/scratch.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+// A right scene whose sections can each be replaced. Lines: [mesh] 1, [material] 3, [mold] 5,
+// [[stage]] 7, [render] 10.
+struct Parts {
+    std::string mesh = "[mesh]\nfile = \"bar.obj\"\n";
+    std::string material = "[material]\nname = \"rubber\"\n";
+    std::string mold = "[mold]\nacross = 6\n";
+    std::string stage = "[[stage]]\nmachine = \"bend\"\nangle = \"60 deg\"\n";
+    std::string rest = "[render]\nfps = 30\n";
+
+    std::string text() const { return mesh + material + mold + stage + rest; }
+};
+
+std::string mistakes_in(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    const Scratch scratch;
+    const SceneReading reading = read_scene(scratch.write("s.toml", text), overrides, shipped());
+    CHECK(reading.scene.has_value() == (exit_code(reading.mistakes) == ExitCode::done));
+    return told(reading.mistakes, scratch.folder());
+}
+
+Parts with(std::string Parts::*part, const std::string& text) {
+    Parts parts;
+    parts.*part = text;
+    return parts;
+}
+
+struct Bad {
+    const char* title;
+    Parts scene;
+    std::vector<std::string> wanted;  // each has to occur; the number of lines has to be the same
+};
+
+void check_all(const std::vector<Bad>& bad) {
+    for (const Bad& one : bad) {
+        const std::string text = mistakes_in(one.scene.text());
+        INFO(one.title << "\n" << one.scene.text() << "---\n" << text);
+        CHECK(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) ==
+              one.wanted.size());
+        for (const std::string& wanted : one.wanted) {
+            INFO(wanted);
+            CHECK(text.find(wanted) != std::string::npos);
+        }
+    }
+}
+
+Parts material(const std::string& line) {
+    return with(&Parts::material, "[material]\nname = \"rubber\"\n" + line + "\n");
+}
+Parts stage(const std::string& line) {
+    return with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\n" + line + "\n");
+}
+Parts render(const std::string& line) { return with(&Parts::rest, "[render]\n" + line + "\n"); }
+
+}  // namespace
+
+TEST_CASE("the scene that the others vary is right") { CHECK(mistakes_in(Parts().text()) == ""); }
+
+TEST_CASE("unknown keys and sections get the nearest known one") {
+    check_all({
+        {"typo",
+         material("yeild = 3"),
+         {"s.toml:5:1: unknown key \"yeild\" in [material], did you mean \"yield_stress\"?"}},
+        {"typo of a parameter",
+         stage("angel = 3"),
+         {"s.toml:9:1: unknown key \"angel\" in [[stage]] with machine \"bend\", did you mean "
+          "\"angle\"?"}},
+        {"known elsewhere as", material("E = 3"), {"did you mean \"young_modulus\"?"}},
+        {"nothing near",
+         material("colour = 3"),
+         {"5:1: unknown key \"colour\" in [material]; known are name, young_modulus,"}},
+        {"section",
+         with(&Parts::material, "[materail]\nname = \"rubber\"\n"),
+         {"s.toml:3:2: unknown section [materail], did you mean [material]?",
+          "s.toml: the section [material] is missing"}},
+        {"section far off",
+         with(&Parts::rest, "[physics]\ng = 3\n"),
+         {"10:2: unknown section [physics]; known are mesh, material"}},
+        {"key in the wrong section",
+         render("across = 4"),
+         {"11:1: unknown key \"across\" in [render], it belongs in [mold]"}},
+        {"key of a stage",
+         render("frames = 4"),
+         {"11:1: unknown key \"frames\" in [render], it belongs in [[stage]]\n"}},
+        {"parameter of another machine",
+         with(&Parts::rest, "[[stage]]\nmachine = \"twist\"\noverhang = 3\n"),
+         {"12:1: unknown key \"overhang\" in [[stage]] with machine \"twist\", it belongs in "
+          "[[stage]] with machine \"bend\""}},
+        {"key above all sections",
+         with(&Parts::mesh, "frames = 3\n[mesh]\nfile = \"bar.obj\"\n"),
+         {"1:1: unknown key \"frames\" in no section, it belongs in [[stage]]"}},
+        {"in the camera",
+         render("camera = {azimut = 1}"),
+         {"11:11: unknown key \"azimut\" in [render.camera], did you mean \"azimuth\"?"}},
+        {"stage in single brackets",
+         with(&Parts::stage, "[stage]\nmachine = \"bend\"\n"),
+         {"7:1: write [[stage]] in double brackets: there may be several"}},
+        {"section as a value",
+         with(&Parts::mold, "[[mold]]\nacross = 3\n"),
+         {"5:1: mold is an array; write it as a section [mold]"}},
+    });
+}
+
+TEST_CASE("broken lines are named, and the rest is read all the same") {
+    check_all({
+        {"value missing",
+         stage("frames =\nanlge = 3"),
+         {"9:9: frames has no value", "10:1: unknown key \"anlge\""}},
+        {"key twice",
+         stage("frames = 3\nremold = true\nframes = 4"),
+         {"11:1: \"frames\" is given twice, first in line 9"}},
+        {"section twice",
+         with(&Parts::rest, "[mold]\nacross = 3\n"),
+         {"10:1: [mold] is given twice, first in line 5"}},
+        {"decimal comma",
+         with(&Parts::mold, "[mold]\nspacing = 1,5\n"),
+         {"6:11: 1,5 has a decimal comma; write 1.5"}},
+        {"no quotes",
+         with(&Parts::mold, "[mold]\nspacing = 5 mm\n"),
+         {"6:11: a value with a unit stands in quotes: spacing = \"5 mm\""}},
+        {"no quotes about a word",
+         with(&Parts::mold, "[mold]\nkind = block\n"),
+         {"6:8: a text stands in quotes: kind = \"block\""}},
+        {"rubbish after a number", stage("frames = 1e5x"), {"9:10: 1e5x is no number"}},
+        {"apples", stage("frames = 10 apples"), {"9:10: 10 apples is no number"}},
+        {"octal", stage("frames = 010"), {"9:10: a number does not begin with 0: write 10"}},
+        {"too large", stage("duration = 1e999"), {"9:12: \"1e999\" is too large for a number"}},
+        {"open quote", stage("name = \"a"), {"9:8: the text is not closed by a quote"}},
+        {"yes", stage("remold = yes"), {"9:10: write true"}},
+        {"no key", stage("just words"), {"9:6: this cannot be read"}},
+        {"two at once",
+         stage("frames = \nduration = 1,5\nangle = 3 deg"),
+         {"9:9:", "10:12: 1,5 has a decimal comma", "11:9: a value with a unit"}},
+    });
+}
+
+TEST_CASE("values of the wrong kind, unit or form are refused") {
+    check_all({
+        {"text for a number",
+         stage("frames = \"sixty\""),
+         {"9:11: frames: \"sixty\" is no number; a plain number is wanted"}},
+        {"decimal comma in a text",
+         stage("angle = \"1,5 deg\""),
+         {"9:11: angle: \"1,5 deg\" has a decimal comma; write \"1.5 deg\""}},
+        {"rubbish after a unit",
+         stage("radius = \"10 apples\""),
+         {"9:14: radius: unknown unit \"apples\"; a length is wanted (m, cm, mm, um, ...)"}},
+        {"another dimension",
+         stage("radius = \"10 kg\""),
+         {"9:14: radius: \"10 kg\" is a mass; a length is wanted"}},
+        {"other case",
+         material("young_modulus = \"3 mpa\""),
+         {"5:20: young_modulus: unknown unit \"mpa\", did you mean \"MPa\"?"}},
+        {"hexadecimal", material("density = \"0x10\""), {"5:12: density: \"0x10\" is hexadecimal"}},
+        {"nan", material("density = nan"), {"5:11: density is not a finite number"}},
+        {"inf", stage("radius = inf"), {"9:10: radius is not a finite number"}},
+        {"nan in a text", material("density = \"nan\""), {"\"nan\" is not a finite number"}},
+        {"overflow", material("density = \"1e999 kg/m3\""), {"5:12: density: \"1e999\" is too"}},
+        {"truth for a number",
+         stage("frames = true"),
+         {"9:10: frames is true or false; a number is wanted"}},
+        {"number for a truth", stage("remold = 1"), {"9:10: remold has to be true or false"}},
+        {"number for a text", stage("name = 3"), {"9:8: name is a whole number; a text"}},
+        {"date", stage("frames = 2020-01-01"), {"9:10: frames is a date"}},
+        {"array", material("density = [1]"), {"5:11: density is an array; a density is wanted"}},
+        {"unknown choice",
+         with(&Parts::mold, "[mold]\nkind = \"blok\"\n"),
+         {"6:8: kind = \"blok\" is not one of \"shape\", \"block\", did you mean \"block\"?"}},
+        {"letters outside ASCII count as one",
+         stage("radius = \"3 \u00b5\u00b5m\""),
+         {"9:13: radius: unknown unit \"\u00b5\u00b5m\""}},
+    });
+    CHECK(mistakes_in(stage("frames = 0x10").text()) == "");  // TOML's own hexadecimal is exact
+    CHECK(mistakes_in(stage("frames = +16").text()) == "");
+}
+
+TEST_CASE("values out of range are refused with the range") {
+    check_all({
+        {"negative stiffness",
+         material("young_modulus = -5"),
+         {"5:17: young_modulus = -5 Pa is out of range: it has to be more than 0 Pa"}},
+        {"zero stiffness", material("young_modulus = 0"), {"more than 0 Pa"}},
+        {"zero density",
+         material("density = -0"),
+         {"5:11: density = 0 kg/m3 is out of range: it has to be more than 0 kg/m3"}},
+        {"zero yield stress", material("yield_stress = 0"), {"more than 0 Pa"}},
+        {"incompressible",
+         material("poisson_ratio = 0.5"),
+         {"5:17: poisson_ratio = 0.5 is out of range: it has to be between -1 and 0.5, both"}},
+        {"beyond", material("poisson_ratio = 0.6"), {"between -1 and 0.5"}},
+        {"auxetic beyond", material("poisson_ratio = -1.1"), {"between -1 and 0.5"}},
+        {"without effect",
+         material("poisson_ratio = 0.3"),
+         {"5:17: warning: poisson_ratio = 0.3 has no effect: a lattice of springs has 0.25"}},
+        {"overdamped", material("damping_ratio = 1.5"), {"5:17: warning: damping_ratio is more"}},
+        {"negative damping", material("damping_ratio = -0.1"), {"has to be at least 0\n"}},
+        {"negative friction", material("friction = -1"), {"5:12: friction = -1 is out of range"}},
+        {"wild friction", material("friction = 1e9"), {"5:12: warning: friction = 1e+09 is more"}},
+        {"no cell",
+         with(&Parts::mold, "[mold]\nacross = 0\n"),
+         {"6:10: across = 0 is out of range: it has to be 1 to 1000000"}},
+        {"negative", with(&Parts::mold, "[mold]\nacross = -4\n"), {"6:10: across = -4 is out"}},
+        {"half a cell",
+         with(&Parts::mold, "[mold]\nacross = 2.5\n"),
+         {"6:10: across = 2.5 has to be a whole number"}},
+        {"no spacing", with(&Parts::mold, "[mold]\nspacing = \"0 mm\"\n"), {"6:11: spacing = 0 m"}},
+        {"both",
+         with(&Parts::mold, "[mold]\nacross = 3\nspacing = \"1 mm\"\n"),
+         {"7:11: across and spacing say the same: give one of them"}},
+        {"no length",
+         with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nlength = 0\n"),
+         {"3:10: length = 0 m is out of range: it has to be more than 0 m"}},
+        {"no frames",
+         stage("frames = 0"),
+         {"9:10: frames = 0 is out of range: it has to be 1 to 1000000000"}},
+        {"no time", stage("duration = \"0 s\""), {"9:12: duration = 0 s is out of range"}},
+        {"no rate", render("fps = 0"), {"11:7: fps = 0 is out of range: it has to be 1 to 240"}},
+        {"negative rate", render("fps = -30"), {"11:7: fps = -30 is out of range"}},
+        {"no picture",
+         render("size = [0, 0]"),
+         {"11:8: size = [0, 0] is out of range: both have to be 1 to 16384"}},
+        {"huge picture",
+         render("size = [100000, 100000]"),
+         {"11:8: size = [100000, 100000] is more "
+          "than OpenGL draws"}},
+        {"half a size", render("size = [100]"), {"11:8: size has to be two whole numbers"}},
+        {"a parameter",
+         stage("angle = \"270 deg\""),
+         {"9:9: angle = 270 deg is out of range: the machine bend takes 0 deg to 180 deg"}},
+        {"a parameter's range that hangs on another",
+         stage("press = 0.9\nhold = 0.2"),
+         {"10:8: hold = 0.2 is out of range: the machine bend takes 0 to 0.1"}},
+        {"tolerance",
+         stage("tolerance = 1"),
+         {"9:13: tolerance = 1 is out of range: it has to be "
+          "0.0001 to 0.1"}},
+        {"of the other solver",
+         stage("step_safety = 0.5"),
+         {"9:15: warning: step_safety has no effect with solver = \"quasistatic\""}},
+        {"up along axis",
+         stage("axis = \"y\"\nup = \"-y\""),
+         {"10:6: up = \"-y\" lies along axis"}},
+        {"fov 0",
+         render("field_of_view = 0"),
+         {"11:17: field_of_view = 0 deg is out of range: it "
+          "has to be between 0 deg and 180 deg"}},
+        {"fov 180", render("field_of_view = \"180 deg\""), {"11:17: field_of_view = 180 deg is"}},
+        {"camera at its target",
+         render("camera = {eye = [1, 2, 3], target = [1, 2, 3]}"),
+         {"11:17: eye and target are the same point"}},
+        {"eye alone", render("camera = {eye = [1, 2, 3]}"), {"given together or not at all"}},
+        {"eye and zoom",
+         render("camera = {eye = [1, 2, 3], target = [0, 0, 0], zoom = 2}"),
+         {"eye and target stand instead of azimuth"}},
+        {"below ground",
+         render("camera = {elevation = \"100 deg\"}"),
+         {"11:23: elevation = 100 deg is out of range: it has to be -90 deg to 90 deg"}},
+        {"two keys at once",
+         render("camera = {keys = [{at = 0.5}, {at = 0.5}]}"),
+         {"two keys stand at 0.5"}},
+        {"key without time", render("camera = {keys = [{zoom = 2}]}"), {"needs \"at\""}},
+        {"zoom 0", render("camera = {zoom = 0}"), {"zoom = 0 is out of range"}},
+    });
+    CHECK(mistakes_in(stage("gravity = -0.0\nangle = \"-0 deg\"").text()) == "");
+    CHECK(mistakes_in(stage("angle = \"180 deg\"").text()) == "");  // the end itself is allowed
+}
+
+TEST_CASE("a huge picture is refused for resources, a missing mesh as a mesh") {
+    const Scratch scratch;
+    const auto code = [&](const Parts& parts) {
+        return exit_code(read_scene(scratch.write("s.toml", parts.text()), {}, shipped()).mistakes);
+    };
+    CHECK(code(Parts()) == ExitCode::done);
+    CHECK(code(material("friction = 1e9")) == ExitCode::done);
+    CHECK(code(render("size = [100000, 10]")) == ExitCode::resources);
+    CHECK(code(with(&Parts::mesh, "[mesh]\nfile = \"no.obj\"\n")) == ExitCode::mesh);
+    Parts both = with(&Parts::mesh, "[mesh]\nfile = \"no.obj\"\n");
+    both.rest = "[render]\nfps = 0\n";
+    CHECK(code(both) == ExitCode::scene);
+}
+
+TEST_CASE("names that cannot be found get the known ones, names that cannot be files the reason") {
+    const std::string long_name(200, 'a');
+    check_all({
+        {"machine",
+         with(&Parts::stage, "[[stage]]\nmachine = \"bned\"\nangel = 3\n"),
+         {"8:11: no machine \"bned\", did you mean \"bend\"?; known are bend, cut, "}},
+        {"no machine",
+         with(&Parts::stage, "[[stage]]\nframes = 3\n"),
+         {"7:1: [[stage]] needs \"machine\": one of bend, cut"}},
+        {"machine file",
+         with(&Parts::stage, "[[stage]]\nmachine = \"mine/press.toml\"\n"),
+         {"8:11: the machine file \"mine/press.toml\" does not exist (/tmp/"}},
+        {"material",
+         with(&Parts::material, "[material]\nname = \"ruber\"\n"),
+         {"4:8: no material \"ruber\", did you mean \"rubber\"?; known are structural_steel"}},
+        {"custom without numbers",
+         with(&Parts::material, "[material]\nfriction = 0.1\n"),
+         {"[material] needs \"young_modulus\"", "3:1: [material] needs \"density\""}},
+        {"no mesh", with(&Parts::mesh, "[mesh]\nlength = 1\n"), {"1:1: [mesh] needs \"file\""}},
+        {"no section", with(&Parts::mesh, ""), {"s.toml: the section [mesh] is missing"}},
+        {"same name",
+         with(&Parts::rest, "[[stage]]\nmachine = \"bend\"\nname = \"1-bend\"\n"),
+         {"12:8: two stages are called \"1-bend\"; the first is in line 7"}},
+        {"slash",
+         stage("name = \"a/b\""),
+         {"9:8: the name has a \"/\"; it becomes the name of files"}},
+        {"up", stage("name = \"..\""), {"9:8: the name begins with a point"}},
+        {"empty", stage("name = \"\""), {"9:8: the name is empty"}},
+        {"blank", stage("name = \" \""), {"9:8: the name begins or ends with a blank"}},
+        {"newline", stage("name = \"a\\nb\""), {"9:8: the name has a control character"}},
+        {"long", stage("name = \"" + long_name + "\""), {"9:8: the name is longer than 100 bytes"}},
+    });
+}
+
+TEST_CASE("a mesh that cannot be read is refused at once, with the path as written and resolved") {
+    const Scratch scratch;
+    std::filesystem::create_directories(scratch.folder() / "folder.obj");
+    REQUIRE(::mkfifo((scratch.folder() / "pipe.obj").c_str(), 0600) == 0);
+    const auto mistakes = [&](const std::string& name) {
+        const Parts parts = with(&Parts::mesh, "[mesh]\nfile = \"" + name + "\"\n");
+        const auto file = scratch.write("scenes/s.toml", parts.text());
+        return told(read_scene(file, {}, shipped()).mistakes, scratch.folder());
+    };
+    const std::string folder = scratch.folder().string();
+    CHECK(mistakes("../no.obj") ==
+          "scenes/s.toml:2:8: the mesh \"../no.obj\" does not exist (" + folder + "/no.obj)\n");
+    CHECK(mistakes("../folder.obj").find("is a folder, not a file") != std::string::npos);
+    CHECK(mistakes("../pipe.obj").find("is not a plain file") != std::string::npos);
+    CHECK(mistakes("/dev/zero").find("\"/dev/zero\" is not a plain file (/dev/zero)") !=
+          std::string::npos);
+    CHECK(mistakes("../bar.obj/x").find("does not exist") != std::string::npos);
+    CHECK(mistakes("").find("the mesh's file name is empty") != std::string::npos);
+    CHECK(mistakes("../bar.obj") == "");
+}
+
+TEST_CASE("a scene that says nothing has nothing to do") {
+    CHECK(mistakes_in("").find("s.toml: nothing to do: the scene is empty") == 0);
+    CHECK(mistakes_in("# only words\n\n").find("s.toml: nothing to do") == 0);
+    CHECK(mistakes_in("\xEF\xBB\xBF").find("s.toml: nothing to do") == 0);
+    CHECK(mistakes_in(with(&Parts::stage, "").text()).find("no [[stage]]") != std::string::npos);
+}
+
+TEST_CASE("files that are no text are refused at the byte") {
+    CHECK(mistakes_in(std::string("[mesh]\nfi\0le", 12)) ==
+          "s.toml:2:3: byte 9 is 0; this is no text file\n");
+    CHECK(mistakes_in("[mesh]\n# L\xE4nge\n") ==
+          "s.toml:2:4: byte 10 (0xE4) is not UTF-8; save the file in that encoding\n");
+    CHECK(mistakes_in("# \xED\xA0\x80").find("byte 2 (0xED)") != std::string::npos);  // surrogate
+    CHECK(mistakes_in("# \xC0\x80").find("byte 2 (0xC0)") != std::string::npos);      // overlong
+    CHECK(mistakes_in("# \xF0\x9F\x98").find("byte 2 (0xF0)") != std::string::npos);  // cut off
+    CHECK(mistakes_in("\xFF\xFE[\0").find("s.toml:1:1: byte 0 (0xFF)") == 0);         // UTF-16
+}
+
+TEST_CASE("scene files that cannot be files are refused without blocking") {
+    const Scratch scratch;
+    const auto mistakes = [&](const std::filesystem::path& file) {
+        return told(read_scene(file, {}, shipped()).mistakes, scratch.folder());
+    };
+    CHECK(mistakes(scratch.folder() / "no.toml") == "no.toml: the file does not exist\n");
+    CHECK(mistakes(scratch.folder()).find("the file is a folder, not a file") != std::string::npos);
+    CHECK(mistakes("/dev/zero") == "/dev/zero: the file is not a plain file\n");
+    REQUIRE(::mkfifo((scratch.folder() / "pipe.toml").c_str(), 0600) == 0);
+    CHECK(mistakes(scratch.folder() / "pipe.toml") == "pipe.toml: the file is not a plain file\n");
+    scratch.write("large.toml", "");
+    std::filesystem::resize_file(scratch.folder() / "large.toml", std::uint64_t{1} << 30);
+    CHECK(mistakes(scratch.folder() / "large.toml") ==
+          "large.toml: the file is larger than 64 MiB\n");
+}
+
+TEST_CASE("long lines and deep nesting are read or refused, never fatal") {
+    CHECK(mistakes_in(Parts().text() + "# " + std::string(1'000'000, 'x') + "\n") == "");
+    CHECK(mistakes_in("a = " + std::string(100'000, '[')).find("nested") != std::string::npos);
+    const std::string wide = mistakes_in(Parts().text() + [] {
+        std::string text = "[output]\n";
+        for (int n = 0; n < 20000; ++n) text += fmt::format("key_{} = 1\n", n);
+        return text;
+    }());
+    CHECK(std::count(wide.begin(), wide.end(), '\n') == 201);
+    CHECK(wide.find("s.toml: and 19800 more\n") != std::string::npos);
+}
+
+TEST_CASE("overrides are checked like the file, and named as they were given") {
+    const std::string scene = Parts().text();
+    const auto told_of = [&](const std::string& text) { return mistakes_in(scene, {text}); };
+    CHECK(told_of("material.yeild=3") ==
+          "--set material.yeild=3: unknown key \"yeild\" in "
+          "[material], did you mean \"yield_stress\"?\n");
+    CHECK(told_of("stage.1.angle=45 dog")
+              .find("--set stage.1.angle=45 dog: angle: unknown unit "
+                    "\"dog\"") == 0);
+    CHECK(told_of("stage.3.angle=1").find("there is no stage \"3\"") != std::string::npos);
+    CHECK(told_of("stage.bned.angle=1").find("did you mean \"bend\"?") != std::string::npos);
+    CHECK(told_of("stage.angle=1").find("which stage? Write stage.1.angle, or stage.*.angle") !=
+          std::string::npos);
+    CHECK(told_of("frames").find("an override is KEY=VALUE") != std::string::npos);
+    CHECK(told_of("frames=3").find("SECTION.KEY") != std::string::npos);
+    CHECK(told_of("mold..across=3").find("SECTION.KEY") != std::string::npos);
+    CHECK(told_of("mold.across.x=3").find("\"across\" is a whole number, it has no keys") !=
+          std::string::npos);
+    CHECK(told_of("mould.across=3").find("unknown section [mould], did you mean [mold]?") !=
+          std::string::npos);
+    CHECK(told_of("material.density=1\nx = 2").find("density") != std::string::npos);
+}
+
+TEST_CASE("all mistakes of all files come in one reading, in the order of the files") {
+    const Scratch scratch;
+    scratch.write("machines/odd.toml", "[[grip]]\nnme = \"a\"\nfrom = [0, 0, 0]\nto = [1, 1, 1]\n");
+    const auto file = scratch.write("s.toml",
+                                    "[mesh]\nfile = \"no.obj\"\nlenght = 1\n[material]\nname = "
+                                    "\"ruber\"\n[mold]\nacross = 0\nspacing =\n[[stage]]\nmachine "
+                                    "= \"odd\"\nanything = 3\nframes = \"x\"\n[[stage]]\nmachine = "
+                                    "\"odd\"\n");
+    const std::string text = told(read_scene(file, {}, shipped()).mistakes, scratch.folder());
+    INFO(text);
+    std::size_t at = 0;
+    for (const char* place :
+         {"s.toml:2:8:", "s.toml:3:1:", "s.toml:5:8:", "s.toml:7:10:", "s.toml:8:10:",
+          "s.toml:12:11:", "machines/odd.toml:1:1: [[grip]] needs",
+          "machines/odd.toml:2:1: unknown key \"nme\" in [[grip]], did you mean "
+          "\"name\"?"}) {
+        INFO(place);
+        const std::size_t found = text.find(place, at);
+        REQUIRE(found != std::string::npos);
+        at = found;
+    }
+    CHECK(std::count(text.begin(), text.end(), '\n') == 8);  // the machine's only once
+}

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <chrono>
+
+#include "base/units.h"
+#include "scene/catalogue.h"
+#include "tests/catch.h"
+#include "tests/scene/scratch.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+const char* kSample = R"(
+[mesh]
+file = "../meshes/calf.obj"
+length = "40 cm"              # scales the longest side of the box
+[material]
+name = "rubber"               # any field may be given or overridden
+yield_stress = "3 MPa"
+[mold]
+across = 6
+[skin]
+kind = "mount"
+[[stage]]
+machine = "bend"
+angle = "60 deg"
+frames = 60
+[render]
+size = [1280, 720]
+)";
+
+SceneReading read(const Scratch& scratch, const std::string& text,
+                  const std::vector<std::string>& overrides = {}) {
+    return read_scene(scratch.write("scene.toml", text), overrides, shipped());
+}
+
+const std::string kHead = "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n";
+
+}  // namespace
+
+TEST_CASE("the sample scene reads whole, in SI") {
+    const Scratch scratch;
+    scratch.write("meshes/calf.obj", "v 0 0 0\n");
+    const auto file = scratch.write("scenes/sample.toml", kSample);
+    const SceneReading reading = read_scene(file, {}, shipped());
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.mistakes.empty());
+    REQUIRE(reading.scene);
+    const SceneSpec& scene = *reading.scene;
+    CHECK(scene.name == "sample");
+    CHECK(scene.file == file);
+    CHECK(scene.mesh.file == scratch.folder() / "meshes/calf.obj");
+    CHECK(scene.mesh.length.value() == Approx(0.4));
+    CHECK(scene.material.name == "rubber");
+    CHECK(scene.material.young_modulus == Approx(2e6));
+    CHECK(scene.material.yield_stress == Approx(3e6));
+    CHECK(scene.mold.across.value() == 6);
+    CHECK_FALSE(scene.mold.spacing.has_value());
+    CHECK(scene.skin.kind == SkinKind::mount);
+    REQUIRE(scene.stage.size() == 1);
+    CHECK(scene.stage[0].name == "1-bend");
+    CHECK(scene.stage[0].machine.name == "bend");
+    CHECK(scene.stage[0].parameter.at("angle") == Approx(kPi / 3));
+    CHECK(scene.stage[0].parameter.size() == 1);
+    CHECK(scene.stage[0].frames == 60);
+    CHECK(scene.render.width == 1280);
+    CHECK(scene.render.height == 720);
+    const std::filesystem::path source = SWAGE_SOURCE_DIR;
+    CHECK(scene.inputs == std::vector<std::filesystem::path>{file, source / "assets/materials.toml",
+                                                             source / "machines/bend.toml"});
+}
+
+TEST_CASE("every key of a scene reaches its setting") {
+    const Scratch scratch;
+    const SceneReading reading = read(scratch, R"(
+[mesh]
+file = "bar.obj"
+[material]
+young_modulus = "1 GPa"
+poisson_ratio = 0.25
+density = "1.2 g/cm3"
+yield_stress = inf
+damping_ratio = 0.1
+friction = 0.4
+[mold]
+spacing = "5 mm"
+kind = "block"
+cell_limit = 1000
+[skin]
+kind = "boundary"
+[[stage]]
+machine = "twist"
+name = "wring it"
+frames = 7
+duration = "2 s"
+axis = "z"
+up = "-x"
+remold = true
+solver = "quasistatic"
+tolerance = 1e-3
+iteration_limit = 900
+halving_limit = 2
+contact_stiffness = 3
+grip_stiffness = 30
+gravity = "9.81 m/s2"
+angle = "-0.5 turn"
+[[stage]]
+machine = "bend"
+solver = "explicit"
+step_safety = 0.5
+gravity = [0, 0, "-1 m/s2"]
+[render]
+size = [1, 16384]
+fps = 24
+film = false
+tools = false
+ground = false
+gl = "osmesa"
+field_of_view = "40 deg"
+[render.camera]
+azimuth = "90 deg"
+elevation = "10 deg"
+zoom = 2
+orbit = "180 deg"
+[output]
+meshes_per_frame = true
+)");
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    CHECK(reading.mistakes.empty());
+    const SceneSpec& scene = *reading.scene;
+    CHECK(scene.material.young_modulus == 1e9);
+    CHECK(scene.material.poisson_ratio == 0.25);
+    CHECK(scene.material.density == Approx(1200));
+    CHECK(std::isinf(scene.material.yield_stress));
+    CHECK(scene.material.damping_ratio == 0.1);
+    CHECK(scene.material.friction == 0.4);
+    CHECK(scene.mold.spacing.value() == Approx(0.005));
+    CHECK_FALSE(scene.mold.across.has_value());
+    CHECK(scene.mold.kind == MoldKind::block);
+    CHECK(scene.mold.cell_limit == 1000);
+    CHECK(scene.skin.kind == SkinKind::boundary);
+    const StageSpec& stage = scene.stage.at(0);
+    CHECK(stage.name == "wring it");
+    CHECK(stage.frames == 7);
+    CHECK(stage.duration == 2);
+    CHECK(stage.axis == "z");
+    CHECK(stage.up == "-x");
+    CHECK(stage.remold);
+    CHECK(stage.sim.solver == Solver::quasistatic);
+    CHECK(stage.sim.tolerance == 1e-3);
+    CHECK(stage.sim.iteration_limit == 900);
+    CHECK(stage.sim.halving_limit == 2);
+    CHECK(stage.sim.contact_stiffness == 3);
+    CHECK(stage.sim.grip_stiffness == 30);
+    CHECK(stage.sim.gravity == Vec3(0, -9.81, 0));
+    CHECK(stage.parameter.at("angle") == Approx(-kPi));
+    CHECK(scene.stage.at(1).name == "2-bend");
+    CHECK(scene.stage.at(1).sim.solver == Solver::explicit_steps);
+    CHECK(scene.stage.at(1).sim.step_safety == 0.5);
+    CHECK(scene.stage.at(1).sim.gravity == Vec3(0, 0, -1));
+    CHECK(scene.render.width == 1);
+    CHECK(scene.render.height == 16384);
+    CHECK(scene.render.frames_per_second == 24);
+    CHECK_FALSE(scene.render.film);
+    CHECK_FALSE(scene.render.tools);
+    CHECK_FALSE(scene.render.ground);
+    CHECK(scene.render.gl == GlProviderKind::osmesa);
+    CHECK(scene.render.field_of_view == Approx(40 * kPi / 180));
+    REQUIRE(scene.render.camera.size() == 2);
+    CHECK(scene.render.camera[0].azimuth == Approx(kPi / 2));
+    CHECK(scene.render.camera[1].azimuth == Approx(3 * kPi / 2));
+    CHECK(scene.render.camera[1].at == 1);
+    CHECK(scene.render.camera[1].zoom == 2);
+    CHECK(scene.output.meshes_per_frame);
+}
+
+TEST_CASE("camera keys are read in any order and come sorted") {
+    const Scratch scratch;
+    const SceneReading reading = read(scratch, kHead + R"(
+[[stage]]
+machine = "bend"
+[render.camera]
+keys = [
+    {at = 1, eye = [0, "50 cm", 1], target = [0, 0, 0]},
+    {at = 0, azimuth = "20 deg"},
+]
+)");
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    const auto& camera = reading.scene->render.camera;
+    REQUIRE(camera.size() == 2);
+    CHECK(camera[0].azimuth == Approx(20 * kPi / 180));
+    CHECK(camera[1].eye.value() == Vec3(0, 0.5, 1));
+    CHECK(camera[1].target.value() == Vec3(0, 0, 0));
+}
+
+TEST_CASE("a byte order mark, carriage returns and comments change nothing") {
+    const Scratch scratch;
+    const std::string plain = kHead + "[[stage]]\nmachine = \"bend\" # with care\n";
+    std::string odd = "\xEF\xBB\xBF";
+    for (char c : plain) odd += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    const SceneReading reading = read(scratch, odd);
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    CHECK(reading.scene->stage.at(0).machine.name == "bend");
+}
+
+TEST_CASE("paths are relative to the file they stand in, from wherever the program runs") {
+    const Scratch scratch;
+    scratch.write("deep/er/scene.toml",
+                  "[mesh]\nfile = \"../../bar.obj\"\n[material]\nname = "
+                  "\"rubber\"\n[[stage]]\nmachine = \"../mine/press.toml\"\n");
+    scratch.write("deep/mine/tool.obj", "v 0 0 0\n");
+    scratch.write("deep/mine/press.toml",
+                  "[[tool]]\nname = \"a\"\nshape = \"mesh\"\nfile = \"tool.obj\"\nlength = "
+                  "\"height\"\nat = [0, 0, 0]\n");
+    const auto before = std::filesystem::current_path();
+    for (const char* from : {".", "deep", "deep/er"}) {
+        std::filesystem::current_path(scratch.folder() / from);
+        const auto file = std::filesystem::relative(scratch.folder() / "deep/er/scene.toml",
+                                                    scratch.folder() / from);
+        const SceneReading reading = read_scene(file, {}, shipped());
+        INFO(told(reading.mistakes, scratch.folder()));
+        REQUIRE(reading.scene);
+        CHECK(reading.scene->mesh.file == scratch.folder() / "bar.obj");
+        CHECK(reading.scene->stage[0].machine.tool[0].mesh ==
+              scratch.folder() / "deep/mine/tool.obj");
+        const auto& inputs = reading.scene->inputs;
+        CHECK(std::count(inputs.begin(), inputs.end(), scratch.folder() / "deep/mine/tool.obj"));
+    }
+    std::filesystem::current_path(before);
+}
+
+TEST_CASE("machines and materials beside the scene come before the shipped ones") {
+    const Scratch scratch;
+    scratch.write("materials.toml",
+                  "[rubber]\nyoung_modulus = \"5 MPa\"\ndensity = 900\n[jelly]\nyoung_modulus = "
+                  "1e3\ndensity = 1000\n");
+    scratch.write("machines/bend.toml",
+                  "[[grip]]\nname = \"all\"\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\n");
+    const SceneReading reading = read(scratch, kHead + "[[stage]]\nmachine = \"bend\"\n");
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    CHECK(reading.scene->material.young_modulus == 5e6);
+    CHECK(reading.scene->stage[0].machine.grip.size() == 1);
+    const SceneReading other =
+        read(scratch, kHead + "[[stage]]\nmachine = \"bend\"\n", {"material.name=copper"});
+    REQUIRE(other.scene);
+    CHECK(other.scene->material.name == "copper");
+}
+
+TEST_CASE("overrides count as if the file said so") {
+    const Scratch scratch;
+    const std::string text = kHead +
+                             "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\n[[stage]]\n"
+                             "machine = \"twist\"\nname = \"last\"\n";
+    const SceneReading reading =
+        read(scratch, text,
+             {"stage.1.angle=45 deg", "stage.last.angle=1.5", "stage.*.frames=3",
+              "stage.twist.remold=true", "material.young_modulus=2 GPa", "render.size=[64, 48]",
+              "render.camera.azimuth=30 deg", "mold.across=3", "mold.across=4",
+              "output.meshes_per_frame=true", "material.name=\"copper\""});
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    const SceneSpec& scene = *reading.scene;
+    CHECK(scene.stage[0].parameter.at("angle") == Approx(kPi / 4));
+    CHECK(scene.stage[1].parameter.at("angle") == Approx(1.5));
+    CHECK(scene.stage[0].frames == 3);
+    CHECK(scene.stage[1].frames == 3);
+    CHECK(scene.stage[1].remold);
+    CHECK(scene.material.young_modulus == 2e9);
+    CHECK(scene.material.name == "copper");
+    CHECK(scene.render.width == 64);
+    CHECK(scene.render.camera[0].azimuth == Approx(kPi / 6));
+    CHECK(scene.mold.across.value() == 4);
+    CHECK(scene.output.meshes_per_frame);
+}
+
+TEST_CASE("every shipped machine reads without a word") {
+    const MachineCatalogue catalogue = machine_catalogue(shipped());
+    INFO(told(catalogue.mistakes, SWAGE_SOURCE_DIR));
+    CHECK(catalogue.mistakes.empty());
+    std::vector<std::string> names;
+    for (const MachineSpec& machine : catalogue.machine) {
+        INFO(machine.name);
+        names.push_back(machine.name);
+        CHECK_FALSE(machine.help.empty());
+        for (const ParameterSpec& parameter : machine.parameter) {
+            INFO(parameter.name);
+            CHECK_FALSE(parameter.help.empty());
+            CHECK_FALSE(parameter.low.empty());
+            CHECK_FALSE(parameter.high.empty());
+        }
+    }
+    for (const char* name : {"bend", "twist", "cut"}) {
+        CHECK(std::count(names.begin(), names.end(), name) == 1);
+    }
+    CHECK(std::is_sorted(names.begin(), names.end()));
+}
+
+TEST_CASE("the shipped materials are many and within sense") {
+    const MaterialCatalogue catalogue = material_catalogue(shipped());
+    INFO(told(catalogue.mistakes, SWAGE_SOURCE_DIR));
+    CHECK(catalogue.mistakes.empty());
+    CHECK(catalogue.material.size() >= 16);
+    for (const Material& one : catalogue.material) {
+        INFO(one.name);
+        CHECK(one.young_modulus >= 1e5);
+        CHECK(one.young_modulus <= 3e11);
+        CHECK(one.density >= 10);
+        CHECK(one.density <= 2e4);
+        CHECK(one.poisson_ratio >= 0);
+        CHECK(one.poisson_ratio < 0.5);
+        CHECK((std::isinf(one.yield_stress) || one.yield_stress < 0.1 * one.young_modulus));
+        CHECK(one.friction > 0);
+        CHECK(one.friction <= 1);
+        CHECK(one.damping_ratio > 0);
+        CHECK(one.damping_ratio <= 0.3);
+    }
+}
+
+TEST_CASE("reading takes time in proportion to the stages and keys") {
+    const Scratch scratch;
+    const auto seconds = [&](int stages) {
+        std::string text = kHead;
+        for (int n = 0; n < stages; ++n) {
+            text +=
+                "[[stage]]\nmachine = \"bend\"\nangle = \"60 deg\"\nradius = \"3 cm\"\nframes = "
+                "10\n";
+        }
+        const auto file = scratch.write("many.toml", text);
+        const auto start = std::chrono::steady_clock::now();
+        const SceneReading reading = read_scene(file, {}, shipped());
+        REQUIRE(reading.scene);
+        CHECK(reading.scene->stage.size() == static_cast<std::size_t>(stages));
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    seconds(100);  // warm
+    const double few = seconds(1000), many = seconds(10000);
+    INFO(few << " s, " << many << " s");
+    CHECK(many < 40 * few + 0.5);
+    CHECK(many < 10);
+
+    std::string keys = kHead + "[[stage]]\nmachine = \"bend\"\n[render.camera]\nkeys = [";
+    for (int n = 0; n < 100000; ++n) keys += fmt::format("{{at = {}, zoom = 2}},", n / 1e5);
+    const auto start = std::chrono::steady_clock::now();
+    const SceneReading reading = read(scratch, keys + "]\n");  // one line of 3e6 letters
+    REQUIRE(reading.scene);
+    CHECK(reading.scene->render.camera.size() == 100000);
+    CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < 10);
+}
