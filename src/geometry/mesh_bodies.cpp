@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
+#include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair_cgal.h"
 #include "geometry/triangle_tree.h"
@@ -317,9 +318,9 @@ class Settler {
         if (dropped == 0) return;
         changed_ = true;
         account_.push_back(
-            fmt::format("left out {} inside others of the same sense: that volume ({:.4g} m3) was "
+            fmt::format("left out {} inside others of the same sense: that volume ({}) was "
                         "counted twice",
-                        counted(dropped, "surface", "surfaces"), volume));
+                        counted(dropped, "surface", "surfaces"), volume_text(volume)));
     }
 
     bool unite_crossing() {
@@ -362,9 +363,9 @@ class Settler {
             }
         }
         if (unions > 0)
-            account_.push_back(fmt::format("united {}: {:.4g} m3 were counted more than once",
+            account_.push_back(fmt::format("united {}: a volume of {} was counted more than once",
                                            counted(unions + 1, "crossing body", "crossing bodies"),
-                                           before));
+                                           volume_text(before)));
         return true;
     }
 

@@ -36,6 +36,13 @@ namespace {
 constexpr char kMeshFollows = 'M', kReasonFollows = 'E';
 constexpr int kOutOfMemory = 3;  // exit status of the child
 
+// Sanitizers deadlock when the limit on address space leaves no room for their own report.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 class Handle {  // a file descriptor
   public:
     explicit Handle(int id = -1) : id_(id) {}
@@ -135,7 +142,7 @@ void set_limit(__rlimit_resource what, std::uint64_t value) {
     ::close_range(std::max(3u, high + 1), ~0u, 0);
     set_limit(RLIMIT_CORE, 0);
     set_limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::max(1, limits.cpu_seconds)));
-    set_limit(RLIMIT_AS, memory_limit);
+    if (!kSanitized) set_limit(RLIMIT_AS, memory_limit);
     try {
         std::string bytes;
         try {

@@ -7,9 +7,11 @@
 
 #include <assimp/importerdesc.h>
 #include <algorithm>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <cstring>
 #include <map>
 
@@ -69,6 +71,25 @@ class FileSystem : public Assimp::IOSystem {
 
   private:
     const MeshSource& source_;
+};
+
+// What assimp says while it reads: where it drops faces, it says so here only.
+class Listener : public Assimp::LogStream {
+  public:
+    explicit Listener(std::string& dropped) : dropped_(dropped) {}
+    void write(const char* message) override {
+        const std::string_view text = trimmed_line(message);
+        for (const char* sign : {"out-of-range", "out of range", "ropped"})
+            if (text.find(sign) != std::string_view::npos) dropped_ = text;
+    }
+
+  private:
+    // Without "Warn,  T0: " and the end of the line.
+    static std::string_view trimmed_line(std::string_view text) {
+        if (const std::size_t at = text.find(": "); at < 16) text.remove_prefix(at + 2);
+        return trimmed(text.substr(0, text.find('\n')));
+    }
+    std::string& dropped_;
 };
 
 const char* extension_of(MeshFormat format) {
@@ -395,13 +416,23 @@ RawMesh read_by_assimp(MeshSource& source) {
     if (source.format == MeshFormat::stl) check_stl(source.bytes);
     if (source.format == MeshFormat::off) check_off(source.bytes);
     const std::string extension = extension_of(source.format);
+    std::string dropped;
+    Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(new Listener(dropped),
+                                               Assimp::Logger::Warn | Assimp::Logger::Err);
     Assimp::Importer importer;
     keep_only(importer, extension);
     importer.SetIOHandler(new FileSystem(source));
     const aiScene* scene = importer.ReadFile(source.file.string(), 0);
     if (scene == nullptr)
         fail(ExitCode::mesh, "not a readable .{} file ({})", extension, importer.GetErrorString());
-    return SceneReader(source, *scene).read();
+    if (!dropped.empty()) fail(ExitCode::mesh, "the file is damaged ({})", dropped);
+    RawMesh mesh = SceneReader(source, *scene).read();
+    if (source.format == MeshFormat::tmf) {  // assimp passes over the unit
+        source.finding.push_back("lengths were taken as millimetres, the usual unit of 3MF");
+        for (Vec3& p : mesh.position) p *= 1e-3;
+    }
+    return mesh;
 }
 
 }  // namespace swage

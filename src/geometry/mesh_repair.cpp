@@ -375,7 +375,7 @@ class Repairer {
 
     void wrap(const char* reason) {
         const double diagonal = box_of(mesh_.position).size().norm();
-        const double offset = diagonal / 600;
+        const double offset = diagonal / 2000;
         for (const double alpha : {diagonal / 100, diagonal / 20}) {
             log_info("repair: wrapping {} anew, openings below {} are closed",
                      counted(mesh_.triangle.size(), "triangle", "triangles"), length_text(alpha));
@@ -383,7 +383,7 @@ class Repairer {
             const double volume = signed_volume(wrapped), area = surface_area(wrapped);
             // Twice the volume by the area is about the wall's thickness: of a bare sheet, the
             // offset to both sides.
-            if (!(volume > 0) || 2 * volume / area < 3 * (2 * offset)) continue;
+            if (!(volume > 0) || 2 * volume / area < 4 * (2 * offset)) continue;
             const bool one_material = mesh_.material.size() == 1;
             if (one_material) {
                 wrapped.material = mesh_.material;
@@ -394,9 +394,11 @@ class Repairer {
             smooth_by_crease_angle(wrapped, kCreaseAngle);
             say(fmt::format(
                 "wrapped the whole mesh anew, {} outside of it and over openings below {}, because "
-                "{}: {} became {}; texture coordinates, {}parts and vertex colours are lost",
+                "{}: {} became {}, the volume enclosed {} (before, with its faults: {}); texture "
+                "coordinates, {}parts and vertex colours are lost",
                 length_text(offset), length_text(alpha), reason,
                 counted(mesh_.triangle.size(), "triangle", "triangles"), wrapped.triangle.size(),
+                volume_text(volume), volume_text(signed_volume(mesh_)),
                 one_material ? "" : "materials, "));
             mesh_ = std::move(wrapped);
             return;

@@ -1,4 +1,10 @@
 # assimp by pkg-config: Debian's CMake file for it asks for development files of draco.
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
-find_package(CGAL REQUIRED)  # headers only, with GMP and MPFR
-target_link_libraries(swage_geometry PRIVATE PkgConfig::ASSIMP CGAL::CGAL)
+# CGAL is headers, GMP and MPFR. Its exact arithmetic wants -frounding-math, which its CMake target
+# would force on the whole room.
+find_path(CGAL_HEADERS CGAL/version.h REQUIRED)
+find_library(GMP gmp REQUIRED)
+find_library(MPFR mpfr REQUIRED)
+set_source_files_properties(${CMAKE_SOURCE_DIR}/src/geometry/mesh_repair_cgal.cpp
+                            PROPERTIES COMPILE_OPTIONS -frounding-math)
+target_link_libraries(swage_geometry PRIVATE PkgConfig::ASSIMP ${GMP} ${MPFR})

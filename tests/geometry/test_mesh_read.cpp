@@ -364,6 +364,16 @@ TEST_CASE("glTF and GLB arrive with node transforms, physical materials and imag
     CHECK(fixtures::bytes_of(again.material[0].texture) == std::string("\x89PNG1234", 8));
 }
 
+TEST_CASE("a glTF whose faces name missing vertices is refused, not read with a hole") {
+    const Folder folder;
+    std::string buffer = square_gltf() + "padding!";
+    buffer[80 + 2] = 9;  // an index
+    folder.write("data.bin", buffer);
+    std::string text = replaced(kGltfScene, "IMAGE", R"({"uri":"none.png"})");
+    text = replaced(text, "URI", R"(,"uri":"data.bin")");
+    CHECK_THROWS_AS(read_quietly(folder.write("square.gltf", text)), Error);
+}
+
 TEST_CASE("DAE arrives scaled by its unit and turned to its axes") {
     const Folder folder;
     const TriMesh mesh = read_quietly(folder.write("t.dae", R"(<?xml version="1.0"?>
