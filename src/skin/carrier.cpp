@@ -12,29 +12,14 @@ namespace {
 // from its spacing by the noise of single precision.
 constexpr double kSlack = 1e-3;
 
-struct Link {
-    int low, high, direction;
-};
-
-// The 12 edges and 12 face diagonals within a cell.
-constexpr std::array<Link, 24> make_links() {
-    std::array<Link, 24> links{};
-    int count = 0;
-    for (int low = 0; low < 8; ++low) {
-        for (int d = 0; d < kForwardCount; ++d) {
-            int high = 0;
-            bool inside = true;
-            for (int axis = 0; axis < 3; ++axis) {
-                const int at = (low >> axis & 1) + kForward[d][axis];
-                inside = inside && at >= 0 && at <= 1;
-                high |= (at & 1) << axis;
-            }
-            if (inside) links[count++] = {low, high, d};
-        }
+// The other end of a connection within a cell.
+constexpr int high_corner(const CellConnection& connection) {
+    int high = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        high |= ((connection.corner >> axis & 1) + kForward[connection.direction][axis]) << axis;
     }
-    return links;
+    return high;
 }
-constexpr std::array<Link, 24> kLinks = make_links();
 
 // Squared distance from a place (in cells from the origin) to a run of cells.
 double distance2(const CellRun& run, int first, int count, const Vec3& at) {
@@ -102,8 +87,8 @@ std::array<double, 8> corner_weights(const Vec3& local) {
 
 bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
     float least = 1;
-    for (const Link& link : kLinks) {
-        least = std::min(least, matter.connection[link.direction].weight[corner[link.low]]);
+    for (const auto& [direction, low] : kCellConnection) {
+        least = std::min(least, matter.connection[direction].weight[corner[low]]);
     }
     if (least > 0) return true;
     return corner_groups(matter, corner)[0] == kAllCorners;
@@ -112,9 +97,9 @@ bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner) 
 CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
     CornerGroups group;
     for (int c = 0; c < 8; ++c) group[c] = static_cast<CornerMask>(1 << c);
-    for (const Link& link : kLinks) {
-        if (matter.connection[link.direction].weight[corner[link.low]] <= 0) continue;
-        const CornerMask joined = group[link.low] | group[link.high];
+    for (const CellConnection& link : kCellConnection) {
+        if (matter.connection[link.direction].weight[corner[link.corner]] <= 0) continue;
+        const CornerMask joined = group[link.corner] | group[high_corner(link)];
         for (int c = 0; c < 8; ++c) {
             if (joined >> c & 1) group[c] = joined;
         }

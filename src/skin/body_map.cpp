@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/body_map.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <numeric>
+
+namespace swage {
+
+BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(find_pieces(matter)) {
+    std::vector<ParticleId> all(matter.particle_count());
+    std::iota(all.begin(), all.end(), 0);
+    particle_frames(matter, make_frame_stencil(matter), all, frame_);
+}
+
+CellFrames BodyMap::frames(const std::array<ParticleId, 8>& corner) const {
+    CellFrames cell;
+    for (int c = 0; c < 8; ++c) cell.corner.col(c) = frame_[corner[c]];
+    cell.size = matter_.particle_reference.at(corner[7]) - matter_.particle_reference.at(corner[0]);
+    return cell;
+}
+
+Vec3 BodyMap::world(const BodyPlace& place) const {
+    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(place.cell);
+    const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);
+    const CornerMask followed =
+        followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
+    const CellFrames cell = frames(corner);
+    return place.reference + (followed == kAllCorners
+                                  ? whole_displacement(half_frames(cell), carrier)
+                                  : part_displacement(cell, carrier, followed));
+}
+
+Vec3 BodyMap::center(CellId cell) const {
+    Vec3 sum = Vec3::Zero();
+    for (ParticleId p : matter_.lattice.cell_corners(cell)) sum += matter_.particle_position.at(p);
+    return sum / 8;
+}
+
+std::optional<BodyPlace> BodyMap::solve(CellId cell, CornerMask side, const Vec3& world) const {
+    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
+    const CellFrames frames = this->frames(corner);
+    Mat3 slope = Mat3::Zero();
+    int used = 0;
+    for (int c = 0; c < 8; ++c) {
+        if (!(side >> c & 1)) continue;
+        slope += frames.corner.col(c).head<9>().reshaped(3, 3);
+        ++used;
+    }
+    slope = Mat3::Identity() + slope / used;
+    if (std::abs(slope.determinant()) < 1e-3) return std::nullopt;
+    const Mat3 inverse = slope.inverse();
+    const CellBox box = cell_box(matter_, cell);
+    BodyPlace place{box.low + 0.5 * box.size, cell, side};
+    const double a = matter_.lattice.spacing;
+    for (int round = 0; round < 40; ++round) {
+        const Vec3 gap = world - this->world(place);
+        if (gap.norm() < 1e-12 * a) break;
+        place.reference += inverse * gap;
+        if ((place.reference - box.low - 0.5 * box.size).norm() > 3 * a) return std::nullopt;
+    }
+    return place;
+}
+
+std::optional<BodyPlace> BodyMap::place_at(const Vec3& world,
+                                           const std::vector<CellId>& cells) const {
+    constexpr std::size_t kTried = 8;
+    std::vector<std::pair<double, CellId>> nearest;
+    for (CellId cell : cells) nearest.emplace_back((center(cell) - world).squaredNorm(), cell);
+    const std::size_t tried = std::min(kTried, nearest.size());
+    std::partial_sort(nearest.begin(), nearest.begin() + tried, nearest.end());
+
+    std::optional<BodyPlace> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < tried; ++n) {
+        const CellId cell = nearest[n].second;
+        const CornerGroups groups = corner_groups(matter_, matter_.lattice.cell_corners(cell));
+        CornerMask seen = 0;
+        for (CornerMask group : groups) {
+            if (group & seen) continue;
+            seen |= group;
+            const std::optional<BodyPlace> place = solve(cell, group, world);
+            if (!place) continue;
+            // How far the place lies outside the cell, and outside the share of its corners.
+            const CellBox box = cell_box(matter_, cell);
+            const Vec3 local = (place->reference - box.low).cwiseQuotient(box.size);
+            double outside = (local - local.cwiseMax(0.0).cwiseMin(1.0)).norm();
+            const auto weight = corner_weights(local.cwiseMax(0.0).cwiseMin(1.0));
+            const auto heaviest = std::max_element(weight.begin(), weight.end()) - weight.begin();
+            if (!(group >> heaviest & 1)) outside += 0.5;
+            if (outside < least) least = outside, best = place;
+        }
+        if (least < 1e-9) break;
+    }
+    return best;
+}
+
+int BodyMap::piece_of(const BodyPlace& place) const {
+    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(place.cell);
+    const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);
+    const CornerMask followed =
+        followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
+    const auto weight = corner_weights(carrier.local);
+    int heaviest = -1;
+    for (int c = 0; c < 8; ++c) {
+        if (followed >> c & 1 && (heaviest < 0 || weight[c] > weight[heaviest])) heaviest = c;
+    }
+    return pieces_.particle_piece[corner[heaviest]];
+}
+
+CornerMask BodyMap::side_of_piece(CellId cell, const Vec3& reference, int piece) const {
+    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
+    const CornerGroups groups = corner_groups(matter_, corner);
+    if (groups[0] == kAllCorners) return kAllCorners;
+    const auto weight = corner_weights(carrier_in(cell_box(matter_, cell), reference).local);
+    int heaviest = -1;
+    for (int c = 0; c < 8; ++c) {
+        if (pieces_.particle_piece[corner[c]] == piece &&
+            (heaviest < 0 || weight[c] > weight[heaviest])) {
+            heaviest = c;
+        }
+    }
+    return heaviest < 0 ? kAllCorners : groups[heaviest];
+}
+
+}  // namespace swage

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where any place of the body at molding is now, and back.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "skin/carrier.h"
+
+namespace swage {
+
+// A place of the body at molding, with the cell and the corners that it follows.
+struct BodyPlace {
+    Vec3 reference;
+    CellId cell = -1;
+    CornerMask side = kAllCorners;
+};
+
+// A snapshot: the matter must outlive it and stay as it is.
+class BodyMap {
+  public:
+    explicit BodyMap(const Aggregate& matter);
+
+    Vec3 world(const BodyPlace& place) const;
+    // The place that is now at `world`; searched in the cells, of those given, whose centres are
+    // nearest. A place outside of all is the best guess. Nothing if no cell is given.
+    std::optional<BodyPlace> place_at(const Vec3& world, const std::vector<CellId>& cells) const;
+    Vec3 center(CellId cell) const;  // now
+
+    const Pieces& pieces() const { return pieces_; }
+    // Corners of the cell that belong to one piece and hang together with the one next to the
+    // place.
+    CornerMask side_of_piece(CellId cell, const Vec3& reference, int piece) const;
+    int piece_of(const BodyPlace& place) const;  // of the particle that weighs most
+
+  private:
+    CellFrames frames(const std::array<ParticleId, 8>& corner) const;
+    std::optional<BodyPlace> solve(CellId cell, CornerMask side, const Vec3& world) const;
+
+    const Aggregate& matter_;
+    std::vector<ParticleFrame> frame_;
+    Pieces pieces_;
+};
+
+}  // namespace swage

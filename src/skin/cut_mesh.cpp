@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/cut_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/log.h"
+#include "geometry/disjoint_sets.h"
+#include "skin/body_map.h"
+#include "skin/split_attributes.h"
+#include "skin/surface_split.h"
+#include "skin/sweep_plane.h"
+
+namespace swage {
+
+namespace {
+
+using Triangle = std::array<Vec3, 3>;
+
+// One sweep for each blade: triangles that hang together by corners.
+std::vector<std::vector<Triangle>> separate_sweeps(const std::vector<Triangle>& sweep) {
+    std::map<std::array<double, 3>, int> first;
+    DisjointSets sets(sweep.size());
+    for (std::size_t t = 0; t < sweep.size(); ++t) {
+        for (const Vec3& p : sweep[t]) {
+            const auto [at, fresh] =
+                first.emplace(std::array<double, 3>{p[0], p[1], p[2]}, static_cast<int>(t));
+            if (!fresh) sets.unite(at->second, static_cast<int>(t));
+        }
+    }
+    std::vector<int> number;
+    std::vector<std::vector<Triangle>> separate(sets.number_sets(number));
+    for (std::size_t t = 0; t < sweep.size(); ++t) separate[number[t]].push_back(sweep[t]);
+    return separate;
+}
+
+// One cut along one plane.
+class PlaneCut {
+  public:
+    PlaneCut(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
+             const Aggregate& matter, const SweepPlane& plane)
+        : mesh_(mesh),
+          position_(position),
+          mount_(mount),
+          matter_(matter),
+          plane_(plane),
+          map_(matter) {}
+
+    SurfaceSplit run() {
+        const double a = matter_.lattice.spacing;
+        SurfaceSplit split = split_surface(mesh_, position_, plane_, a);
+        if (split.seam_edges == 0) return split;
+        const int old = static_cast<int>(mesh_.position.size());
+        std::vector<BodyPlace> cut, inner;
+        std::vector<double> share;
+        find_cut_places(split, cut, share);
+        find_cap_places(split, inner);
+
+        // The side of the plane that each vertex must follow; 0: as it likes.
+        std::vector<int> own(old + split.added.size(), 0);
+        for (int v = 0; v < old; ++v) own[v] = plane_.height(position_[v]) >= 0 ? 1 : -1;
+        for (const SplitVertex& vertex : split.at_seam) own[vertex.raw] = vertex.side;
+        std::vector<Vec3> reference;
+        std::vector<Vec3> world = position_;
+        for (std::size_t n = 0; n < split.added.size(); ++n) {
+            const int raw = split.added[n].raw;
+            own[old + n] = split.added[n].side;
+            BodyPlace place;
+            if (raw < old) {
+                place = {mount_.reference[raw], mount_.cell[raw], mount_.side[raw]};
+                world.push_back(position_[raw]);
+            } else {
+                const std::size_t at = raw - old;
+                place = at < cut.size() ? cut[at] : inner[at - cut.size()];
+                world.push_back(map_.world(place));
+            }
+            reference.push_back(place.reference);
+            mount_.reference.push_back(place.reference);
+            mount_.cell.push_back(place.cell);
+            mount_.side.push_back(place.side);
+        }
+        for (std::size_t v = 0; v < own.size(); ++v) {
+            if (own[v] != 0) take_side(static_cast<int>(v), own[v], world[v]);
+        }
+        mesh_ = apply_split(mesh_, split, reference, share);
+        finish_mount(mount_, matter_);
+        return split;
+    }
+
+  private:
+    BodyPlace on_edge(const CutPoint& cut, double share) const {
+        BodyPlace place;
+        const Vec3 from = mount_.reference[cut.low], to = mount_.reference[cut.high];
+        place.reference = from + share * (to - from);
+        place.cell = carrying_cell(matter_, place.reference);
+        // In a cell that an earlier blade severed: the same side as the ends of the edge.
+        if (is_whole(matter_, matter_.lattice.cell_corners(place.cell))) return place;
+        for (int v : {cut.low, cut.high}) {
+            if (mount_.cell[v] == place.cell) {
+                place.side = mount_.side[v];
+                return place;
+            }
+        }
+        const BodyPlace low{from, mount_.cell[cut.low], mount_.side[cut.low]};
+        place.side = map_.side_of_piece(place.cell, place.reference, map_.piece_of(low));
+        return place;
+    }
+
+    // Where each edge of the mesh, straight at molding and curved by now, meets the plane. Regula
+    // falsi, Illinois variant.
+    void find_cut_places(const SurfaceSplit& split, std::vector<BodyPlace>& places,
+                         std::vector<double>& share) const {
+        for (const CutPoint& cut : split.cut) {
+            double s0 = 0, s1 = 1;
+            double h0 = plane_.height(position_[cut.low]), h1 = plane_.height(position_[cut.high]);
+            double s = cut.share;
+            BodyPlace place = on_edge(cut, s);
+            for (int round = 0; round < 30; ++round) {
+                const double h = plane_.height(map_.world(place));
+                if (std::abs(h) <= 1e-9 * matter_.lattice.spacing || s1 - s0 < 1e-12) break;
+                if ((h > 0) == (h1 > 0)) {
+                    s1 = s, h1 = h, h0 *= 0.5;
+                } else {
+                    s0 = s, h0 = h, h1 *= 0.5;
+                }
+                s = s0 + (s1 - s0) * h0 / (h0 - h1);
+                place = on_edge(cut, s);
+            }
+            places.push_back(place);
+            share.push_back(s);
+        }
+    }
+
+    // Cells that the plane crosses, or nearly.
+    std::vector<CellId> crossed_cells() const {
+        std::vector<CellId> cells;
+        const double a = matter_.lattice.spacing;
+        for (const CellRun& run : matter_.lattice.cell_run) {
+            for (int n = 0; n < run.count; ++n) {
+                const Vec3 center = map_.center(run.first + n);
+                if (std::abs(plane_.height(center)) < 2 * a &&
+                    plane_.near(plane_.flat(center), a)) {
+                    cells.push_back(run.first + n);
+                }
+            }
+        }
+        return cells;
+    }
+
+    void find_cap_places(const SurfaceSplit& split, std::vector<BodyPlace>& places) const {
+        if (split.cap_point.empty()) return;
+        const std::vector<CellId> cells = crossed_cells();
+        for (const Vec3& point : split.cap_point) {
+            std::optional<BodyPlace> place = map_.place_at(point, cells);
+            // Far outside of all matter, as a skin on a block may be: it hangs on the next cell.
+            if (!place) place = BodyPlace{point, carrying_cell(matter_, point)};
+            places.push_back(*place);
+        }
+    }
+
+    int side_of(ParticleId p) const {
+        return plane_.height(matter_.particle_position.at(p)) >= 0 ? 1 : -1;
+    }
+    CornerMask corners_on_side(CellId cell, int own) const {
+        const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
+        CornerMask mask = 0;
+        for (int c = 0; c < 8; ++c) mask |= static_cast<CornerMask>(side_of(corner[c]) == own) << c;
+        return mask;
+    }
+
+    void take_side(int v, int own, const Vec3& world) {
+        const double a = matter_.lattice.spacing;
+        if (std::abs(plane_.height(world)) > 4 * a) return;
+        const CornerMask mask = corners_on_side(mount_.cell[v], own);
+        if (mask == kAllCorners || !plane_.near(plane_.flat(world), 2 * a)) return;
+        if (mount_.side[v] & mask) {
+            mount_.side[v] &= mask;
+        } else {
+            change_cell(v, own);
+        }
+    }
+
+    // None of the cell's corners is on the vertex's side: the nearest cell that has one takes it.
+    void change_cell(int v, int own) {
+        const Vec3& reference = mount_.reference[v];
+        const int piece = map_.piece_of({reference, mount_.cell[v], mount_.side[v]});
+        const Vec3i site = matter_.lattice.cell_site(mount_.cell[v]);
+        double least = std::numeric_limits<double>::infinity();
+        CellId best = -1;
+        CornerMask best_side = 0;
+        for (int n = 0; n < 27; ++n) {
+            const Vec3i at = site + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            const CellId cell = matter_.lattice.cell_at(at.x(), at.y(), at.z());
+            if (cell < 0) continue;
+            const CornerMask side =
+                corners_on_side(cell, own) & map_.side_of_piece(cell, reference, piece);
+            const CellBox box = cell_box(matter_, cell);
+            const Vec3 nearest = reference.cwiseMax(box.low).cwiseMin(box.low + box.size);
+            const double distance = (reference - nearest).norm();
+            if (side != 0 && distance < least) least = distance, best = cell, best_side = side;
+        }
+        if (best < 0) return;  // a sliver without a particle of its own stays where it is
+        mount_.cell[v] = best;
+        mount_.side[v] = best_side;
+    }
+
+    TriMesh& mesh_;
+    const std::vector<Vec3>& position_;
+    Mount& mount_;
+    const Aggregate& matter_;
+    const SweepPlane& plane_;
+    const BodyMap map_;
+};
+
+}  // namespace
+
+CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
+                   const Aggregate& matter, const std::vector<Triangle>& sweep) {
+    CutResult result;
+    const double a = matter.lattice.spacing;
+    std::vector<Vec3> now = position;
+    for (const std::vector<Triangle>& one : separate_sweeps(sweep)) {
+        std::optional<SweepPlane> plane = fit_sweep_plane(one, 1e-3 * a);
+        if (!plane) {
+            result.has_curved = true;
+            continue;
+        }
+        // As the blade does, which never runs exactly through a particle.
+        plane->point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+        if (result.planes > 0) skin_positions(mount, matter, now);
+        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, *plane).run();
+        result.planes += split.seam_edges > 0;
+        result.open_parts += split.open_parts;
+        for (const SplitTriangle& triangle : split.triangle) {
+            result.cap_triangles += triangle.parent < 0;
+        }
+    }
+    if (result.has_curved) {
+        log_warning("a blade's sweep is not plane: the skin is not split ahead of it");
+    }
+    if (result.open_parts > 0) {
+        log_warning("{} part(s) of the skin are not closed where the blade passes: cut, not capped",
+                    result.open_parts);
+    }
+    return result;
+}
+
+int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& matter) {
+    const BodyMap map(matter);
+    std::vector<int> piece;
+    for (std::size_t v = 0; v < mount.reference.size(); ++v) {
+        piece.push_back(map.piece_of({mount.reference[v], mount.cell[v], mount.side[v]}));
+    }
+    std::vector<std::size_t> kept;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const Corners& c = mesh.triangle[t];
+        if (piece[c[0]] == piece[c[1]] && piece[c[1]] == piece[c[2]]) kept.push_back(t);
+    }
+    const int torn = static_cast<int>(mesh.triangle.size() - kept.size());
+    const auto keep = [&](auto& values) {
+        if (values.empty()) return;
+        for (std::size_t n = 0; n < kept.size(); ++n) values[n] = values[kept[n]];
+        values.resize(kept.size());
+    };
+    keep(mesh.triangle);
+    keep(mesh.triangle_uv);
+    keep(mesh.triangle_smooth);
+    keep(mesh.triangle_polygon);
+    keep(mesh.triangle_material);
+    keep(mesh.triangle_part);
+    return torn;
+}
+
+}  // namespace swage

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles that fill a plane section of a body, holes left out.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/math.h"
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+struct Section {
+    std::vector<Vec2> point;
+    std::vector<std::array<int, 2>> segment;  // closed loops, the inside on the left
+    std::vector<Vec2> wish;                   // places inside that should become points
+    double spacing = 0;                       // [m] of the points that are added inside
+};
+
+struct SectionTriangles {
+    std::vector<Vec2> added;        // points inside; their ids follow those of the section's
+    std::vector<Corners> triangle;  // counter-clockwise
+};
+
+// Every segment becomes an edge of the triangles. Nothing when the segments cross or touch each
+// other, do not close, or wind more than once around a place.
+std::optional<SectionTriangles> fill_section(const Section& section);
+
+}  // namespace swage

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a split surface carries over from the old one: texture, smoothing, colours, materials.
+#pragma once
+
+#include "geometry/trimesh.h"
+#include "skin/surface_split.h"
+
+namespace swage {
+
+// The mesh after the split. `reference`: the place at molding of each added vertex, in the order of
+// SurfaceSplit::added; `share`: of each cut point, along its edge at molding.
+TriMesh apply_split(const TriMesh& mesh, const SurfaceSplit& split,
+                    const std::vector<Vec3>& reference, const std::vector<double>& share);
+
+}  // namespace swage

@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cut is settled first, in the plane: every edge of the section that borders a kept cap
+// triangle is a seam. Then corners are joined across all edges but the seams; at a seam, surface
+// joins cap, each on its own side. Every set of joined corners is a vertex, so the result is
+// manifold, and where the blade stops inside the body the last vertices stay shared.
+#include "skin/surface_split.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "geometry/disjoint_sets.h"
+#include "skin/section.h"
+
+namespace swage {
+
+namespace {
+
+// A vertex nearer to the plane than this share of its shortest edge counts as lying on it, so that
+// no slivers are cut off.
+constexpr double kOnPlane = 0.01;
+
+using Ends = std::pair<int, int>;
+Ends ends(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+// One triangle of the old surface, or a part of one.
+struct Part {
+    Corners raw;
+    int side;
+    bool split;
+};
+
+struct Seam {
+    int from, to;       // raw, the inside on the left seen against the normal
+    int plus;           // old triangle on the positive side
+    bool kept = false;  // cut along it
+};
+
+class Splitter {
+  public:
+    Splitter(const TriMesh& mesh, const std::vector<Vec3>& position, const SweepPlane& plane,
+             double spacing)
+        : mesh_(mesh), position_(position), plane_(plane), spacing_(spacing) {}
+
+    SurfaceSplit run() {
+        classify();
+        find_section();
+        cap_all();
+        emit_surface();
+        emit_caps();
+        join_corners();
+        split_.seam_edges = static_cast<int>(
+            std::count_if(seam_.begin(), seam_.end(), [](const Seam& s) { return s.kept; }));
+        return std::move(split_);
+    }
+
+  private:
+    int old_count() const { return static_cast<int>(position_.size()); }
+    bool on_plane(int raw) const { return raw >= old_count() || sign_[raw] == 0; }
+    Vec3 place(int raw) const {
+        if (raw < old_count()) return position_[raw];
+        const CutPoint& cut = split_.cut[raw - old_count()];
+        return position_[cut.low] + cut.share * (position_[cut.high] - position_[cut.low]);
+    }
+
+    void classify() {
+        std::vector<double> shortest(position_.size(), std::numeric_limits<double>::infinity());
+        for (const Corners& t : mesh_.triangle) {
+            for (int k = 0; k < 3; ++k) {
+                const int a = t[k], b = t[(k + 1) % 3];
+                const double length = (position_[a] - position_[b]).norm();
+                shortest[a] = std::min(shortest[a], length);
+                shortest[b] = std::min(shortest[b], length);
+            }
+        }
+        height_.resize(position_.size());
+        sign_.resize(position_.size());
+        for (std::size_t v = 0; v < position_.size(); ++v) {
+            height_[v] = plane_.height(position_[v]);
+            sign_[v] = std::abs(height_[v]) <= kOnPlane * shortest[v] ? 0 : height_[v] > 0 ? 1 : -1;
+        }
+        for (const Corners& t : mesh_.triangle) {
+            for (int k = 0; k < 3; ++k) {
+                const auto [low, high] = ends(t[k], t[(k + 1) % 3]);
+                if (sign_[low] * sign_[high] >= 0) continue;
+                if (!cut_id_.emplace(Ends(low, high), old_count() + split_.cut.size()).second) {
+                    continue;
+                }
+                split_.cut.push_back({low, high, height_[low] / (height_[low] - height_[high])});
+            }
+        }
+        used_.assign(split_.cut.size(), true);
+    }
+
+    int side_of(const Corners& raw, int parent) const {
+        int low = 0, high = 0;
+        for (int r : raw) {
+            if (r >= old_count()) continue;
+            low = std::min(low, sign_[r]);
+            high = std::max(high, sign_[r]);
+        }
+        if (low || high) return low + high;
+        // It lies in the plane: the body is behind it.
+        const Corners& t = mesh_.triangle[parent];
+        const Vec3 out =
+            (position_[t[1]] - position_[t[0]]).cross(position_[t[2]] - position_[t[0]]);
+        return out.dot(plane_.normal) > 0 ? -1 : 1;
+    }
+
+    // The parts of a triangle, cut at those of its cut points that are in use.
+    template <typename F>
+    void for_each_part(int t, const F& f) const {
+        const Corners& corner = mesh_.triangle[t];
+        std::array<int, 5> loop;
+        std::array<int, 2> at;  // of cut points in the loop
+        int count = 0, cuts = 0;
+        for (int k = 0; k < 3; ++k) {
+            loop[count++] = corner[k];
+            const int next = corner[(k + 1) % 3];
+            if (sign_[corner[k]] * sign_[next] >= 0) continue;
+            const int cut = cut_id_.at(ends(corner[k], next));
+            if (used_[cut - old_count()]) at[cuts++] = count, loop[count++] = cut;
+        }
+        const auto emit = [&](int a, int b, int c) {
+            const Corners raw = {loop[a % count], loop[b % count], loop[c % count]};
+            f(Part{raw, side_of(raw, t), cuts > 0});
+        };
+        if (cuts == 0) {
+            emit(0, 1, 2);
+        } else if (cuts == 1) {
+            emit(at[0], at[0] + 1, at[0] + 2);
+            emit(at[0] + 2, at[0] + 3, at[0]);
+        } else {
+            // The lone corner stands between the two cut points, on one way round or the other.
+            const int first = at[1] - at[0] == 2 ? at[0] : at[1];
+            emit(first, first + 1, first + 2);
+            const auto length = [&](int a, int b) {
+                return (place(loop[a % count]) - place(loop[b % count])).norm();
+            };
+            if (length(first + 2, first + 4) < length(first + 3, first)) {
+                emit(first + 2, first + 3, first + 4);
+                emit(first + 2, first + 4, first);
+            } else {
+                emit(first + 2, first + 3, first);
+                emit(first + 3, first + 4, first);
+            }
+        }
+    }
+
+    bool touches_plane(int t) const {
+        const Corners& c = mesh_.triangle[t];
+        return !(sign_[c[0]] == sign_[c[1]] && sign_[c[1]] == sign_[c[2]] && sign_[c[0]] != 0);
+    }
+
+    // Edges in the plane between a part above and a part below.
+    void find_section() {
+        struct Uses {
+            int net = 0, plus = -1;
+            bool minus = false;
+        };
+        std::map<Ends, Uses> edges;
+        for (int t = 0; t < static_cast<int>(mesh_.triangle.size()); ++t) {
+            if (!touches_plane(t)) continue;
+            for_each_part(t, [&](const Part& part) {
+                for (int k = 0; k < 3; ++k) {
+                    const int a = part.raw[k], b = part.raw[(k + 1) % 3];
+                    if (!on_plane(a) || !on_plane(b)) continue;
+                    Uses& uses = edges[ends(a, b)];
+                    if (part.side > 0) {
+                        uses.net += a < b ? 1 : -1;
+                        if (uses.plus < 0) uses.plus = t;
+                    } else {
+                        uses.minus = true;
+                    }
+                }
+            });
+        }
+        for (const auto& [edge, uses] : edges) {
+            if (!uses.minus || std::abs(uses.net) != 1) continue;
+            const auto [a, b] = edge;
+            seam_.push_back(uses.net > 0 ? Seam{a, b, uses.plus} : Seam{b, a, uses.plus});
+        }
+    }
+
+    void cap_all() {
+        std::vector<int> all(seam_.size());
+        for (std::size_t s = 0; s < seam_.size(); ++s) all[s] = static_cast<int>(s);
+        if (all.empty() || cap(all)) return;
+        // Parts that cross or touch each other, or are not closed, must not spoil the others.
+        const Components components = surface_components(mesh_);
+        std::map<int, std::vector<int>> by_component;
+        for (int s : all) by_component[components.triangle_component[seam_[s].plus]].push_back(s);
+        for (const auto& [component, seams] : by_component) {
+            if (by_component.size() > 1 && cap(seams)) continue;
+            ++split_.open_parts;
+            for (int s : seams) {
+                const Vec3 middle = 0.5 * (place(seam_[s].from) + place(seam_[s].to));
+                seam_[s].kept = plane_.covers(plane_.flat(middle));
+            }
+        }
+    }
+
+    // Fills the section that these edges bound and keeps what the blade sweeps.
+    bool cap(const std::vector<int>& seams) {
+        Section section;
+        section.spacing = spacing_;
+        std::map<int, int> local;
+        std::vector<int> raw;
+        const auto point = [&](int r) {
+            const auto [at, fresh] = local.emplace(r, static_cast<int>(raw.size()));
+            if (fresh) raw.push_back(r), section.point.push_back(plane_.flat(place(r)));
+            return at->second;
+        };
+        for (int s : seams) section.segment.push_back({point(seam_[s].from), point(seam_[s].to)});
+        for (const auto& [a, b] : plane_.outline) {
+            const int steps =
+                std::clamp(static_cast<int>((b - a).norm() / (0.5 * spacing_)), 1, 999);
+            for (int n = 0; n < steps; ++n) section.wish.push_back(a + (b - a) * n / steps);
+        }
+        const std::optional<SectionTriangles> filled = fill_section(section);
+        if (!filled) return false;
+
+        std::map<Ends, int> seam_at;
+        for (int s : seams) seam_at[ends(seam_[s].from, seam_[s].to)] = s;
+        const int known = static_cast<int>(section.point.size());
+        std::vector<int> added(filled->added.size(), -1);
+        for (const Corners& t : filled->triangle) {
+            Vec2 middle = Vec2::Zero();
+            for (int c : t) middle += (c < known ? section.point[c] : filled->added[c - known]) / 3;
+            if (!plane_.covers(middle)) continue;
+            Corners cap;
+            for (int k = 0; k < 3; ++k) {
+                if (t[k] < known) {
+                    cap[k] = raw[t[k]];
+                    continue;
+                }
+                int& id = added[t[k] - known];
+                if (id < 0) {
+                    id =
+                        old_count() + static_cast<int>(split_.cut.size() + split_.cap_point.size());
+                    split_.cap_point.push_back(plane_.world(filled->added[t[k] - known]));
+                }
+                cap[k] = id;
+            }
+            int neighbor = -1;
+            for (int k = 0; k < 3; ++k) {
+                const auto at = seam_at.find(ends(cap[k], cap[(k + 1) % 3]));
+                if (at == seam_at.end()) continue;
+                seam_[at->second].kept = true;
+                neighbor = seam_[at->second].plus;
+            }
+            cap_.push_back(cap);
+            cap_neighbor_.push_back(neighbor);
+        }
+        return true;
+    }
+
+    void emit_surface() {
+        used_.assign(split_.cut.size(), false);
+        const auto use = [&](int raw) {
+            if (raw >= old_count()) used_[raw - old_count()] = true;
+        };
+        for (const Seam& seam : seam_) {
+            if (seam.kept) use(seam.from), use(seam.to);
+        }
+        for (int t = 0; t < static_cast<int>(mesh_.triangle.size()); ++t) {
+            for_each_part(t, [&](const Part& part) {
+                split_.triangle.push_back({part.raw, part.raw, t, part.split, part.side});
+            });
+        }
+    }
+
+    // Both caps; those of one connected piece take the same neighbour.
+    void emit_caps() {
+        DisjointSets pieces(cap_.size());
+        std::map<Ends, int> first;
+        for (std::size_t c = 0; c < cap_.size(); ++c) {
+            for (int k = 0; k < 3; ++k) {
+                const Ends edge = ends(cap_[c][k], cap_[c][(k + 1) % 3]);
+                const auto [at, fresh] = first.emplace(edge, static_cast<int>(c));
+                if (!fresh) pieces.unite(at->second, static_cast<int>(c));
+            }
+        }
+        std::vector<int> neighbor(cap_.size(), -1);
+        for (std::size_t c = 0; c < cap_.size(); ++c) {
+            int& own = neighbor[pieces.root(static_cast<int>(c))];
+            if (own < 0) own = cap_neighbor_[c];
+        }
+        for (int side : {1, -1}) {
+            for (std::size_t c = 0; c < cap_.size(); ++c) {
+                Corners raw = cap_[c];
+                if (side > 0) std::swap(raw[1], raw[2]);
+                split_.triangle.push_back(
+                    {raw, raw, -1, false, side, neighbor[pieces.root(static_cast<int>(c))]});
+            }
+        }
+    }
+
+    struct Use {
+        Ends edge;
+        int kind;  // 0 surface, 1 cap above, -1 cap below
+        int side;
+        Ends corner;  // at the edge's ends
+        bool operator<(const Use& other) const {
+            return std::tie(edge, kind, corner) < std::tie(other.edge, other.kind, other.corner);
+        }
+    };
+
+    void join_corners() {
+        std::set<int> at_seam;
+        std::set<Ends> kept;
+        for (const Seam& seam : seam_) {
+            if (!seam.kept) continue;
+            at_seam.insert({seam.from, seam.to});
+            kept.insert(ends(seam.from, seam.to));
+        }
+        for (const Corners& cap : cap_) at_seam.insert(cap.begin(), cap.end());
+
+        std::vector<Use> uses;
+        DisjointSets corners(3 * split_.triangle.size());
+        for (std::size_t t = 0; t < split_.triangle.size(); ++t) {
+            const SplitTriangle& triangle = split_.triangle[t];
+            for (int k = 0; k < 3; ++k) {
+                const int a = triangle.raw[k], b = triangle.raw[(k + 1) % 3];
+                if (!at_seam.count(a) && !at_seam.count(b)) continue;
+                const int ca = static_cast<int>(3 * t + k);
+                const int cb = static_cast<int>(3 * t + (k + 1) % 3);
+                uses.push_back({ends(a, b), triangle.parent < 0 ? triangle.side : 0, triangle.side,
+                                a < b ? Ends(ca, cb) : Ends(cb, ca)});
+            }
+        }
+        std::sort(uses.begin(), uses.end());
+        const auto join = [&](const Use& x, const Use& y) {
+            corners.unite(x.corner.first, y.corner.first);
+            corners.unite(x.corner.second, y.corner.second);
+        };
+        for (std::size_t begin = 0, end; begin < uses.size(); begin = end) {
+            for (end = begin; end < uses.size() && uses[end].edge == uses[begin].edge; ++end) {
+            }
+            const bool seam = kept.count(uses[begin].edge) > 0;
+            const auto count = [&](int kind) {
+                return std::count_if(uses.begin() + begin, uses.begin() + end,
+                                     [&](const Use& u) { return u.kind == kind; });
+            };
+            // Where the blade stops the two caps meet.
+            const bool front = !seam && count(1) == 1;
+            for (std::size_t i = begin; i < end; ++i) {
+                for (std::size_t j = i + 1; j < end; ++j) {
+                    const Use &x = uses[i], &y = uses[j];
+                    if (seam ? x.side == y.side
+                             : x.kind == y.kind || (front && x.kind != 0 && y.kind != 0)) {
+                        join(x, y);
+                    }
+                }
+            }
+        }
+        number_vertices(at_seam, corners);
+    }
+
+    void number_vertices(const std::set<int>& at_seam, DisjointSets& corners) {
+        std::map<int, std::pair<int, int>> vertex_side;  // of a set: vertex, side (2: not known)
+        std::set<int> taken;
+        int next = old_count();
+        for (std::size_t t = 0; t < split_.triangle.size(); ++t) {
+            SplitTriangle& triangle = split_.triangle[t];
+            for (int k = 0; k < 3; ++k) {
+                const int raw = triangle.raw[k];
+                if (!at_seam.count(raw)) continue;
+                const int root = corners.root(static_cast<int>(3 * t + k));
+                auto [at, fresh] = vertex_side.emplace(root, std::pair(-1, triangle.side));
+                auto& [vertex, side] = at->second;
+                if (fresh) {
+                    vertex = raw < old_count() && taken.insert(raw).second ? raw : next++;
+                    (vertex < old_count() ? split_.at_seam : split_.added).push_back({raw, 0});
+                    if (vertex >= old_count())
+                        added_set_.push_back(root);
+                    else
+                        seam_set_.push_back(root);
+                }
+                if (side != triangle.side) side = 0;
+                triangle.vertex[k] = vertex;
+            }
+        }
+        for (std::size_t n = 0; n < split_.added.size(); ++n) {
+            split_.added[n].side = vertex_side.at(added_set_[n]).second;
+        }
+        for (std::size_t n = 0; n < split_.at_seam.size(); ++n) {
+            split_.at_seam[n].side = vertex_side.at(seam_set_[n]).second;
+        }
+    }
+
+    const TriMesh& mesh_;
+    const std::vector<Vec3>& position_;
+    const SweepPlane& plane_;
+    const double spacing_;
+    SurfaceSplit split_;
+    std::vector<double> height_;
+    std::vector<int> sign_;
+    std::map<Ends, int> cut_id_;
+    std::vector<bool> used_;  // cut points
+    std::vector<Seam> seam_;
+    std::vector<Corners> cap_;  // raw, seen against the normal
+    std::vector<int> cap_neighbor_;
+    std::vector<int> added_set_, seam_set_;
+};
+
+}  // namespace
+
+SurfaceSplit split_surface(const TriMesh& mesh, const std::vector<Vec3>& position,
+                           const SweepPlane& plane, double spacing) {
+    return Splitter(mesh, position, plane, spacing).run();
+}
+
+}  // namespace swage

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Splits the triangles of a surface along the swept part of a plane and closes both sides with
+// caps. Only who is whose corner is settled here; places and attributes are the caller's.
+#pragma once
+
+#include <vector>
+
+#include "geometry/trimesh.h"
+#include "skin/sweep_plane.h"
+
+namespace swage {
+
+// A new vertex on an edge of the old surface.
+struct CutPoint {
+    int low, high;  // old vertices, low below high by number
+    double share;   // of the way from low to high
+};
+
+struct SplitTriangle {
+    Corners vertex;     // of the new surface
+    Corners raw;        // where each comes from: old vertex, then cut point, then cap point
+    int parent;         // old triangle; -1 for a cap
+    bool split;         // the parent was cut
+    int side;           // of the plane, +1 or -1; 0 if it lies on both
+    int neighbor = -1;  // of a cap: an old triangle at its rim
+};
+
+struct SplitVertex {
+    int raw;   // numbered as in SplitTriangle
+    int side;  // +1 or -1; 0 where both sides share it
+};
+
+struct SurfaceSplit {
+    std::vector<CutPoint> cut;
+    std::vector<Vec3> cap_point;  // [m], inside the body, on the plane
+    std::vector<SplitTriangle> triangle;
+    // Vertices beyond the old ones, and the side of every old one that the cut runs through.
+    std::vector<SplitVertex> added;
+    std::vector<SplitVertex> at_seam;
+    int seam_edges = 0;
+    int open_parts = 0;  // parts of the surface whose section does not close: cut, but not capped
+};
+
+// `position`: of the mesh's vertices now [m]. `spacing`: of the points inside the caps [m].
+SurfaceSplit split_surface(const TriMesh& mesh, const std::vector<Vec3>& position,
+                           const SweepPlane& plane, double spacing);
+
+}  // namespace swage
