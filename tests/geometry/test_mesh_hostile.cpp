@@ -186,7 +186,10 @@ TEST_CASE("random damage to good files never harms the reader's parent") {
                         REQUIRE((i >= 0 && i < static_cast<int>(mesh.position.size())));
                 check_mesh(mesh);
                 ++read;
-            } catch (const Error&) {
+            } catch (const Error& error) {
+                // The project's own readers refuse; only assimp may crash.
+                if (std::string(name) != "ball.stl")
+                    CHECK(std::string(error.what()).find("crashed") == std::string::npos);
                 ++refused;
             }
         }
