@@ -62,7 +62,7 @@ inline double flow(const Yield& law, double distortion, double alpha) {
 }
 
 // The share of each s_b that flows.
-inline double flow_share(const Yield& law, double distortion, double d_alpha) {
+inline double flow_share(double distortion, double d_alpha) {
     return d_alpha > 0 ? 3 * d_alpha / std::sqrt(3 * distortion) : 0;
 }
 

@@ -137,8 +137,8 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                     const double d_alpha =
                         flow(law_, distortion[n], fresh ? 0.0 : double(matter.cell_hardening[id]));
                     if (!(d_alpha > 0)) continue;
-                    FlowingCell cell{id, run.row, theta[n],
-                                     flow_share(law_, distortion[n], d_alpha), d_alpha};
+                    FlowingCell cell{id, run.row, theta[n], flow_share(distortion[n], d_alpha),
+                                     d_alpha};
                     for (ParticleId& p : cell.row) p += at + n;
                     part[chunk].push_back(cell);
                 }

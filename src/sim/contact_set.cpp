@@ -247,19 +247,19 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
     return farthest;
 }
 
-double ContactSet::pressing(const Aggregate& matter, std::size_t tool, const Drive& from,
+bool ContactSet::draws_back(const Aggregate& matter, std::size_t tool, const Drive& from,
                             const Drive& to) const {
-    double sum = 0;
-    int count = 0;
+    double normal = 0, size = 0;
     for_each_touch(
         matter, from,
         [&](std::size_t n, const Vec3& x, const Distance& d, double, const ContactForce&) {
             if (pair_[n].tool != static_cast<int>(tool)) return;
             const Vec3 local = from.world_from_tool[tool].inverse() * x;
-            sum += d.normal.dot(to.world_from_tool[tool] * local - x);
-            ++count;
+            const Vec3 way = to.world_from_tool[tool] * local - x;
+            normal += d.normal.dot(way);
+            size += way.norm();
         });
-    return count > 0 ? sum / count : 0;
+    return normal < -0.3 * size;
 }
 
 std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {

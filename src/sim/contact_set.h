@@ -51,8 +51,8 @@ class ContactSet {
     // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
 
-    // Mean way [m] that the tool's surface moves against the points that touch it now; > 0 presses.
-    double pressing(const Aggregate& matter, std::size_t tool, const Drive& from,
+    // Whether the tool draws back from the points that touch it now.
+    bool draws_back(const Aggregate& matter, std::size_t tool, const Drive& from,
                     const Drive& to) const;
 
     // The point with the largest force, for error messages: "tool at (x, y, z)".

@@ -244,15 +244,13 @@ void QuasistaticSolver::predict(const std::vector<double>& motion) {
     extrapolate(x.z, previous_.z);
 }
 
-void QuasistaticSolver::check_slip(const std::vector<double>& pressing,
-                                   const std::vector<LoadSum>& before,
-                                   const std::vector<LoadSum>& after, MoveOutcome& outcome) const {
+// A tool that loses its load although no loaded tool drew back has lost the work-piece.
+void QuasistaticSolver::check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) const {
+    const double little = kSlipShare * largest_push_;
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        if (pressing[t] > 0.01 * matter_.lattice.spacing &&
-            before[t].size > kSlipShare * largest_push_ &&
-            after[t].size <= kSlipShare * largest_push_) {
+        if (load_[t].size > little && after[t].size <= little) {
             outcome.warning.push_back(
-                fmt::format("the work-piece slipped away from {} while it was pressed",
+                fmt::format("the work-piece slipped away from {} although no tool drew back",
                             apparatus_.tool[t].name));
         }
     }
@@ -262,9 +260,9 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome) {
     start_ = matter_.particle_position;
     contacts_.begin_move(matter_, from);
-    std::vector<double> pressing;
+    bool release = false;
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        pressing.push_back(contacts_.pressing(matter_, t, from, to));
+        release = release || contacts_.draws_back(matter_, t, from, to);
     }
     std::vector<double> motion = motion_of(from, to);
     predict(motion);
@@ -298,7 +296,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
     for (const LoadSum& sum : load) largest_push_ = std::max(largest_push_, sum.size);
-    check_slip(pressing, load_, load, outcome);
+    if (!release) check_slip(load, outcome);
     add_work(from, to, load_, load, outcome.work);
     load_ = std::move(load);
     previous_ = start_;

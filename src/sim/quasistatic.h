@@ -48,8 +48,7 @@ class QuasistaticSolver {
     double push_limit(const Drive& to) const;
     std::vector<double> motion_of(const Drive& from, const Drive& to) const;
     void predict(const std::vector<double>& motion);
-    void check_slip(const std::vector<double>& pressing, const std::vector<LoadSum>& before,
-                    const std::vector<LoadSum>& after, MoveOutcome& outcome) const;
+    void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) const;
 
     Aggregate& matter_;
     const Apparatus& apparatus_;

@@ -73,7 +73,7 @@ TEST_CASE("flow is remembered only when committed, keeps the volume and leaves a
     CHECK(state_hash(m) == before);
     const double lost = flow.commit(m);
     // Work of the yield stress along the plastic strain.
-    CHECK(lost == Approx(m.volume() * 1e3 * (std::log(stretch) - 0.00083)).epsilon(0.03));
+    CHECK(lost == Approx(m.volume() * 1e3 * (std::log(stretch) - 0.00083)).epsilon(0.05));
     CHECK(flow.commit(m) == Approx(0).margin(1e-5 * lost));
     // Unloaded to the set, hardly anything is left of the stress, and the volume is the old one.
     const double set = m.connection[0].plastic[0];
