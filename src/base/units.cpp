@@ -180,7 +180,9 @@ std::string si_unit(Quantity quantity) { return about(quantity).si; }
 std::vector<std::string> unit_names(Quantity quantity) {
     std::vector<std::string> names;
     for (const Unit& unit : kUnits) {
-        if (unit.quantity == quantity) names.emplace_back(unit.name);
+        if (unit.quantity == quantity && quantity != Quantity::number) {
+            names.emplace_back(unit.name);
+        }
     }
     return names;
 }

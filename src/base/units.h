@@ -29,8 +29,9 @@ enum class Quantity {
 std::string quantity_name(Quantity quantity);  // "length"
 std::optional<Quantity> quantity_named(std::string_view name);
 std::vector<std::string> quantity_names();
-std::string si_unit(Quantity quantity);                  // "m"; a number's is empty
-std::vector<std::string> unit_names(Quantity quantity);  // the usual one first
+std::string si_unit(Quantity quantity);  // "m"; a number's is empty
+// The usual one first; none of a plain number.
+std::vector<std::string> unit_names(Quantity quantity);
 
 // The SI value of a text. Throws TextError: what is wrong, where, what is wanted.
 double parse_quantity(std::string_view text, Quantity wanted);

@@ -3,9 +3,9 @@
 //
 //     help = "what the machine does"
 //     [parameter.NAME]            quantity, default, low, high, help
-//     [[tool]]                    name, shape ("cylinder", "box", "sphere", "mesh"), radius,
-//     length,
-//                                 size, rounding, file, axis, at, touch, gap, friction
+//     [[tool]]                    name, shape ("cylinder", "box", "sphere", "mesh"),
+//                                 radius, length, size, rounding, file, axis, at,
+//                                 touch, gap, friction
 //     [tool.motion]               move, turn, axis, pivot
 //     [[grip]]                    name, from, to, and [grip.motion]
 //     [[blade]]                   name, edge, thickness, and [blade.motion]

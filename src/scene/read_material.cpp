@@ -34,6 +34,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     } else {
         table.quantity("yield_stress", Quantity::stress, above(0), material.yield_stress);
     }
+    table.quantity("hardening", Quantity::stress, at_least(0), material.hardening);
     if (table.quantity("damping_ratio", Quantity::number, at_least(0), material.damping_ratio) &&
         material.damping_ratio > 1) {
         table.warn("damping_ratio", "damping_ratio is more than 1: nothing swings any more");
@@ -94,6 +95,9 @@ void read_material(TableReader& table, const AssetPaths& assets,
         table.warn("poisson_ratio", fmt::format("poisson_ratio = {} has no effect: a lattice of "
                                                 "springs has {}",
                                                 material.poisson_ratio, kLatticePoisson));
+    }
+    if (table.find("hardening") != nullptr && std::isinf(material.yield_stress)) {
+        table.warn("hardening", "hardening has no effect without yield_stress");
     }
     table.finish();
 }

@@ -2,9 +2,10 @@
 // Scene files. Quantities carry units ("18 cm"); a bare number is SI.
 //
 //     [mesh]      file, length
-//     [material]  name; young_modulus, poisson_ratio, density, yield_stress, damping_ratio,
-//     friction [mold]      across or spacing, kind ("shape", "block"), cell_limit [skin]      kind
-//     ("mount", "frame4", "boundary")
+//     [material]  name; young_modulus, poisson_ratio, density, yield_stress,
+//                 hardening, damping_ratio, friction
+//     [mold]      across or spacing, kind ("shape", "block"), cell_limit
+//     [skin]      kind ("mount", "frame4", "boundary")
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",
 //                 "explicit"), gravity; tolerance, iteration_limit, halving_limit,
 //                 contact_stiffness, grip_stiffness, step_safety (see sim/settings.h); and the

@@ -194,6 +194,10 @@ TEST_CASE("values out of range are refused with the range") {
          material("density = -0"),
          {"5:11: density = 0 kg/m3 is out of range: it has to be more than 0 kg/m3"}},
         {"zero yield stress", material("yield_stress = 0"), {"more than 0 Pa"}},
+        {"hardening alone",
+         material("hardening = \"1 MPa\""),
+         {"5:13: warning: hardening has no effect without yield_stress"}},
+        {"softening", material("hardening = -1\nyield_stress = 3"), {"has to be at least 0 Pa"}},
         {"incompressible",
          material("poisson_ratio = 0.5"),
          {"5:17: poisson_ratio = 0.5 is out of range: it has to be between -1 and 0.5, both"}},
@@ -388,6 +392,51 @@ TEST_CASE("long lines and deep nesting are read or refused, never fatal") {
     }());
     CHECK(std::count(wide.begin(), wide.end(), '\n') == 201);
     CHECK(wide.find("s.toml: and 19800 more\n") != std::string::npos);
+}
+
+TEST_CASE("no damage to a scene's bytes does more than earn a mistake") {
+    const Scratch scratch;
+    Parts parts;
+    parts.rest += "camera = {keys = [{at = 0.5, eye = [0, 1, 2], target = [0, 0, 0]}]}\n";
+    const std::string whole = parts.text();
+    const std::string letters = "[]{}=.,\"'\n#0129-eaxn \\\xC3\x01";
+    std::uint64_t state = 1;  // Knuth's linear congruential numbers
+    const auto random = [&](std::size_t below) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return static_cast<std::size_t>(state >> 33) % below;
+    };
+    int right = 0;
+    for (int n = 0; n < 1000; ++n) {
+        std::string text = whole;
+        for (std::size_t times = 1 + random(4); times > 0; --times) {
+            const std::size_t at = random(text.size());
+            const char letter = letters[random(letters.size())];
+            switch (random(4)) {
+                case 0:
+                    text[at] = letter;
+                    break;
+                case 1:
+                    text.insert(at, 1, letter);
+                    break;
+                case 2:
+                    text.erase(at, 1 + random(8));
+                    break;
+                default:
+                    text.insert(at, text.substr(random(text.size()), random(40)));
+            }
+        }
+        INFO(text);
+        const SceneReading reading = read_scene(scratch.write("s.toml", text), {}, shipped());
+        REQUIRE(reading.scene.has_value() == (exit_code(reading.mistakes) == ExitCode::done));
+        for (const Mistake& mistake : reading.mistakes) {
+            REQUIRE_FALSE(mistake.text.empty());
+            REQUIRE((mistake.line == 0) == (mistake.column == 0));
+            REQUIRE(mistake.line <= 1 + std::count(text.begin(), text.end(), '\n'));
+        }
+        right += reading.scene.has_value();
+    }
+    CHECK(right > 0);
+    CHECK(right < 500);
 }
 
 TEST_CASE("overrides are checked like the file, and named as they were given") {

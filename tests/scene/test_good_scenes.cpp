@@ -80,7 +80,8 @@ file = "bar.obj"
 young_modulus = "1 GPa"
 poisson_ratio = 0.25
 density = "1.2 g/cm3"
-yield_stress = inf
+yield_stress = "3 MPa"
+hardening = "1 MPa"
 damping_ratio = 0.1
 friction = 0.4
 [mold]
@@ -133,7 +134,8 @@ meshes_per_frame = true
     CHECK(scene.material.young_modulus == 1e9);
     CHECK(scene.material.poisson_ratio == 0.25);
     CHECK(scene.material.density == Approx(1200));
-    CHECK(std::isinf(scene.material.yield_stress));
+    CHECK(scene.material.yield_stress == 3e6);
+    CHECK(scene.material.hardening == 1e6);
     CHECK(scene.material.damping_ratio == 0.1);
     CHECK(scene.material.friction == 0.4);
     CHECK(scene.mold.spacing.value() == Approx(0.005));
@@ -251,6 +253,17 @@ TEST_CASE("machines and materials beside the scene come before the shipped ones"
     CHECK(other.scene->material.name == "copper");
 }
 
+TEST_CASE("a material that yields can be made elastic") {
+    const Scratch scratch;
+    const SceneReading reading = read(scratch,
+                                      "[mesh]\nfile = \"bar.obj\"\n[material]\nname = "
+                                      "\"copper\"\nyield_stress = inf\n[[stage]]\n"
+                                      "machine = \"bend\"\n");
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    CHECK(std::isinf(reading.scene->material.yield_stress));
+}
+
 TEST_CASE("overrides count as if the file said so") {
     const Scratch scratch;
     const std::string text = kHead +
@@ -314,6 +327,8 @@ TEST_CASE("the shipped materials are many and within sense") {
         CHECK(one.poisson_ratio >= 0);
         CHECK(one.poisson_ratio < 0.5);
         CHECK((std::isinf(one.yield_stress) || one.yield_stress < 0.1 * one.young_modulus));
+        CHECK((one.hardening == 0 || std::isfinite(one.yield_stress)));
+        CHECK(one.hardening <= 0.05 * one.young_modulus);
         CHECK(one.friction > 0);
         CHECK(one.friction <= 1);
         CHECK(one.damping_ratio > 0);
