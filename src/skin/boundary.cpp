@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/boundary.h"
+
+#include <algorithm>
+
+#include "skin/mount.h"
+#include "skin/voxel_place.h"
+#include "skin/voxel_surface.h"
+
+namespace swage {
+
+namespace {
+
+struct Owner {
+    CellId cell = -1;
+    int corner = 0;
+    bool at_cut = false;
+};
+
+// The cell and the corners that a vertex follows: matter that hangs together with the particle
+// behind it.
+void bind_vertex(const Aggregate& matter, const Vec3& place, const Owner& owner, CellId& cell,
+                 CornerMask& side) {
+    const auto home = matter.lattice.cell_corners(owner.cell);
+    const CellId over = carrying_cell(matter, place);
+    const auto corner = matter.lattice.cell_corners(over);
+    const auto at = std::find(corner.begin(), corner.end(), home[owner.corner]);
+    if (at != corner.end()) {
+        cell = over;
+        side = corner_groups(matter, corner)[at - corner.begin()];
+    } else if (!owner.at_cut && is_whole(matter, corner)) {
+        cell = over;
+        side = kAllCorners;
+    } else {
+        cell = owner.cell;
+        side = corner_groups(matter, home)[owner.corner];
+    }
+}
+
+}  // namespace
+
+TriMesh boundary_skin(const Aggregate& matter) {
+    const VoxelSurface surface = voxel_surface(matter);
+    const std::vector<Vec3> place = place_points(matter, surface);
+
+    Mount mount;
+    mount.reference.resize(surface.vertex_count);
+    mount.cell.resize(surface.vertex_count);
+    mount.side.resize(surface.vertex_count);
+    std::vector<Owner> owner(surface.vertex_count);
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 0; k < 4; ++k) {
+            Owner& own = owner[face.vertex[k]];
+            if (own.cell < 0) own.cell = face.cell, own.corner = face.corner;
+            own.at_cut = own.at_cut || face.cut;
+            mount.reference[face.vertex[k]] = place[face.point[k]];
+        }
+    }
+    for (int v = 0; v < surface.vertex_count; ++v) {
+        bind_vertex(matter, mount.reference[v], owner[v], mount.cell[v], mount.side[v]);
+    }
+    finish_mount(mount, matter);
+
+    TriMesh mesh;
+    skin_positions(mount, matter, mesh.position);
+    mesh.material.resize(2);
+    mesh.material[0].name = "boundary";
+    mesh.material[0].color = {0.72, 0.45, 0.33};
+    mesh.material[1].name = "cut";
+    mesh.material[1].color = {0.86, 0.82, 0.76};
+    mesh.material[1].roughness = 0.7;
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const auto& v = surface.face[f].vertex;
+        const auto length = [&](int a, int b) {
+            return (mesh.position[v[a]] - mesh.position[v[b]]).squaredNorm();
+        };
+        if (length(0, 2) <= length(1, 3)) {
+            mesh.triangle.push_back({v[0], v[1], v[2]});
+            mesh.triangle.push_back({v[0], v[2], v[3]});
+        } else {
+            mesh.triangle.push_back({v[1], v[2], v[3]});
+            mesh.triangle.push_back({v[1], v[3], v[0]});
+        }
+        for (int n = 0; n < 2; ++n) {
+            mesh.triangle_material.push_back(surface.face[f].cut);
+            mesh.triangle_polygon.push_back(static_cast<int>(f));
+        }
+    }
+    constexpr double kCrease = 0.7;  // [rad]
+    smooth_by_crease_angle(mesh, kCrease);
+    return mesh;
+}
+
+}  // namespace swage

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The middles of the severed edges scatter evenly about the blade's path, so a plane fitted to them
+// has no bias. One plane is taken for a whole cut when it parts the ends of all its severed edges,
+// else a plane around each point.
+#include "skin/cut_faces.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/disjoint_sets.h"
+
+namespace swage {
+
+namespace {
+
+struct Severed {
+    Vec3 middle;  // of the edge
+    int axis;
+    int point;  // one of the face's
+};
+
+struct PlaneFit {
+    double weight = 0;
+    Vec3 sum = Vec3::Zero();
+    Mat3 square = Mat3::Zero();
+
+    void add(const Vec3& p, double w) {
+        weight += w;
+        sum += w * p;
+        square += w * p * p.transpose();
+    }
+    // Normal and height; coordinates must be near the origin of their own.
+    CutTarget plane() const {
+        const Vec3 mean = sum / weight;
+        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(square / weight - mean * mean.transpose());
+        const Vec3 normal = eigen.eigenvectors().col(0);
+        return {normal, normal.dot(mean)};
+    }
+};
+
+std::vector<Severed> severed_edges(const Aggregate& matter, const VoxelSurface& surface) {
+    std::vector<Severed> edges;
+    for (const VoxelFace& face : surface.face) {
+        if (!face.cut || face.direction >= 3) continue;  // one of the two sides
+        const auto corner = matter.lattice.cell_corners(face.cell);
+        const int other = face.corner ^ 1 << face.direction;
+        edges.push_back({0.5 * (matter.particle_reference.at(corner[face.corner]) +
+                                matter.particle_reference.at(corner[other])),
+                         face.direction, face.point[0]});
+    }
+    return edges;
+}
+
+bool parts_all(const CutTarget& plane, const std::vector<Severed>& edges,
+               const std::vector<int>& members, const Vec3& origin, double a) {
+    return std::all_of(members.begin(), members.end(), [&](int e) {
+        const double off = std::abs(plane.normal.dot(edges[e].middle - origin) - plane.height);
+        return off <= a * (0.5 * std::abs(plane.normal[edges[e].axis]) + 0.2);
+    });
+}
+
+}  // namespace
+
+std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
+                                                  const VoxelSurface& surface,
+                                                  const std::vector<Vec3>& place) {
+    std::vector<std::optional<CutTarget>> target(surface.site.size());
+    const std::vector<Severed> edges = severed_edges(matter, surface);
+    if (edges.empty()) return target;
+    const double a = matter.lattice.spacing;
+
+    DisjointSets patches(surface.site.size());
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 1; k < 4 && face.cut; ++k) patches.unite(face.point[0], face.point[k]);
+    }
+    std::vector<std::vector<int>> members(surface.site.size());
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        members[patches.root(edges[e].point)].push_back(static_cast<int>(e));
+    }
+    std::vector<char> on_cut(surface.site.size(), 0);
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 0; k < 4 && face.cut; ++k) on_cut[face.point[k]] = 1;
+    }
+    std::vector<std::optional<CutTarget>> whole(surface.site.size());  // by patch, about its first
+    for (std::size_t p = 0; p < members.size(); ++p) {
+        if (members[p].empty()) continue;
+        const Vec3 origin = edges[members[p].front()].middle;
+        PlaneFit fit;
+        for (int e : members[p]) fit.add(edges[e].middle - origin, 1);
+        const CutTarget plane = fit.plane();
+        if (!parts_all(plane, edges, members[p], origin, a)) continue;
+        whole[p] = CutTarget{plane.normal, plane.height + plane.normal.dot(origin)};
+    }
+    for (std::size_t s = 0; s < target.size(); ++s) {
+        if (!on_cut[s]) continue;
+        const int patch = patches.root(static_cast<int>(s));
+        target[s] = whole[patch];
+        if (target[s]) continue;
+        constexpr double kReach = 3;  // spacings
+        PlaneFit fit;
+        for (int e : members[patch]) {
+            const Vec3 way = edges[e].middle - place[s];
+            const double d2 = way.squaredNorm() / (a * a);
+            if (d2 < kReach * kReach) fit.add(way, std::exp(-d2 / 2.25));
+        }
+        if (fit.weight <= 0) continue;
+        const CutTarget plane = fit.plane();
+        target[s] = CutTarget{plane.normal, plane.height + plane.normal.dot(place[s])};
+    }
+    return target;
+}
+
+}  // namespace swage

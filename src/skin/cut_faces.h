@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Smooth surfaces through severed connections.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "skin/voxel_surface.h"
+
+namespace swage {
+
+struct CutTarget {
+    Vec3 normal;    // unit
+    double height;  // normal . x on the target plane [m]
+};
+
+// For each site the plane that its part of a cut face should lie in; none off the cuts.
+std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
+                                                  const VoxelSurface& surface,
+                                                  const std::vector<Vec3>& place);
+
+}  // namespace swage

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// S1.13 moves each vertex out by its particle's radius along the mean normal. NOTE: the cells keep
+// the share of their volume that was material, and the points of the true surface; vertices go
+// there instead, and a common way along the normals makes up what volume is left.
+#include "skin/voxel_place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "skin/carrier.h"
+#include "skin/cut_faces.h"
+#include "skin/surface_samples.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 1024;  // points
+constexpr int kRounds = 8, kCutRounds = 40;
+constexpr int kSlidingRings = 4;  // around a cut, of points that make room for its rim
+
+class Placer {
+  public:
+    Placer(const Aggregate& matter, const VoxelSurface& surface)
+        : matter_(matter), surface_(surface), samples_(matter), a_(matter.lattice.spacing) {}
+
+    std::vector<Vec3> run() {
+        start();
+        find_kinds();
+        target_ = cut_targets(matter_, surface_, place_);
+        find_neighbors();
+        open_rings();
+        for (int round = 0; round < kRounds; ++round) settle(round > 0, false);
+        // The steps of a cut take longer to even out, for only then no triangle is folded.
+        for (int round = 0; round < kCutRounds && any_cut(); ++round) settle(true, true);
+        make_up_volume();
+        return std::move(place_);
+    }
+
+  private:
+    std::size_t count() const { return surface_.site.size(); }
+
+    template <typename F>
+    void for_each_point(const F& f) {
+        parallel_for((count() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+            const std::size_t end = std::min(count(), (chunk + 1) * kChunk);
+            for (std::size_t s = chunk * kChunk; s < end; ++s) f(s);
+        });
+    }
+
+    void start() {
+        place_.resize(count());
+        const CellBox box = cell_box(matter_, 0);
+        const Vec3 low =
+            box.low - box.size.cwiseProduct(matter_.lattice.cell_site(0).cast<double>());
+        for (std::size_t s = 0; s < count(); ++s) {
+            const HalfSite& at = surface_.site[s];
+            place_[s] = low + 0.5 * box.size.cwiseProduct(Vec3(at[0], at[1], at[2]));
+        }
+    }
+
+    // Whether a point lies on the outer surface, exactly so or only near it.
+    void find_kinds() {
+        outer_.assign(count(), 0);
+        exact_.assign(count(), 1);
+        fixed_axis_.assign(count(), 0);
+        normal_.assign(count(), Vec3::Zero());
+        for (const VoxelFace& face : surface_.face) {
+            if (face.cut) continue;
+            bool full = samples_.empty() || matter_.cell_fill[face.cell] > 1 - 1e-5f;
+            for (int p : face.point) full = full && !near_dropped(surface_.site[p]);
+            const int axis = face.direction % 3;
+            for (int p : face.point) {
+                outer_[p] = 1;
+                exact_[p] &= full;
+                fixed_axis_[p] |= 1 << axis;
+                normal_[p][axis] += face.direction < 3 ? 1 : -1;
+            }
+        }
+        for (Vec3& n : normal_) n = n.norm() > 0 ? n.normalized() : Vec3(Vec3::UnitX());
+    }
+
+    bool near_dropped(const HalfSite& site) const {
+        if (!any_dropped_) return false;
+        for (int n = 0; n < 8; ++n) {
+            std::array<int, 3> cell;
+            for (int d = 0; d < 3; ++d) cell[d] = (site[d] + (n >> d & 1 ? 0 : -1)) >> 1;
+            const CellId at = matter_.lattice.cell_at(cell[0], cell[1], cell[2]);
+            if (at >= 0 && !surface_.cell_kept[at]) return true;
+        }
+        return false;
+    }
+
+    // Points joined by an edge of the surface: on a rim, along it; on a cut, within it.
+    void find_neighbors() {
+        std::vector<std::pair<int, int>> pairs;
+        for (const VoxelFace& face : surface_.face) {
+            for (int k = 0; k < 4; ++k) {
+                const int p = face.point[k], q = face.point[(k + 1) % 4];
+                for (const auto& [from, to] : {std::pair(p, q), std::pair(q, p)}) {
+                    const bool rim = outer_[from] && target_[from];
+                    if (rim ? outer_[to] && target_[to] : !face.cut || !outer_[from]) {
+                        pairs.emplace_back(from, to);
+                    }
+                }
+            }
+        }
+        std::sort(pairs.begin(), pairs.end());
+        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+        first_.assign(count() + 1, 0);
+        for (const auto& [from, to] : pairs) ++first_[from + 1], neighbor_.push_back(to);
+        for (std::size_t s = 0; s < count(); ++s) first_[s + 1] += first_[s];
+    }
+
+    // Exact points stay where they are, but near a cut they slide to make room.
+    void open_rings() {
+        slides_.assign(count(), 0);
+        for (std::size_t s = 0; s < count(); ++s) slides_[s] = target_[s].has_value();
+        for (int ring = 0; ring < kSlidingRings; ++ring) {
+            std::vector<char> wider = slides_;
+            for (std::size_t s = 0; s < count(); ++s) {
+                if (!slides_[s]) continue;
+                for (int n = first_[s]; n < first_[s + 1]; ++n) wider[neighbor_[n]] = 1;
+            }
+            // A rim's neighbours are only those on the rim: widen from outside as well.
+            for (std::size_t s = 0; s < count(); ++s) {
+                for (int n = first_[s]; n < first_[s + 1] && !wider[s]; ++n) {
+                    wider[s] = slides_[neighbor_[n]];
+                }
+            }
+            slides_ = std::move(wider);
+        }
+    }
+
+    Vec3 mean_of_neighbors(std::size_t s) const {
+        Vec3 sum = Vec3::Zero();
+        for (int n = first_[s]; n < first_[s + 1]; ++n) sum += place_[neighbor_[n]];
+        return first_[s] == first_[s + 1] ? place_[s] : Vec3(sum / (first_[s + 1] - first_[s]));
+    }
+
+    Vec3 free_part(std::size_t s, Vec3 way) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (fixed_axis_[s] >> axis & 1) way[axis] = 0;
+        }
+        return way;
+    }
+
+    void to_cut(std::size_t s, Vec3& p) const {
+        const CutTarget& cut = *target_[s];
+        Vec3 way = cut.normal;
+        if (outer_[s]) {
+            way = exact_[s] ? free_part(s, way) : Vec3(way - way.dot(normal_[s]) * normal_[s]);
+        }
+        const double slope = way.dot(cut.normal);
+        if (slope < 0.05) return;  // the cut runs along the surface
+        Vec3 step = (cut.height - cut.normal.dot(p)) / slope * way;
+        if (step.norm() > a_) step *= a_ / step.norm();
+        p += step;
+    }
+
+    bool any_cut() const {
+        return std::any_of(slides_.begin(), slides_.end(), [](char slides) { return slides; });
+    }
+
+    void settle(bool relax, bool only_at_cuts) {
+        std::vector<Vec3> next = place_;
+        for_each_point([&](std::size_t s) {
+            if (only_at_cuts && !slides_[s]) return;
+            Vec3& p = next[s];
+            const bool cut = target_[s].has_value();
+            if (outer_[s] && exact_[s]) {
+                if (cut) {
+                    to_cut(s, p);
+                } else if (relax && slides_[s]) {
+                    p += 0.5 * free_part(s, mean_of_neighbors(s) - p);
+                }
+                return;
+            }
+            if (relax) {
+                Vec3 way = mean_of_neighbors(s) - p;
+                if (outer_[s]) way -= way.dot(normal_[s]) * normal_[s];
+                if (cut) way -= way.dot(target_[s]->normal) * target_[s]->normal;
+                p += 0.5 * way;
+            }
+            if (outer_[s]) samples_.project(p, normal_[s]);
+            if (cut) to_cut(s, p);
+            if (cut && outer_[s]) {
+                samples_.project(p, normal_[s]);
+                to_cut(s, p);
+            }
+        });
+        place_ = std::move(next);
+    }
+
+    double volume() const {
+        const Vec3 center = place_.front();
+        double six = 0;
+        for (const VoxelFace& face : surface_.face) {
+            const Vec3 p = place_[face.point[0]] - center, q = place_[face.point[1]] - center;
+            const Vec3 r = place_[face.point[2]] - center, t = place_[face.point[3]] - center;
+            six += 0.5 *
+                   (p.dot(q.cross(r)) + p.dot(r.cross(t)) + q.dot(r.cross(t)) + q.dot(t.cross(p)));
+        }
+        return six / 6;
+    }
+
+    void make_up_volume() {
+        for (int round = 0; round < 3; ++round) {
+            std::vector<Vec3> out(count(), Vec3::Zero());
+            double area = 0;
+            for (const VoxelFace& face : surface_.face) {
+                const Vec3 own = 0.5 * (place_[face.point[2]] - place_[face.point[0]])
+                                           .cross(place_[face.point[3]] - place_[face.point[1]]);
+                for (int p : face.point) {
+                    if (face.cut || exact_[p]) continue;
+                    out[p] += own;
+                    area += own.norm() / 4;
+                }
+            }
+            if (!(area > 0)) return;
+            double way = (matter_.volume() - volume()) / area;
+            way = std::clamp(way, -0.2 * a_, 0.2 * a_);
+            for (std::size_t s = 0; s < count(); ++s) {
+                if (out[s].norm() == 0) continue;
+                Vec3 step = way * out[s].normalized();
+                if (target_[s]) step -= step.dot(target_[s]->normal) * target_[s]->normal;
+                place_[s] += step;
+            }
+        }
+    }
+
+    const Aggregate& matter_;
+    const VoxelSurface& surface_;
+    const SurfaceSamples samples_;
+    const double a_;
+    const bool any_dropped_ = std::any_of(surface_.cell_kept.begin(), surface_.cell_kept.end(),
+                                          [](char kept) { return !kept; });
+    std::vector<Vec3> place_, normal_;
+    std::vector<char> outer_, exact_, fixed_axis_, slides_;
+    std::vector<std::optional<CutTarget>> target_;
+    std::vector<int> first_, neighbor_;
+};
+
+}  // namespace
+
+std::vector<Vec3> place_points(const Aggregate& matter, const VoxelSurface& surface) {
+    if (surface.face.empty()) return {};
+    return Placer(matter, surface).run();
+}
+
+}  // namespace swage

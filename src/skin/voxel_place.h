@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the points of a voxel surface belong at molding.
+#pragma once
+
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "skin/voxel_surface.h"
+
+namespace swage {
+
+// One place [m] for each site: on the body's true surface where that is known; on smooth cut faces
+// half-way between the particles that were severed. The enclosed volume is the matter's.
+std::vector<Vec3> place_points(const Aggregate& matter, const VoxelSurface& surface);
+
+}  // namespace swage

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sources: S1.12. The paper marks the voxels that particles meet, keeps those with an unmarked
+// neighbour, and joins every three particles that adjoin. NOTE: on a lattice that rule lays four
+// triangles over each square; the faces between marked and unmarked voxels carry the same
+// particles and are a closed surface.
+#include "skin/voxel_surface.h"
+
+#include <algorithm>
+
+#include "geometry/disjoint_sets.h"
+#include "skin/cell_thinning.h"
+
+namespace swage {
+
+namespace {
+
+struct Voxel {
+    CellId cell;  // -1: none
+    int corner;
+};
+
+class Builder {
+  public:
+    explicit Builder(const Aggregate& matter) : matter_(matter) {
+        surface_.cell_kept = cells_to_draw(matter);
+    }
+
+    VoxelSurface build() {
+        find_neighbors();
+        collect_faces();
+        number_points();
+        number_vertices();
+        return std::move(surface_);
+    }
+
+  private:
+    static constexpr int axis_of(int direction) { return direction % 3; }
+    static constexpr int opposite(int direction) { return (direction + 3) % 6; }
+
+    void find_neighbors() {
+        const Lattice& lattice = matter_.lattice;
+        next_.resize(surface_.cell_kept.size());
+        corner_.resize(surface_.cell_kept.size());
+        for (const CellRun& run : lattice.cell_run) {
+            for (int n = 0; n < run.count; ++n) {
+                const CellId cell = run.first + n;
+                const int i = run.i + n;
+                const auto kept = [&](CellId c) {
+                    return c >= 0 && surface_.cell_kept[c] ? c : -1;
+                };
+                next_[cell] = {kept(n + 1 < run.count ? cell + 1 : -1),
+                               kept(lattice.cell_at(i, run.j + 1, run.k)),
+                               kept(lattice.cell_at(i, run.j, run.k + 1)),
+                               kept(n > 0 ? cell - 1 : -1),
+                               kept(lattice.cell_at(i, run.j - 1, run.k)),
+                               kept(lattice.cell_at(i, run.j, run.k - 1))};
+                for (int c = 0; c < 8; ++c) corner_[cell][c] = run.row[c >> 1] + n + (c & 1);
+            }
+        }
+    }
+
+    Voxel neighbor(const Voxel& v, int direction) const {
+        const int bit = 1 << axis_of(direction);
+        const bool leaves = (direction < 3) == ((v.corner & bit) != 0);
+        return {leaves ? next_[v.cell][direction] : v.cell, v.corner ^ bit};
+    }
+    // Both exist, and hang together: the same particle, or two with a connection.
+    bool joined(const Voxel& v, int direction) const {
+        const Voxel other = neighbor(v, direction);
+        if (other.cell < 0) return false;
+        if (other.cell != v.cell) return true;
+        const int axis = axis_of(direction);
+        const int low = v.corner & ~(1 << axis);
+        return matter_.connection[axis].weight[corner_[v.cell][low]] > 0;
+    }
+
+    int& face_at(const Voxel& v, int direction) {
+        return block_[cell_block_[v.cell]][6 * v.corner + direction];
+    }
+
+    void collect_faces() {
+        cell_block_.assign(next_.size(), -1);
+        std::array<int, 48> none;
+        none.fill(-1);
+        for (const CellRun& run : matter_.lattice.cell_run) {
+            for (int n = 0; n < run.count; ++n) {
+                const CellId cell = run.first + n;
+                if (!surface_.cell_kept[cell]) continue;
+                const HalfSite low = {2 * (run.i + n), 2 * run.j, 2 * run.k};
+                for (int corner = 0; corner < 8; ++corner) {
+                    const Voxel voxel{cell, corner};
+                    for (int direction = 0; direction < 6; ++direction) {
+                        if (joined(voxel, direction)) continue;
+                        if (cell_block_[cell] < 0) {
+                            cell_block_[cell] = static_cast<int>(block_.size());
+                            block_.push_back(none);
+                        }
+                        face_at(voxel, direction) = static_cast<int>(surface_.face.size());
+                        add_face(voxel, direction, low);
+                    }
+                }
+            }
+        }
+    }
+
+    void add_face(const Voxel& voxel, int direction, const HalfSite& cell_low) {
+        const int axis = axis_of(direction), u = (axis + 1) % 3, v = (axis + 2) % 3;
+        HalfSite low = cell_low;
+        for (int d = 0; d < 3; ++d) low[d] += voxel.corner >> d & 1;
+        if (direction < 3) ++low[axis];
+        std::array<HalfSite, 4> site = {low, low, low, low};
+        ++site[1][u], ++site[2][u], ++site[2][v], ++site[3][v];
+        if (direction >= 3) std::swap(site[1], site[3]);
+        surface_.face.push_back(
+            {voxel.cell, voxel.corner, direction, neighbor(voxel, direction).cell >= 0, {}, {}});
+        face_site_.push_back(site);
+    }
+
+    void number_points() {
+        std::vector<std::pair<HalfSite, int>> all;
+        for (std::size_t f = 0; f < face_site_.size(); ++f) {
+            for (int k = 0; k < 4; ++k) {
+                all.emplace_back(face_site_[f][k], static_cast<int>(4 * f + k));
+            }
+        }
+        std::sort(all.begin(), all.end());
+        for (std::size_t n = 0; n < all.size(); ++n) {
+            if (n == 0 || all[n].first != all[n - 1].first) surface_.site.push_back(all[n].first);
+            surface_.face[all[n].second / 4].point[all[n].second % 4] =
+                static_cast<int>(surface_.site.size()) - 1;
+        }
+    }
+
+    // The face that goes on across a face's edge, in direction `across`, on the same side of the
+    // matter: around the edge from voxel to voxel as long as they hang together.
+    int face_beyond(const VoxelFace& face, int across) {
+        const Voxel v{face.cell, face.corner};
+        const int n = face.direction;
+        if (!joined(v, across)) return face_at(v, across);
+        const Voxel a = neighbor(v, across);
+        if (!joined(a, n)) return face_at(a, n);
+        const Voxel b = neighbor(a, n);
+        if (!joined(b, opposite(across))) return face_at(b, opposite(across));
+        return face_at(neighbor(b, opposite(across)), opposite(n));
+    }
+
+    void number_vertices() {
+        DisjointSets corners(4 * surface_.face.size());
+        for (std::size_t f = 0; f < surface_.face.size(); ++f) {
+            const VoxelFace& face = surface_.face[f];
+            for (int k = 0; k < 4; ++k) {
+                const int from = face.point[k], to = face.point[(k + 1) % 4];
+                const VoxelFace& other = surface_.face[face_beyond(face, across_edge(f, k))];
+                const int g = static_cast<int>(&other - surface_.face.data());
+                for (int m = 0; m < 4; ++m) {
+                    const int self = static_cast<int>(4 * f);
+                    if (other.point[m] == from) corners.unite(self + k, 4 * g + m);
+                    if (other.point[m] == to) corners.unite(self + (k + 1) % 4, 4 * g + m);
+                }
+            }
+        }
+        std::vector<int> number;
+        surface_.vertex_count = corners.number_sets(number);
+        for (std::size_t f = 0; f < surface_.face.size(); ++f) {
+            for (int k = 0; k < 4; ++k) surface_.face[f].vertex[k] = number[4 * f + k];
+        }
+    }
+
+    // Direction in the face's plane from its middle over the edge from corner k to the next.
+    int across_edge(std::size_t f, int k) const {
+        const auto& site = face_site_[f];
+        const int axis = axis_of(surface_.face[f].direction);
+        for (int d = 0; d < 3; ++d) {
+            if (d == axis || site[k][d] != site[(k + 1) % 4][d]) continue;
+            return site[k][d] > site[(k + 2) % 4][d] ? d : d + 3;
+        }
+        return -1;
+    }
+
+    const Aggregate& matter_;
+    VoxelSurface surface_;
+    std::vector<std::array<CellId, 6>> next_;  // kept neighbours of each cell, by direction
+    std::vector<std::array<ParticleId, 8>> corner_;
+    std::vector<std::array<HalfSite, 4>> face_site_;
+    std::vector<int> cell_block_;             // -1: no face
+    std::vector<std::array<int, 48>> block_;  // faces of a cell: 6 a voxel, -1 for none
+};
+
+}  // namespace
+
+VoxelSurface voxel_surface(const Aggregate& matter) { return Builder(matter).build(); }
+
+}  // namespace swage

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/boundary.h"
+
+#include <cstdlib>
+#include <fstream>
+
+#include "geometry/edges.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
+
+using namespace swage;
+
+namespace {
+
+bool closed(const TriMesh& mesh) {
+    bool sound = true;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        sound = sound && uses.size() == 2 && uses[0].forward != uses[1].forward;
+    });
+    return sound;
+}
+
+int euler_number(const TriMesh& mesh) {
+    int edges = 0;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto) { ++edges; });
+    return static_cast<int>(mesh.position.size()) - edges + static_cast<int>(mesh.triangle.size());
+}
+
+// Least cosine between a triangle and the neighbours that it should be smooth with.
+double sharpest_cosine(const TriMesh& mesh, int material) {
+    const auto normal = [&](int t) -> Vec3 {
+        const Corners& c = mesh.triangle[t];
+        return (mesh.position[c[1]] - mesh.position[c[0]])
+            .cross(mesh.position[c[2]] - mesh.position[c[0]])
+            .normalized();
+    };
+    double least = 1;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        if (uses.size() != 2 || mesh.triangle_material[uses[0].triangle] != material ||
+            mesh.triangle_material[uses[1].triangle] != material) {
+            return;
+        }
+        least = std::min(least, normal(uses[0].triangle).dot(normal(uses[1].triangle)));
+    });
+    return least;
+}
+
+void save(const TriMesh& mesh, const std::string& name) {
+    const char* folder = std::getenv("SWAGE_SKIN_OBJ");  // to look at
+    if (!folder) return;
+    std::ofstream file(std::string(folder) + "/" + name + ".obj");
+    for (const Vec3& p : mesh.position) file << "v " << p.transpose() << "\n";
+    for (const Corners& t : mesh.triangle) {
+        file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    }
+}
+
+Aggregate rod(int across) {
+    const double a = 1.0 / across;
+    return test::make_shape(
+        [](const Vec3& p) { return std::max(std::hypot(p.y(), p.z()) - .5, std::abs(p.x()) - 2); },
+        Vec3(-2, -.5, -.5), Vec3i(4 * across, across, across), a);
+}
+
+Aggregate torus() {
+    return test::make_shape(
+        [](const Vec3& p) { return std::hypot(std::hypot(p.x(), p.y()) - 1, p.z()) - .4; },
+        Vec3(-1.42, -1.41, -.43), Vec3i(24, 24, 8), .12);
+}
+
+double cut_area(const TriMesh& mesh) {
+    TriMesh cut = mesh;
+    cut.triangle.clear();
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        if (mesh.triangle_material[t] == 1) cut.triangle.push_back(mesh.triangle[t]);
+    }
+    return surface_area(cut);
+}
+
+}  // namespace
+
+TEST_CASE("the boundary of a block of whole cells is the block") {
+    const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
+    const TriMesh mesh = boundary_skin(block);
+    CHECK(closed(mesh));
+    CHECK(euler_number(mesh) == 2);
+    CHECK(signed_volume(mesh) == Approx(.7 * .4 * .3).epsilon(1e-12));
+    CHECK(surface_area(mesh) == Approx(2 * (.7 * .4 + .7 * .3 + .4 * .3)).epsilon(1e-12));
+}
+
+TEST_CASE("round shapes get round boundaries of their true volume") {
+    const auto [across, volume_bar] =
+        GENERATE(table<int, double>({{4, .01}, {8, .003}, {13, .003}}));
+    const Aggregate matter = rod(across);
+    const TriMesh mesh = boundary_skin(matter);
+    save(mesh, "rod" + std::to_string(across));
+    CHECK(closed(mesh));
+    CHECK(euler_number(mesh) == 2);
+    CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(volume_bar));
+    double worst = 0;
+    for (const Vec3& p : mesh.position) {
+        if (std::abs(p.x()) > 1.8) continue;  // away from the ends
+        worst = std::max(worst, std::abs(std::hypot(p.y(), p.z()) - .5));
+    }
+    CHECK(worst < 0.06 / across);
+}
+
+TEST_CASE("handles are kept") {
+    const TriMesh mesh = boundary_skin(torus());
+    save(mesh, "torus");
+    CHECK(closed(mesh));
+    CHECK(euler_number(mesh) == 0);
+    CHECK(surface_components(mesh).count == 1);
+    CHECK(signed_volume(mesh) == Approx(2 * kPi * kPi * .16).epsilon(.01));
+    CHECK(sharpest_cosine(mesh, 0) > 0.7);
+}
+
+TEST_CASE("thin sheets keep both sides") {
+    const double thickness = GENERATE(.3, .8, 1.3);
+    const Aggregate sheet = test::make_shape(
+        [&](const Vec3& p) {
+            return std::max(
+                {std::abs(p.x()) - 5.1, std::abs(p.y()) - 4.2, std::abs(p.z()) - thickness / 2});
+        },
+        Vec3(-6, -5, -.93), Vec3i(12, 10, 2), 1.0);
+    const TriMesh mesh = boundary_skin(sheet);
+    save(mesh, "sheet");
+    CHECK(closed(mesh));
+    CHECK(euler_number(mesh) == 2);
+    CHECK(signed_volume(mesh) == Approx(sheet.volume()).epsilon(.02));
+}
+
+TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all its volume") {
+    const Vec3 normal = GENERATE(Vec3(1, 0, 0), Vec3(1, .5, 0), Vec3(1, .31, -.44), Vec3(1, 1, 1));
+    const bool round = GENERATE(false, true);
+    Aggregate matter = round ? rod(8) : test::make_block(32, 8, 8, .125, Material{});
+    const double whole = matter.volume();
+    const Vec3 n = normal.normalized(), point(.0371, .011, -.0083);
+    test::sever_plane(matter, point, n);
+    REQUIRE(find_pieces(matter).count == 2);
+    TriMesh mesh = boundary_skin(matter);
+    save(mesh, std::string(round ? "rodcut" : "barcut") + std::to_string(int(10 * n.y())));
+    CHECK(closed(mesh));
+    const Components halves = surface_components(mesh);
+    CHECK(halves.count == 2);
+    CHECK(signed_volume(mesh) == Approx(whole).epsilon(.01));
+    const double section = (round ? kPi / 4 : 1.) / n.x();
+    CHECK(cut_area(mesh) == Approx(2 * section).epsilon(.04));
+    CHECK(sharpest_cosine(mesh, 1) > 0.999);
+    double off = 0;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        if (mesh.triangle_material[t] != 1) continue;
+        for (int v : mesh.triangle[t]) {
+            off = std::max(off, std::abs(n.dot(mesh.position[v] - point)));
+        }
+    }
+    CHECK(off < .6 * .125);
+    int folded = 0;  // triangles of the outer surface that look inwards
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        if (mesh.triangle_material[t] != 0) continue;
+        const Corners& c = mesh.triangle[t];
+        const Vec3 p = mesh.position[c[0]];
+        const Vec3 out = (mesh.position[c[1]] - p).cross(mesh.position[c[2]] - p);
+        const Vec3 middle = (p + mesh.position[c[1]] + mesh.position[c[2]]) / 3;
+        if (std::abs(middle.x()) > 1.7) continue;
+        folded += out.dot(Vec3(0, middle.y(), middle.z())) < 0;
+    }
+    CHECK(folded == 0);
+
+    SECTION("and each half moves with its own matter") {
+        const TriMesh rest = mesh;
+        const Quat turn(Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()));
+        test::deform(matter, [&](const Vec3& p) -> Vec3 {
+            return n.dot(p - point) >= 0 ? Vec3(turn * p + Vec3(3, 0, 0)) : p;
+        });
+        mesh = boundary_skin(matter);
+        REQUIRE(mesh.position.size() == rest.position.size());
+        double worst = 0;
+        for (std::size_t v = 0; v < rest.position.size(); ++v) {
+            const double stays = (mesh.position[v] - rest.position[v]).norm();
+            const Vec3 turned = turn * rest.position[v] + Vec3(3, 0, 0);
+            worst = std::max(worst, std::min(stays, (mesh.position[v] - turned).norm()));
+        }
+        CHECK(worst < 1e-12);
+        CHECK(signed_volume(mesh) == Approx(whole).epsilon(.01));
+    }
+}
+
+TEST_CASE("a body half severed stays in one piece, with a slit") {
+    Aggregate matter = test::make_block(16, 6, 6, .1, Material{});
+    test::sever_plane(matter, {.03, 0, 0}, Vec3::UnitX(),
+                      [](const Vec3& p) { return p.y() > .01; });
+    const TriMesh mesh = boundary_skin(matter);
+    CHECK(surface_components(mesh).count == 1);
+    CHECK(euler_number(mesh) == 2);
+    CHECK(closed(mesh));
+    CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(1e-9));
+    CHECK(cut_area(mesh) > 0);
+}
+
+TEST_CASE("cells that only touch at an edge or a corner get separate vertices") {
+    std::vector<Vec3i> cells = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}, {0, 2, 1}, {3, 1, 1}, {2, 2, 2}};
+    std::sort(cells.begin(), cells.end(), [](const Vec3i& a, const Vec3i& b) {
+        return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
+    });
+    const Aggregate matter = test::make_matter(Vec3::Zero(), 1, Vec3i(4, 3, 3), cells,
+                                               std::vector<float>(cells.size(), 1.f));
+    const TriMesh mesh = boundary_skin(matter);
+    CHECK(closed(mesh));
+    CHECK(surface_components(mesh).count == 6);
+    CHECK(euler_number(mesh) == 12);
+    CHECK(signed_volume(mesh) == Approx(6).epsilon(1e-12));
+}
+
+TEST_CASE("the boundary turns with the body") {
+    Aggregate matter = torus();
+    const TriMesh rest = boundary_skin(matter);
+    const Quat turn(Eigen::AngleAxisd(2.2, Vec3(1, -1, .3).normalized()));
+    const auto map = [&](const Vec3& p) -> Vec3 { return turn * p + Vec3(-1, 4, 2); };
+    test::deform(matter, map);
+    const TriMesh moved = boundary_skin(matter);
+    double worst = 0;
+    for (std::size_t v = 0; v < rest.position.size(); ++v) {
+        worst = std::max(worst, (moved.position[v] - map(rest.position[v])).norm());
+    }
+    CHECK(worst < 1e-12 * 10);
+}
