@@ -71,10 +71,11 @@ void read_material(TableReader& table, const AssetPaths& assets,
         }
         table.reading().mistakes.add(std::move(catalogue.mistakes));
         if (!is_known) {
-            table.mistake("name", fmt::format("no material \"{}\"{} known are {}", name,
-                                              known.empty() ? ": no file of materials was found;"
-                                                            : did_you_mean(name, known) + ";",
-                                              known.empty() ? "none" : joined(known, ", ")));
+            const std::string hint = did_you_mean(name, known);
+            const std::string all = known.empty()  ? "; no file of materials was found"
+                                    : hint.empty() ? "; known are " + joined(known, ", ")
+                                                   : " Known are " + joined(known, ", ");
+            table.mistake("name", fmt::format("no material \"{}\"{}{}", name, hint, all));
         }
     } else if (is_named && node->kind == Node::Kind::text) {
         table.mistake("name", "the material's name is empty");

@@ -120,8 +120,9 @@ const StageReader::Loaded* StageReader::find_machine(TableReader& table, std::st
         if (one.name == wanted) return load(one.file);
         names.push_back(one.name);
     }
-    table.mistake("machine", fmt::format("no machine \"{}\"{}; known are {}; looked in {}", wanted,
-                                         did_you_mean(wanted, names), names_of(known_),
+    const std::string hint = did_you_mean(wanted, names);
+    table.mistake("machine", fmt::format("no machine \"{}\"{}{} are {}; looked in {}", wanted, hint,
+                                         hint.empty() ? "; known" : " Known", names_of(known_),
                                          joined(looked_in_, ", ")));
     return nullptr;
 }

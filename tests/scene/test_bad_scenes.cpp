@@ -298,7 +298,7 @@ TEST_CASE("names that cannot be found get the known ones, names that cannot be f
     check_all({
         {"machine",
          with(&Parts::stage, "[[stage]]\nmachine = \"bned\"\nangel = 3\n"),
-         {"8:11: no machine \"bned\", did you mean \"bend\"?; known are bend, cut, "}},
+         {"8:11: no machine \"bned\", did you mean \"bend\"? Known are bend, cut, "}},
         {"no machine",
          with(&Parts::stage, "[[stage]]\nframes = 3\n"),
          {"7:1: [[stage]] needs \"machine\": one of bend, cut"}},
@@ -307,7 +307,7 @@ TEST_CASE("names that cannot be found get the known ones, names that cannot be f
          {"8:11: the machine file \"mine/press.toml\" does not exist (/tmp/"}},
         {"material",
          with(&Parts::material, "[material]\nname = \"ruber\"\n"),
-         {"4:8: no material \"ruber\", did you mean \"rubber\"?; known are structural_steel"}},
+         {"4:8: no material \"ruber\", did you mean \"rubber\"? Known are structural_steel"}},
         {"custom without numbers",
          with(&Parts::material, "[material]\nfriction = 0.1\n"),
          {"[material] needs \"young_modulus\"", "3:1: [material] needs \"density\""}},
