@@ -59,6 +59,15 @@ std::size_t Aggregate::bytes() const {
     return sum;
 }
 
+bool cell_is_whole(const Aggregate& matter, const std::array<ParticleId, 4>& row) {
+    for (const CellConnection& c : kCellConnection) {
+        if (matter.connection[c.direction].weight[row[c.corner >> 1] + (c.corner & 1)] <= 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
 Pieces find_pieces(const Aggregate& matter) {
     // Union-find whose root is always the lowest particle, so the numbering is canonical.
     std::vector<int> parent(matter.particle_count());

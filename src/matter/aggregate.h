@@ -165,6 +165,10 @@ inline double reference_length(const Lattice& lattice, int direction) {
 Lattice make_lattice(const Vec3& origin, double spacing, const Vec3i& cell_count,
                      const std::vector<Vec3i>& active_cells);
 
+// Whether all 24 connections of the cell with these low row ends still hold. A cell that a blade has
+// crossed is no longer a cell: its corners belong to different sides.
+bool cell_is_whole(const Aggregate& matter, const std::array<ParticleId, 4>& row);
+
 // Pieces connected through unsevered connections: piece[p] for each particle, numbered in order
 // of their lowest particle.
 struct Pieces {

@@ -331,7 +331,11 @@ double smallest_cell_volume(const Aggregate& matter) {
                     gradient.col(axis) += (c >> axis & 1 ? 0.25 : -0.25) / a * x;
                 }
             }
-            smallest = std::min(smallest, gradient.determinant());
+            const double volume = gradient.determinant();
+            if (volume >= smallest) continue;
+            std::array<ParticleId, 4> row = run.row;
+            for (ParticleId& p : row) p += n;
+            if (cell_is_whole(matter, row)) smallest = volume;
         }
     }
     return smallest;
