@@ -1,2 +1,101 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-int main() { return 0; }
+// The front door: reads the command line, runs one command, and turns every failure into one
+// sentence and an exit code.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <new>
+
+#include "app/command.h"
+#include "app/suggest.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/run_directory.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kUnexpected = 70;  // a mistake in swage itself
+
+int exit_code(ExitCode code) { return static_cast<int>(code); }
+
+void log_error(const std::string& sentence) {
+    log_text((stderr_has_color() ? "\x1b[31merror:\x1b[0m " : "error: ") + sentence);
+}
+
+int run_command_line(int argc, char** argv) {
+    CLI::App app(
+        "swage: a machine shop for meshes. A mesh goes in, is molded into matter, bent,\n"
+        "twisted and cut by machines, and comes out as meshes, stills and force curves.");
+    app.name("swage");
+    app.set_version_flag("--version", std::string("swage ") + kVersion);
+    app.require_subcommand(1);
+    app.footer(
+        "\nExamples:\n"
+        "  swage run assets/scenes/calf-line.toml\n"
+        "  swage check assets/scenes/calf-line.toml\n"
+        "  swage machines bend\n\n"
+        "Exit codes: 0 done, 2 command line, 3 scene, 4 mesh, 5 output or drawing, 6 "
+        "simulation\nstopped, 7 refused for resources, 8 output directory belongs to another "
+        "run, 128+n by\nsignal n.");
+    Action chosen;
+    add_run_command(app, chosen);
+    add_check_command(app, chosen);
+    add_info_command(app, chosen);
+    add_machines_command(app, chosen);
+    add_render_command(app, chosen);
+    add_make_command(app, chosen);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // help, version: on stdout
+        log_error(parse_error_text(app, error, {argv + 1, argv + argc}));
+        log_text("swage --help, or swage COMMAND --help, tells what there is");
+        return exit_code(ExitCode::command_line);
+    }
+    apply_common_options();
+    return chosen();
+}
+
+// A missing stderr must not become the first file that is opened for data.
+void open_standard_streams() {
+    for (int stream = 0; stream <= 2; ++stream) {
+        if (::fcntl(stream, F_GETFD) == -1) {
+            [[maybe_unused]] const int opened = ::open("/dev/null", O_RDWR);
+        }
+    }
+}
+
+int run_guarded(int argc, char** argv) {
+    try {
+        return run_command_line(argc, argv);
+    } catch (const Error& error) {
+        log_error(error.what());
+        return exit_code(error.code());
+    } catch (const Interrupted& interrupted) {
+        log_text("stopped; whole files are kept");
+        return 128 + interrupted.signal();
+    } catch (const std::bad_alloc&) {
+        log_error("there is not enough memory for this; a larger [mold] spacing needs less");
+        return exit_code(ExitCode::resources);
+    } catch (const std::filesystem::filesystem_error& error) {
+        log_error(error.what());
+        return exit_code(ExitCode::output);
+    } catch (const std::exception& error) {
+        log_error(std::string("unexpected, please report it: ") + error.what());
+        return kUnexpected;
+    }
+}
+
+}  // namespace
+
+}  // namespace swage
+
+int main(int argc, char** argv) {
+    swage::open_standard_streams();
+    swage::watch_for_interrupts();
+    return swage::run_guarded(argc, argv);
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+#include "app/scene_argument.h"
+#include "base/log.h"
+#include "pipeline/cost.h"
+#include "pipeline/run_record.h"
+
+namespace swage {
+
+namespace {
+
+struct CheckArguments {
+    SceneArgument scene;
+    bool json = false;
+};
+
+Json mistakes_json(const std::vector<Mistake>& mistakes) {
+    Json list = Json::array();
+    for (const Mistake& mistake : mistakes) {
+        list.push_back({{"file", mistake.file.string()},
+                        {"line", mistake.line},
+                        {"column", mistake.column},
+                        {"text", mistake.text},
+                        {"warning", mistake.warning}});
+    }
+    return list;
+}
+
+std::string cost_text(const SceneSpec& scene, const InputMesh& input, const RunCost& cost) {
+    std::string text = scene.name + ": no mistakes\n";
+    const auto line = [&](const char* name, const std::string& value) {
+        text += fmt::format("  {:<12} {}\n", name, value);
+    };
+    const char* about = cost.counted ? "" : "about ";
+    line("mesh", summary_line(input.report));
+    line("cells", fmt::format("{}{} of {}", about, count_text(cost.mold.active_cells),
+                              length_text(cost.mold.spacing)));
+    line("particles", about + count_text(cost.mold.particles));
+    line("connections", about + count_text(cost.mold.connections));
+    line("stages", std::to_string(scene.stage.size()));
+    line("frames", count_text(cost.frames));
+    line("steps", "about " + count_text(cost.steps));
+    line("memory", fmt::format("about {}, the matter itself {}", bytes_text(cost.memory_bytes),
+                               bytes_text(cost.mold.bytes)));
+    line("disk", "about " + bytes_text(cost.disk_bytes));
+    line("time", "about " + seconds_text(cost.seconds));
+    for (const std::string& note : cost.note) line("note", note);
+    return text;
+}
+
+int check(const CheckArguments& given) {
+    const SceneReading reading = read_scene_argument(given.scene);
+    Json json = {{"file", given.scene.file}, {"mistakes", mistakes_json(reading.mistakes)}};
+    if (!given.json) log_mistakes(reading.mistakes);
+    const ExitCode code = exit_code(reading.mistakes);
+    if (code != ExitCode::done || !reading.scene) {
+        if (given.json) put_json(json);
+        return static_cast<int>(code);
+    }
+    RunOptions options;
+    options.out = ".";
+    try {
+        const InputMesh input = read_input_mesh(reading.scene->mesh, reading.scene->mold.kind);
+        const RunCost cost = count_cost(*reading.scene, input, options);
+        json["mesh"] = mesh_json(input);
+        json["cost"] = cost_json(cost);
+        if (!given.json) put_out(cost_text(*reading.scene, input, cost));
+        refuse_excess(cost, options);
+    } catch (const Error& error) {
+        if (!given.json) throw;
+        json["mistakes"].push_back({{"text", error.what()}, {"warning", false}});
+        put_json(json);
+        return static_cast<int>(error.code());
+    }
+    if (given.json) put_json(json);
+    return 0;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, Action& chosen) {
+    static CheckArguments given;
+    CLI::App* command =
+        add_command(app, "check", "Tell every mistake in a scene, and what its run will cost",
+                    "  swage check assets/scenes/calf-line.toml\n"
+                    "  swage check assets/scenes/calf-line.toml --set mold.across=12 --json\n",
+                    chosen, [] { return check(given); });
+    add_scene_argument(*command, given.scene);
+    command->add_flag("--json", given.json, "print one JSON object");
+}
+
+}  // namespace swage

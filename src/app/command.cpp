@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parallel.h"
+
+namespace swage {
+
+namespace {
+
+CommonOptions common;
+
+int parse_whole(const std::string& text, const std::string& of) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value < 1) {
+        throw CLI::ValidationError(of, "\"" + text + "\" is no whole number of 1 or more");
+    }
+    return value;
+}
+
+}  // namespace
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
+                      const std::string& examples, Action& chosen, Action act) {
+    CLI::App* command = app.add_subcommand(name, description);
+    command->add_option("--threads", common.threads, "threads to use (default: one a core)")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N");
+    auto* quiet = command->add_flag("-q,--quiet", common.quiet, "say only what is wrong");
+    command->add_flag("-v,--verbose", common.verbose, "say more")->excludes(quiet);
+    command->footer("\nExamples:\n" + examples);
+    command->callback([&chosen, act = std::move(act)] { chosen = act; });
+    return command;
+}
+
+void apply_common_options() {
+    set_log_level(common.quiet     ? LogLevel::quiet
+                  : common.verbose ? LogLevel::verbose
+                                   : LogLevel::normal);
+    set_thread_count(common.threads);
+}
+
+void put_out(std::string_view text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if ((!written || std::fflush(stdout) != 0) && errno != EPIPE) {
+        fail(ExitCode::output, "standard output: cannot be written: {}", std::strerror(errno));
+    }
+}
+
+void put_json(const Json& json) { put_out(json_text(json)); }
+
+FrameRange parse_frame_range(const std::string& text) {
+    const std::size_t dash = text.find('-');
+    FrameRange range;
+    range.first = parse_whole(text.substr(0, dash), "--frames");
+    range.last =
+        dash == std::string::npos ? range.first : parse_whole(text.substr(dash + 1), "--frames");
+    if (range.last < range.first) {
+        throw CLI::ValidationError("--frames", "\"" + text + "\" ends before it begins");
+    }
+    return range;
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+    const std::size_t cross = text.find('x');
+    if (cross == std::string::npos) {
+        throw CLI::ValidationError("--size", "\"" + text + "\" is no size such as 1280x720");
+    }
+    const std::pair size{parse_whole(text.substr(0, cross), "--size"),
+                         parse_whole(text.substr(cross + 1), "--size")};
+    if (size.first > 16384 || size.second > 16384) {
+        throw CLI::ValidationError("--size", "\"" + text + "\" is more than 16384x16384");
+    }
+    return size;
+}
+
+std::string count_text(double count) {
+    std::string digits = fmt::format("{:.0f}", count);
+    for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) {
+        digits.insert(static_cast<std::size_t>(at), ",");
+    }
+    return digits;
+}
+
+std::string bytes_text(double bytes) {
+    const char* units[] = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
+    int unit = 0;
+    while (bytes >= 1024 && unit < 5) {
+        bytes /= 1024;
+        ++unit;
+    }
+    return fmt::format("{:.{}f} {}", bytes, unit == 0 || bytes >= 100 ? 0 : 1, units[unit]);
+}
+
+std::string seconds_text(double seconds) {
+    if (seconds < 60) return fmt::format("{:.{}f} s", seconds, seconds < 10 ? 1 : 0);
+    const double minutes = std::floor(seconds / 60);
+    if (minutes < 60) return fmt::format("{:.0f} min {:.0f} s", minutes, seconds - 60 * minutes);
+    return fmt::format("{} h {:.0f} min", count_text(std::floor(minutes / 60)),
+                       minutes - 60 * std::floor(minutes / 60));
+}
+
+}  // namespace swage

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line: every command adds itself to the parser and leaves what is to be done.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "pipeline/json.h"
+#include "pipeline/run_options.h"
+
+namespace swage {
+
+// What the chosen command does after all of the command line was read; returns the exit code.
+using Action = std::function<int()>;
+
+// Options of every command.
+struct CommonOptions {
+    int threads = 0;  // 0: as many as there are cores
+    bool quiet = false;
+    bool verbose = false;
+};
+
+// Makes a command with the common options, the examples at the end of its help, and `act` as
+// its action.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
+                      const std::string& examples, Action& chosen, Action act);
+void apply_common_options();
+
+void add_run_command(CLI::App& app, Action& chosen);
+void add_check_command(CLI::App& app, Action& chosen);
+void add_info_command(CLI::App& app, Action& chosen);
+void add_machines_command(CLI::App& app, Action& chosen);
+void add_render_command(CLI::App& app, Action& chosen);
+void add_make_command(CLI::App& app, Action& chosen);
+
+// Data for stdout; a reader that has gone away is no error, a full disk is.
+void put_out(std::string_view text);
+void put_json(const Json& json);
+
+// Reads "7" or "3-9". Throws CLI::ValidationError.
+FrameRange parse_frame_range(const std::string& text);
+// Reads "1280x720". Throws CLI::ValidationError.
+std::pair<int, int> parse_size(const std::string& text);
+
+// 1234567 as "1,234,567"; 12345678 bytes as "11.8 MiB"; 75 s as "1 min 15 s".
+std::string count_text(double count);
+std::string bytes_text(double bytes);
+std::string seconds_text(double seconds);
+
+}  // namespace swage

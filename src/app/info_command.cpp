@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+#include "base/error.h"
+#include "geometry/mesh_check.h"
+#include "pipeline/run_record.h"
+
+namespace swage {
+
+namespace {
+
+struct InfoArguments {
+    std::string file;
+    bool json = false;
+};
+
+std::string yes_no(bool value) { return value ? "yes" : "no"; }
+
+std::string text_of(const std::string& file, const InputMesh& input) {
+    const MeshReport& report = input.report;
+    const Vec3 size = report.box.empty() ? Vec3::Zero().eval() : report.box.size();
+    std::string text = file + "\n";
+    const auto line = [&](const char* name, const std::string& value) {
+        text += fmt::format("  {:<12} {}\n", name, value);
+    };
+    line("vertices", count_text(static_cast<double>(report.vertices)));
+    line("triangles", count_text(static_cast<double>(report.triangles)));
+    line("components", std::to_string(report.components));
+    line("watertight", yes_no(report.watertight));
+    line("manifold", yes_no(report.manifold));
+    line("oriented", yes_no(report.oriented));
+    line("volume", report.bounds_a_volume() ? volume_text(report.volume) : "encloses none");
+    line("area", fmt::format("{:.4g} m2", report.area));
+    line("box", fmt::format("{} x {} x {}", length_text(size[0]), length_text(size[1]),
+                            length_text(size[2])));
+    line("uv", yes_no(report.has_uv));
+    line("colors", input.mesh.position_color.empty() ? "no" : "at vertices");
+    for (const SurfaceMaterial& material : input.mesh.material) {
+        const std::string name = material.name.empty() ? "(no name)" : material.name;
+        line("material", material.texture.empty()
+                             ? name
+                             : name + ", texture " + material.texture.filename().string());
+    }
+    for (const std::string& part : input.mesh.part_name) {
+        if (!part.empty()) line("part", part);
+    }
+    for (const std::string& finding : input.finding) line("finding", finding);
+    for (const std::string& finding : report.finding) line("finding", finding);
+    return text;
+}
+
+int info(const InfoArguments& given) {
+    const InputMesh input = read_mesh_as_it_is(given.file, std::nullopt);
+    if (given.json) {
+        Json json = mesh_json(input);
+        json["file"] = given.file;
+        put_json(json);
+    } else {
+        put_out(text_of(given.file, input));
+    }
+    return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Action& chosen) {
+    static InfoArguments given;
+    CLI::App* command =
+        add_command(app, "info", "Say what a mesh file holds, and what is wrong with it",
+                    "  swage info assets/meshes/calf.obj\n"
+                    "  swage info assets/meshes/calf.obj --json\n",
+                    chosen, [] { return info(given); });
+    command->add_option("mesh", given.file, "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS or 3MF file")
+        ->required()
+        ->type_name("MESH");
+    command->add_flag("--json", given.json, "print one JSON object");
+}
+
+}  // namespace swage

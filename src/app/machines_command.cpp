@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "app/command.h"
+#include "app/scene_argument.h"
+#include "base/error.h"
+#include "base/suggest.h"
+#include "base/units.h"
+#include "scene/catalogue.h"
+
+namespace swage {
+
+namespace {
+
+struct MachinesArguments {
+    std::string name, assets;
+    bool json = false;
+};
+
+// A table whose columns are as wide as they need to be.
+std::string table_text(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> width;
+    for (const std::vector<std::string>& row : rows) {
+        width.resize(std::max(width.size(), row.size()));
+        for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
+    }
+    std::string text;
+    for (const std::vector<std::string>& row : rows) {
+        std::string line = " ";
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            line += " " + row[c];
+            if (c + 1 < row.size()) line.append(width[c] - row[c].size() + 1, ' ');
+        }
+        text += line + "\n";
+    }
+    return text;
+}
+
+std::string range_text(const ParameterSpec& parameter) {
+    if (parameter.low.empty() && parameter.high.empty()) return "any";
+    if (parameter.low.empty()) return "up to " + parameter.high;
+    if (parameter.high.empty()) return parameter.low + " and more";
+    return parameter.low + " to " + parameter.high;
+}
+
+std::string unit_text(const ParameterSpec& parameter) {
+    const std::vector<std::string> units = unit_names(parameter.quantity);
+    return units.empty() || units.front().empty() ? "-" : units.front();
+}
+
+std::string machine_text(const MachineSpec& machine) {
+    std::string text = machine.name + ": " + machine.help + "\n  " + machine.file.string() + "\n\n";
+    std::vector<std::vector<std::string>> rows = {{"PARAMETER", "UNIT", "DEFAULT", "RANGE", ""}};
+    for (const ParameterSpec& parameter : machine.parameter) {
+        rows.push_back({parameter.name, unit_text(parameter), parameter.default_value,
+                        range_text(parameter), parameter.help});
+    }
+    text += table_text(rows);
+    std::vector<std::string> parts;
+    for (const ToolSpec& tool : machine.tool) parts.push_back("tool " + tool.name);
+    for (const GripSpec& grip : machine.grip) parts.push_back("grip " + grip.name);
+    for (const BladeSpec& blade : machine.blade) parts.push_back("blade " + blade.name);
+    text += "\n  ";
+    for (const std::string& part : parts) text += (&part == &parts.front() ? "" : ", ") + part;
+    return text +
+           "\n  length, height and width are those of the work-piece's box, spacing that of "
+           "its lattice\n";
+}
+
+Json machine_json(const MachineSpec& machine) {
+    Json parameters = Json::array();
+    for (const ParameterSpec& parameter : machine.parameter) {
+        parameters.push_back({{"name", parameter.name},
+                              {"quantity", quantity_name(parameter.quantity)},
+                              {"unit", si_unit(parameter.quantity)},
+                              {"default", parameter.default_value},
+                              {"low", parameter.low},
+                              {"high", parameter.high},
+                              {"help", parameter.help}});
+    }
+    return {{"name", machine.name},          {"help", machine.help},
+            {"file", machine.file.string()}, {"parameters", parameters},
+            {"tools", machine.tool.size()},  {"grips", machine.grip.size()},
+            {"blades", machine.blade.size()}};
+}
+
+int machines(const MachinesArguments& given) {
+    const MachineCatalogue catalogue = machine_catalogue(asset_paths(given.assets));
+    log_mistakes(catalogue.mistakes);
+    if (given.name.empty()) {
+        Json list = Json::array();
+        std::vector<std::vector<std::string>> rows;
+        for (const MachineSpec& machine : catalogue.machine) {
+            list.push_back(machine_json(machine));
+            rows.push_back({machine.name, machine.help});
+        }
+        if (given.json) {
+            put_json(list);
+        } else {
+            put_out(table_text(rows) + "\nswage machines NAME tells a machine's parameters\n");
+        }
+        return 0;
+    }
+    const auto at = std::find_if(catalogue.machine.begin(), catalogue.machine.end(),
+                                 [&](const MachineSpec& spec) { return spec.name == given.name; });
+    if (at == catalogue.machine.end()) {
+        std::vector<std::string> names;
+        for (const MachineSpec& machine : catalogue.machine) names.push_back(machine.name);
+        fail(ExitCode::command_line, "there is no machine \"{}\"{}", given.name,
+             did_you_mean(given.name, names));
+    }
+    if (given.json) {
+        put_json(machine_json(*at));
+    } else {
+        put_out(machine_text(*at));
+    }
+    return 0;
+}
+
+}  // namespace
+
+void add_machines_command(CLI::App& app, Action& chosen) {
+    static MachinesArguments given;
+    CLI::App* command = add_command(app, "machines", "List the machines, or tell one's parameters",
+                                    "  swage machines\n"
+                                    "  swage machines bend\n"
+                                    "  swage machines twist --json\n",
+                                    chosen, [] { return machines(given); });
+    command->add_option("name", given.name, "a machine")->type_name("NAME");
+    add_assets_option(*command, given.assets);
+    command->add_flag("--json", given.json, "print JSON");
+}
+
+}  // namespace swage

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <optional>
+#include <tuple>
+
+#include "app/command.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/stopwatch.h"
+#include "pipeline/draw.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/run_record.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct RenderArguments {
+    std::string run, out, size, frames, gl = "auto";
+    std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
+    std::optional<int> frames_per_second;
+    bool no_film = false, no_tools = false, no_ground = false, json = false;
+};
+
+// As the run's scene says, with what is given on the command line in its place.
+RenderSettings settings_of(const RenderArguments& given, const Json& record) {
+    constexpr double kDegree = kPi / 180;
+    RenderSettings settings = render_settings_of(record);
+    if (!given.size.empty()) std::tie(settings.width, settings.height) = parse_size(given.size);
+    if (given.field_of_view) settings.field_of_view = *given.field_of_view * kDegree;
+    if (given.azimuth || given.elevation || given.zoom || given.turn) {
+        CameraKey key = settings.camera.empty() ? CameraKey{} : settings.camera.front();
+        key.at = 0;
+        key.eye.reset();
+        key.target.reset();
+        if (given.azimuth) key.azimuth = *given.azimuth * kDegree;
+        if (given.elevation) key.elevation = *given.elevation * kDegree;
+        if (given.zoom) key.zoom = *given.zoom;
+        settings.camera = {key};
+        if (given.turn) {
+            key.at = 1;
+            key.azimuth += *given.turn * kDegree;
+            settings.camera.push_back(key);
+        }
+    }
+    if (given.frames_per_second) settings.frames_per_second = *given.frames_per_second;
+    if (given.no_film) settings.film = false;
+    if (given.no_tools) settings.tools = false;
+    if (given.no_ground) settings.ground = false;
+    settings.gl = given.gl == "osmesa" ? GlProviderKind::osmesa
+                  : given.gl == "egl"  ? GlProviderKind::egl
+                                       : GlProviderKind::automatic;
+    return settings;
+}
+
+int render(const RenderArguments& given) {
+    const fs::path run = given.run;
+    const std::optional<Json> record = read_record(run / "run.json");
+    if (!record) {
+        fail(ExitCode::output, "{}: is no finished run of swage", run.string());
+    }
+    const FrameStore store(run / "motion.bin");
+    FrameRange frames{1, store.frame_count()};
+    if (!given.frames.empty()) frames = parse_frame_range(given.frames);
+
+    // The run's own pictures stay what its scene says they are.
+    const fs::path out = given.out.empty() ? run / "again" : fs::path(given.out);
+    if (fs::exists(out / ".swage-run")) {
+        fail(ExitCode::foreign,
+             "{}: is a run; its pictures are those of its scene. Choose another "
+             "--out",
+             out.string());
+    }
+    make_folder(out);
+    set_unfinished_work(out);
+    Stopwatch watch;
+    const DrawOutcome drawn = draw_run(store, settings_of(given, *record), frames, {out}, watch);
+    log_info("{}: done", out.string());
+    if (given.json) {
+        Json json = drawing_json(drawn);
+        json["out"] = out.string();
+        json["seconds"] = seconds_json(watch);
+        put_json(json);
+    }
+    return 0;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Action& chosen) {
+    static RenderArguments given;
+    CLI::App* command = add_command(
+        app, "render", "Draw a finished run again, without simulating",
+        "  swage render renders/calf-line --camera-azimuth 90 --size 1920x1080 --out /tmp/side\n"
+        "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
+        "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n",
+        chosen, [] { return render(given); });
+    command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
+    command->add_option("--out", given.out, "where to draw (default: RUN/again)")->type_name("DIR");
+    command
+        ->add_option("--camera-azimuth", given.azimuth,
+                     "where the camera stands about the upward axis, 0 is +z, 90 is +x")
+        ->type_name("DEG");
+    command->add_option("--camera-elevation", given.elevation, "how high it stands")
+        ->check(CLI::Range(-90.0, 90.0))
+        ->type_name("DEG");
+    command->add_option("--camera-zoom", given.zoom, "2 is twice as near")
+        ->check(CLI::Range(0.01, 1000.0));
+    command->add_option("--camera-turn", given.turn, "how far it goes round during the film")
+        ->type_name("DEG");
+    command->add_option("--field-of-view", given.field_of_view, "vertical")
+        ->check(CLI::Range(1.0, 170.0))
+        ->type_name("DEG");
+    command->add_option("--size", given.size, "of a still in pixels (default: 1280x720)")
+        ->type_name("WxH")
+        ->each([](const std::string& text) { parse_size(text); });
+    command->add_option("--frames", given.frames, "draw only the stills A to B; 1 is the start")
+        ->type_name("A-B")
+        ->each([](const std::string& text) { parse_frame_range(text); });
+    command->add_option("--fps", given.frames_per_second, "frames a second of the film")
+        ->check(CLI::Range(1, 240));
+    command->add_option("--gl", given.gl, "library that draws")
+        ->check(CLI::IsMember({"auto", "osmesa", "egl"}));
+    command->add_flag("--no-film", given.no_film, "stills only");
+    command->add_flag("--no-tools", given.no_tools, "the work-piece alone");
+    command->add_flag("--no-ground", given.no_ground, "no ground");
+    command->add_flag("--json", given.json, "print one JSON object");
+}
+
+}  // namespace swage

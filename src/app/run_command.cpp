@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+#include "app/scene_argument.h"
+#include "base/log.h"
+#include "pipeline/run.h"
+
+namespace swage {
+
+namespace {
+
+struct RunArguments {
+    SceneArgument scene;
+    std::string out, frames;
+    bool no_render = false, fresh = false, force = false, json = false;
+};
+
+int run(const RunArguments& given) {
+    RunOptions options;
+    if (!given.frames.empty()) options.frames = parse_frame_range(given.frames);
+    const SceneSpec scene = checked_scene(given.scene);
+    options.out = given.out.empty() ? std::filesystem::path("renders") / scene.name
+                                    : std::filesystem::path(given.out);
+    if (given.out.empty()) make_folder("renders");
+    options.overrides = given.scene.overrides;
+    options.draw = !given.no_render;
+    options.fresh = given.fresh;
+    options.insist = given.force;
+    const RunOutcome outcome = run_scene(scene, options);
+    if (given.json) put_json(outcome.record);
+    return 0;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& chosen) {
+    static RunArguments given;
+    CLI::App* command = add_command(
+        app, "run", "Run a scene: mesh, matter, machines, skin, stills and film",
+        "  swage run assets/scenes/calf-line.toml\n"
+        "  swage run assets/scenes/bar-springback.toml --out /tmp/soft --set material.name=copper\n"
+        "  swage run assets/scenes/rod-cut.toml --no-render --json --quiet\n",
+        chosen, [] { return run(given); });
+    add_scene_argument(*command, given.scene);
+    command->add_option("--out", given.out, "run directory (default: renders/NAME-OF-SCENE)")
+        ->type_name("DIR");
+    command->add_option("--frames", given.frames, "draw only the stills A to B; 1 is the start")
+        ->type_name("A-B")
+        ->each([](const std::string& text) { parse_frame_range(text); });
+    command->add_flag("--no-render", given.no_render, "no pictures; needs no OpenGL");
+    command->add_flag("--fresh", given.fresh,
+                      "throw away what an earlier run left in the directory");
+    command->add_flag("--force", given.force,
+                      "run even if it seems to need more memory, disk or time than there is");
+    command->add_flag("--json", given.json, "print the run's record on stdout");
+}
+
+}  // namespace swage

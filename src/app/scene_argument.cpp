@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene_argument.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace swage {
+
+void add_assets_option(CLI::App& command, std::string& assets) {
+    command.add_option("--assets", assets, "folder that holds machines/ and assets/")
+        ->type_name("DIR");
+}
+
+AssetPaths asset_paths(const std::string& given) {
+    if (given.empty()) return find_assets();
+    return find_assets(std::filesystem::path(given));
+}
+
+void add_scene_argument(CLI::App& command, SceneArgument& argument) {
+    command.add_option("scene", argument.file, "scene file (TOML)")->required()->type_name("SCENE");
+    command
+        .add_option("--set", argument.overrides,
+                    "put a value in place of the scene's, such as \"stage.1.angle=45 deg\"")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_assets_option(command, argument.assets);
+}
+
+SceneReading read_scene_argument(const SceneArgument& argument) {
+    return read_scene(argument.file, argument.overrides, asset_paths(argument.assets));
+}
+
+void log_mistakes(const std::vector<Mistake>& mistakes) {
+    for (const Mistake& mistake : mistakes) log_text(mistake_text(mistake));
+}
+
+SceneSpec checked_scene(const SceneArgument& argument) {
+    SceneReading reading = read_scene_argument(argument);
+    log_mistakes(reading.mistakes);
+    const auto count = std::count_if(reading.mistakes.begin(), reading.mistakes.end(),
+                                     [](const Mistake& mistake) { return !mistake.warning; });
+    if (count > 0 || !reading.scene) {
+        fail(exit_code(reading.mistakes), "{}: {} mistake{}; nothing was done", argument.file,
+             count, count == 1 ? "" : "s");
+    }
+    return *reading.scene;
+}
+
+}  // namespace swage

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/cost.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "machines/machine.h"
+#include "sim/advance.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Measured on shipped scenes; good to a factor of two or so.
+constexpr double kIterationsPerFrame = 350;
+constexpr double kSecondsPerParticleStep = 60e-9;  // one core
+constexpr double kSecondsPerPixel = 1.8e-7;        // drawing and writing, two cores
+constexpr double kBytesPerParticle = 500;          // beside the aggregate: solver, mount, skin
+constexpr double kBytesPerVertex = 600;
+constexpr double kProgramBytes = 250e6;  // libraries and the drawing's own buffers
+constexpr double kStillBytesPerPixel = 0.7;
+constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two triangles
+constexpr double kLongestRun = 30 * 86400.0;
+constexpr double kCountedCells = 300'000;  // molded for real by count_cost
+
+double stage_duration(const StageSpec& stage, const SceneSpec& scene) {
+    if (stage.duration > 0) return stage.duration;
+    return static_cast<double>(stage.frames) / scene.render.frames_per_second;
+}
+
+// The stable step of a full lattice: neither slivers nor damping.
+double lattice_steps_per_second(const Material& material, double spacing, const SimSettings& sim) {
+    const double wave_speed = std::sqrt(material.young_modulus / material.density);
+    return 2.5 * wave_speed / spacing / sim.step_safety;
+}
+
+void add_up(RunCost& cost, const SceneSpec& scene, const InputMesh& input,
+            const RunOptions& options, const Aggregate* matter) {
+    cost.frames = frame_count(scene);
+    cost.steps = 0;
+    for (const StageSpec& stage : scene.stage) {
+        if (stage.sim.solver == Solver::quasistatic) {
+            cost.steps += kIterationsPerFrame * stage.frames;
+        } else {
+            cost.steps += stage_duration(stage, scene) *
+                          (matter != nullptr ? explicit_steps_per_second(*matter, stage.sim)
+                                             : lattice_steps_per_second(
+                                                   scene.material, cost.mold.spacing, stage.sim));
+        }
+    }
+    const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
+    const double vertices = static_cast<double>(input.mesh.position.size());
+    double stills = options.draw ? cost.frames : 0;
+    if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
+    const double cores = std::min(thread_count(), 2);
+    cost.seconds = cost.steps * cost.mold.particles * kSecondsPerParticleStep / cores +
+                   stills * (0.02 + pixels * kSecondsPerPixel) * 2 / cores;
+    cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
+                        vertices * kBytesPerVertex + (options.draw ? pixels * 60 : 0);
+    const double meshes =
+        static_cast<double>(scene.output.meshes_per_frame ? cost.frames : scene.stage.size());
+    cost.disk_bytes = stills * pixels * kStillBytesPerPixel + cost.frames * (vertices * 12 + 400) +
+                      meshes * vertices * kMeshBytesPerVertex;
+}
+
+double read_number(const fs::path& file) {
+    std::ifstream in(file);
+    double value = 0;
+    return in >> value ? value : std::numeric_limits<double>::infinity();
+}
+
+// What this process may still allocate.
+double free_memory() {
+    double bytes = std::numeric_limits<double>::infinity();
+    std::ifstream in("/proc/meminfo");
+    for (std::string line; std::getline(in, line);) {
+        if (line.rfind("MemAvailable:", 0) == 0) bytes = 1024 * std::stod(line.substr(13));
+    }
+    rlimit limit = {};
+    if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+        bytes = std::min(bytes, static_cast<double>(limit.rlim_cur));
+    }
+    return std::min(bytes, read_number("/sys/fs/cgroup/memory.max"));
+}
+
+double free_disk(fs::path folder) {
+    std::error_code error;
+    while (!folder.empty() && !fs::exists(folder, error) && folder != folder.parent_path()) {
+        folder = folder.parent_path();
+    }
+    const fs::space_info space = fs::space(folder.empty() ? "." : folder, error);
+    return error ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
+}
+
+}  // namespace
+
+int frame_count(const SceneSpec& scene) {
+    long frames = 1;
+    for (const StageSpec& stage : scene.stage) frames += stage.frames;
+    return static_cast<int>(std::min<long>(frames, std::numeric_limits<int>::max()));
+}
+
+RunCost estimate_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options) {
+    RunCost cost;
+    cost.mold = estimate_mold(input.to_mold(), scene.mold);
+    add_up(cost, scene, input, options, nullptr);
+    return cost;
+}
+
+RunCost count_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options) {
+    RunCost cost = estimate_cost(scene, input, options);
+    if (cost.mold.active_cells > kCountedCells || scene.stage.empty()) return cost;
+    const Aggregate matter = mold(input.to_mold(), scene.material, scene.mold);
+    cost.counted = true;
+    cost.mold.active_cells = static_cast<double>(matter.cell_fill.size());
+    cost.mold.particles = static_cast<double>(matter.particle_count());
+    cost.mold.connections = static_cast<double>(matter.connection_count());
+    cost.mold.bytes = static_cast<double>(matter.bytes());
+    const StageSpec& first = scene.stage.front();
+    cost.note = build_machine(first.machine, first.parameter,
+                              place_work_frame(matter, first.axis, first.up), matter)
+                    .notes;
+    add_up(cost, scene, input, options, &matter);
+    return cost;
+}
+
+Json cost_json(const RunCost& cost) {
+    return {{"counted", cost.counted},
+            {"spacing_m", cost.mold.spacing},
+            {"cells", cost.mold.active_cells},
+            {"particles", cost.mold.particles},
+            {"connections", cost.mold.connections},
+            {"matter_bytes", cost.mold.bytes},
+            {"memory_bytes", cost.memory_bytes},
+            {"disk_bytes", cost.disk_bytes},
+            {"frames", cost.frames},
+            {"steps", cost.steps},
+            {"seconds", cost.seconds},
+            {"notes", cost.note}};
+}
+
+void refuse_excess(const RunCost& cost, const RunOptions& options) {
+    if (options.insist) return;
+    const double memory = free_memory(), disk = free_disk(fs::absolute(options.out));
+    if (cost.memory_bytes > memory) {
+        fail(ExitCode::resources,
+             "the run would need about {:.1f} GiB of memory, and {:.1f} GiB are free: a larger "
+             "[mold] spacing needs less (--force runs all the same)",
+             cost.memory_bytes / (1 << 30), memory / (1 << 30));
+    }
+    if (cost.disk_bytes > disk) {
+        fail(ExitCode::resources,
+             "the run would write about {:.1f} GiB, and {:.1f} GiB of disk are free: fewer frames "
+             "or a smaller [render] size need less (--force runs all the same)",
+             cost.disk_bytes / (1 << 30), disk / (1 << 30));
+    }
+    if (cost.seconds > kLongestRun) {
+        fail(ExitCode::resources,
+             "the run would take about {:.0f} days: fewer frames or a larger [mold] spacing take "
+             "less (--force runs all the same)",
+             cost.seconds / 86400);
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run will need, before any of it is spent.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mold/mold.h"
+#include "pipeline/json.h"
+#include "pipeline/run_options.h"
+#include "pipeline/work_piece.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+struct RunCost {
+    MoldEstimate mold;
+    bool counted = false;           // the mold was made, so its numbers are no estimate
+    int frames = 0;                 // stills, the start included
+    double steps = 0;               // relaxation iterations and explicit steps, about
+    double seconds = 0;             // of simulation and drawing on this machine, about
+    double memory_bytes = 0;        // at the peak, about
+    double disk_bytes = 0;          // of the run directory, about
+    std::vector<std::string> note;  // of the first machine, set up at the work-piece
+};
+
+int frame_count(const SceneSpec& scene);
+
+// From sizes alone, at once.
+RunCost estimate_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options);
+
+// The same with a mold of moderate size made for real and the first machine set up at it, which
+// finds the mistakes that only show there. Throws what these throw.
+RunCost count_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options);
+
+Json cost_json(const RunCost& cost);
+
+// Throws Error(resources) when the run would need more memory, disk or time than there is, with
+// both numbers and what to change; does nothing when the user insists.
+void refuse_excess(const RunCost& cost, const RunOptions& options);
+
+}  // namespace swage

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/curves.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "base/text.h"
+
+namespace swage {
+
+namespace {
+
+std::string number(double value) { return fmt::format("{:.9g}", value); }
+
+// A name inside a comma separated line: quoted when it holds a comma or a quote.
+std::string cell(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+void begin_row(LoadCurve& load, const Pose& pose) {
+    load.pose.push_back(pose);
+    load.force.push_back(Vec3::Zero());
+    load.torque.push_back(Vec3::Zero());
+    for (std::vector<double>* column : {&load.turn, &load.travel, &load.work, &load.penetration}) {
+        column->push_back(column->empty() ? 0.0 : column->back());
+    }
+    load.contacts.push_back(0);
+}
+
+}  // namespace
+
+StageCurves::StageCurves(std::string stage, int first_frame,
+                         const std::vector<std::string>& load_name, const std::vector<Pose>& start)
+    : stage_(std::move(stage)), frame_{first_frame}, report_(1), turn_axis_(load_name.size()) {
+    for (std::size_t n = 0; n < load_name.size(); ++n) {
+        load_.emplace_back();
+        load_.back().name = load_name[n];
+        begin_row(load_.back(), start[n]);
+        turn_axis_[n] = Vec3::Zero();
+    }
+}
+
+void StageCurves::add(int frame, const FrameReport& report) {
+    frame_.push_back(frame);
+    report_.push_back(report);
+    report_.back().load.clear();
+    for (std::size_t n = 0; n < load_.size() && n < report.load.size(); ++n) {
+        const ToolLoad& felt = report.load[n];
+        LoadCurve& load = load_[n];
+        const Pose before = load.pose.back();
+        begin_row(load, felt.pose);
+        const Eigen::AngleAxisd turned(felt.pose.rotation * before.rotation.conjugate());
+        const double angle = turned.angle() > kPi ? turned.angle() - 2 * kPi : turned.angle();
+        if (turn_axis_[n].isZero() && std::abs(angle) > 1e-12) {
+            turn_axis_[n] = angle > 0 ? turned.axis() : Vec3(-turned.axis());
+        }
+        load.turn.back() += turned.axis().dot(turn_axis_[n]) < 0 ? -angle : angle;
+        load.travel.back() += (felt.pose.translation - before.translation).norm();
+        load.force.back() = felt.force;
+        load.torque.back() = felt.torque;
+        load.work.back() = felt.work;
+        load.penetration.back() = felt.penetration;
+        load.contacts.back() = felt.contacts;
+    }
+}
+
+std::string csv_text(const StageCurves& curves) {
+    std::string text = "frame,time [s]";
+    for (const LoadCurve& load : curves.load()) {
+        for (const char* column :
+             {"x [m]", "y [m]", "z [m]", "turn [rad]", "travel [m]", "force x [N]", "force y [N]",
+              "force z [N]", "torque x [N m]", "torque y [N m]", "torque z [N m]", "work [J]",
+              "penetration [m]", "contacts"}) {
+            text += ',';
+            text += cell(load.name + " " + column);
+        }
+    }
+    text +=
+        ",kinetic energy [J],elastic energy [J],plastic work [J],damped work [J],"
+        "machine work [J],severed energy [J],severed "
+        "connections,pieces,iterations,increments,halvings,steps,"
+        "residual\n";
+    for (std::size_t row = 0; row < curves.rows(); ++row) {
+        const FrameReport& report = curves.report()[row];
+        std::vector<std::string> cells = {std::to_string(curves.frame()[row]), number(report.time)};
+        for (const LoadCurve& load : curves.load()) {
+            for (int c = 0; c < 3; ++c) cells.push_back(number(load.pose[row].translation[c]));
+            cells.push_back(number(load.turn[row]));
+            cells.push_back(number(load.travel[row]));
+            for (int c = 0; c < 3; ++c) cells.push_back(number(load.force[row][c]));
+            for (int c = 0; c < 3; ++c) cells.push_back(number(load.torque[row][c]));
+            cells.push_back(number(load.work[row]));
+            cells.push_back(number(load.penetration[row]));
+            cells.push_back(std::to_string(load.contacts[row]));
+        }
+        for (double energy : {report.kinetic, report.elastic, report.plastic, report.damped,
+                              report.work, report.severed_energy}) {
+            cells.push_back(number(energy));
+        }
+        for (long count : {long(report.severed), long(report.pieces), long(report.iterations),
+                           long(report.increments), long(report.halvings), report.steps}) {
+            cells.push_back(std::to_string(count));
+        }
+        cells.push_back(number(report.residual));
+        text += joined(cells, ",");
+        text += '\n';
+    }
+    return text;
+}
+
+PlotAxis plot_axis(const StageCurves& curves) {
+    PlotAxis axis;
+    const LoadCurve *turns = nullptr, *travels = nullptr;
+    double most_turn = kPi / 180, most_travel = 1e-12;
+    for (const LoadCurve& load : curves.load()) {
+        if (std::abs(load.turn.back()) > most_turn) {
+            most_turn = std::abs(load.turn.back());
+            turns = &load;
+        }
+        if (load.travel.back() > most_travel) {
+            most_travel = load.travel.back();
+            travels = &load;
+        }
+    }
+    if (turns != nullptr) {
+        axis.label = fmt::format("turn of {} [deg]", turns->name);
+        for (double t : turns->turn) axis.value.push_back(t * 180 / kPi);
+    } else if (travels != nullptr) {
+        axis.label = fmt::format("travel of {} [mm]", travels->name);
+        for (double t : travels->travel) axis.value.push_back(1e3 * t);
+    } else {
+        axis.label = "time [s]";
+        for (const FrameReport& report : curves.report()) axis.value.push_back(report.time);
+    }
+    return axis;
+}
+
+}  // namespace swage

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the machines of a stage did and felt, frame by frame: the table of curves/<stage>.csv.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "sim/advance.h"
+
+namespace swage {
+
+// One tool, grip or blade over the stage, one entry a row.
+struct LoadCurve {
+    std::string name;
+    std::vector<Pose> pose;
+    std::vector<double> turn;         // [rad] since the start of the stage, past 180 degrees too
+    std::vector<double> travel;       // [m] of path since the start of the stage
+    std::vector<Vec3> force;          // [N] exerted on the matter
+    std::vector<Vec3> torque;         // [N m] about the pose's origin
+    std::vector<double> work;         // [J] done on the matter
+    std::vector<double> penetration;  // [m]
+    std::vector<int> contacts;
+};
+
+class StageCurves {
+  public:
+    // The first row is the start of the stage, where nothing is felt yet.
+    StageCurves(std::string stage, int first_frame, const std::vector<std::string>& load_name,
+                const std::vector<Pose>& start);
+    void add(int frame, const FrameReport& report);
+
+    const std::string& stage() const { return stage_; }
+    std::size_t rows() const { return frame_.size(); }
+    const std::vector<int>& frame() const { return frame_; }
+    const std::vector<FrameReport>& report() const { return report_; }  // `load` is left out
+    const std::vector<LoadCurve>& load() const { return load_; }
+
+  private:
+    std::string stage_;
+    std::vector<int> frame_;
+    std::vector<FrameReport> report_;
+    std::vector<LoadCurve> load_;
+    std::vector<Vec3> turn_axis_;  // of the first turn of each load
+};
+
+// Comma separated; the first line names each column and its unit, as in "pusher force x [N]".
+std::string csv_text(const StageCurves& curves);
+
+// What to plot the loads against: the turn of the load that turns most (when any turns by more
+// than a degree), else the travel of the one that travels most, else time.
+struct PlotAxis {
+    std::string label;  // with the unit
+    std::vector<double> value;
+};
+PlotAxis plot_axis(const StageCurves& curves);
+
+}  // namespace swage

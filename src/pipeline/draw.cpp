@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parallel.h"
+#include "pipeline/interrupt.h"
+#include "render/canvas.h"
+#include "render/contact_sheet.h"
+#include "render/film.h"
+#include "render/png.h"
+#include "render/renderer.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kSheetPictures = 20;  // about
+constexpr int kSheetPictureWidth = 384;
+
+// One frame of the run as the renderer wants it; skins and machines are read when they change.
+class FrameSource {
+  public:
+    FrameSource(const FrameStore& store, bool tools) : store_(store), tools_(tools) {}
+
+    Picture picture(int frame) {
+        const StoredFrame stored = store_.frame(frame - 1);
+        if (stored.skin != skin_id_) {
+            skin_ = store_.skin(stored.skin);
+            skin_id_ = stored.skin;
+        }
+        if (tools_ && stored.machine != machine_id_) {
+            machine_ = store_.machine(stored.machine);
+            machine_id_ = stored.machine;
+        }
+        position_.clear();
+        for (const Eigen::Vector3f& p : stored.position) position_.push_back(p.cast<double>());
+        Picture picture;
+        picture.item.push_back({&skin_, &position_, {}, std::nullopt});
+        for (std::size_t b = 0; tools_ && b < machine_.size(); ++b) {
+            if (machine_[b].surface.triangle.empty()) continue;
+            SurfaceMaterial look;
+            look.name = machine_[b].name;
+            look.color = machine_[b].color;
+            look.roughness = 0.4;
+            look.metallic = 0.6;
+            picture.item.push_back({&machine_[b].surface, nullptr, stored.pose.at(b), look});
+        }
+        return picture;
+    }
+
+  private:
+    const FrameStore& store_;
+    bool tools_;
+    int skin_id_ = -1, machine_id_ = -1;
+    TriMesh skin_;
+    std::vector<DrawnBody> machine_;
+    std::vector<Vec3> position_;
+};
+
+// Frames of the sheet: evenly spread, first and last among them.
+std::vector<int> sheet_frames(const FrameRange& frames) {
+    const int count = frames.last - frames.first + 1;
+    const int shown = std::min(count, kSheetPictures);
+    std::vector<int> chosen;
+    for (int n = 0; n < shown; ++n) {
+        const double share = shown == 1 ? 0 : static_cast<double>(n) / (shown - 1);
+        chosen.push_back(frames.first + static_cast<int>(std::lround(share * (count - 1))));
+    }
+    return chosen;
+}
+
+int sheet_columns(int pictures) {
+    return std::max(1, static_cast<int>(std::ceil(std::sqrt(pictures) - 1e-9)));
+}
+
+}  // namespace
+
+void check_drawing(const RenderSettings& settings) {
+    const Canvas canvas(settings.gl, thread_count());
+    log_verbose("drawing by {}", canvas.renderer_string());
+}
+
+ActionBox find_action(const FrameStore& store, bool tools) {
+    Box skin, machines;
+    std::vector<std::vector<Box>> body_box;  // of each machine's bodies, in their own frames
+    for (int m = 0; m < store.machine_count(); ++m) {
+        body_box.emplace_back();
+        for (const DrawnBody& body : store.machine(m)) {
+            body_box.back().push_back(box_of(body.surface.position));
+        }
+    }
+    for (int f = 0; f < store.frame_count(); ++f) {
+        const StoredFrame frame = store.frame(f);
+        for (const Eigen::Vector3f& p : frame.position) skin.grow(p.cast<double>());
+        const std::vector<Box>& boxes = body_box.at(static_cast<std::size_t>(frame.machine));
+        for (std::size_t b = 0; b < boxes.size() && b < frame.pose.size(); ++b) {
+            if (boxes[b].empty()) continue;
+            for (int corner = 0; corner < 8; ++corner) {
+                machines.grow(frame.pose[b] *
+                              Vec3(corner & 1 ? boxes[b].high[0] : boxes[b].low[0],
+                                   corner & 2 ? boxes[b].high[1] : boxes[b].low[1],
+                                   corner & 4 ? boxes[b].high[2] : boxes[b].low[2]));
+            }
+        }
+    }
+    ActionBox action{skin, skin.empty() ? 0 : skin.low.y()};
+    if (!tools || machines.empty() || skin.empty()) return action;
+    // A tool that waits far away, or is very long, must not make the work-piece small.
+    const Vec3 reach = Vec3::Constant(0.12 * skin.size().maxCoeff());
+    action.bounds.grow(machines.low.cwiseMax(skin.low - reach).cwiseMin(skin.high));
+    action.bounds.grow(machines.high.cwiseMin(skin.high + reach).cwiseMax(skin.low));
+    action.ground_height = action.bounds.low.y();
+    return action;
+}
+
+DrawOutcome draw_run(const FrameStore& store, const RenderSettings& settings,
+                     const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch) {
+    if (frames.first < 1 || frames.last > store.frame_count()) {
+        fail(ExitCode::command_line, "--frames {}-{}: the run has the frames 1 to {}", frames.first,
+             frames.last, store.frame_count());
+    }
+    make_folder(files.folder());
+    const ActionBox action = find_action(store, settings.tools);
+    Renderer renderer(settings, action.bounds, action.ground_height, thread_count());
+    DrawOutcome outcome{renderer.renderer_string(), settings.width, settings.height, frames, false};
+    std::unique_ptr<Film> film;
+    if (settings.film) {
+        film = std::make_unique<Film>(files.film(), settings.width, settings.height,
+                                      settings.frames_per_second);
+    }
+    const std::vector<int> on_sheet = sheet_frames(frames);
+    std::vector<Image> thumbnails;
+    FrameSource source(store, settings.tools);
+    Progress progress("draw", frames.last - frames.first + 1);
+    std::future<void> writing;  // of the picture before, while the next is drawn
+    for (int frame = frames.first; frame <= frames.last; ++frame) {
+        throw_if_interrupted();
+        Image image;
+        {
+            const auto lap = watch.lap("draw");
+            Picture picture = source.picture(frame);
+            picture.film_share = store.frame_count() > 1
+                                     ? static_cast<double>(frame - 1) / (store.frame_count() - 1)
+                                     : 0;
+            image = renderer.draw(picture);
+        }
+        const auto lap = watch.lap("wait for files");
+        if (writing.valid()) writing.get();
+        writing = std::async(std::launch::async, [&, frame, image = std::move(image)] {
+            write_png(files.still(frame), image);
+            if (film) film->add(image);
+            if (std::binary_search(on_sheet.begin(), on_sheet.end(), frame)) {
+                thumbnails.push_back(thumbnail(image, kSheetPictureWidth, kSheetPictureWidth));
+            }
+        });
+        progress.advance(frame - frames.first + 1);
+    }
+    if (writing.valid()) writing.get();
+    const auto lap = watch.lap("film and sheet");
+    write_png(files.contact_sheet(),
+              contact_sheet(thumbnails, sheet_columns(static_cast<int>(thumbnails.size()))));
+    if (film) outcome.film = film->finish();
+    return outcome;
+}
+
+}  // namespace swage

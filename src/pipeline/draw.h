@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pictures of a run, drawn from its motion file: stills, film, sheet.
+#pragma once
+
+#include <string>
+
+#include "base/stopwatch.h"
+#include "pipeline/frame_store.h"
+#include "pipeline/run_directory.h"
+#include "pipeline/run_options.h"
+#include "render/settings.h"
+
+namespace swage {
+
+struct DrawOutcome {
+    std::string renderer;  // what OpenGL calls itself
+    int width = 0, height = 0;
+    FrameRange frames;
+    bool film = false;  // one was written
+};
+
+// Opens and closes an OpenGL context, so that a run that cannot be drawn is refused before it is
+// simulated. Throws Error(output).
+void check_drawing(const RenderSettings& settings);
+
+// What the pictures frame: the skin in all frames of the run, whichever of them are drawn, and as
+// much of the machines as lies near.
+struct ActionBox {
+    Box bounds;
+    double ground_height = 0;  // world y
+};
+ActionBox find_action(const FrameStore& store, bool tools);
+
+// Throws Error(command_line) when the run has no such frames, Error(output), Interrupted. Only
+// whole files appear.
+DrawOutcome draw_run(const FrameStore& store, const RenderSettings& settings,
+                     const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch);
+
+}  // namespace swage

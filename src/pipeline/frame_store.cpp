@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The file: a magic word, then records of kind, size, hash and bytes; the last says that the file
+// is whole.
+#include "pipeline/frame_store.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "base/atomic_file.h"
+#include "base/hash.h"
+#include "pipeline/mesh_bytes.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t kMagic = 0x3130'6567'6177'7300;  // "\0swage01" on a little-endian machine
+
+enum RecordKind : std::uint32_t { kSkin = 1, kMachine = 2, kFrame = 3, kEnd = 4 };
+
+struct RecordHead {
+    std::uint32_t kind;
+    std::uint32_t reserved;
+    std::uint64_t size;
+    std::uint64_t hash;
+};
+
+void write_all(int handle, const fs::path& file, const void* data, std::size_t size) {
+    const char* at = static_cast<const char*>(data);
+    while (size > 0) {
+        const ssize_t written = ::write(handle, at, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) {
+            fail(ExitCode::output, "{}: cannot be written: {}", file.string(),
+                 std::strerror(errno));
+        }
+        at += written;
+        size -= static_cast<std::size_t>(written);
+    }
+}
+
+bool read_all(int handle, std::uint64_t offset, void* data, std::size_t size) {
+    char* at = static_cast<char*>(data);
+    while (size > 0) {
+        const ssize_t got = ::pread(handle, at, size, static_cast<off_t>(offset));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return false;
+        at += got;
+        offset += static_cast<std::uint64_t>(got);
+        size -= static_cast<std::size_t>(got);
+    }
+    return true;
+}
+
+}  // namespace
+
+FrameStoreWriter::FrameStoreWriter(const fs::path& file)
+    : file_(file), temporary_(temporary_for(file)) {
+    handle_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (handle_ < 0) {
+        fail(ExitCode::output, "{}: cannot be created: {}", file.string(), std::strerror(errno));
+    }
+    write_all(handle_, file_, &kMagic, sizeof kMagic);
+}
+
+FrameStoreWriter::~FrameStoreWriter() {
+    if (handle_ < 0) return;
+    ::close(handle_);
+    ::unlink(temporary_.c_str());
+}
+
+void FrameStoreWriter::put(std::uint32_t kind, const std::string& bytes) {
+    const RecordHead head{kind, 0, bytes.size(), hash_of(bytes)};
+    write_all(handle_, file_, &head, sizeof head);
+    write_all(handle_, file_, bytes.data(), bytes.size());
+}
+
+int FrameStoreWriter::add_skin(const TriMesh& skin) {
+    ByteWriter out;
+    put_mesh(out, skin);
+    put(kSkin, out.bytes());
+    return skins_++;
+}
+
+int FrameStoreWriter::add_machine(const std::vector<DrawnBody>& bodies) {
+    ByteWriter out;
+    out.put<std::uint64_t>(bodies.size());
+    for (const DrawnBody& body : bodies) {
+        out.put_text(body.name);
+        put_mesh(out, body.surface);
+        out.put(body.color);
+    }
+    put(kMachine, out.bytes());
+    return machines_++;
+}
+
+void FrameStoreWriter::add_frame(const StoredFrame& frame) {
+    ByteWriter out;
+    out.put(frame.skin);
+    out.put(frame.machine);
+    out.put_array(frame.position);
+    out.put<std::uint64_t>(frame.pose.size());
+    for (const Pose& pose : frame.pose) {
+        for (int c = 0; c < 4; ++c) out.put(pose.rotation.coeffs()[c]);
+        out.put(pose.translation);
+    }
+    put(kFrame, out.bytes());
+}
+
+void FrameStoreWriter::finish() {
+    put(kEnd, {});
+    ::close(handle_);
+    handle_ = -1;
+    publish(temporary_, file_);
+}
+
+FrameStore::FrameStore(const fs::path& file) : file_(file) {
+    handle_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (handle_ < 0) {
+        fail(ExitCode::output, "{}: cannot be read: {}", file.string(), std::strerror(errno));
+    }
+    const auto give_up = [&](const char* why) {
+        ::close(handle_);
+        fail(ExitCode::output, "{}: {}", file_.string(), why);
+    };
+    std::uint64_t magic = 0;
+    if (!read_all(handle_, 0, &magic, sizeof magic) || magic != kMagic) {
+        give_up("is no motion file of this version of swage");
+    }
+    const auto file_size = static_cast<std::uint64_t>(::lseek(handle_, 0, SEEK_END));
+    std::uint64_t at = sizeof magic;
+    for (RecordHead head{};;) {
+        if (!read_all(handle_, at, &head, sizeof head)) give_up("ends early");
+        at += sizeof head;
+        if (head.size > file_size - at) give_up("ends early");
+        const Place place{at, head.size, head.hash};
+        if (head.kind == kSkin)
+            skin_.push_back(place);
+        else if (head.kind == kMachine)
+            machine_.push_back(place);
+        else if (head.kind == kFrame)
+            frame_.push_back(place);
+        else if (head.kind == kEnd)
+            break;
+        else
+            give_up("is damaged");
+        at += head.size;
+    }
+}
+
+FrameStore::~FrameStore() { ::close(handle_); }
+
+std::string FrameStore::bytes_at(const Place& place) const {
+    std::string bytes(place.size, '\0');
+    if (!read_all(handle_, place.offset, bytes.data(), bytes.size()) ||
+        hash_of(bytes) != place.hash) {
+        fail(ExitCode::output, "{}: is damaged", file_.string());
+    }
+    return bytes;
+}
+
+StoredFrame FrameStore::frame(int index) const {
+    const std::string bytes = bytes_at(frame_.at(static_cast<std::size_t>(index)));
+    ByteReader in(bytes);
+    StoredFrame frame;
+    frame.skin = in.get<int>();
+    frame.machine = in.get<int>();
+    frame.position = in.get_array<Eigen::Vector3f>();
+    frame.pose.resize(in.get<std::uint64_t>());
+    for (Pose& pose : frame.pose) {
+        for (int c = 0; c < 4; ++c) pose.rotation.coeffs()[c] = in.get<double>();
+        pose.translation = in.get<Vec3>();
+    }
+    return frame;
+}
+
+TriMesh FrameStore::skin(int index) const {
+    const std::string bytes = bytes_at(skin_.at(static_cast<std::size_t>(index)));
+    ByteReader in(bytes);
+    return get_mesh(in);
+}
+
+std::vector<DrawnBody> FrameStore::machine(int index) const {
+    const std::string bytes = bytes_at(machine_.at(static_cast<std::size_t>(index)));
+    ByteReader in(bytes);
+    std::vector<DrawnBody> bodies(in.get<std::uint64_t>());
+    for (DrawnBody& body : bodies) {
+        body.name = in.get_text();
+        body.surface = get_mesh(in);
+        body.color = in.get<Vec3>();
+    }
+    return bodies;
+}
+
+}  // namespace swage

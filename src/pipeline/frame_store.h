@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The motion of a run on disk: skins, machines, and for each frame where both stand. It is written
+// while the simulation goes on and read frame by frame, so that a run can be drawn, and drawn
+// again, without simulating and without holding all frames in memory.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "geometry/box.h"
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+// A tool, grip or blade as it is drawn: a surface in its own frame.
+struct DrawnBody {
+    std::string name;
+    TriMesh surface;
+    Vec3 color = {0.5, 0.5, 0.5};
+};
+
+struct StoredFrame {
+    int skin = 0;                           // which skin
+    int machine = 0;                        // which machine
+    std::vector<Eigen::Vector3f> position;  // of the skin's vertices [m]
+    std::vector<Pose> pose;                 // world from body, of the machine's bodies
+};
+
+class FrameStoreWriter {
+  public:
+    // Writes to a temporary beside `file` until `finish`.
+    explicit FrameStoreWriter(const std::filesystem::path& file);
+    ~FrameStoreWriter();  // removes what was not finished
+    FrameStoreWriter(const FrameStoreWriter&) = delete;
+    FrameStoreWriter& operator=(const FrameStoreWriter&) = delete;
+
+    // Both are numbered from 0. A skin's positions are those of the mesh at rest.
+    int add_skin(const TriMesh& skin);
+    int add_machine(const std::vector<DrawnBody>& body);
+    void add_frame(const StoredFrame& frame);
+    void finish();
+
+  private:
+    void put(std::uint32_t kind, const std::string& bytes);
+
+    std::filesystem::path file_, temporary_;
+    int handle_ = -1;
+    int skins_ = 0, machines_ = 0;
+};
+
+class FrameStore {
+  public:
+    // Throws Error(output) when the file is absent, damaged or of another version.
+    explicit FrameStore(const std::filesystem::path& file);
+    ~FrameStore();
+    FrameStore(const FrameStore&) = delete;
+    FrameStore& operator=(const FrameStore&) = delete;
+
+    int frame_count() const { return static_cast<int>(frame_.size()); }
+    int skin_count() const { return static_cast<int>(skin_.size()); }
+    int machine_count() const { return static_cast<int>(machine_.size()); }
+    StoredFrame frame(int index) const;
+    TriMesh skin(int index) const;
+    std::vector<DrawnBody> machine(int index) const;
+
+  private:
+    struct Place {
+        std::uint64_t offset, size, hash;
+    };
+    std::string bytes_at(const Place& place) const;
+
+    std::filesystem::path file_;
+    int handle_ = -1;
+    std::vector<Place> skin_, machine_, frame_;
+};
+
+}  // namespace swage

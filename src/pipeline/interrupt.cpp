@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/interrupt.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cctype>
+#include <csignal>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/log.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kPatienceMilliseconds = 1500;
+
+std::atomic<int> first_signal = 0;  // lock-free, so a handler may write it
+int wake_pipe[2] = {-1, -1};
+pid_t owner = 0;
+std::mutex unfinished_mutex;
+fs::path unfinished;
+
+extern "C" void take_signal(int signal) {
+    // A forked child has no watching thread.
+    if (::getpid() != owner) ::_exit(128 + signal);
+    int none = 0;
+    first_signal.compare_exchange_strong(none, signal);
+    const char byte = 1;
+    [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
+}
+
+void wait_for_signal(int timeout_milliseconds) {
+    pollfd wait{wake_pipe[0], POLLIN, 0};
+    while (::poll(&wait, 1, timeout_milliseconds) < 0) {
+    }
+    char byte;
+    if (wait.revents != 0) {
+        [[maybe_unused]] const ssize_t got = ::read(wake_pipe[0], &byte, 1);
+    }
+}
+
+void watch() {
+    wait_for_signal(-1);
+    log_text("stopping after the work at hand; once more to stop at once");
+    wait_for_signal(kPatienceMilliseconds);
+    {
+        const std::lock_guard lock(unfinished_mutex);
+        if (!unfinished.empty()) remove_temporaries(unfinished, ::getpid());
+    }
+    ::_exit(128 + first_signal);
+}
+
+// ".frame_0001.part1234.png" of the process 1234 (see base/atomic_file.h).
+bool is_temporary(const std::string& name, long pid) {
+    const std::size_t part = name.rfind(".part");
+    if (name.empty() || name[0] != '.' || part == std::string::npos) return false;
+    std::size_t end = part + 5;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+    const std::string digits = name.substr(part + 5, end - part - 5);
+    if (digits.empty() || (end < name.size() && name[end] != '.')) return false;
+    return pid == 0 || digits == std::to_string(pid);
+}
+
+}  // namespace
+
+void watch_for_interrupts() {
+    if (::pipe2(wake_pipe, O_CLOEXEC | O_NONBLOCK) != 0) return;
+    owner = ::getpid();
+    std::thread(watch).detach();
+    struct sigaction action = {};
+    action.sa_handler = take_signal;
+    action.sa_flags = SA_RESTART;
+    ::sigaction(SIGINT, &action, nullptr);
+    ::sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write error like any other
+}
+
+void throw_if_interrupted() {
+    if (const int signal = first_signal; signal != 0) throw Interrupted(signal);
+}
+
+void set_unfinished_work(const fs::path& directory) {
+    const std::lock_guard lock(unfinished_mutex);
+    unfinished = directory;
+}
+
+void remove_temporaries(const fs::path& directory, long pid) {
+    std::error_code ignored;
+    std::vector<fs::path> found;
+    for (fs::recursive_directory_iterator it(directory, ignored), end; !ignored && it != end;
+         it.increment(ignored)) {
+        if (is_temporary(it->path().filename().string(), pid)) found.push_back(it->path());
+    }
+    for (const fs::path& file : found) fs::remove(file, ignored);
+}
+
+}  // namespace swage

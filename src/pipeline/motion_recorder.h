@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Puts the work-piece and the machine at it into the motion file, frame by frame, storing a skin or
+// a machine anew only when it has changed.
+#pragma once
+
+#include "machines/machine.h"
+#include "pipeline/frame_store.h"
+#include "pipeline/work_piece.h"
+
+namespace swage {
+
+// Names and poses of what a machine is made of: tools, then grips, then blades.
+std::vector<std::string> body_names(const Apparatus& apparatus);
+std::vector<Pose> body_poses(const Drive& drive);
+
+class MotionRecorder {
+  public:
+    explicit MotionRecorder(const std::filesystem::path& file) : writer_(file) {}
+
+    void set_machine(const Apparatus& apparatus);
+    void add_frame(const WorkPiece& piece, const Drive& drive);
+    int frame_count() const { return frames_; }
+    void finish() { writer_.finish(); }
+
+  private:
+    FrameStoreWriter writer_;
+    TriMesh skin_;  // as last stored
+    int skin_id_ = -1, machine_id_ = -1;
+    int frames_ = 0;
+};
+
+}  // namespace swage

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/process.h"
+#include "base/text.h"
+
+namespace swage {
+
+namespace {
+
+// A string of gnuplot in single quotes, in which only the quote itself is special.
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (char c : text) {
+        if (c == '\'')
+            result += "''";
+        else
+            result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+    return result + "'";
+}
+
+// One graph of `size(load, row)` for every load that is ever felt; empty when none is.
+template <typename Size>
+std::string graph(const StageCurves& curves, const std::string& label, const Size& size) {
+    std::vector<std::string> lines;
+    for (std::size_t n = 0; n < curves.load().size(); ++n) {
+        const LoadCurve& load = curves.load()[n];
+        double most = 0;
+        for (std::size_t row = 0; row < curves.rows(); ++row)
+            most = std::max(most, size(load, row));
+        if (most <= 0) continue;
+        std::string data = fmt::format("$load{} << EOD\n", n);
+        const PlotAxis axis = plot_axis(curves);
+        for (std::size_t row = 0; row < curves.rows(); ++row) {
+            data += fmt::format("{:.9g} {:.9g}\n", axis.value[row], size(load, row));
+        }
+        lines.push_back(data + "EOD\n");
+        lines.push_back(fmt::format("$load{} using 1:2 with lines linetype {} linewidth 2 title {}",
+                                    n, n + 1, quoted(load.name)));
+    }
+    if (lines.empty()) return {};
+    std::string program;
+    std::vector<std::string> plots;
+    for (std::size_t n = 0; n < lines.size(); n += 2) {
+        program += lines[n];
+        plots.push_back(lines[n + 1]);
+    }
+    return program + "set ylabel " + quoted(label) + "\n" + "plot " + joined(plots, ", \\\n     ") +
+           "\n";
+}
+
+}  // namespace
+
+std::string plot_program(const StageCurves& curves, const std::filesystem::path& svg) {
+    const std::string force =
+        graph(curves, "force on the matter [N]",
+              [](const LoadCurve& load, std::size_t row) { return load.force[row].norm(); });
+    const std::string torque =
+        graph(curves, "torque about the tool's centre [N m]",
+              [](const LoadCurve& load, std::size_t row) { return load.torque[row].norm(); });
+    const int panels = !force.empty() + !torque.empty();
+    std::string program = fmt::format(
+        "set terminal svg size 900,{} noenhanced font 'sans-serif,14' background '#ffffff'\n"
+        "set output {}\n"
+        "set grid linecolor '#dddddd'\nset border linecolor '#444444'\n"
+        "set key top left\nset yrange [0:*]\nset xlabel {}\n",
+        panels == 2 ? 900 : 500, quoted(svg.string()), quoted(plot_axis(curves).label));
+    const std::string title = quoted(curves.stage() + ": what the matter felt");
+    if (panels == 2) {
+        program += "set multiplot layout 2,1 title " + title + "\n";
+    } else {
+        program += "set title " + title + "\n";
+    }
+    program += force + torque;
+    if (panels == 0) program += "set yrange [0:1]\nplot [0:1] 0 title 'nothing was felt'\n";
+    if (panels == 2) program += "unset multiplot\n";
+    return program + "set output\n";
+}
+
+bool gnuplot_is_present() { return program_exists("gnuplot"); }
+
+bool draw_plot(const StageCurves& curves, const std::filesystem::path& svg) {
+    const std::filesystem::path temporary = temporary_for(svg);
+    PipedProgram gnuplot({"gnuplot"});
+    gnuplot.write(plot_program(curves, temporary));
+    const int status = gnuplot.finish();
+    std::error_code error;
+    if (status != 0 || !std::filesystem::exists(temporary, error)) {
+        std::filesystem::remove(temporary, error);
+        log_warning("{}: gnuplot could not draw it: {}", svg.string(), gnuplot.last_error_line());
+        return false;
+    }
+    publish(temporary, svg);
+    return true;
+}
+
+}  // namespace swage

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/run.h"
+
+#include "base/atomic_file.h"
+#include "base/hash.h"
+#include "base/log.h"
+#include "pipeline/cost.h"
+#include "pipeline/draw.h"
+#include "pipeline/frame_store.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/plot.h"
+#include "pipeline/run_record.h"
+#include "pipeline/stage.h"
+
+namespace swage {
+
+namespace {
+
+FrameRange wanted_frames(const SceneSpec& scene, const RunOptions& options) {
+    const int last = frame_count(scene);
+    const FrameRange wanted = options.frames.value_or(FrameRange{1, last});
+    if (wanted.last > last) {
+        fail(ExitCode::command_line, "--frames {}-{}: the run has the frames 1 to {}", wanted.first,
+             wanted.last, last);
+    }
+    return wanted;
+}
+
+bool is_simulated(const Json& record, const RunDirectory& directory) {
+    const Json& state = record.at("state");
+    return (state == "simulated" || state == "complete") &&
+           std::filesystem::exists(directory.store());
+}
+
+void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch) {
+    record["seconds"] = seconds_json(watch);
+    write_file_whole(directory.record(), json_text(record));
+}
+
+// All stages; the motion file and run.json stand when it returns. The error, when the simulation
+// gave up on the way.
+std::optional<Error> simulate(const SceneSpec& scene, const InputMesh& input,
+                              const RunDirectory& directory, Json& record, Stopwatch& watch) {
+    make_folder(directory.root() / "meshes");
+    make_folder(directory.root() / "curves");
+    const bool can_plot = gnuplot_is_present();
+    if (!can_plot) {
+        log_warning(
+            "no program gnuplot was found, so the curves are not plotted "
+            "(apt-get install gnuplot-nox)");
+    }
+    WorkPiece piece;
+    {
+        const auto lap = watch.lap("mold");
+        piece = make_work_piece(input, scene);
+    }
+    record["matter"] = matter_json(piece.matter);
+    log_info("molded: {} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
+             piece.matter.cell_fill.size(), 1e3 * piece.matter.lattice.spacing,
+             piece.matter.particle_count(), piece.matter.connection_count(), piece.matter.mass());
+
+    MotionRecorder recorder(directory.store());
+    Progress progress("simulate", frame_count(scene) - 1);
+    std::vector<std::string> warnings = input.finding;
+    std::optional<Error> stopped;
+    long steps = 0;
+    for (const StageSpec& stage : scene.stage) {
+        const StageContext context{scene, directory.root(), recorder, watch, progress, can_plot};
+        StageOutcome outcome = run_stage(stage, recorder.frame_count(), piece, context);
+        record["stages"].push_back(outcome.record);
+        steps += outcome.steps;
+        warnings.insert(warnings.end(), outcome.warning.begin(), outcome.warning.end());
+        for (const std::string& warning : outcome.warning) log_warning("{}", warning);
+        stopped = outcome.stopped;
+        if (stopped) break;
+    }
+    recorder.finish();
+    record["frames"] = recorder.frame_count();
+    record["steps"] = steps;
+    record["state_hash"] = hash_text(state_hash(piece.matter));
+    record["warnings"] = warnings;
+    record["state"] = stopped ? "stopped" : "simulated";
+    if (stopped) record["stopped"] = stopped->what();
+    write_record(directory, record, watch);
+    return stopped;
+}
+
+}  // namespace
+
+RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
+    Stopwatch watch;
+    const FrameRange wanted = wanted_frames(scene, options);
+    InputMesh input;
+    {
+        const auto lap = watch.lap("read");
+        input = read_input_mesh(scene.mesh, scene.mold.kind);
+    }
+    const RunCost cost = estimate_cost(scene, input, options);
+    const RunIdentity identity = identity_of(scene, input, options);
+    const auto refuse_early = [&] {
+        refuse_excess(cost, options);
+        if (options.draw) check_drawing(scene.render);
+    };
+    // Where nothing can have been done yet, nothing is made before it is known to be worth it.
+    const bool may_be_done = std::filesystem::exists(options.out / "run.json");
+    if (!may_be_done) refuse_early();
+    const RunDirectory directory(options.out, identity, options.fresh);
+    const DrawnFiles files{directory.root()};
+
+    RunOutcome outcome;
+    const std::optional<Json> earlier = read_record(directory.record());
+    const bool simulated = earlier && is_simulated(*earlier, directory);
+    if (simulated && (!options.draw || is_drawn(*earlier, files, wanted, scene.render.film))) {
+        log_info("{}: already complete", directory.root().string());
+        outcome.record = *earlier;
+        outcome.was_complete = true;
+        return outcome;
+    }
+    if (may_be_done) refuse_early();
+    throw_if_interrupted();
+
+    std::optional<Error> stopped;
+    if (simulated) {
+        log_info("{}: already simulated", directory.root().string());
+        outcome.record = *earlier;
+    } else {
+        outcome.record = begin_record(scene, options, identity, input);
+        stopped = simulate(scene, input, directory, outcome.record, watch);
+    }
+    const int reached = outcome.record.at("frames").get<int>();
+    if (options.draw && wanted.first <= reached) {
+        const FrameStore store(directory.store());
+        const FrameRange drawn{wanted.first, std::min(wanted.last, reached)};
+        outcome.record["drawing"] =
+            drawing_json(draw_run(store, scene.render, drawn, files, watch));
+    }
+    if (stopped) {
+        write_record(directory, outcome.record, watch);
+        throw *stopped;
+    }
+    outcome.record["state"] = "complete";
+    write_record(directory, outcome.record, watch);
+    log_info("{}: done", directory.root().string());
+    return outcome;
+}
+
+}  // namespace swage

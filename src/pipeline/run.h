@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One execution of a scene, from the mesh to the film.
+#pragma once
+
+#include "pipeline/json.h"
+#include "pipeline/run_directory.h"
+#include "pipeline/run_options.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+struct RunOutcome {
+    Json record;                // run.json
+    bool was_complete = false;  // nothing was left to do
+};
+
+// Throws Error (see base/error.h for the codes) and Interrupted; the files that exist are whole.
+// When the simulation gives up, what was reached is written and drawn before Error(stopped).
+RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options);
+
+}  // namespace swage

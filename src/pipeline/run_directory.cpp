@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/run_directory.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/json.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kIdentityName = ".swage-run";
+constexpr const char* kLockName = ".swage-lock";
+
+std::string host_name() {
+    std::array<char, 256> name = {};
+    return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string identity_text(const RunIdentity& identity) {
+    Json json;
+    json["program"] = "swage";
+    json["version"] = identity.version;
+    for (const RunInput& input : identity.input) {
+        json["inputs"].push_back(
+            {{"role", input.role}, {"file", input.file.string()}, {"hash", input.hash}});
+    }
+    return json_text(json);
+}
+
+RunIdentity read_identity(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    RunIdentity identity;
+    try {
+        const Json json = Json::parse(text.str());
+        identity.version = json.at("version").get<std::string>();
+        for (const Json& input : json.at("inputs")) {
+            identity.input.push_back({input.at("role").get<std::string>(),
+                                      input.at("file").get<std::string>(),
+                                      input.at("hash").get<std::string>()});
+        }
+    } catch (const Json::exception&) {
+        fail(ExitCode::foreign,
+             "{}: is damaged, so nobody knows whose run this is; remove it with "
+             "its directory, or choose another --out",
+             file.string());
+    }
+    return identity;
+}
+
+const RunInput* find_role(const RunIdentity& identity, const std::string& role) {
+    for (const RunInput& input : identity.input) {
+        if (input.role == role) return &input;
+    }
+    return nullptr;
+}
+
+// What a run leaves; nothing else in the directory is ever touched.
+void remove_products(const fs::path& root) {
+    for (const char* name : {"run.json", "film.mp4", "contact.png", "motion.bin", "frames",
+                             "meshes", "curves", "again", kIdentityName}) {
+        std::error_code error;
+        fs::remove_all(root / name, error);
+        if (error) {
+            fail(ExitCode::output, "{}: cannot be removed: {}", (root / name).string(),
+                 error.message());
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here) {
+    std::vector<std::string> found;
+    if (there.version != here.version) {
+        found.push_back(fmt::format("swage {} made it, this is {}", there.version, here.version));
+    }
+    for (const RunInput& input : here.input) {
+        const RunInput* old = find_role(there, input.role);
+        if (old == nullptr) {
+            found.push_back(fmt::format("{} ({}) is new", input.role, input.file.string()));
+        } else if (old->hash != input.hash) {
+            found.push_back(fmt::format("{} differs ({} now, {} then)", input.role,
+                                        input.file.string(), old->file.string()));
+        }
+    }
+    for (const RunInput& input : there.input) {
+        if (find_role(here, input.role) == nullptr) {
+            found.push_back(fmt::format("{} ({}) is gone", input.role, input.file.string()));
+        }
+    }
+    return found;
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    if (fs::is_directory(folder, error)) return;
+    if (fs::exists(folder, error)) {
+        fail(ExitCode::output, "{}: is a file, not a directory", folder.string());
+    }
+    const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+    if (!fs::is_directory(parent, error)) {
+        fail(ExitCode::output, "{}: cannot be made: there is no directory {}", folder.string(),
+             parent.string());
+    }
+    if (!fs::create_directory(folder, error) && error) {
+        fail(ExitCode::output, "{}: cannot be made: {}", folder.string(), error.message());
+    }
+}
+
+RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bool fresh)
+    : root_(root.has_filename() ? root : root.parent_path()) {
+    make_folder(root_);
+    bool empty = true;
+    std::error_code error;
+    for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
+        if (it->path().filename() != kLockName) empty = false;
+    }
+    if (error) fail(ExitCode::output, "{}: cannot be read: {}", root_.string(), error.message());
+    if (!empty && !fs::exists(root_ / kIdentityName)) {
+        fail(ExitCode::foreign, "{}: holds files that are no run of swage; choose another --out",
+             root_.string());
+    }
+    lock();
+    try {
+        claim(identity, fresh);
+    } catch (...) {
+        ::unlink((root_ / kLockName).c_str());
+        ::close(lock_);
+        throw;
+    }
+    set_unfinished_work(root_);
+}
+
+void RunDirectory::lock() {
+    const fs::path file = root_ / kLockName;
+    for (;;) {
+        lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+        if (lock_ < 0) {
+            fail(ExitCode::output, "{}: cannot be written: {}", root_.string(),
+                 std::strerror(errno));
+        }
+        const bool ours = ::flock(lock_, LOCK_EX | LOCK_NB) == 0;
+        std::array<char, 300> text = {};
+        [[maybe_unused]] const ssize_t got = ::pread(lock_, text.data(), text.size() - 1, 0);
+        long pid = 0;
+        std::string host;
+        std::istringstream(text.data()) >> pid >> host;
+        if (!ours || (pid != 0 && host != host_name())) {
+            ::close(lock_);
+            fail(ExitCode::foreign, "{}: process {} on {} is writing there{}", root_.string(), pid,
+                 host.empty() ? "this machine" : host,
+                 ours ? fmt::format("; if it has died, remove {}", file.string()) : "");
+        }
+        // The holder before us may have removed the file between our open and our lock.
+        struct stat by_name = {}, by_handle = {};
+        if (::stat(file.c_str(), &by_name) != 0 || ::fstat(lock_, &by_handle) != 0 ||
+            by_name.st_ino != by_handle.st_ino) {
+            ::close(lock_);
+            continue;
+        }
+        if (pid != 0) log_info("{}: taking over from process {}, which died", root_.string(), pid);
+        break;
+    }
+    const std::string mine = fmt::format("{} {}\n", ::getpid(), host_name());
+    if (::ftruncate(lock_, 0) != 0 ||
+        ::pwrite(lock_, mine.data(), mine.size(), 0) != static_cast<ssize_t>(mine.size())) {
+        const int reason = errno;
+        ::unlink(file.c_str());
+        ::close(lock_);
+        fail(ExitCode::output, "{}: cannot be written: {}", file.string(), std::strerror(reason));
+    }
+}
+
+void RunDirectory::claim(const RunIdentity& identity, bool fresh) {
+    remove_temporaries(root_, 0);
+    const fs::path file = root_ / kIdentityName;
+    if (fresh) remove_products(root_);
+    if (fs::exists(file)) {
+        const std::vector<std::string> found = differences(read_identity(file), identity);
+        if (!found.empty()) {
+            fail(ExitCode::foreign,
+                 "{}: belongs to another run: {}; choose another --out, or "
+                 "--fresh to throw that run away",
+                 root_.string(), joined(found, "; "));
+        }
+    } else {
+        write_file_whole(file, identity_text(identity));
+    }
+}
+
+RunDirectory::~RunDirectory() {
+    set_unfinished_work({});
+    remove_temporaries(root_, 0);  // a film program may outlive a process that was killed
+    ::unlink((root_ / kLockName).c_str());
+    ::close(lock_);
+}
+
+fs::path DrawnFiles::still(int frame) const {
+    return folder() / fmt::format("frame_{:04d}.png", frame);
+}
+
+}  // namespace swage

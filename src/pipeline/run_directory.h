@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The directory that a run writes into: which run it belongs to, who is writing in it, and where
+// each file stands. A directory of another run is never mixed into.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace swage {
+
+inline constexpr const char* kVersion = SWAGE_VERSION;
+
+// What makes a run this run: the program's version and the bytes of everything that was read.
+struct RunInput {
+    std::string role;  // "scene", "machine bend", "mesh", ...; unique
+    std::filesystem::path file;
+    std::string hash;
+};
+struct RunIdentity {
+    std::string version = kVersion;
+    std::vector<RunInput> input;
+};
+
+// One sentence a difference, empty when they are the same run. File names may differ.
+std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here);
+
+class RunDirectory {
+  public:
+    // Creates the directory (its parent must exist) or enters it. Throws Error(output) when it
+    // cannot be written, Error(foreign) when it holds anything but this run, or while another
+    // process writes in it. `fresh` removes what an earlier run of swage left.
+    RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh);
+    ~RunDirectory();  // lets others in
+    RunDirectory(const RunDirectory&) = delete;
+    RunDirectory& operator=(const RunDirectory&) = delete;
+
+    const std::filesystem::path& root() const { return root_; }
+    std::filesystem::path record() const { return root_ / "run.json"; }
+    std::filesystem::path store() const { return root_ / "motion.bin"; }
+
+  private:
+    void lock();
+    void claim(const RunIdentity& identity, bool fresh);
+
+    std::filesystem::path root_;
+    int lock_ = -1;
+};
+
+// Where the drawn files of a run stand; `root` may also be another folder.
+struct DrawnFiles {
+    std::filesystem::path root;
+
+    std::filesystem::path folder() const { return root / "frames"; }
+    std::filesystem::path still(int frame) const;  // frames/frame_0001.png
+    std::filesystem::path film() const { return root / "film.mp4"; }
+    std::filesystem::path contact_sheet() const { return root / "contact.png"; }
+};
+
+// Makes one folder; Error(output) when that fails or something else has the name.
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace swage

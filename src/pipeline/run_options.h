@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the user says about one execution, beside the scene.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace swage {
+
+// Stills, both ends included. Frame 1 is the untouched start; numbers go on over all stages.
+struct FrameRange {
+    int first = 1;
+    int last = 1;
+};
+
+struct RunOptions {
+    std::filesystem::path out;           // the run directory
+    std::vector<std::string> overrides;  // "key=value" as given; part of what makes the run
+    std::optional<FrameRange> frames;    // draw only these; none: all
+    bool draw = true;                    // false: no picture, and nothing of OpenGL is touched
+    bool fresh = false;                  // throw away what an earlier run left in `out`
+    bool insist = false;                 // run even if it seems to need more than there is
+};
+
+}  // namespace swage

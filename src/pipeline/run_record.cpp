@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/run_record.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "pipeline/mesh_bytes.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string hash_of_mesh(TriMesh mesh) {
+    // Files may lie elsewhere; what the textures hold is hashed by itself.
+    for (SurfaceMaterial& material : mesh.material) material.texture = material.texture.filename();
+    ByteWriter out;
+    put_mesh(out, mesh);
+    return hash_text(hash_of(out.bytes()));
+}
+
+void add_file(RunIdentity& identity, const std::string& kind, const fs::path& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return;
+    std::string role = kind.empty() ? file.filename().string() : kind;
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(identity.input.begin(), identity.input.end(),
+                           [&](const RunInput& input) { return input.role == name; });
+    };
+    std::string free_role = role;
+    for (int n = 2; taken(free_role); ++n) free_role = fmt::format("{} ({})", role, n);
+    identity.input.push_back({free_role, file, hash_text(hash_of_file(file))});
+}
+
+Json box_json(const Box& box) {
+    if (box.empty()) return nullptr;
+    return {{"low", {box.low[0], box.low[1], box.low[2]}},
+            {"high", {box.high[0], box.high[1], box.high[2]}}};
+}
+
+}  // namespace
+
+RunIdentity identity_of(const SceneSpec& scene, const InputMesh& input, const RunOptions& options) {
+    RunIdentity identity;
+    std::vector<fs::path> files = {scene.file};
+    for (const fs::path& file : scene.inputs) {
+        if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+    }
+    for (const StageSpec& stage : scene.stage) {
+        for (const ToolSpec& tool : stage.machine.tool) {
+            if (tool.mesh.empty()) continue;
+            if (std::find(files.begin(), files.end(), tool.mesh) == files.end()) {
+                files.push_back(tool.mesh);
+            }
+        }
+    }
+    for (const fs::path& file : files) add_file(identity, file == scene.file ? "scene" : "", file);
+    add_file(identity, "mesh", scene.mesh.file);
+    identity.input.push_back(
+        {"what the mesh was read as", scene.mesh.file, hash_of_mesh(input.mesh)});
+    for (const SurfaceMaterial& material : input.mesh.material) {
+        if (!material.texture.empty()) {
+            add_file(identity, "texture " + material.texture.filename().string(), material.texture);
+        }
+    }
+    identity.input.push_back({"--set", joined(options.overrides, ", "),
+                              hash_text(hash_of(joined(options.overrides, "\n")))});
+    return identity;
+}
+
+Json mesh_json(const InputMesh& input) {
+    Json parts = Json::array(), materials = Json::array();
+    for (const std::string& name : input.mesh.part_name) parts.push_back(name);
+    for (const SurfaceMaterial& material : input.mesh.material) {
+        materials.push_back({{"name", material.name}, {"texture", material.texture.string()}});
+    }
+    return {{"vertices", input.mesh.position.size()},
+            {"triangles", input.mesh.triangle.size()},
+            {"components", input.report.components},
+            {"watertight", input.report.watertight},
+            {"manifold", input.report.manifold},
+            {"volume_m3", input.report.volume},
+            {"area_m2", input.report.area},
+            {"box_m", box_json(input.report.box)},
+            {"uv", !input.mesh.uv.empty()},
+            {"vertex_colors", !input.mesh.position_color.empty()},
+            {"parts", parts},
+            {"materials", materials},
+            {"scale", input.scale},
+            {"summary", summary_line(input.report)},
+            {"findings", input.finding},
+            {"repair", input.repair}};
+}
+
+Json matter_json(const Aggregate& matter) {
+    return {{"spacing_m", matter.lattice.spacing},
+            {"cells", matter.cell_fill.size()},
+            {"particles", matter.particle_count()},
+            {"connections", matter.connection_count()},
+            {"volume_m3", matter.volume()},
+            {"mass_kg", matter.mass()},
+            {"bytes", matter.bytes()}};
+}
+
+Json drawing_json(const DrawOutcome& drawing) {
+    return {{"renderer", drawing.renderer},
+            {"size", {drawing.width, drawing.height}},
+            {"frames", {drawing.frames.first, drawing.frames.last}},
+            {"film", drawing.film}};
+}
+
+Json seconds_json(const Stopwatch& watch) {
+    Json json = Json::object();
+    for (const auto& [phase, seconds] : watch.phases()) {
+        json[phase] = std::round(seconds * 1e3) / 1e3;
+    }
+    return json;
+}
+
+Json render_json(const RenderSettings& settings) {
+    Json camera = Json::array();
+    for (const CameraKey& key : settings.camera) {
+        Json one = {{"at", key.at},
+                    {"azimuth", key.azimuth},
+                    {"elevation", key.elevation},
+                    {"zoom", key.zoom}};
+        if (key.eye) one["eye"] = {(*key.eye)[0], (*key.eye)[1], (*key.eye)[2]};
+        if (key.target) one["target"] = {(*key.target)[0], (*key.target)[1], (*key.target)[2]};
+        camera.push_back(one);
+    }
+    return {{"size", {settings.width, settings.height}},
+            {"field_of_view", settings.field_of_view},
+            {"camera", camera},
+            {"frames_per_second", settings.frames_per_second},
+            {"film", settings.film},
+            {"tools", settings.tools},
+            {"ground", settings.ground}};
+}
+
+RenderSettings render_settings_of(const Json& record) {
+    RenderSettings settings;
+    try {
+        const Json& json = record.at("render");
+        settings.width = json.at("size").at(0).get<int>();
+        settings.height = json.at("size").at(1).get<int>();
+        settings.field_of_view = json.at("field_of_view").get<double>();
+        settings.frames_per_second = json.at("frames_per_second").get<int>();
+        settings.film = json.at("film").get<bool>();
+        settings.tools = json.at("tools").get<bool>();
+        settings.ground = json.at("ground").get<bool>();
+        const auto vector_of = [](const Json& three) {
+            return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),
+                        three.at(2).get<double>());
+        };
+        settings.camera.clear();
+        for (const Json& one : json.at("camera")) {
+            CameraKey key;
+            key.at = one.at("at").get<double>();
+            key.azimuth = one.at("azimuth").get<double>();
+            key.elevation = one.at("elevation").get<double>();
+            key.zoom = one.at("zoom").get<double>();
+            if (one.contains("eye")) key.eye = vector_of(one.at("eye"));
+            if (one.contains("target")) key.target = vector_of(one.at("target"));
+            settings.camera.push_back(key);
+        }
+    } catch (const Json::exception&) {
+        fail(ExitCode::output, "run.json does not say how the run was drawn; run it again");
+    }
+    return settings;
+}
+
+Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunIdentity& identity,
+                  const InputMesh& input) {
+    Json record;
+    record["program"] = "swage";
+    record["version"] = identity.version;
+    record["state"] = "begun";
+    record["scene"] = scene.file.string();
+    record["overrides"] = options.overrides;
+    for (const RunInput& one : identity.input) {
+        record["inputs"].push_back(
+            {{"role", one.role}, {"file", one.file.string()}, {"hash", one.hash}});
+    }
+    record["threads"] = thread_count();
+    record["mesh"] = mesh_json(input);
+    record["render"] = render_json(scene.render);
+    return record;
+}
+
+std::optional<Json> read_record(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return std::nullopt;
+    std::stringstream text;
+    text << in.rdbuf();
+    Json json = Json::parse(text.str(), nullptr, false);
+    if (!json.is_object() || !json.contains("state")) return std::nullopt;
+    return json;
+}
+
+bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames, bool film) {
+    try {
+        if (record.at("state") != "complete" || !record.contains("drawing")) return false;
+        const Json& drawing = record.at("drawing");
+        if (drawing.at("frames").at(0).get<int>() > frames.first ||
+            drawing.at("frames").at(1).get<int>() < frames.last) {
+            return false;
+        }
+        std::error_code error;
+        for (int f = frames.first; f <= frames.last; ++f) {
+            if (!fs::exists(files.still(f), error)) return false;
+        }
+        // Without ffmpeg there was no film then; it is not tried again.
+        const bool had_film = drawing.at("film").get<bool>();
+        return fs::exists(files.contact_sheet(), error) &&
+               (!film || !had_film || fs::exists(files.film(), error));
+    } catch (const Json::exception&) {
+        return false;
+    }
+}
+
+}  // namespace swage

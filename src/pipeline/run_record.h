@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What makes a run this run, and what run.json says of it.
+#pragma once
+
+#include <optional>
+
+#include "base/stopwatch.h"
+#include "pipeline/draw.h"
+#include "pipeline/json.h"
+#include "pipeline/run_directory.h"
+#include "pipeline/run_options.h"
+#include "pipeline/work_piece.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+// Hashes of every file that was read, of the mesh as it was understood, and of what was set on
+// the command line.
+RunIdentity identity_of(const SceneSpec& scene, const InputMesh& input, const RunOptions& options);
+
+// The parts of run.json that are known before the first stage.
+Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunIdentity& identity,
+                  const InputMesh& input);
+Json mesh_json(const InputMesh& input);
+Json matter_json(const Aggregate& matter);
+Json drawing_json(const DrawOutcome& drawing);
+Json seconds_json(const Stopwatch& watch);
+Json render_json(const RenderSettings& settings);
+// Throws Error(output) when the record holds none.
+RenderSettings render_settings_of(const Json& record);
+
+// An earlier record; none when there is no readable one.
+std::optional<Json> read_record(const std::filesystem::path& file);
+
+// Whether the record's pictures include all of these, and they still stand there.
+bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames, bool film);
+
+}  // namespace swage

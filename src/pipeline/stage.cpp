@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/stage.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/atomic_file.h"
+#include "base/hash.h"
+#include "base/text.h"
+#include "geometry/mesh_write.h"
+#include "machines/machine.h"
+#include "pipeline/blade_sweep.h"
+#include "pipeline/curves.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/plot.h"
+#include "pipeline/run_directory.h"
+#include "sim/advance.h"
+#include "skin/cut_mesh.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Warnings that come back frame after frame are told once, with the frames they came in.
+class WarningBook {
+  public:
+    void add(int frame, const std::string& sentence) {
+        auto [at, is_new] = frames_.try_emplace(sentence);
+        if (is_new) order_.push_back(sentence);
+        at->second.push_back(frame);
+    }
+    std::vector<std::string> told(const std::string& stage) const {
+        std::vector<std::string> lines;
+        for (const std::string& sentence : order_) {
+            const std::vector<int>& frames = frames_.at(sentence);
+            lines.push_back(frames.size() == 1
+                                ? fmt::format("{}, frame {}: {}", stage, frames[0], sentence)
+                                : fmt::format("{}, {} frames from {} on: {}", stage, frames.size(),
+                                              frames[0], sentence));
+        }
+        return lines;
+    }
+
+  private:
+    std::map<std::string, std::vector<int>> frames_;
+    std::vector<std::string> order_;
+};
+
+struct Totals {
+    long iterations = 0, increments = 0, halvings = 0, steps = 0, severed = 0;
+    double residual = 0, penetration = 0;
+    long tool_contacts = 0;
+
+    void add(const FrameReport& report, std::size_t tools) {
+        iterations += report.iterations;
+        increments += report.increments;
+        halvings += report.halvings;
+        steps += report.steps;
+        severed += report.severed;
+        residual = std::max(residual, report.residual);
+        for (std::size_t n = 0; n < report.load.size(); ++n) {
+            penetration = std::max(penetration, report.load[n].penetration);
+            if (n < tools) tool_contacts += report.load[n].contacts;
+        }
+    }
+};
+
+void write_meshes(const TriMesh& mesh, const fs::path& stem) {
+    write_obj(fs::path(stem) += ".obj", mesh);
+    write_ply(fs::path(stem) += ".ply", mesh);
+}
+
+Json parameters_json(const Machine& machine) {
+    Json json = Json::object();
+    for (const ParameterSpec& spec : machine.spec.parameter) {
+        json[spec.name] = {{"value", machine.parameter.at(spec.name)},
+                           {"unit", si_unit(spec.quantity)}};
+    }
+    return json;
+}
+
+Json energies_json(const FrameReport& last) {
+    return {{"machine_work", last.work}, {"kinetic", last.kinetic},
+            {"elastic", last.elastic},   {"plastic", last.plastic},
+            {"damped", last.damped},     {"severed", last.severed_energy}};
+}
+
+void write_curves(const StageCurves& curves, const StageContext& context) {
+    const fs::path stem = context.root / "curves" / curves.stage();
+    write_file_whole(fs::path(stem) += ".csv", csv_text(curves));
+    if (context.can_plot) draw_plot(curves, fs::path(stem) += ".svg");
+}
+
+// The skin is cut along the whole path of the stage's blades before they start. True when that was
+// not possible everywhere, so that torn triangles must be removed as they appear.
+bool cut_ahead(const StageSpec& stage, const Machine& machine, double duration, WorkPiece& piece,
+               SkinKind kind) {
+    if (machine.apparatus.blade.empty() || kind == SkinKind::boundary) return false;
+    const CutResult cut = cut_skin(piece.skin, piece.position, piece.mount, piece.matter,
+                                   blade_sweep(machine, stage.frames, duration));
+    follow_matter(piece, kind);
+    if (cut.open_parts > 0) {
+        log_warning("{}: {} open part{} of the skin could not be closed where it is cut",
+                    stage.name, cut.open_parts, cut.open_parts == 1 ? "" : "s");
+    }
+    if (cut.has_curved) {
+        log_warning("{}: a blade's path is curved, so the skin is torn along it, not cut",
+                    stage.name);
+    }
+    return cut.has_curved;
+}
+
+}  // namespace
+
+StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
+                       const StageContext& context) {
+    const SkinKind skin = context.scene.skin.kind;
+    const double duration = stage.duration > 0 ? stage.duration
+                                               : static_cast<double>(stage.frames) /
+                                                     context.scene.render.frames_per_second;
+    StageOutcome outcome;
+    if (stage.remold) {
+        const auto lap = context.watch.lap("mold");
+        piece = mold_anew(piece, context.scene);
+        log_info("{}: molded anew: {} particles", stage.name, piece.matter.particle_count());
+    }
+    const std::size_t connections_before = piece.matter.connection_count();
+
+    const WorkFrame frame = place_work_frame(piece.matter, stage.axis, stage.up);
+    const Machine machine = build_machine(stage.machine, stage.parameter, frame, piece.matter);
+    for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
+    const bool tears = cut_ahead(stage, machine, duration, piece, skin);
+
+    Drive before = drive_at(machine, 0, duration);
+    context.recorder.set_machine(machine.apparatus);
+    if (last_frame == 0) {
+        context.recorder.add_frame(piece, before);
+        last_frame = 1;
+    }
+    const int first_frame = last_frame + 1;
+    StageCurves curves(stage.name, last_frame, body_names(machine.apparatus), body_poses(before));
+    Simulation simulation(piece.matter, machine.apparatus, stage.sim);
+    WarningBook warnings;
+    Totals totals;
+    const fs::path meshes = context.root / "meshes";
+    if (context.scene.output.meshes_per_frame) make_folder(meshes / stage.name);
+    FrameReport last;
+    for (int n = 1; n <= stage.frames; ++n) {
+        throw_if_interrupted();
+        const int number = last_frame + n;
+        const Drive after = drive_at(machine, static_cast<double>(n) / stage.frames, duration);
+        try {
+            const auto lap = context.watch.lap("simulate");
+            last = simulation.advance(before, after);
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::stopped) throw;
+            outcome.stopped.emplace(ExitCode::stopped, fmt::format("{}, frame {}: {}", stage.name,
+                                                                   number, error.what()));
+            break;
+        }
+        before = after;
+        {
+            const auto lap = context.watch.lap("skin");
+            follow_matter(piece, skin);
+            if (tears) remove_torn_triangles(piece.skin, piece.mount, piece.matter);
+        }
+        const auto lap = context.watch.lap("write");
+        context.recorder.add_frame(piece, after);
+        curves.add(number, last);
+        totals.add(last, machine.apparatus.tool.size());
+        for (const std::string& sentence : last.warning) warnings.add(number, sentence);
+        if (context.scene.output.meshes_per_frame) {
+            write_meshes(piece.deformed(),
+                         meshes / stage.name / fmt::format("frame_{:04d}", number));
+        }
+        context.progress.advance(number - 1, stage.name);
+    }
+
+    const auto lap = context.watch.lap("write");
+    write_meshes(piece.deformed(), meshes / stage.name);
+    write_curves(curves, context);
+    outcome.warning = warnings.told(stage.name);
+    if (!machine.apparatus.tool.empty() && totals.tool_contacts == 0 && !outcome.stopped) {
+        outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
+    }
+    outcome.steps = totals.iterations + totals.steps;
+    outcome.record = {
+        {"name", stage.name},
+        {"machine", stage.machine.name},
+        {"parameters", parameters_json(machine)},
+        {"frames", {first_frame, last_frame + static_cast<int>(curves.rows()) - 1}},
+        {"duration_s", duration},
+        {"remolded", stage.remold},
+        {"particles", piece.matter.particle_count()},
+        {"connections_before", connections_before},
+        {"connections_after", piece.matter.connection_count()},
+        {"severed", totals.severed},
+        {"pieces", last.pieces},
+        {"iterations", totals.iterations},
+        {"increments", totals.increments},
+        {"halvings", totals.halvings},
+        {"explicit_steps", totals.steps},
+        {"largest_residual", totals.residual},
+        {"deepest_penetration_m", totals.penetration},
+        {"energies_J", energies_json(last)},
+        {"notes", machine.notes},
+        {"warnings", outcome.warning},
+        {"state_hash", hash_text(state_hash(piece.matter))},
+    };
+    return outcome;
+}
+
+}  // namespace swage

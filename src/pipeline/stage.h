@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One stage of a run: the machine is set up at the work-piece as it is, works on it frame by frame,
+// and what it did is written down.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/stopwatch.h"
+#include "pipeline/json.h"
+#include "pipeline/motion_recorder.h"
+#include "pipeline/work_piece.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+struct StageContext {
+    const SceneSpec& scene;
+    std::filesystem::path root;  // of the run directory
+    MotionRecorder& recorder;
+    Stopwatch& watch;
+    Progress& progress;
+    bool can_plot = false;
+};
+
+struct StageOutcome {
+    Json record;  // for run.json
+    long steps = 0;
+    std::vector<std::string> warning;
+    std::optional<Error> stopped;  // the simulation gave up; what was reached is kept
+};
+
+// `last_frame`: the number of the last frame before the stage, 0 for the first stage, which then
+// also records frame 1, the untouched start.
+StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
+                       const StageContext& context);
+
+}  // namespace swage

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/work_piece.h"
+
+#include "base/log.h"
+#include "geometry/mesh_read.h"
+#include "geometry/mesh_repair.h"
+#include "mold/mold.h"
+#include "skin/boundary.h"
+
+namespace swage {
+
+namespace {
+
+double scale_to(double length, const TriMesh& mesh) {
+    const double longest = box_of(mesh.position).size().maxCoeff();
+    return longest > 0 ? length / longest : 1.0;
+}
+
+bool looks_the_same(const TriMesh& a, const TriMesh& b) {
+    return a.material.size() == b.material.size() &&
+           a.triangle_uv.empty() == b.triangle_uv.empty() &&
+           a.position_color.empty() == b.position_color.empty() &&
+           a.triangle_smooth.empty() == b.triangle_smooth.empty();
+}
+
+// A mesh that does not bound a volume is repaired. A block is molded over the box alone.
+void make_solid(InputMesh& input, MoldKind kind) {
+    if (kind == MoldKind::block || input.report.bounds_a_volume()) return;
+    for (const std::string& finding : input.report.finding) log_warning("{}", finding);
+    Repair repaired = repair_mesh(input.mesh);
+    input.repair = repaired.account;
+    for (const std::string& act : repaired.account) log_info("repaired: {}", act);
+    if (repaired.account.empty()) return;
+    log_info("repaired: {}", summary_line(check_mesh(repaired.mesh)));
+    if (looks_the_same(input.mesh, repaired.mesh)) {
+        input.mesh = std::move(repaired.mesh);
+    } else {
+        log_info("the mesh itself is kept as skin, the repaired one only shapes the matter");
+        input.solid = std::move(repaired.mesh);
+    }
+}
+
+}  // namespace
+
+InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length) {
+    InputMesh input;
+    input.mesh = read_mesh(file, {}, &input.finding);
+    if (length) {
+        input.scale = scale_to(*length, input.mesh);
+        if (input.scale != 1) {
+            for (Vec3& p : input.mesh.position) p *= input.scale;
+        }
+    }
+    input.report = check_mesh(input.mesh);
+    return input;
+}
+
+InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind) {
+    InputMesh input = read_mesh_as_it_is(spec.file, spec.length);
+    log_info("{}: {}", spec.file.filename().string(), summary_line(input.report));
+    for (const std::string& finding : input.finding) log_warning("{}", finding);
+    make_solid(input, kind);
+    return input;
+}
+
+TriMesh WorkPiece::deformed() const {
+    TriMesh mesh = skin;
+    mesh.position = position;
+    return mesh;
+}
+
+WorkPiece make_work_piece(const InputMesh& input, const SceneSpec& scene) {
+    WorkPiece piece;
+    piece.matter = mold(input.to_mold(), scene.material, scene.mold);
+    if (scene.skin.kind == SkinKind::boundary) {
+        follow_matter(piece, scene.skin.kind);
+        return piece;
+    }
+    piece.skin = input.mesh;
+    piece.position = input.mesh.position;
+    piece.mount = mount_mesh(input.mesh.position, piece.matter, scene.skin.kind);
+    return piece;
+}
+
+WorkPiece mold_anew(const WorkPiece& piece, const SceneSpec& scene) {
+    InputMesh input;
+    input.mesh = piece.deformed();
+    input.report = check_mesh(input.mesh);
+    make_solid(input, scene.mold.kind);
+    return make_work_piece(input, scene);
+}
+
+void follow_matter(WorkPiece& piece, SkinKind kind) {
+    if (kind == SkinKind::boundary) {
+        piece.skin = boundary_skin(piece.matter);
+        piece.position = piece.skin.position;
+    } else {
+        skin_positions(piece.mount, piece.matter, piece.position);
+    }
+}
+
+}  // namespace swage

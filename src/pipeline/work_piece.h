@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The work-piece on its way through the stages: the mesh that came in, the matter that was molded
+// from it, and the skin that follows the matter.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh_check.h"
+#include "geometry/trimesh.h"
+#include "matter/aggregate.h"
+#include "scene/spec.h"
+#include "skin/mount.h"
+
+namespace swage {
+
+struct InputMesh {
+    TriMesh mesh;       // read and scaled; repaired, where that keeps what it looks like
+    TriMesh solid;      // what bounds the volume to be molded; empty: the mesh itself does
+    MeshReport report;  // of the mesh as it was read
+    std::vector<std::string> finding;  // what the file held and the mesh does not, and the like
+    std::vector<std::string> repair;   // account; empty when nothing was repaired
+    double scale = 1;                  // from the file's lengths to ours
+
+    const TriMesh& to_mold() const { return solid.triangle.empty() ? mesh : solid; }
+};
+
+// Reads, scales to `length` (the longest side of the box [m]) and reports. Throws Error(mesh).
+InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length);
+
+// The same, and makes sure that it can be molded. Logs one line always, and the account of a
+// repair.
+InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind);
+
+struct WorkPiece {
+    Aggregate matter;
+    TriMesh skin;                // its positions: as mounted
+    Mount mount;                 // unless the skin is a boundary
+    std::vector<Vec3> position;  // of the skin now [m]
+
+    // The skin as a mesh where it is now.
+    TriMesh deformed() const;
+};
+
+WorkPiece make_work_piece(const InputMesh& input, const SceneSpec& scene);
+
+// A new representation of the work-piece as it is now, at rest.
+WorkPiece mold_anew(const WorkPiece& piece, const SceneSpec& scene);
+
+// Brings the skin to where the matter is.
+void follow_matter(WorkPiece& piece, SkinKind kind);
+
+}  // namespace swage

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <sstream>
+
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+namespace {
+
+const std::vector<std::string> kCommands = {"run", "check", "info", "machines", "render", "make"};
+
+// The words of a shell line that uses double quotes at most.
+std::vector<std::string> words_of(const std::string& line) {
+    std::vector<std::string> words;
+    std::string word;
+    bool quoted = false;
+    for (char c : line + " ") {
+        if (c == '"') {
+            quoted = !quoted;
+        } else if (c == ' ' && !quoted) {
+            if (!word.empty()) words.push_back(word);
+            word.clear();
+        } else {
+            word += c;
+        }
+    }
+    return words;
+}
+
+// The examples at the end of a command's help, each as the words after "swage".
+std::vector<std::vector<std::string>> examples_of(const std::string& help) {
+    std::vector<std::vector<std::string>> examples;
+    std::istringstream in(help.substr(std::min(help.find("Examples:"), help.size())));
+    for (std::string line; std::getline(in, line);) {
+        if (line.rfind("  swage ", 0) == 0) examples.push_back(words_of(line.substr(8)));
+    }
+    return examples;
+}
+
+int code_of(const std::vector<std::string>& argument) {
+    return run_swage(argument, SWAGE_SOURCE_DIR).code;
+}
+
+}  // namespace
+
+TEST_CASE("the version and every help come on stdout with code 0") {
+    const Outcome version = run_swage({"--version"});
+    CHECK(version.code == 0);
+    CHECK(version.out.rfind("swage ", 0) == 0);
+    CHECK(version.err.empty());
+    CHECK(run_swage({"--help"}).code == 0);
+    for (const std::string& command : kCommands) {
+        const Outcome help = run_swage({command, "--help"});
+        CHECK(help.code == 0);
+        CHECK(help.err.empty());
+        CHECK(examples_of(help.out).size() >= 2);
+    }
+}
+
+TEST_CASE("the examples of every help work as they stand") {
+    const Scratch scratch;
+    std::vector<std::vector<std::string>> examples = examples_of(run_swage({"--help"}).out);
+    for (const std::string& command : kCommands) {
+        for (auto& example : examples_of(run_swage({command, "--help"}).out)) {
+            examples.push_back(example);
+        }
+    }
+    for (std::vector<std::string>& example : examples) {
+        std::string line = "swage";
+        for (const std::string& word : example) line += " " + word;
+        INFO(line);
+        // A scene of a run is only checked and a finished run only named here: others run them.
+        if (example[0] == "render") continue;
+        if (example[0] == "run") {
+            std::vector<std::string> check = {"check", example.at(1)};
+            for (std::size_t n = 2; n + 1 < example.size(); ++n) {
+                if (example[n] == "--set") check.insert(check.end(), {"--set", example[n + 1]});
+            }
+            CHECK(code_of(check) == 0);
+            continue;
+        }
+        for (std::string& word : example) {
+            if (word.rfind("/tmp/", 0) == 0) word = (scratch.path() / word.substr(5)).string();
+        }
+        const Outcome outcome = run_swage(example);
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+    }
+}
+
+TEST_CASE("a wrong command line ends with 2 and a hint") {
+    CHECK(code_of({}) == 2);
+    CHECK(code_of({"run"}) == 2);
+    CHECK(code_of({"info", "--threads", "0", "assets/meshes/bar.obj"}) == 2);
+    CHECK(code_of({"info", "--threads", "two", "assets/meshes/bar.obj"}) == 2);
+    CHECK(code_of({"info", "--quiet", "--verbose", "assets/meshes/bar.obj"}) == 2);
+    for (const char* frames : {"0-3", "5-2", "x", "1-", "-2", "1-2-3", "1.5"}) {
+        CHECK(code_of({"run", "a.toml", std::string("--frames=") + frames}) == 2);
+    }
+    for (const char* size : {"0x10", "10", "axb", "99999x5", "10x10x10"}) {
+        CHECK(code_of({"render", "somewhere", std::string("--size=") + size}) == 2);
+    }
+    const Outcome command = run_swage({"chekc", "a.toml"});
+    CHECK(command.code == 2);
+    CHECK(command.out.empty());
+    CHECK(command.err.find("did you mean \"check\"?") != std::string::npos);
+    CHECK(run_swage({"run", "a.toml", "--no-rendr"}).err.find("--no-render") != std::string::npos);
+    CHECK(run_swage({"machines", "bnd"}).err.find("\"bend\"") != std::string::npos);
+    CHECK(code_of({"machines", "bnd"}) == 2);
+    CHECK(code_of({"make", "bra"}) == 2);
+    CHECK(code_of({"make", "bar", "--length", "10 kg", "--out", "/nowhere/bar.obj"}) == 2);
+    CHECK(code_of({"make", "bar", "--length", "-1", "--out", "/nowhere/bar.obj"}) == 2);
+    CHECK(code_of({"make", "bar", "--out", "/tmp/bar.step"}) == 2);
+}
+
+TEST_CASE("a wrong scene ends with 3, a wrong mesh with 4, and nothing is written") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const fs::path run = scratch.path() / "run";
+    const auto try_scene = [&](const std::string& key, const std::string& value) {
+        const Outcome outcome = run_swage({"run", scene.string(), "--out", run.string(),
+                                           "--no-render", "--set", key + "=" + value});
+        CHECK_FALSE(fs::exists(run));
+        return outcome.code;
+    };
+    CHECK(try_scene("stage.1.anlge", "3 deg") == 3);
+    CHECK(try_scene("stage.1.angle", "3 kg") == 3);
+    CHECK(try_scene("stage.1.machine", "bnd") == 3);
+    CHECK(try_scene("material.density", "-1") == 3);
+    CHECK(try_scene("mesh.file", "none.obj") == 4);
+    put_text(scratch.path() / "broken.obj", "v 0 0 nan\nf 1 2 3\n");
+    CHECK(try_scene("mesh.file", "broken.obj") == 4);
+    fs::create_directory(scratch.path() / "folder.obj");
+    CHECK(try_scene("mesh.file", "folder.obj") == 4);
+    CHECK(code_of({"info", (scratch.path() / "none.obj").string()}) == 4);
+    CHECK(code_of({"check", (scratch.path() / "none.toml").string()}) == 3);
+}
+
+TEST_CASE("what would need too much is refused with 7 before anything is done") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    for (const char* set : {"mold.across=5000", "stage.1.frames=1000000000"}) {
+        const Outcome outcome = run_swage(
+            {"run", scene.string(), "--out", (scratch.path() / "run").string(), "--set", set});
+        INFO(outcome.err);
+        CHECK(outcome.code == 7);
+        CHECK_FALSE(fs::exists(scratch.path() / "run" / "frames"));
+        CHECK(code_of({"check", scene.string(), "--set", set}) == 7);
+    }
+}
+
+TEST_CASE("check tells every mistake at once, with its place, and as JSON") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 3, "colour = \"red\"\nfps = \"many\"\n");
+    const Outcome outcome = run_swage({"check", scene.string()});
+    CHECK(outcome.code == 3);
+    CHECK(outcome.out.empty());
+    CHECK(outcome.err.find("small.toml:13:1: ") != std::string::npos);
+    CHECK(outcome.err.find("small.toml:14:") != std::string::npos);
+    const Outcome json = run_swage({"check", scene.string(), "--json"});
+    CHECK(json.code == 3);
+    CHECK(Json::parse(json.out).at("mistakes").size() == 2);
+}
+
+TEST_CASE("check tells what a run will cost, and the run costs it") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const Outcome outcome = run_swage({"check", scene.string(), "--json"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const Json cost = Json::parse(outcome.out).at("cost");
+    CHECK(cost.at("cells") == 40);
+    CHECK(cost.at("particles") == 99);
+    CHECK(cost.at("frames") == 4);
+    CHECK(cost.at("steps").get<double>() > 100);
+    CHECK(cost.at("memory_bytes").get<double>() > 1e7);
+    CHECK(cost.at("disk_bytes").get<double>() > 1e4);
+    const std::string text = run_swage({"check", scene.string()}).out;
+    for (const char* word : {"cells", "particles", "connections", "memory", "steps", "disk"}) {
+        CHECK(text.find(word) != std::string::npos);
+    }
+}
+
+TEST_CASE("info and machines tell the same in words and in JSON") {
+    const Json info = Json::parse(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
+    CHECK(info.at("watertight") == true);
+    CHECK(info.at("components") == 1);
+    CHECK(info.at("volume_m3").get<double>() > 0);
+    CHECK(run_swage({"info", "assets/meshes/bar.obj"}).out.find("watertight") != std::string::npos);
+
+    const Json machines = Json::parse(run_swage({"machines", "--json"}).out);
+    std::vector<std::string> names;
+    for (const Json& machine : machines) names.push_back(machine.at("name").get<std::string>());
+    for (const char* name : {"bend", "twist", "cut"}) {
+        CHECK(std::find(names.begin(), names.end(), name) != names.end());
+    }
+    const std::string bend = run_swage({"machines", "bend"}).out;
+    CHECK(bend.find("radius") != std::string::npos);
+    CHECK(bend.find("deg") != std::string::npos);
+}
+
+TEST_CASE("made meshes are the same to the bit each time, and as large as asked for") {
+    const Scratch scratch;
+    const fs::path a = scratch.path() / "a.obj", b = scratch.path() / "b.obj";
+    for (const fs::path& file : {a, b}) {
+        REQUIRE(run_swage({"make", "bar", "--length", "30 cm", "--out", file.string()}).code == 0);
+    }
+    const Json info = Json::parse(run_swage({"info", a.string(), "--json"}).out);
+    CHECK(info.at("box_m").at("high").at(0).get<double>() == Approx(0.15));
+    std::string first = bytes_of(a), second = bytes_of(b);
+    // Each names its own material library.
+    CHECK(first.substr(first.find("\nv ")) == second.substr(second.find("\nv ")));
+}
+
+TEST_CASE("data goes to stdout alone, and --quiet leaves stderr empty") {
+    const Outcome info = run_swage({"info", "assets/meshes/bar.obj", "--quiet", "--json"});
+    CHECK(info.code == 0);
+    CHECK(info.err.empty());
+    CHECK_NOTHROW(Json::parse(info.out));
+}

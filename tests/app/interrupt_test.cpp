@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+void nap(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+
+bool wait_for(const fs::path& file, RunningSwage& run) {
+    for (int n = 0; n < 3000 && run.is_running(); ++n) {
+        if (fs::exists(file)) return true;
+        nap(10);
+    }
+    return fs::exists(file);
+}
+
+void check_only_whole_files(const fs::path& run) {
+    for (const auto& entry : fs::recursive_directory_iterator(run)) {
+        INFO(entry.path().string());
+        CHECK(entry.path().filename().string().find(".part") == std::string::npos);
+        CHECK(entry.path().filename() != ".swage-lock");
+        if (entry.path().extension() == ".png") {
+            const std::string bytes = bytes_of(entry.path());
+            CHECK(bytes.compare(bytes.size() - 8, 4, "IEND") == 0);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a run that is asked to stop leaves only whole files within two seconds") {
+    const int signal = GENERATE(SIGTERM, SIGINT);
+    const bool while_drawing = GENERATE(false, true);
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 200);
+    const fs::path run = scratch.path() / "run";
+    RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path());
+    const fs::path sign = while_drawing ? run / "frames/frame_0003.png" : run / ".swage-run";
+    REQUIRE(wait_for(sign, running));
+    const auto asked = Clock::now();
+    running.signal(signal);
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    CHECK(std::chrono::duration<double>(Clock::now() - asked).count() < 2.5);
+    CHECK(outcome.code == 128 + signal);
+    check_only_whole_files(run);
+    CHECK_FALSE(fs::exists(run / "film.mp4"));
+}
+
+TEST_CASE("a second run in the same directory is refused while the first goes on") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 200);
+    const fs::path run = scratch.path() / "run";
+    RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path());
+    REQUIRE(wait_for(run / ".swage-run", running));
+    const Outcome second = run_swage({"run", scene.string(), "--out", run.string()});
+    CHECK(second.code == 8);
+    CHECK(second.err.find(std::to_string(running.pid())) != std::string::npos);
+}
+
+TEST_CASE("after a run was killed the next one does all of it") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 40);
+    const fs::path run = scratch.path() / "run";
+    {
+        RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path());
+        REQUIRE(wait_for(run / ".swage-run", running));
+        nap(150);
+        running.signal(SIGKILL);
+        CHECK(running.wait().code == 128 + SIGKILL);
+    }
+    nap(700);  // a film program that has lost its reader writes what it has
+    const Outcome again =
+        run_swage({"run", scene.string(), "--out", run.string(), "--frames", "1-2"});
+    INFO(again.err);
+    CHECK(again.code == 0);
+    check_only_whole_files(run);
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs the built program as a user does.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+struct Outcome {
+    int code = -1;  // exit code, or 128 + n by signal n
+    std::string out, err;
+};
+
+// A program that runs on while the test does something else.
+class RunningSwage {
+  public:
+    // `set` goes over the environment. Standard streams go to files in `folder`, which is also
+    // where it starts.
+    RunningSwage(const std::vector<std::string>& argument, std::filesystem::path folder,
+                 const std::map<std::string, std::string>& set = {});
+    ~RunningSwage();
+    RunningSwage(const RunningSwage&) = delete;
+    RunningSwage& operator=(const RunningSwage&) = delete;
+
+    pid_t pid() const { return pid_; }
+    void signal(int number) const;
+    bool is_running();
+    Outcome wait();
+
+  private:
+    std::filesystem::path out_, err_;
+    pid_t pid_ = -1;
+    int status_ = 0;
+    bool ended_ = false;
+};
+
+Outcome run_swage(const std::vector<std::string>& argument,
+                  const std::filesystem::path& folder = SWAGE_SOURCE_DIR,
+                  const std::map<std::string, std::string>& set = {});
+
+std::string bytes_of(const std::filesystem::path& file);
+void put_text(const std::filesystem::path& file, const std::string& text);
+
+// A bar of 10 x 2 x 2 cells bent by a few degrees in `frames` frames, drawn small.
+// Returns the scene's file; `more` stands at the end of it.
+std::filesystem::path put_small_scene(const std::filesystem::path& folder, int frames = 3,
+                                      const std::string& more = {});

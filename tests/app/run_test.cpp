@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+namespace {
+
+// Name and bytes of every file below a folder.
+std::map<std::string, std::string> files_below(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) {
+            files[fs::relative(entry.path(), folder).string()] = bytes_of(entry.path());
+        }
+    }
+    return files;
+}
+
+bool is_whole_png(const std::string& bytes) {
+    return bytes.size() > 50 && bytes.compare(1, 3, "PNG") == 0 &&
+           bytes.compare(bytes.size() - 8, 4, "IEND") == 0;
+}
+
+std::string state_hash(const fs::path& run) {
+    return Json::parse(bytes_of(run / "run.json")).at("state_hash").get<std::string>();
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a run leaves stills, film, sheet, meshes, curves and its record, and is not done twice") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const fs::path run = scratch.path() / "run";
+    const Outcome first = run_swage({"run", scene.string(), "--out", run.string(), "--json"});
+    INFO(first.err);
+    REQUIRE(first.code == 0);
+    for (const char* name : {"frames/frame_0001.png", "frames/frame_0002.png",
+                             "frames/frame_0003.png", "frames/frame_0004.png", "contact.png"}) {
+        CHECK(is_whole_png(bytes_of(run / name)));
+    }
+    CHECK_FALSE(fs::exists(run / "frames/frame_0005.png"));
+    for (const char* name : {"meshes/1-bend.obj", "meshes/1-bend.ply", "curves/1-bend.csv"}) {
+        CHECK(fs::file_size(run / name) > 100);
+    }
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(Json::parse(first.out) == record);
+    CHECK(record.at("state") == "complete");
+    CHECK(record.at("frames") == 4);
+    CHECK(record.at("matter").at("cells") == 40);
+    CHECK(record.at("stages").at(0).at("frames") == Json({2, 4}));
+    CHECK(record.at("mesh").at("watertight") == true);
+    CHECK(record.at("drawing").at("film").get<bool>() == fs::exists(run / "film.mp4"));
+    // Every line of the table: its heading, the start, three frames.
+    const std::string table = bytes_of(run / "curves/1-bend.csv");
+    CHECK(std::count(table.begin(), table.end(), '\n') == 5);
+    // No temporary, no lock.
+    for (const auto& [name, bytes] : files_below(run)) {
+        CHECK(name.find(".part") == std::string::npos);
+        CHECK(name != ".swage-lock");
+    }
+
+    const auto before = files_below(run);
+    const Outcome again = run_swage({"run", scene.string(), "--out", run.string()});
+    CHECK(again.code == 0);
+    CHECK(again.err.find("already complete") != std::string::npos);
+    CHECK(files_below(run) == before);
+
+    // Lost pictures come back as they were, without simulating again.
+    const std::string still = before.at("frames/frame_0003.png");
+    fs::remove(run / "frames/frame_0003.png");
+    CHECK(run_swage({"run", scene.string(), "--out", run.string()}).code == 0);
+    CHECK(bytes_of(run / "frames/frame_0003.png") == still);
+
+    // Drawn again elsewhere, as the run was and otherwise.
+    const fs::path elsewhere = scratch.path() / "elsewhere";
+    CHECK(run_swage(
+              {"render", run.string(), "--out", elsewhere.string(), "--frames", "3", "--no-film"})
+              .code == 0);
+    CHECK(bytes_of(elsewhere / "frames/frame_0003.png") == still);
+    CHECK_FALSE(fs::exists(elsewhere / "frames/frame_0002.png"));
+    CHECK(run_swage({"render", run.string(), "--out", elsewhere.string(), "--frames", "3",
+                     "--no-film", "--camera-azimuth", "120"})
+              .code == 0);
+    CHECK(bytes_of(elsewhere / "frames/frame_0003.png") != still);
+    CHECK(run_swage({"render", run.string(), "--out", elsewhere.string(), "--frames", "9"}).code ==
+          2);
+    CHECK(run_swage({"render", run.string(), "--out", run.string()}).code == 8);
+
+    // Another scene does not get in; made fresh, it does.
+    const Outcome other = run_swage({"run", scene.string(), "--out", run.string(), "--no-render",
+                                     "--set", "stage.1.angle=5 deg"});
+    CHECK(other.code == 8);
+    CHECK(other.err.find("--set") != std::string::npos);
+    CHECK(run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--fresh",
+                     "--set", "stage.1.angle=5 deg"})
+              .code == 0);
+    CHECK_FALSE(fs::exists(run / "frames"));
+    CHECK(state_hash(run) != record.at("state_hash").get<std::string>());
+}
+
+TEST_CASE("--frames draws only these stills, and more can be drawn later") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const fs::path run = scratch.path() / "run";
+    const std::vector<std::string> base = {"run", scene.string(), "--out", run.string()};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), base.begin(), base.end());
+        return run_swage(more);
+    };
+    CHECK(with({"--frames", "2-3"}).code == 0);
+    CHECK_FALSE(fs::exists(run / "frames/frame_0001.png"));
+    CHECK(fs::exists(run / "frames/frame_0002.png"));
+    CHECK(fs::exists(run / "frames/frame_0003.png"));
+    CHECK_FALSE(fs::exists(run / "frames/frame_0004.png"));
+    const std::string still = bytes_of(run / "frames/frame_0003.png");
+    CHECK(with({"--frames", "5"}).code == 2);
+    const Outcome all = with({});
+    CHECK(all.code == 0);
+    CHECK(all.err.find("already simulated") != std::string::npos);
+    CHECK(fs::exists(run / "frames/frame_0004.png"));
+    CHECK(bytes_of(run / "frames/frame_0003.png") == still);
+}
+
+TEST_CASE("the state is the same to the bit at any number of threads") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    std::vector<std::string> hashes;
+    std::vector<std::string> meshes;
+    for (const char* threads : {"1", "2", "3", "8"}) {
+        const fs::path run = scratch.path() / (std::string("run") + threads);
+        const Outcome outcome = run_swage(
+            {"run", scene.string(), "--out", run.string(), "--no-render", "--threads", threads});
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        hashes.push_back(state_hash(run));
+        meshes.push_back(bytes_of(run / "meshes/1-bend.ply"));
+    }
+    CHECK(std::count(hashes.begin(), hashes.end(), hashes[0]) == 4);
+    CHECK(std::count(meshes.begin(), meshes.end(), meshes[0]) == 4);
+}
+
+TEST_CASE("--set goes over what the scene says") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--set",
+                   "mold.across=3", "--set", "stage.1.frames=2", "--json", "--quiet"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const Json record = Json::parse(outcome.out);
+    CHECK(record.at("matter").at("cells") == 135);
+    CHECK(record.at("frames") == 3);
+    CHECK(record.at("overrides").size() == 2);
+}
+
+TEST_CASE("meshes are written for every frame when the scene asks for it") {
+    const Scratch scratch;
+    const fs::path scene =
+        put_small_scene(scratch.path(), 2, "[output]\nmeshes_per_frame = true\n");
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(fs::exists(run / "meshes/1-bend/frame_0002.obj"));
+    CHECK(bytes_of(run / "meshes/1-bend/frame_0003.ply") == bytes_of(run / "meshes/1-bend.ply"));
+}
+
+TEST_CASE("a run that cannot be written is refused before it is simulated") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    put_text(scratch.path() / "file", "");
+    CHECK(run_swage({"run", scene.string(), "--out", (scratch.path() / "file").string()}).code ==
+          5);
+    CHECK(
+        run_swage({"run", scene.string(), "--out", (scratch.path() / "no/parent").string()}).code ==
+        5);
+    CHECK(run_swage({"run", scene.string(), "--out", scratch.path().string()}).code == 8);
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/curves.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+Pose turned(double angle) { return {Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())), Vec3::Zero()}; }
+
+StageCurves turning_grip(int frames, double total) {
+    StageCurves curves("1-twist", 1, {"holder", "turner, left"}, {Pose{}, Pose{}});
+    for (int f = 1; f <= frames; ++f) {
+        FrameReport report;
+        report.time = 0.1 * f;
+        report.load.resize(2);
+        report.load[1].pose = turned(total * f / frames);
+        report.load[1].torque = {0.25, 0, 0};
+        report.work = 2.0 * f;
+        curves.add(1 + f, report);
+    }
+    return curves;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+}  // namespace
+
+TEST_CASE("a turn is followed past half a turn and past a whole one") {
+    for (double total : {0.3, -0.3, 5.0, -5.0, 15.0}) {
+        const StageCurves curves = turning_grip(20, total);
+        CHECK(std::abs(curves.load()[1].turn.back()) == Approx(std::abs(total)));
+    }
+    CHECK(turning_grip(20, 5.0).load()[0].turn.back() == 0);
+}
+
+TEST_CASE("a turn there and back ends at nothing") {
+    StageCurves curves("s", 1, {"turner"}, {Pose{}});
+    for (double angle : {0.5, 1.0, 0.5, 0.0}) {
+        FrameReport report;
+        report.load.resize(1);
+        report.load[0].pose = turned(angle);
+        curves.add(2, report);
+    }
+    CHECK(curves.load()[0].turn[2] == Approx(1.0));
+    CHECK(curves.load()[0].turn.back() == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("the table has one row a frame and as many cells as columns") {
+    const std::vector<std::string> lines = lines_of(csv_text(turning_grip(4, 1.0)));
+    REQUIRE(lines.size() == 1 + 5);
+    // The name with a comma stands in quotes: two commas are inside each of its 14 headings.
+    const auto commas = [](const std::string& line) {
+        return std::count(line.begin(), line.end(), ',');
+    };
+    CHECK(commas(lines[0]) - 14 == commas(lines[1]));
+    for (std::size_t row = 2; row < lines.size(); ++row)
+        CHECK(commas(lines[row]) == commas(lines[1]));
+    CHECK(lines[0].rfind("frame,time [s],holder x [m]", 0) == 0);
+    CHECK(lines[1].rfind("1,0,", 0) == 0);
+    CHECK(lines[5].rfind("5,0.4,", 0) == 0);
+}
+
+TEST_CASE("loads are plotted against what moves most") {
+    const PlotAxis turn = plot_axis(turning_grip(10, 2.0));
+    CHECK(turn.label == "turn of turner, left [deg]");
+    CHECK(turn.value.back() == Approx(2.0 * 180 / kPi));
+    CHECK(plot_axis(turning_grip(10, 0.0)).label == "time [s]");
+
+    StageCurves press("2-press", 1, {"ram"}, {Pose{}});
+    FrameReport report;
+    report.load.resize(1);
+    report.load[0].pose.translation = {0, -0.02, 0};
+    press.add(2, report);
+    const PlotAxis travel = plot_axis(press);
+    CHECK(travel.label == "travel of ram [mm]");
+    CHECK(travel.value.back() == Approx(20.0));
+}

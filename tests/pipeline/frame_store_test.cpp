@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/frame_store.h"
+
+#include <fstream>
+
+#include "base/error.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+TriMesh tetrahedron() {
+    TriMesh mesh;
+    mesh.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}};
+    mesh.triangle = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+    mesh.uv = {{0, 0}, {1, 0.25}};
+    mesh.triangle_uv = {{0, 1, -1}, {0, 0, 0}, {1, 1, 1}, {0, 1, 0}};
+    mesh.smooth_group_count = 3;
+    mesh.triangle_smooth = {{0, 1, 2}, {0, 1, 2}, {0, 1, 2}, {0, 1, 2}};
+    mesh.triangle_material = {0, 0, 1, 1};
+    mesh.material.resize(2);
+    mesh.material[1].name = "hide";
+    mesh.material[1].color = {0.1, 0.2, 0.3};
+    mesh.material[1].texture = "/somewhere/hide.png";
+    mesh.material[0].embedded_texture = std::make_shared<const std::string>("PNG and so on");
+    mesh.triangle_part = {0, 0, 0, 0};
+    mesh.part_name = {"body"};
+    return mesh;
+}
+
+StoredFrame some_frame(int number) {
+    StoredFrame frame;
+    frame.skin = number % 2;
+    for (int v = 0; v < 4; ++v) frame.position.emplace_back(number + 0.5f * v, v, -v);
+    frame.pose.push_back(
+        {Quat(Eigen::AngleAxisd(0.1 * number, Vec3::UnitZ())), {1, 2, 1.0 * number}});
+    return frame;
+}
+
+void write_store(const fs::path& file, int frames) {
+    FrameStoreWriter writer(file);
+    CHECK(writer.add_skin(tetrahedron()) == 0);
+    CHECK(writer.add_skin(tetrahedron()) == 1);
+    CHECK(writer.add_machine({{"pusher", tetrahedron(), {1, 0, 0}}}) == 0);
+    for (int f = 0; f < frames; ++f) writer.add_frame(some_frame(f));
+    writer.finish();
+}
+
+}  // namespace
+
+TEST_CASE("a motion file gives back what was put in") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    write_store(file, 5);
+    const FrameStore store(file);
+    REQUIRE(store.frame_count() == 5);
+    CHECK(store.skin_count() == 2);
+    CHECK(store.machine_count() == 1);
+    for (int f : {4, 0, 2}) {
+        const StoredFrame frame = store.frame(f), expected = some_frame(f);
+        CHECK(frame.skin == expected.skin);
+        CHECK(frame.position == expected.position);
+        CHECK(frame.pose[0].rotation.coeffs() == expected.pose[0].rotation.coeffs());
+        CHECK(frame.pose[0].translation == expected.pose[0].translation);
+    }
+    const TriMesh skin = store.skin(1), expected = tetrahedron();
+    CHECK(skin.position == expected.position);
+    CHECK(skin.triangle == expected.triangle);
+    CHECK(skin.uv == expected.uv);
+    CHECK(skin.triangle_uv == expected.triangle_uv);
+    CHECK(skin.smooth_group_count == 3);
+    CHECK(skin.triangle_material == expected.triangle_material);
+    CHECK(skin.material[1].name == "hide");
+    CHECK(skin.material[1].texture == "/somewhere/hide.png");
+    CHECK(skin.material[1].color == Vec3(0.1, 0.2, 0.3));
+    REQUIRE(skin.material[0].embedded_texture);
+    CHECK(*skin.material[0].embedded_texture == "PNG and so on");
+    CHECK_FALSE(skin.material[1].embedded_texture);
+    CHECK(skin.part_name == expected.part_name);
+    const std::vector<DrawnBody> machine = store.machine(0);
+    CHECK(machine[0].name == "pusher");
+    CHECK(machine[0].color == Vec3(1, 0, 0));
+}
+
+TEST_CASE("a motion file appears only when it is whole") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    {
+        FrameStoreWriter writer(file);
+        writer.add_skin(tetrahedron());
+        CHECK_FALSE(fs::exists(file));
+    }
+    CHECK(fs::is_empty(scratch.path()));
+}
+
+TEST_CASE("a damaged motion file is refused") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    write_store(file, 3);
+    const auto size = fs::file_size(file);
+    SECTION("cut short") {
+        fs::resize_file(file, size - 40);
+        CHECK_THROWS_AS(FrameStore(file), Error);
+    }
+    SECTION("one byte changed") {
+        std::fstream change(file, std::ios::in | std::ios::out | std::ios::binary);
+        change.seekp(static_cast<std::streamoff>(size) - 40);
+        change.put('x');
+        change.close();
+        const FrameStore store(file);
+        CHECK_NOTHROW(store.frame(1));
+        CHECK_THROWS_AS(store.frame(2), Error);
+    }
+    SECTION("something else") {
+        std::ofstream(file) << "not a motion file at all";
+        CHECK_THROWS_AS(FrameStore(file), Error);
+    }
+    SECTION("absent") { CHECK_THROWS_AS(FrameStore(scratch.path() / "none.bin"), Error); }
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/run_directory.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "base/error.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+RunIdentity identity_of(const std::string& scene_hash) {
+    return {kVersion, {{"scene", "a.toml", scene_hash}, {"mesh", "a.obj", "0123"}}};
+}
+
+ExitCode code_of(const std::function<void()>& act) {
+    try {
+        act();
+    } catch (const Error& error) {
+        return error.code();
+    }
+    return ExitCode::done;
+}
+
+void put_text(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+}  // namespace
+
+TEST_CASE("a run enters its own directory again") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    { const RunDirectory first(root, identity_of("1"), false); }
+    CHECK(fs::exists(root / ".swage-run"));
+    CHECK_FALSE(fs::exists(root / ".swage-lock"));
+    CHECK(code_of([&] { const RunDirectory again(root, identity_of("1"), false); }) ==
+          ExitCode::done);
+}
+
+TEST_CASE("another run's directory is refused and left as it is") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    { const RunDirectory first(root, identity_of("1"), false); }
+    put_text(root / "run.json", "{}");
+    std::string told;
+    try {
+        const RunDirectory other(root, identity_of("2"), false);
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::foreign);
+        told = error.what();
+    }
+    CHECK(told.find("scene differs") != std::string::npos);
+    CHECK(told.find("mesh") == std::string::npos);
+    CHECK(fs::exists(root / "run.json"));
+    CHECK_FALSE(fs::exists(root / ".swage-lock"));
+
+    { const RunDirectory fresh(root, identity_of("2"), true); }
+    CHECK_FALSE(fs::exists(root / "run.json"));
+    CHECK(code_of([&] { const RunDirectory now(root, identity_of("2"), false); }) ==
+          ExitCode::done);
+}
+
+TEST_CASE("a directory of something else is refused, even when all is to be made fresh") {
+    const Scratch scratch;
+    put_text(scratch.path() / "thesis.txt", "dear");
+    for (bool fresh : {false, true}) {
+        CHECK(code_of([&] { const RunDirectory run(scratch.path(), identity_of("1"), fresh); }) ==
+              ExitCode::foreign);
+    }
+    CHECK(fs::exists(scratch.path() / "thesis.txt"));
+}
+
+TEST_CASE("a directory that cannot be made is an output error") {
+    const Scratch scratch;
+    put_text(scratch.path() / "file", "");
+    const auto enter = [&](const fs::path& root) {
+        return code_of([&] { const RunDirectory run(root, identity_of("1"), false); });
+    };
+    CHECK(enter(scratch.path() / "file") == ExitCode::output);
+    CHECK(enter(scratch.path() / "no" / "parent") == ExitCode::output);
+    CHECK_FALSE(fs::exists(scratch.path() / "no"));
+    CHECK(enter(scratch.path() / "with-slash/") == ExitCode::done);
+}
+
+TEST_CASE("two runs at once in one directory: the second is refused and told who is first") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    const RunDirectory first(root, identity_of("1"), false);
+    try {
+        const RunDirectory second(root, identity_of("1"), false);
+        FAIL("both got in");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::foreign);
+        CHECK(std::string(error.what()).find(std::to_string(::getpid())) != std::string::npos);
+    }
+    CHECK(fs::exists(root / ".swage-lock"));
+}
+
+TEST_CASE("the lock of a process that died here is taken over, that of another host is not") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    { const RunDirectory first(root, identity_of("1"), false); }
+    char host[256] = {};
+    REQUIRE(::gethostname(host, sizeof host - 1) == 0);
+    put_text(root / ".swage-lock", std::string("4194303 ") + host + "\n");
+    put_text(root / ".frame_0007.part4194303.png", "half a pic");
+    CHECK(code_of([&] { const RunDirectory run(root, identity_of("1"), false); }) ==
+          ExitCode::done);
+    CHECK_FALSE(fs::exists(root / ".frame_0007.part4194303.png"));
+
+    put_text(root / ".swage-lock", "12 elsewhere.example\n");
+    CHECK(code_of([&] { const RunDirectory run(root, identity_of("1"), false); }) ==
+          ExitCode::foreign);
+}
+
+TEST_CASE("what differs between two runs is told item by item") {
+    RunIdentity there = identity_of("1"), here = identity_of("1");
+    CHECK(differences(there, here).empty());
+    here.input[1].file = "moved/a.obj";
+    CHECK(differences(there, here).empty());
+    here.input[1].hash = "9";
+    here.input.push_back({"machine cut", "cut.toml", "5"});
+    there.input.push_back({"texture", "a.png", "5"});
+    there.version = "0.0.1";
+    CHECK(differences(there, here).size() == 4);
+}
