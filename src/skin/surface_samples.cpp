@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources: implicit moving least squares, R. Kolluri, "Provably good moving least squares", 2005.
+// A place goes where it is nearest to the tangent planes of the samples around it, in the
+// least-squares sense: onto a smooth surface, and into the edge where two sides meet.
+// Sources: the quadric of planes, T. Ju, F. Losasso, S. Schaefer and J. Warren, "Dual contouring of
+// Hermite data", 2002.
 #include "skin/surface_samples.h"
+
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +34,10 @@ bool SurfaceSamples::project(Vec3& place, Vec3& normal) const {
     const Vec3 at = (place - lattice.origin) / a;
     const Vec3i site = Vec3(at.array().floor()).cast<int>();
     constexpr double kWidth = 0.45;  // of the kernel, in spacings
-    double total = 0, height = 0, nearest = 1.5 * 1.5;
-    Vec3 mean = Vec3::Zero(), nearest_normal = Vec3::Zero(), nearest_place = Vec3::Zero();
+    double total = 0, nearest = 1.5 * 1.5;
+    Mat3 quadric = Mat3::Zero();
+    Vec3 pull = Vec3::Zero(), mean = Vec3::Zero(), nearest_normal = Vec3::Zero(),
+         nearest_place = Vec3::Zero();
     for (int n = 0; n < 27; ++n) {
         const CellId cell =
             lattice.cell_at(site.x() + n % 3 - 1, site.y() + n / 3 % 3 - 1, site.z() + n / 9 - 1);
@@ -49,14 +56,18 @@ bool SurfaceSamples::project(Vec3& place, Vec3& normal) const {
             }
             const double weight = facing * facing * std::exp(-d2 / (kWidth * kWidth));
             total += weight;
-            height += weight * out.dot(way);
+            quadric += weight * out * out.transpose();
+            pull -= weight * out.dot(way) * out;
             mean += weight * out;
         }
     }
     if (nearest >= 1.5 * 1.5) return false;
     if (total > 1e-3 && mean.norm() > 0.3 * total) {
         normal = mean.normalized();
-        place -= a * height / total * normal;
+        constexpr double kStay = 0.1;  // holds the place where no plane says anything
+        quadric += kStay * total * Mat3::Identity();
+        const Vec3 step = quadric.ldlt().solve(pull);
+        place += a * step / std::max(1.0, step.norm());
     } else {  // too far away for the mean: first to the plane of the nearest
         normal = nearest_normal;
         place -= normal.dot(place - nearest_place) * normal;

@@ -95,13 +95,16 @@ inline Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec
             const Vec3 half(s & 1, s >> 1 & 1, s >> 2);
             const Vec3 corner = low + a * (cells[c].cast<double>() + 0.5 * half);
             Vec3 at = corner + Vec3::Constant(a / 4), normal;
-            if (std::abs(distance(at)) > a / 2) continue;
+            const double depth = distance(at);
+            if (std::abs(depth) > a / 2) continue;
             for (int n = 0; n < 4; ++n) {
                 normal = gradient_of(distance, at, 1e-5 * a);
                 at -= distance(at) * normal;
             }
+            // A surface on the bins' common face belongs to the one inside.
+            const double slack = depth < 0 ? 1e-6 : -1e-6;
             const Vec3 xi = (at - corner) / (a / 2);
-            if ((xi.array() < -1e-6).any() || (xi.array() >= 1 - 1e-6).any()) continue;
+            if ((xi.array() < -slack).any() || (xi.array() > 1 + slack).any()) continue;
             const Vec3 local = (at - low) / a - cells[c].cast<double>();
             std::array<float, 8> weight;
             for (int n = 0; n < 8; ++n) {
