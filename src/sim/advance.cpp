@@ -6,6 +6,7 @@
 #include <cmath>
 #include <variant>
 
+#include "sim/cell_volume.h"
 #include "sim/explicit_steps.h"
 #include "sim/lattice_sweep.h"
 #include "sim/quasistatic.h"
@@ -108,7 +109,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.plastic = r.plastic;
     report.damped = r.damped;
     report.severed_energy = r.severed_energy;
-    report.elastic = elastic_energy(r.matter, r.law);
+    report.elastic = elastic_energy(r.matter, r.law) + guard_energy_of(r.matter);
     report.kinetic = kinetic_energy(r.matter);
     const std::size_t tools = r.apparatus.tool.size();
     for (std::size_t n = 0; n < outcome.load.size(); ++n) {

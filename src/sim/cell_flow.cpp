@@ -7,13 +7,13 @@
 #include "base/parallel.h"
 #include "laws/spring_damper.h"
 #include "laws/yield.h"
+#include "sim/cell_volume.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
 
-constexpr int kBlock = 64;
 constexpr std::size_t kRunsPerChunk = 256;
 constexpr std::size_t kSpansPerChunk = 1024;
 
@@ -34,31 +34,6 @@ void strain_block(const double* x, const double* y, const double* z, const doubl
         const double dx = ux[n] - x[n], dy = uy[n] - y[n], dz = uz[n] - z[n];
         const double ratio = std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_reference;
         strain[n] = static_cast<float>(log_ratio(ratio));
-    }
-}
-
-// theta of consecutive cells: a third of the logarithm of the volume ratio, from the mean
-// deformation gradient.
-struct CellRows {
-    const double* at[3][4];  // component, row: position of the row's low end in the first cell
-};
-SWAGE_VECTOR_CLONES
-void size_block(const CellRows& rows, int count, double inverse_spacing, double* __restrict theta) {
-    const double scale = 0.25 * inverse_spacing;
-    for (int n = 0; n < count; ++n) {
-        double f[3][3];
-        for (int i = 0; i < 3; ++i) {
-            const double* const* r = rows.at[i];
-            const double a0 = r[0][n], a1 = r[0][n + 1], b0 = r[1][n], b1 = r[1][n + 1];
-            const double c0 = r[2][n], c1 = r[2][n + 1], d0 = r[3][n], d1 = r[3][n + 1];
-            f[i][0] = scale * ((a1 - a0) + (b1 - b0) + (c1 - c0) + (d1 - d0));
-            f[i][1] = scale * ((b0 - a0) + (b1 - a1) + (d0 - c0) + (d1 - c1));
-            f[i][2] = scale * ((c0 - a0) + (c1 - a1) + (d0 - b0) + (d1 - b1));
-        }
-        const double volume = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) -
-                              f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
-                              f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
-        theta[n] = log_ratio(volume > 0.01 ? volume : 0.01) / 3;
     }
 }
 
@@ -102,27 +77,24 @@ void CellFlow::find_strains(const Aggregate& matter) {
 void CellFlow::find_flowing(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const bool fresh = matter.cell_plastic[0].empty();
-    const std::array<float, kBlock> unyielded{};
+    const std::array<float, kCellBlock> unyielded{};
     const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
     std::vector<std::vector<FlowingCell>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
-        double theta[kBlock], distortion[kBlock];
+        double theta[kCellBlock], distortion[kCellBlock];
         const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
         for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
             const CellRun& run = runs[r];
-            for (int at = 0; at < run.count; at += kBlock) {
-                const int count = std::min(kBlock, run.count - at);
+            for (int at = 0; at < run.count; at += kCellBlock) {
+                const int count = std::min(kCellBlock, run.count - at);
                 const auto plastic = [&](int slot) {
                     return fresh ? unyielded.data()
                                  : matter.cell_plastic[slot].data() + run.first + at;
                 };
-                CellRows rows;
-                for (int q = 0; q < 4; ++q) {
-                    rows.at[0][q] = matter.particle_position.x.data() + run.row[q] + at;
-                    rows.at[1][q] = matter.particle_position.y.data() + run.row[q] + at;
-                    rows.at[2][q] = matter.particle_position.z.data() + run.row[q] + at;
+                cell_volumes(matter, run, at, count, theta);
+                for (int n = 0; n < count; ++n) {
+                    theta[n] = log_ratio(std::max(theta[n], 0.01)) / 3;
                 }
-                size_block(rows, count, 1 / matter.lattice.spacing, theta);
                 std::fill_n(distortion, count, 0.0);
                 for (int slot = 0; slot < kCellConnectionCount; ++slot) {
                     const int d = kCellConnection[slot].direction;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sim/cell_volume.h"
 
 namespace swage {
 
@@ -67,6 +68,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
         contacts_.begin_move(matter_, before);
         // Flow is committed after every step, so the committed rest strains are the present ones.
         outcome.damped_work += dt * sweep_.forces(matter_, law_, nullptr, force_);
+        add_guard_forces(matter_, force_);
         contacts_.add_forces(matter_, now, force_);
         double farthest = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "sim/cell_volume.h"
 
 namespace swage {
 
@@ -110,6 +111,7 @@ void QuasistaticSolver::find_masses() {
 
 void QuasistaticSolver::evaluate(const Drive& to) {
     sweep_.forces(matter_, law_, flow_.active() ? &flow_.rest_strains(matter_) : nullptr, force_);
+    add_guard_forces(matter_, force_);
     contacts_.add_forces(matter_, to, force_);
     const Vec3 g = settings_.gravity;
     const Vec3Array& x = matter_.particle_position;
@@ -317,28 +319,6 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     }
     outcome.load = load_;
     return outcome;
-}
-
-double smallest_cell_volume(const Aggregate& matter) {
-    const double a = matter.lattice.spacing;
-    double smallest = 1;
-    for (const CellRun& run : matter.lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            Mat3 gradient = Mat3::Zero();
-            for (int c = 0; c < 8; ++c) {
-                const Vec3 x = matter.particle_position.at(run.row[c >> 1] + n + (c & 1));
-                for (int axis = 0; axis < 3; ++axis) {
-                    gradient.col(axis) += (c >> axis & 1 ? 0.25 : -0.25) / a * x;
-                }
-            }
-            const double volume = gradient.determinant();
-            if (volume >= smallest) continue;
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
-            if (cell_is_whole(matter, row)) smallest = volume;
-        }
-    }
-    return smallest;
 }
 
 }  // namespace swage

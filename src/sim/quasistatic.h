@@ -68,8 +68,4 @@ class QuasistaticSolver {
     std::vector<LoadSum> load_;
 };
 
-// Determinant of the mean deformation gradient of the most compressed cell; 1 at rest, below 0
-// turned inside out.
-double smallest_cell_volume(const Aggregate& matter);
-
 }  // namespace swage

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/error.h"
 #include "base/parallel.h"
+#include "sim/cell_volume.h"
 #include "sim/quasistatic.h"
 #include "tests/catch.h"
 #include "tests/sim/machines.h"
@@ -148,6 +149,23 @@ TEST_CASE("half a turn of a soft bar converges and comes back") {
     for (std::size_t p = 0; p < bar.particle_count(); ++p) {
         CHECK((bar.particle_position.at(p) - bar.particle_reference.at(p)).norm() < 0.02 * kHeight);
     }
+}
+
+TEST_CASE("a mirrored body turns itself right side out") {
+    Aggregate m = make_block(6, 3, 3, 0.1, kElastic);
+    const Apparatus nothing;
+    const SimSettings settings;
+    for (double& x : m.particle_position.x) x = -0.2 * x;  // squeezed through itself
+    Simulation simulation(m, nothing, settings);
+    Drive rest;
+    for (int f = 0; f < 5; ++f) {
+        try {
+            simulation.advance(rest, rest);
+        } catch (const Error&) {
+            break;
+        }
+    }
+    CHECK(smallest_cell_volume(m) > 0.9);
 }
 
 TEST_CASE("what cannot converge stops with a sentence and leaves the matter as it was") {

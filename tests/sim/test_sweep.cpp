@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
+#include "sim/cell_volume.h"
 #include "sim/lattice_sweep.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
@@ -107,6 +108,32 @@ TEST_CASE("a severed connection carries no force") {
     deform(m, 0.01);
     const Vec3Array f = forces_of(m);
     for (std::size_t p = 0; p < f.size(); ++p) CHECK(f.at(p) == Vec3::Zero());
+}
+
+TEST_CASE("the volume guard is the gradient of its energy and leaves cells above half alone") {
+    Aggregate m = test::make_block(2, 2, 2, 0.1, Material{});
+    deform(m, 0.02);
+    Vec3Array none;
+    none.resize(m.particle_count());
+    for (double& y : m.particle_position.y) y *= 0.75;
+    add_guard_forces(m, none);
+    for (std::size_t p = 0; p < none.size(); ++p) CHECK(none.at(p) == Vec3::Zero());
+    for (double& y : m.particle_position.y) y *= 0.3;
+    Vec3Array f;
+    f.resize(m.particle_count());
+    add_guard_forces(m, f);
+    CHECK(guard_energy_of(m) > 0);
+    const double h = 1e-7;
+    for (std::size_t p = 0; p < m.particle_count(); p += 4) {
+        double& y = m.particle_position.y[p];
+        const double here = y;
+        y = here + h;
+        const double up = guard_energy_of(m);
+        y = here - h;
+        const double down = guard_energy_of(m);
+        y = here;
+        CHECK(f.y[p] == Approx(-(up - down) / (2 * h)).epsilon(1e-5).margin(1e-4));
+    }
 }
 
 TEST_CASE("forces have the same bits at any thread count") {

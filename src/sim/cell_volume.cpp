@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cell_volume.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "laws/volume_guard.h"
+#include "sim/vector_clones.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kRunsPerChunk = 256;
+
+// Component, row: position of the row's low end in the first cell.
+struct CellRows {
+    const double* at[3][4];
+};
+
+SWAGE_VECTOR_CLONES
+void volume_block(const CellRows& rows, int count, double scale, double* __restrict volume) {
+    for (int n = 0; n < count; ++n) {
+        double f[3][3];
+        for (int i = 0; i < 3; ++i) {
+            const double* const* r = rows.at[i];
+            const double a0 = r[0][n], a1 = r[0][n + 1], b0 = r[1][n], b1 = r[1][n + 1];
+            const double c0 = r[2][n], c1 = r[2][n + 1], d0 = r[3][n], d1 = r[3][n + 1];
+            f[i][0] = scale * ((a1 - a0) + (b1 - b0) + (c1 - c0) + (d1 - d0));
+            f[i][1] = scale * ((b0 - a0) + (b1 - a1) + (d0 - c0) + (d1 - c1));
+            f[i][2] = scale * ((c0 - a0) + (c1 - a1) + (d0 - b0) + (d1 - b1));
+        }
+        volume[n] = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) -
+                    f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
+                    f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+    }
+}
+
+struct SmallCell {
+    const CellRun* run;
+    int n;
+    double volume;
+};
+
+// Whole cells below a volume ratio, in the order of the cells.
+std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
+    std::vector<std::vector<SmallCell>> part(chunks);
+    parallel_for(chunks, [&](std::size_t chunk) {
+        double volume[kCellBlock];
+        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
+        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
+            const CellRun& run = runs[r];
+            for (int at = 0; at < run.count; at += kCellBlock) {
+                const int count = std::min(kCellBlock, run.count - at);
+                cell_volumes(matter, run, at, count, volume);
+                for (int n = 0; n < count; ++n) {
+                    if (!(volume[n] < limit)) continue;
+                    std::array<ParticleId, 4> row = run.row;
+                    for (ParticleId& p : row) p += at + n;
+                    if (!cell_is_whole(matter, row)) continue;
+                    part[chunk].push_back({&run, at + n, volume[n]});
+                }
+            }
+        }
+    });
+    std::vector<SmallCell> found;
+    for (const auto& p : part) found.insert(found.end(), p.begin(), p.end());
+    return found;
+}
+
+double material_volume(const Aggregate& matter, const SmallCell& cell) {
+    const double a = matter.lattice.spacing;
+    return matter.cell_fill[cell.run->first + cell.n] * a * a * a;
+}
+
+}  // namespace
+
+void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count, double* volume) {
+    CellRows rows;
+    for (int q = 0; q < 4; ++q) {
+        rows.at[0][q] = matter.particle_position.x.data() + run.row[q] + at;
+        rows.at[1][q] = matter.particle_position.y.data() + run.row[q] + at;
+        rows.at[2][q] = matter.particle_position.z.data() + run.row[q] + at;
+    }
+    volume_block(rows, count, 0.25 / matter.lattice.spacing, volume);
+}
+
+Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {
+    Mat3 gradient = Mat3::Zero();
+    for (int c = 0; c < 8; ++c) {
+        const Vec3 x = matter.particle_position.at(run.row[c >> 1] + n + (c & 1));
+        for (int axis = 0; axis < 3; ++axis) {
+            gradient.col(axis) += (c >> axis & 1 ? 0.25 : -0.25) / matter.lattice.spacing * x;
+        }
+    }
+    return gradient;
+}
+
+void add_guard_forces(const Aggregate& matter, Vec3Array& force) {
+    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
+        const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
+        Mat3 cofactor;
+        cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
+        const Mat3 stress = material_volume(matter, cell) *
+                            guard_slope(matter.material.young_modulus, cell.volume) * cofactor;
+        for (int c = 0; c < 8; ++c) {
+            Vec3 slope;  // of the gradient's columns with the corner's position
+            for (int axis = 0; axis < 3; ++axis) {
+                slope[axis] = (c >> axis & 1 ? 0.25 : -0.25) / matter.lattice.spacing;
+            }
+            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), -(stress * slope));
+        }
+    }
+}
+
+double guard_energy_of(const Aggregate& matter) {
+    double sum = 0;
+    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
+        sum += material_volume(matter, cell) *
+               guard_energy(matter.material.young_modulus, cell.volume);
+    }
+    return sum;
+}
+
+double smallest_cell_volume(const Aggregate& matter) {
+    double smallest = 1;
+    for (const SmallCell& cell : cells_below(matter, 1.0)) {
+        if (matter.cell_fill[cell.run->first + cell.n] < 0.25f) continue;
+        smallest = std::min(smallest, cell.volume);
+    }
+    return smallest;
+}
+
+}  // namespace swage

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The volumes of lattice cells, by the determinant of their mean deformation gradient.
+#pragma once
+
+#include "matter/aggregate.h"
+
+namespace swage {
+
+// Cells looked at in one go.
+inline constexpr int kCellBlock = 64;
+
+// Volume ratios, 1 at molding, of `count` cells of a run from cell `at` on; count <= kCellBlock.
+void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count, double* volume);
+
+// Mean deformation gradient of cell n of a run.
+Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n);
+
+// Adds the forces by which crushed cells resist (laws/volume_guard.h), in the order of the cells.
+// Cells that a blade has crossed have no volume of their own and resist nothing.
+void add_guard_forces(const Aggregate& matter, Vec3Array& force);
+double guard_energy_of(const Aggregate& matter);  // [J]
+
+// The volume ratio of the most compressed cell that is at least a quarter full; below 0 it is
+// turned inside out.
+double smallest_cell_volume(const Aggregate& matter);
+
+}  // namespace swage
