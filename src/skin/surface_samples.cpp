@@ -28,7 +28,7 @@ SurfaceSamples::SurfaceSamples(const Aggregate& matter) : matter_(matter) {
     for (std::size_t s = 0; s < count; ++s) sample_[next[cell[s]]++] = static_cast<int>(s);
 }
 
-bool SurfaceSamples::project(Vec3& place, Vec3& normal) const {
+bool SurfaceSamples::project(const Vec3& facing, Vec3& place, Vec3& normal) const {
     const Lattice& lattice = matter_.lattice;
     const double a = lattice.spacing;
     const Vec3 at = (place - lattice.origin) / a;
@@ -45,8 +45,8 @@ bool SurfaceSamples::project(Vec3& place, Vec3& normal) const {
         for (int k = first_[cell]; k < first_[cell + 1]; ++k) {
             const int s = sample_[k];
             const Vec3& out = matter_.surface.reference_normal[s];
-            const double facing = out.dot(normal);
-            if (facing <= 0.1) continue;
+            const double agreement = out.dot(facing);
+            if (agreement <= 0.1) continue;
             const Vec3 way = (place - matter_.surface.reference_position[s]) / a;
             const double d2 = way.squaredNorm();
             if (d2 < nearest) {
@@ -54,7 +54,7 @@ bool SurfaceSamples::project(Vec3& place, Vec3& normal) const {
                 nearest_normal = out;
                 nearest_place = matter_.surface.reference_position[s];
             }
-            const double weight = facing * facing * std::exp(-d2 / (kWidth * kWidth));
+            const double weight = agreement * agreement * std::exp(-d2 / (kWidth * kWidth));
             total += weight;
             quadric += weight * out * out.transpose();
             pull -= weight * out.dot(way) * out;

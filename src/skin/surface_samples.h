@@ -14,9 +14,9 @@ class SurfaceSamples {
 
     bool empty() const { return matter_.surface.size() == 0; }
     // Puts a place onto the surface, if there is any within reach (about a spacing and a half).
-    // `normal`: about outward, so that the far side of a thin part does not count; comes back as
-    // the surface's own.
-    bool project(Vec3& place, Vec3& normal) const;
+    // `facing`: about outward, so that the far side of a thin part does not count. `normal` becomes
+    // the mean normal there.
+    bool project(const Vec3& facing, Vec3& place, Vec3& normal) const;
 
   private:
     const Aggregate& matter_;

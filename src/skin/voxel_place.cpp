@@ -79,6 +79,7 @@ class Placer {
             }
         }
         for (Vec3& n : normal_) n = n.norm() > 0 ? n.normalized() : Vec3(Vec3::UnitX());
+        facing_ = normal_;
     }
 
     bool near_dropped(const HalfSite& site) const {
@@ -183,10 +184,10 @@ class Placer {
                 if (cut) way -= way.dot(target_[s]->normal) * target_[s]->normal;
                 p += 0.5 * way;
             }
-            if (outer_[s]) samples_.project(p, normal_[s]);
+            if (outer_[s]) samples_.project(facing_[s], p, normal_[s]);
             if (cut) to_cut(s, p);
             if (cut && outer_[s]) {
-                samples_.project(p, normal_[s]);
+                samples_.project(facing_[s], p, normal_[s]);
                 to_cut(s, p);
             }
         });
@@ -237,6 +238,7 @@ class Placer {
     const bool any_dropped_ = std::any_of(surface_.cell_kept.begin(), surface_.cell_kept.end(),
                                           [](char kept) { return !kept; });
     std::vector<Vec3> place_, normal_;
+    std::vector<Vec3> facing_;  // normals of the voxels' faces, which tell edges from sides
     std::vector<char> outer_, exact_, fixed_axis_, slides_;
     std::vector<std::optional<CutTarget>> target_;
     std::vector<int> first_, neighbor_;
