@@ -5,7 +5,7 @@
 // Hermite data", 2002.
 #include "skin/surface_samples.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace swage {
 
-SurfaceSamples::SurfaceSamples(const Aggregate& matter) : matter_(matter) {
+SurfaceSamples::SurfaceSamples(const Aggregate& matter) : lattice_(matter.lattice) {
     const std::size_t count = matter.surface.size();
     std::vector<CellId> cell(count);
     first_.assign(matter.cell_fill.size() + 1, 0);
@@ -25,53 +25,74 @@ SurfaceSamples::SurfaceSamples(const Aggregate& matter) : matter_(matter) {
     for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
     sample_.resize(count);
     std::vector<int> next(first_.begin(), first_.end() - 1);
-    for (std::size_t s = 0; s < count; ++s) sample_[next[cell[s]]++] = static_cast<int>(s);
+    for (std::size_t s = 0; s < count; ++s) {
+        sample_[next[cell[s]]++] = {
+            (matter.surface.reference_position[s] - lattice_.origin) / lattice_.spacing,
+            matter.surface.reference_normal[s]};
+    }
+}
+
+template <typename F>
+void SurfaceSamples::for_each_near(const Vec3& at, double reach, const F& f) const {
+    const Vec3i site = Vec3(at.array().floor()).cast<int>();
+    const Vec3 within = at - site.cast<double>();
+    double gap2[3][3];  // to the cells below, here and above, along each axis
+    for (int d = 0; d < 3; ++d) {
+        gap2[d][0] = within[d] * within[d];
+        gap2[d][1] = 0;
+        gap2[d][2] = (1 - within[d]) * (1 - within[d]);
+    }
+    for (int n = 0; n < 27; ++n) {
+        const int i = n % 3, j = n / 3 % 3, k = n / 9;
+        if (gap2[0][i] + gap2[1][j] + gap2[2][k] > reach * reach) continue;
+        const CellId cell = lattice_.cell_at(site.x() + i - 1, site.y() + j - 1, site.z() + k - 1);
+        if (cell < 0) continue;
+        for (int s = first_[cell]; s < first_[cell + 1]; ++s) {
+            const Vec3 way = at - sample_[s].place;
+            const double d2 = way.squaredNorm();
+            if (d2 < reach * reach) f(sample_[s], way, d2);
+        }
+    }
 }
 
 bool SurfaceSamples::project(const Vec3& facing, Vec3& place, Vec3& normal) const {
-    const Lattice& lattice = matter_.lattice;
-    const double a = lattice.spacing;
-    const Vec3 at = (place - lattice.origin) / a;
-    const Vec3i site = Vec3(at.array().floor()).cast<int>();
-    constexpr double kWidth = 0.45;  // of the kernel, in spacings
-    double total = 0, nearest = 1.5 * 1.5;
+    constexpr double kWidth = 1.1;      // of the kernel, in spacings
+    constexpr double kReach = 1.5;      // of the search when that finds too little
+    constexpr double kAgreement = 0.1;  // least cosine with `facing`
+    constexpr double kStay = 0.1;       // holds the place where no plane says anything
+    const double a = lattice_.spacing;
+    const Vec3 at = (place - lattice_.origin) / a;
+    double total = 0;
     Mat3 quadric = Mat3::Zero();
-    Vec3 pull = Vec3::Zero(), mean = Vec3::Zero(), nearest_normal = Vec3::Zero(),
-         nearest_place = Vec3::Zero();
-    for (int n = 0; n < 27; ++n) {
-        const CellId cell =
-            lattice.cell_at(site.x() + n % 3 - 1, site.y() + n / 3 % 3 - 1, site.z() + n / 9 - 1);
-        if (cell < 0) continue;
-        for (int k = first_[cell]; k < first_[cell + 1]; ++k) {
-            const int s = sample_[k];
-            const Vec3& out = matter_.surface.reference_normal[s];
-            const double agreement = out.dot(facing);
-            if (agreement <= 0.1) continue;
-            const Vec3 way = (place - matter_.surface.reference_position[s]) / a;
-            const double d2 = way.squaredNorm();
-            if (d2 < nearest) {
-                nearest = d2;
-                nearest_normal = out;
-                nearest_place = matter_.surface.reference_position[s];
-            }
-            const double weight = agreement * agreement * std::exp(-d2 / (kWidth * kWidth));
-            total += weight;
-            quadric += weight * out * out.transpose();
-            pull -= weight * out.dot(way) * out;
-            mean += weight * out;
-        }
-    }
-    if (nearest >= 1.5 * 1.5) return false;
+    Vec3 pull = Vec3::Zero(), mean = Vec3::Zero();
+    for_each_near(at, kWidth, [&](const Sample& sample, const Vec3& way, double d2) {
+        const double agreement = sample.normal.dot(facing);
+        if (agreement <= kAgreement) return;
+        const double bell = 1 - d2 / (kWidth * kWidth), bell2 = bell * bell;
+        const double weight = agreement * agreement * bell2 * bell2 * bell2;
+        const Vec3 share = weight * sample.normal;
+        quadric += share * sample.normal.transpose();
+        pull -= sample.normal.dot(way) * share;
+        mean += share;
+        total += weight;
+    });
     if (total > 1e-3 && mean.norm() > 0.3 * total) {
         normal = mean.normalized();
-        constexpr double kStay = 0.1;  // holds the place where no plane says anything
         quadric += kStay * total * Mat3::Identity();
-        const Vec3 step = quadric.ldlt().solve(pull);
+        const Vec3 step = quadric.inverse() * pull;
         place += a * step / std::max(1.0, step.norm());
-    } else {  // too far away for the mean: first to the plane of the nearest
-        normal = nearest_normal;
-        place -= normal.dot(place - nearest_place) * normal;
+        return true;
     }
+    const Sample* nearest = nullptr;
+    double least = 1e300;
+    for_each_near(at, kReach, [&](const Sample& sample, const Vec3&, double d2) {
+        if (d2 >= least || sample.normal.dot(facing) <= kAgreement) return;
+        least = d2;
+        nearest = &sample;
+    });
+    if (!nearest) return false;
+    normal = nearest->normal;
+    place -= a * normal.dot(at - nearest->place) * normal;
     return true;
 }
 

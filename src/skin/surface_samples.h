@@ -12,16 +12,24 @@ class SurfaceSamples {
   public:
     explicit SurfaceSamples(const Aggregate& matter);
 
-    bool empty() const { return matter_.surface.size() == 0; }
+    bool empty() const { return sample_.empty(); }
     // Puts a place onto the surface, if there is any within reach (about a spacing and a half).
     // `facing`: about outward, so that the far side of a thin part does not count. `normal` becomes
     // the mean normal there.
     bool project(const Vec3& facing, Vec3& place, Vec3& normal) const;
 
   private:
-    const Aggregate& matter_;
+    struct Sample {
+        Vec3 place;  // in spacings from the lattice's origin
+        Vec3 normal;
+    };
+    // Calls f(sample, way from it, squared distance) for those within `reach`, in spacings.
+    template <typename F>
+    void for_each_near(const Vec3& at, double reach, const F& f) const;
+
+    const Lattice& lattice_;
     std::vector<int> first_;  // a cell each and one more: into sample_
-    std::vector<int> sample_;
+    std::vector<Sample> sample_;
 };
 
 }  // namespace swage

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Skinning 100,000 vertices, one frame: the surface of a block of 100,000 cells.
+// Skinning 100,000 vertices, one frame: the surface of a block of 100,000 cells. And the boundary
+// made anew around a block and a ball of as many cells.
 #include <chrono>
 #include <cstdio>
+#include <functional>
 
 #include "base/parallel.h"
+#include "skin/boundary.h"
 #include "skin/mount.h"
 #include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
 
 using namespace swage;
 
@@ -61,5 +65,15 @@ int main() {
         std::printf(
             "%-7s %zu vertices, %zu particles used: bind %.1f ms, frame %.2f ms, one core\n", name,
             vertices.size(), mount.particle.size(), bind, frame);
+    }
+    const Aggregate ball = test::make_shape([](const Vec3& p) { return p.norm() - 1; },
+                                            Vec3::Constant(-1.008), Vec3i::Constant(56), .036);
+    set_thread_count(0);
+    const std::pair<const char*, const Aggregate*> bodies[] = {{"block", &matter}, {"ball", &ball}};
+    for (const auto& [name, body] : bodies) {
+        TriMesh mesh;
+        const double taken = best_milliseconds(5, [&] { mesh = boundary_skin(*body); });
+        std::printf("boundary of a %s, %zu cells: %zu triangles, %.0f ms, %d threads\n", name,
+                    body->cell_fill.size(), mesh.triangle.size(), taken, thread_count());
     }
 }

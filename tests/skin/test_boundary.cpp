@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "skin/boundary.h"
 
-#include <cstdlib>
-#include <fstream>
+#include <algorithm>
+#include <tuple>
 
 #include "geometry/edges.h"
 #include "tests/catch.h"
@@ -46,16 +46,6 @@ double sharpest_cosine(const TriMesh& mesh, int material) {
     return least;
 }
 
-void save(const TriMesh& mesh, const std::string& name) {
-    const char* folder = std::getenv("SWAGE_SKIN_OBJ");  // to look at
-    if (!folder) return;
-    std::ofstream file(std::string(folder) + "/" + name + ".obj");
-    for (const Vec3& p : mesh.position) file << "v " << p.transpose() << "\n";
-    for (const Corners& t : mesh.triangle) {
-        file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
-    }
-}
-
 Aggregate rod(int across) {
     const double a = 1.0 / across;
     return test::make_shape(
@@ -94,7 +84,6 @@ TEST_CASE("round shapes get round boundaries of their true volume") {
         GENERATE(table<int, double>({{4, .01}, {8, .003}, {13, .003}}));
     const Aggregate matter = rod(across);
     const TriMesh mesh = boundary_skin(matter);
-    save(mesh, "rod" + std::to_string(across));
     CHECK(closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(volume_bar));
@@ -108,7 +97,6 @@ TEST_CASE("round shapes get round boundaries of their true volume") {
 
 TEST_CASE("handles are kept") {
     const TriMesh mesh = boundary_skin(torus());
-    save(mesh, "torus");
     CHECK(closed(mesh));
     CHECK(euler_number(mesh) == 0);
     CHECK(surface_components(mesh).count == 1);
@@ -125,7 +113,6 @@ TEST_CASE("thin sheets keep both sides") {
         },
         Vec3(-6, -5, -.93), Vec3i(12, 10, 2), 1.0);
     const TriMesh mesh = boundary_skin(sheet);
-    save(mesh, "sheet");
     CHECK(closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(sheet.volume()).epsilon(.02));
@@ -140,7 +127,6 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
     test::sever_plane(matter, point, n);
     REQUIRE(find_pieces(matter).count == 2);
     TriMesh mesh = boundary_skin(matter);
-    save(mesh, std::string(round ? "rodcut" : "barcut") + std::to_string(int(10 * n.y())));
     CHECK(closed(mesh));
     const Components halves = surface_components(mesh);
     CHECK(halves.count == 2);

@@ -90,7 +90,7 @@ TEST_CASE("half frames are exact for quadratic fields wherever three particles s
 }
 
 TEST_CASE("a bent bar's skin is far nearer the truth than the cells are wide") {
-    // Least distances of C. "Skinning": bars bent by 90 degrees, errors in thicknesses.
+    // Bars bent by 90 degrees; errors in thicknesses.
     for (const auto& [across, bar] :
          {std::pair(3, 4e-4), std::pair(7, 6e-5), std::pair(15, 1e-5)}) {
         Aggregate matter = test::make_block(10 * across, across, across, 1.0 / across, Material{});
