@@ -17,7 +17,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  // points
-constexpr int kRounds = 6, kCutRounds = 40;
+constexpr int kRounds = 4, kCutRounds = 40;
 constexpr int kSlidingRings = 4;  // around a cut, of points that make room for its rim
 
 class Placer {
