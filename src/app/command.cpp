@@ -21,7 +21,7 @@ int parse_whole(const std::string& text, const std::string& of) {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value < 1) {
-        throw CLI::ValidationError(of, "\"" + text + "\" is no whole number of 1 or more");
+        throw CLI::ValidationError(of, fmt::format("\"{}\" is no whole number of 1 or more", text));
     }
     return value;
 }
@@ -64,7 +64,7 @@ FrameRange parse_frame_range(const std::string& text) {
     range.last =
         dash == std::string::npos ? range.first : parse_whole(text.substr(dash + 1), "--frames");
     if (range.last < range.first) {
-        throw CLI::ValidationError("--frames", "\"" + text + "\" ends before it begins");
+        throw CLI::ValidationError("--frames", fmt::format("\"{}\" ends before it begins", text));
     }
     return range;
 }
@@ -72,12 +72,13 @@ FrameRange parse_frame_range(const std::string& text) {
 std::pair<int, int> parse_size(const std::string& text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos) {
-        throw CLI::ValidationError("--size", "\"" + text + "\" is no size such as 1280x720");
+        throw CLI::ValidationError("--size",
+                                   fmt::format("\"{}\" is no size such as 1280x720", text));
     }
     const std::pair size{parse_whole(text.substr(0, cross), "--size"),
                          parse_whole(text.substr(cross + 1), "--size")};
     if (size.first > 16384 || size.second > 16384) {
-        throw CLI::ValidationError("--size", "\"" + text + "\" is more than 16384x16384");
+        throw CLI::ValidationError("--size", fmt::format("\"{}\" is more than 16384x16384", text));
     }
     return size;
 }
@@ -85,7 +86,7 @@ std::pair<int, int> parse_size(const std::string& text) {
 std::string count_text(double count) {
     std::string digits = fmt::format("{:.0f}", count);
     for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) {
-        digits.insert(static_cast<std::size_t>(at), ",");
+        digits.insert(static_cast<std::size_t>(at), 1, ',');
     }
     return digits;
 }

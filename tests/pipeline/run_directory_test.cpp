@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run_directory.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -96,7 +97,7 @@ TEST_CASE("two runs at once in one directory: the second is refused and told who
         FAIL("both got in");
     } catch (const Error& error) {
         CHECK(error.code() == ExitCode::foreign);
-        CHECK(std::string(error.what()).find(std::to_string(::getpid())) != std::string::npos);
+        CHECK(std::string(error.what()).find(fmt::format("{}", ::getpid())) != std::string::npos);
     }
     CHECK(fs::exists(root / ".swage-lock"));
 }
@@ -107,7 +108,7 @@ TEST_CASE("the lock of a process that died here is taken over, that of another h
     { const RunDirectory first(root, identity_of("1"), false); }
     char host[256] = {};
     REQUIRE(::gethostname(host, sizeof host - 1) == 0);
-    put_text(root / ".swage-lock", std::string("4194303 ") + host + "\n");
+    put_text(root / ".swage-lock", fmt::format("4194303 {}\n", host));
     put_text(root / ".frame_0007.part4194303.png", "half a pic");
     CHECK(code_of([&] { const RunDirectory run(root, identity_of("1"), false); }) ==
           ExitCode::done);
@@ -123,7 +124,7 @@ TEST_CASE("what differs between two runs is told item by item") {
     CHECK(differences(there, here).empty());
     here.input[1].file = "moved/a.obj";
     CHECK(differences(there, here).empty());
-    here.input[1].hash = "9";
+    here.input[1].hash = std::string("9");
     here.input.push_back({"machine cut", "cut.toml", "5"});
     there.input.push_back({"texture", "a.png", "5"});
     there.version = "0.0.1";
