@@ -2,6 +2,7 @@
 #include "skin/boundary.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "skin/mount.h"
 #include "skin/voxel_place.h"
@@ -37,11 +38,44 @@ void bind_vertex(const Aggregate& matter, const Vec3& place, const Owner& owner,
     }
 }
 
+// A blade may cut off particles whose cells hold next to no material on that side. Such crumbs are
+// not drawn: takes the faces out of all pieces that enclose less than a share of a cell.
+void drop_crumbs(const Aggregate& matter, const std::vector<Vec3>& place, VoxelSurface& surface) {
+    constexpr double kCrumb = 0.02;  // cells
+    const Pieces pieces = find_pieces(matter);
+    if (pieces.count == 1) return;
+    const auto piece_of = [&](const VoxelFace& face) {
+        return pieces.particle_piece[matter.lattice.cell_corners(face.cell)[face.corner]];
+    };
+    std::vector<double> volume(pieces.count, 0.0);
+    std::vector<Vec3> origin(pieces.count, Vec3::Zero());
+    std::vector<char> seen(pieces.count, 0);
+    for (const VoxelFace& face : surface.face) {
+        const int piece = piece_of(face);
+        if (!seen[piece]) seen[piece] = 1, origin[piece] = place[face.point[0]];
+        std::array<Vec3, 4> p;
+        for (int k = 0; k < 4; ++k) p[k] = place[face.point[k]] - origin[piece];
+        volume[piece] += (p[0].dot(p[1].cross(p[2])) + p[0].dot(p[2].cross(p[3]))) / 6;
+    }
+    const double least = kCrumb * std::pow(matter.lattice.spacing, 3);
+    std::erase_if(surface.face,
+                  [&](const VoxelFace& face) { return volume[piece_of(face)] < least; });
+    std::vector<int> number(surface.vertex_count, -1);
+    surface.vertex_count = 0;
+    for (VoxelFace& face : surface.face) {
+        for (int& v : face.vertex) {
+            if (number[v] < 0) number[v] = surface.vertex_count++;
+            v = number[v];
+        }
+    }
+}
+
 }  // namespace
 
 TriMesh boundary_skin(const Aggregate& matter) {
-    const VoxelSurface surface = voxel_surface(matter);
+    VoxelSurface surface = voxel_surface(matter);
     const std::vector<Vec3> place = place_points(matter, surface);
+    drop_crumbs(matter, place, surface);
 
     Mount mount;
     mount.reference.resize(surface.vertex_count);

@@ -10,7 +10,8 @@
 namespace swage {
 
 // Closed and oriented, in the world of now. Two materials: "boundary", and "cut" for faces where
-// matter was severed. Its volume at molding is the matter's.
+// matter was severed. Its volume at molding is the matter's. Pieces that hold next to no material
+// are left out.
 TriMesh boundary_skin(const Aggregate& matter);
 
 }  // namespace swage

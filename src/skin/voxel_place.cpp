@@ -17,7 +17,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  // points
-constexpr int kRounds = 4, kCutRounds = 40;
+constexpr int kRounds = 4, kCutRounds = 40, kUnfoldRounds = 12;
 constexpr int kSlidingRings = 4;  // around a cut, of points that make room for its rim
 
 class Placer {
@@ -34,7 +34,9 @@ class Placer {
         for (int round = 0; round < kRounds; ++round) settle(round > 0, false);
         // The steps of a cut take longer to even out, for only then no triangle is folded.
         for (int round = 0; round < kCutRounds && any_cut(); ++round) settle(true, true);
+        unfold();
         make_up_volume();
+        unfold();
         return std::move(place_);
     }
 
@@ -192,6 +194,35 @@ class Placer {
             }
         });
         place_ = std::move(next);
+    }
+
+    // In parts hardly wider than a cell the nearest surface may be round the corner. Points of
+    // faces that look inwards are drawn in between their neighbours until none is left.
+    void unfold() {
+        for (int round = 0; round < kUnfoldRounds; ++round) {
+            std::vector<char> folded(count(), 0);
+            bool any = false;
+            for (const VoxelFace& face : surface_.face) {
+                if (face.cut) continue;
+                Vec3 outward = Vec3::Zero();
+                for (int p : face.point) outward += normal_[p];
+                for (int k = 0; k < 4; ++k) {
+                    const Vec3& p = place_[face.point[k]];
+                    const Vec3 turn = (place_[face.point[(k + 1) % 4]] - p)
+                                          .cross(place_[face.point[(k + 3) % 4]] - p);
+                    if (turn.dot(outward) >= 0) continue;
+                    for (int q : face.point) folded[q] = 1;
+                    any = true;
+                }
+            }
+            if (!any) return;
+            std::vector<Vec3> next = place_;
+            for (std::size_t s = 0; s < count(); ++s) {
+                if (!folded[s] || exact_[s] || target_[s]) continue;
+                next[s] += 0.7 * (mean_of_neighbors(s) - place_[s]);
+            }
+            place_ = std::move(next);
+        }
     }
 
     double volume() const {
