@@ -247,8 +247,8 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
     return farthest;
 }
 
-bool ContactSet::draws_back(const Aggregate& matter, std::size_t tool, const Drive& from,
-                            const Drive& to) const {
+double ContactSet::advance(const Aggregate& matter, std::size_t tool, const Drive& from,
+                           const Drive& to) const {
     double normal = 0, size = 0;
     for_each_touch(
         matter, from,
@@ -259,7 +259,7 @@ bool ContactSet::draws_back(const Aggregate& matter, std::size_t tool, const Dri
             normal += d.normal.dot(way);
             size += way.norm();
         });
-    return normal < -0.3 * size;
+    return size > 0 ? normal / size : 0;
 }
 
 std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {

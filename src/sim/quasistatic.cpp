@@ -23,6 +23,7 @@ constexpr double kContactMassShare = 0.6;
 constexpr double kSmallestCellVolume = 0.05;
 constexpr double kSlipShare =
     0.05;  // of the largest push so far, below which a tool carries nothing
+constexpr double kDrawsBack = 0.05;  // share of a tool's way that is away from the body
 constexpr int kCheckInterval = 10;
 constexpr std::size_t kChunk = 8192;
 
@@ -246,7 +247,7 @@ void QuasistaticSolver::predict(const std::vector<double>& motion) {
     extrapolate(x.z, previous_.z);
 }
 
-// A tool that loses its load although no loaded tool drew back has lost the work-piece.
+// A tool that loses its load while none draws back has lost the work-piece.
 void QuasistaticSolver::check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) const {
     const double little = kSlipShare * largest_push_;
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
@@ -262,9 +263,9 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome) {
     start_ = matter_.particle_position;
     contacts_.begin_move(matter_, from);
-    bool release = false;
+    bool released = false;
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        release = release || contacts_.draws_back(matter_, t, from, to);
+        released = released || contacts_.advance(matter_, t, from, to) < -kDrawsBack;
     }
     std::vector<double> motion = motion_of(from, to);
     predict(motion);
@@ -298,7 +299,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
     for (const LoadSum& sum : load) largest_push_ = std::max(largest_push_, sum.size);
-    if (!release) check_slip(load, outcome);
+    if (!released) check_slip(load, outcome);
     add_work(from, to, load_, load, outcome.work);
     load_ = std::move(load);
     previous_ = start_;
