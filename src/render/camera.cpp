@@ -103,21 +103,15 @@ DepthRange depth_range(const Box& box, const View& view) {
     return {near, std::max(1.1 * greatest, 2 * near)};
 }
 
-Eigen::Matrix4d clip_from_view(const Lens& lens, const DepthRange& depth) {
-    Eigen::Matrix4d m = Eigen::Matrix4d::Zero();
-    m(0, 0) = 1 / lens.tangent_x;
-    m(1, 1) = 1 / lens.tangent_y;
-    m(2, 2) = -(depth.far + depth.near) / (depth.far - depth.near);
-    m(2, 3) = -2 * depth.far * depth.near / (depth.far - depth.near);
-    m(3, 2) = -1;
-    return m;
+glm::dmat4 clip_from_view(const Lens& lens, const DepthRange& depth) {
+    return glm::perspective(2 * std::atan(lens.tangent_y), lens.tangent_x / lens.tangent_y,
+                            depth.near, depth.far);
 }
 
-Eigen::Matrix4d view_from_world(const View& view) {
-    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-    m.topLeftCorner<3, 3>() = view.world_from_view.transpose();
-    m.topRightCorner<3, 1>() = -(view.world_from_view.transpose() * view.eye);
-    return m;
+glm::dmat4 view_from_world(const View& view) {
+    const glm::dvec3 eye = to_glm(view.eye);
+    const glm::dvec3 up = to_glm(view.world_from_view.col(1));
+    return glm::lookAt(eye, eye - to_glm(view.world_from_view.col(2)), up);
 }
 
 CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds)

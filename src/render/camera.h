@@ -3,10 +3,9 @@
 // the right and y up.
 #pragma once
 
-#include <Eigen/Core>
-
 #include "base/math.h"
 #include "geometry/box.h"
+#include "render/glm_bridge.h"
 #include "render/settings.h"
 
 namespace swage {
@@ -49,8 +48,8 @@ struct DepthRange {
 DepthRange depth_range(const Box& box, const View& view);
 
 // OpenGL's projection to the cube of -1 to 1.
-Eigen::Matrix4d clip_from_view(const Lens& lens, const DepthRange& depth);
-Eigen::Matrix4d view_from_world(const View& view);
+glm::dmat4 clip_from_view(const Lens& lens, const DepthRange& depth);
+glm::dmat4 view_from_world(const View& view);
 
 // The keys of the settings as one smooth flight. The distance that frames the whole motion is
 // found once for the whole flight, so an orbit does not pump; zoom divides it. As soon as one key

@@ -30,7 +30,7 @@ constexpr float kNowhere = 1e4f;  // depth of the backdrop in the half-size pass
 struct Drawable {
     const GpuMesh* mesh;
     const DrawItem* item;
-    Eigen::Matrix4f stage_from_mesh;
+    glm::mat4 stage_from_mesh;
 };
 
 // Back faces of closed bodies are left out, which halves the work.
@@ -140,7 +140,7 @@ struct Renderer::Parts {
     void draw_shapes(const Shader& shader, const std::vector<Drawable>& drawables) const {
         shader.use();
         for (const Drawable& d : drawables) {
-            shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
+            shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));
             const Culling culling(gl, d.mesh->closed && eye_is_outside);
             const auto count = static_cast<std::uint32_t>(d.mesh->split.index.size());
             d.mesh->draw(gl, {-1, 0, count});
@@ -230,17 +230,14 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
                 : named                   ? mesh.material[static_cast<std::size_t>(range.material)]
                 : mesh.material.size() == 1 ? mesh.material.front()
                                             : plain_material;
-            const Eigen::Vector4f color(static_cast<float>(material.color.x()),
-                                        static_cast<float>(material.color.y()),
-                                        static_cast<float>(material.color.z()), 1);
-            const Eigen::Vector4f finish(static_cast<float>(material.roughness),
-                                         static_cast<float>(material.metallic), 0, 0);
+            const glm::vec4 color(to_glm(material.color), 1);
+            const glm::vec4 finish(material.roughness, material.metallic, 0, 0);
             const GLuint texture = mesh.uv.empty() ? 0 : textures.texture(material.texture);
             const Shader& shader = texture != 0 ? textured_shader : surface_shader;
             shader.use();
-            shader.set_matrix("stage_from_mesh", d.stage_from_mesh.data());
-            shader.set4("material_color", color.data());
-            shader.set4("material_finish", finish.data());
+            shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));
+            shader.set4("material_color", glm::value_ptr(color));
+            shader.set4("material_finish", glm::value_ptr(finish));
             if (texture != 0) set_unit(gl, 1, texture);
             d.mesh->draw(gl, range);
         }

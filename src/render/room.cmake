@@ -2,6 +2,7 @@
 # OpenGL is opened at run time: only its headers are needed here. Shaders are built in, so that
 # the program works alone.
 pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
+find_package(glm REQUIRED)
 find_path(STB_INCLUDE stb_image.h PATH_SUFFIXES stb REQUIRED)
 find_path(GL_INCLUDE GL/glcorearb.h REQUIRED)
 find_path(EGL_INCLUDE EGL/egl.h REQUIRED)
@@ -18,4 +19,4 @@ add_custom_command(
 
 target_sources(swage_render PRIVATE ${embedded})
 target_include_directories(swage_render SYSTEM PRIVATE ${STB_INCLUDE})
-target_link_libraries(swage_render PRIVATE PkgConfig::LIBDEFLATE ${CMAKE_DL_LIBS})
+target_link_libraries(swage_render PUBLIC glm::glm PRIVATE PkgConfig::LIBDEFLATE ${CMAKE_DL_LIBS})

@@ -3,16 +3,14 @@
 // told of it. Mathematics only.
 #pragma once
 
-#include <Eigen/Core>
-
 #include "render/camera.h"
 
 namespace swage {
 
 // The block Frame of shaders/frame.glsl, in its layout.
 struct FrameBlock {
-    Eigen::Matrix4f clip_from_stage, view_from_stage, stage_from_view, shadow_from_stage;
-    Eigen::Vector4f eye, lens, size, half_size, key, fill, rim, ground, shadow;
+    glm::mat4 clip_from_stage, view_from_stage, stage_from_view, shadow_from_stage;
+    glm::vec4 eye, lens, size, half_size, key, fill, rim, ground, shadow;
 };
 
 inline constexpr int kShadowMapSide = 2048;
@@ -25,7 +23,7 @@ struct Stage {
     explicit Stage(const Box& action_bounds);
     Box box(const Box& world) const;
     // For a mesh whose positions are given relative to `origin`.
-    Eigen::Matrix4f from_mesh(const Pose& world_from_mesh, const Vec3& origin) const;
+    glm::mat4 from_mesh(const Pose& world_from_mesh, const Vec3& origin) const;
 };
 
 // `front` is the azimuth of the film's first view: the lights stand about it and stay in the

@@ -18,19 +18,15 @@ std::array<Vec3, 8> corners_of(const Box& box) {
     return corner;
 }
 
-Eigen::Vector4d clip(const Eigen::Matrix4d& m, const Vec3& p) {
-    return m * Eigen::Vector4d(p.x(), p.y(), p.z(), 1);
-}
-
 // How far the farthest corner reaches in the picture: 1 is the edge.
 double reach(const RenderSettings& settings, const Box& box, const View& view) {
-    const Eigen::Matrix4d m =
+    const glm::dmat4 m =
         clip_from_view(lens_of(settings), depth_range(box, view)) * view_from_world(view);
     double most = 0;
     for (const Vec3& corner : corners_of(box)) {
-        const Eigen::Vector4d c = clip(m, corner);
-        if (!(c.w() > 0)) return 1e9;
-        most = std::max({most, std::abs(c.x() / c.w()), std::abs(c.y() / c.w())});
+        const glm::dvec4 c = m * glm::dvec4(to_glm(corner), 1);
+        if (!(c.w > 0)) return 1e9;
+        most = std::max({most, std::abs(c.x / c.w), std::abs(c.y / c.w)});
     }
     return most;
 }
@@ -166,15 +162,13 @@ TEST_CASE("the shadow map holds the action whatever its size and place", "[studi
         const View view = CameraPath(settings, box).at(0);
         const FrameBlock frame = frame_block(settings, stage, box, view, box.low.y(), 0.6);
         for (const Vec3& corner : corners_of(stage.box(box))) {
-            const Eigen::Vector4f s =
-                frame.shadow_from_stage * Eigen::Vector4f(static_cast<float>(corner.x()),
-                                                          static_cast<float>(corner.y()),
-                                                          static_cast<float>(corner.z()), 1);
-            CHECK(s.minCoeff() > 0);
-            CHECK(s.head<3>().maxCoeff() < 1);
+            const glm::vec4 s = frame.shadow_from_stage * glm::vec4(to_glm(corner), 1);
+            CHECK(std::min({s.x, s.y, s.z}) > 0);
+            CHECK(std::max({s.x, s.y, s.z}) < 1);
+            CHECK(s.w == 1);
         }
         // Nearer to the light is less deep.
-        const Eigen::Vector4f up = frame.shadow_from_stage * frame.key;
-        CHECK(up.z() < 0);
+        const glm::vec4 up = frame.shadow_from_stage * frame.key;
+        CHECK(up.z < 0);
     }
 }
