@@ -23,7 +23,7 @@ constexpr double kContactMassShare = 0.6;
 constexpr double kSmallestCellVolume = 0.05;
 constexpr double kSlipShare =
     0.05;  // of the largest push so far, below which a tool carries nothing
-constexpr double kDrawsBack = 0.05;  // share of a tool's way that is away from the body
+constexpr double kDrawsBack = 0.3;  // share of a tool's way that is away from the body
 constexpr int kCheckInterval = 10;
 constexpr std::size_t kChunk = 8192;
 
@@ -82,7 +82,8 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       flow_(matter),
       contacts_(matter, apparatus, settings),
       body_size_(largest_extent(matter)),
-      load_(apparatus.tool.size() + apparatus.grip.size()) {
+      load_(apparatus.tool.size() + apparatus.grip.size()),
+      most_load_(load_.size(), 0.0) {
     velocity_.resize(matter.particle_count());
     connections_changed();
 }
@@ -247,11 +248,11 @@ void QuasistaticSolver::predict(const std::vector<double>& motion) {
     extrapolate(x.z, previous_.z);
 }
 
-// A tool that loses its load while none draws back has lost the work-piece.
+// A tool that loses its load at one blow, while none draws back, has lost the work-piece.
 void QuasistaticSolver::check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) const {
-    const double little = kSlipShare * largest_push_;
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        if (load_[t].size > little && after[t].size <= little) {
+        if (load_[t].size > kLoadedShare * most_load_[t] &&
+            after[t].size <= kUnloadedShare * most_load_[t]) {
             outcome.warning.push_back(
                 fmt::format("the work-piece slipped away from {} although no tool drew back",
                             apparatus_.tool[t].name));
@@ -298,7 +299,10 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     outcome.plastic_work += flow_.commit(matter_);
     contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
-    for (const LoadSum& sum : load) largest_push_ = std::max(largest_push_, sum.size);
+    for (std::size_t n = 0; n < load.size(); ++n) {
+        largest_push_ = std::max(largest_push_, load[n].size);
+        most_load_[n] = std::max(most_load_[n], load[n].size);
+    }
     if (!released) check_slip(load, outcome);
     add_work(from, to, load_, load, outcome.work);
     load_ = std::move(load);
