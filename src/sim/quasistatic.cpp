@@ -21,8 +21,8 @@ constexpr double kDrag = 1e-7;  // settles free modes; 1e-5 already falsifies fo
 constexpr double kLatticeMassShare = 0.5;
 constexpr double kContactMassShare = 0.6;
 constexpr double kSmallestCellVolume = 0.05;
-constexpr double kSlipShare =
-    0.05;  // of the largest push so far, below which a tool carries nothing
+// Shares of the most that a tool has carried: loaded, and not any more.
+constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.05;
 constexpr double kDrawsBack = 0.3;  // share of a tool's way that is away from the body
 constexpr int kCheckInterval = 10;
 constexpr std::size_t kChunk = 8192;
