@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One still of 100,000 moving triangles at 1280 x 720 with shadow, occlusion and anti-aliasing,
-// PNG written: milliseconds by phase, medians over 15 pictures.
+// PNG written: milliseconds by phase, medians over 15 pictures. Up to 60,000 triangles edges are
+// multisampled, above softened afterwards.
 //     bench_render [triangles] [width] [height] [threads]
 #include <algorithm>
 #include <cmath>
