@@ -9,15 +9,6 @@ namespace swage {
 
 namespace {
 
-std::array<Vec3, 8> corners_of(const Box& box) {
-    std::array<Vec3, 8> corner;
-    for (std::size_t i = 0; i < 8; ++i) {
-        corner[i] = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(),
-                     (i & 4 ? box.high : box.low).z()};
-    }
-    return corner;
-}
-
 // The slope at key k of a monotone curve through the keys; flat at both ends, so that the camera
 // starts and stops gently.
 double slope_at(const std::vector<double>& x, const std::vector<double>& y, std::size_t k) {
@@ -48,6 +39,15 @@ Box sensible(Box box) {
 
 }  // namespace
 
+std::vector<Vec3> corners_of(const Box& box) {
+    std::vector<Vec3> corner(8);
+    for (std::size_t i = 0; i < 8; ++i) {
+        corner[i] = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(),
+                     (i & 4 ? box.high : box.low).z()};
+    }
+    return corner;
+}
+
 Lens lens_of(const RenderSettings& settings) {
     const double tangent = std::tan(0.5 * settings.field_of_view);
     return {tangent * settings.width / settings.height, tangent};
@@ -73,14 +73,15 @@ View look_at(const Vec3& eye, const Vec3& target) {
     return view;
 }
 
-Framing frame_box(const Box& box, const Mat3& world_from_view, const Lens& lens) {
+Framing frame_points(const std::vector<Vec3>& points, const Vec3& center,
+                     const Mat3& world_from_view, const Lens& lens) {
     const double tx = lens.tangent_x / kFramingMargin, ty = lens.tangent_y / kFramingMargin;
     // With the eye at (cx, cy, cz), a corner is inside the pyramid when |x - cx| <= tx (cz - z)
     // and the same for y: four upper bounds over the corners, met by the least cz.
     const double none = -std::numeric_limits<double>::infinity();
     double right = none, left = none, top = none, bottom = none;
-    for (const Vec3& corner : corners_of(box)) {
-        const Vec3 p = world_from_view.transpose() * (corner - box.center());
+    for (const Vec3& point : points) {
+        const Vec3 p = world_from_view.transpose() * (point - center);
         right = std::max(right, p.x() + tx * p.z());
         left = std::max(left, -p.x() + tx * p.z());
         top = std::max(top, p.y() + ty * p.z());
@@ -88,7 +89,7 @@ Framing frame_box(const Box& box, const Mat3& world_from_view, const Lens& lens)
     }
     const double distance = std::max((right + left) / (2 * tx), (top + bottom) / (2 * ty));
     const Vec3 shift = {0.5 * (right - left), 0.5 * (top - bottom), 0};
-    return {distance, box.center() + world_from_view * shift};
+    return {distance, center + world_from_view * shift};
 }
 
 DepthRange depth_range(const Box& box, const View& view) {
@@ -114,8 +115,10 @@ glm::dmat4 view_from_world(const View& view) {
     return glm::lookAt(eye, eye - to_glm(view.world_from_view.col(2)), up);
 }
 
-CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds)
-    : bounds_(sensible(action_bounds)), lens_(lens_of(settings)) {
+CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds,
+                       std::vector<Vec3> outline)
+    : bounds_(sensible(action_bounds)), outline_(std::move(outline)), lens_(lens_of(settings)) {
+    if (outline_.empty()) outline_ = corners_of(bounds_);
     std::vector<CameraKey> keys = settings.camera;
     if (keys.empty()) keys.emplace_back();
     by_eye_ = std::any_of(keys.begin(), keys.end(),
@@ -134,8 +137,9 @@ CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds)
     for (int i = 0; i <= (share_.size() > 1 ? kSamples : 0); ++i) {
         const double share = share_.front() + i * (share_.back() - share_.front()) / kSamples;
         const std::vector<double> v = interpolated(share);
-        distance_ =
-            std::max(distance_, frame_box(bounds_, orbit_rotation(v[0], v[1]), lens_).distance);
+        const Framing framing =
+            frame_points(outline_, bounds_.center(), orbit_rotation(v[0], v[1]), lens_);
+        distance_ = std::max(distance_, framing.distance);
     }
     if (!by_eye_) return;
     std::vector<std::vector<double>> places;
@@ -168,7 +172,7 @@ std::vector<double> CameraPath::interpolated(double film_share) const {
 
 View CameraPath::orbit(double azimuth, double elevation, double zoom) const {
     const Mat3 rotation = orbit_rotation(azimuth, elevation);
-    const Framing framing = frame_box(bounds_, rotation, lens_);
+    const Framing framing = frame_points(outline_, bounds_.center(), rotation, lens_);
     return {framing.target + distance_ / zoom * rotation.col(2), rotation};
 }
 

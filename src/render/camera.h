@@ -30,15 +30,17 @@ Mat3 orbit_rotation(double azimuth, double elevation);
 // Eye and target at one place look along -z.
 View look_at(const Vec3& eye, const Vec3& target);
 
-// The distance to a box's centre, along the view, from which all eight corners are seen with a
-// margin, and the sideways shift of the eye that centres them.
+// The distance to the point `center`, along the view, from which all the given points are seen with
+// a margin, and the sideways shift of the eye that centres them.
 struct Framing {
     double distance;
-    Vec3 target;  // the point looked at, as deep as the box's centre
+    Vec3 target;  // the point looked at, as deep as `center`
 };
 inline constexpr double kFramingMargin =
     1.12;  // the picture is this much wider than what it frames
-Framing frame_box(const Box& box, const Mat3& world_from_view, const Lens& lens);
+Framing frame_points(const std::vector<Vec3>& points, const Vec3& center,
+                     const Mat3& world_from_view, const Lens& lens);
+std::vector<Vec3> corners_of(const Box& box);
 
 // Least and greatest depth of the box before the eye, with 0 < near < far even when the eye is
 // inside the box.
@@ -56,7 +58,10 @@ glm::dmat4 view_from_world(const View& view);
 // gives eye and target, all keys are turned into eyes and targets and fly straight between them.
 class CameraPath {
   public:
-    CameraPath(const RenderSettings& settings, const Box& action_bounds);
+    // `outline`: points that together reach as far as the action does in every direction; none: the
+    // corners of the bounds.
+    CameraPath(const RenderSettings& settings, const Box& action_bounds,
+               std::vector<Vec3> outline = {});
     View at(double film_share) const;
 
   private:
@@ -64,6 +69,7 @@ class CameraPath {
     std::vector<double> interpolated(double film_share) const;
 
     Box bounds_;
+    std::vector<Vec3> outline_;
     Lens lens_;
     bool by_eye_;  // a key's values are eye and target; else azimuth, elevation, log of zoom
     double distance_ = 1;

@@ -66,12 +66,13 @@ void grow(Box& box, const DrawItem& item) {
 }  // namespace
 
 struct Renderer::Parts {
-    Parts(const RenderSettings& wanted, const Box& bounds, double ground, int threads)
+    Parts(const RenderSettings& wanted, const Box& bounds, double ground, int threads,
+          std::vector<Vec3> outline)
         : settings(wanted),
           action_bounds(bounds),
           ground_height(ground),
           stage(bounds),
-          camera(wanted, bounds),
+          camera(wanted, bounds, std::move(outline)),
           canvas(wanted.gl, threads),
           gl(canvas.gl()),
           meshes(gl),
@@ -332,8 +333,9 @@ Image Renderer::Parts::draw(const Picture& picture) {
 }
 
 Renderer::Renderer(const RenderSettings& settings, const Box& action_bounds, double ground_height,
-                   int threads)
-    : parts_(std::make_unique<Parts>(settings, action_bounds, ground_height, threads)) {}
+                   int threads, std::vector<Vec3> outline)
+    : parts_(std::make_unique<Parts>(settings, action_bounds, ground_height, threads,
+                                     std::move(outline))) {}
 
 Renderer::~Renderer() {
     try {

@@ -31,9 +31,10 @@ class Renderer {
   public:
     // `action_bounds`: the box of the whole motion, tools too, in the world (y up) [m].
     // `threads`: of the software rasteriser, 0 for all cores; the first Renderer of the process
-    // decides. Throws Error(output) when there is nothing to draw with.
+    // decides. `outline`: points that together reach as far as the motion does, for a closer
+    // framing than the box's. Throws Error(output) when there is nothing to draw with.
     Renderer(const RenderSettings& settings, const Box& action_bounds, double ground_height,
-             int threads = 0);
+             int threads = 0, std::vector<Vec3> outline = {});
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;

@@ -9,15 +9,6 @@ using namespace swage;
 
 namespace {
 
-std::array<Vec3, 8> corners_of(const Box& box) {
-    std::array<Vec3, 8> corner;
-    for (std::size_t i = 0; i < 8; ++i) {
-        corner[i] = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(),
-                     (i & 4 ? box.high : box.low).z()};
-    }
-    return corner;
-}
-
 // How far the farthest corner reaches in the picture: 1 is the edge.
 double reach(const RenderSettings& settings, const Box& box, const View& view) {
     const glm::dmat4 m =
