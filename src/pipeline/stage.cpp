@@ -9,12 +9,12 @@
 #include "base/text.h"
 #include "geometry/mesh_write.h"
 #include "machines/machine.h"
-#include "pipeline/blade_sweep.h"
 #include "pipeline/curves.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "sim/advance.h"
+#include "sim/sever.h"
 #include "skin/cut_mesh.h"
 
 namespace swage {
@@ -93,13 +93,21 @@ void write_curves(const StageCurves& curves, const StageContext& context) {
     if (context.can_plot) draw_plot(curves, fs::path(stem) += ".svg");
 }
 
-// The skin is cut along the whole path of the stage's blades before they start. True when that was
-// not possible everywhere, so that torn triangles must be removed as they appear.
-bool cut_ahead(const StageSpec& stage, const Machine& machine, double duration, WorkPiece& piece,
-               SkinKind kind) {
-    if (machine.apparatus.blade.empty() || kind == SkinKind::boundary) return false;
-    const CutResult cut = cut_skin(piece.skin, piece.position, piece.mount, piece.matter,
-                                   blade_sweep(machine, stage.frames, duration));
+// The skin is cut along the whole path of the stage's blades when they reach the matter. True when
+// that was not possible everywhere, so that torn triangles must be removed as they appear.
+bool cut_ahead(const StageSpec& stage, const Machine& machine, const std::vector<Drive>& drives,
+               WorkPiece& piece, SkinKind kind) {
+    if (kind == SkinKind::boundary) return false;
+    std::vector<std::array<Vec3, 3>> path;
+    for (std::size_t n = 0; n + 1 < drives.size(); ++n) {
+        for (std::size_t b = 0; b < machine.apparatus.blade.size(); ++b) {
+            const auto swept =
+                swept_triangles(machine.apparatus.blade[b], drives[n].world_from_blade[b],
+                                drives[n + 1].world_from_blade[b]);
+            path.insert(path.end(), swept.begin(), swept.end());
+        }
+    }
+    const CutResult cut = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, path);
     follow_matter(piece, kind);
     if (cut.open_parts > 0) {
         log_warning("{}: {} open part{} of the skin could not be closed where it is cut",
@@ -131,26 +139,36 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
     const WorkFrame frame = place_work_frame(piece.matter, stage.axis, stage.up);
     const Machine machine = build_machine(stage.machine, stage.parameter, frame, piece.matter);
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
-    const bool tears = cut_ahead(stage, machine, duration, piece, skin);
-
-    Drive before = drive_at(machine, 0, duration);
+    std::vector<Drive> drives;
+    for (int n = 0; n <= stage.frames; ++n) {
+        drives.push_back(drive_at(machine, static_cast<double>(n) / stage.frames, duration));
+    }
+    const Drive& start = drives.front();
     context.recorder.set_machine(machine.apparatus);
     if (last_frame == 0) {
-        context.recorder.add_frame(piece, before);
+        context.recorder.add_frame(piece, start);
         last_frame = 1;
     }
     const int first_frame = last_frame + 1;
-    StageCurves curves(stage.name, last_frame, body_names(machine.apparatus), body_poses(before));
+    StageCurves curves(stage.name, last_frame, body_names(machine.apparatus), body_poses(start));
     Simulation simulation(piece.matter, machine.apparatus, stage.sim);
     WarningBook warnings;
     Totals totals;
     const fs::path meshes = context.root / "meshes";
     if (context.scene.output.meshes_per_frame) make_folder(meshes / stage.name);
+    bool cuts = false, tears = false;
     FrameReport last;
     for (int n = 1; n <= stage.frames; ++n) {
         throw_if_interrupted();
         const int number = last_frame + n;
-        const Drive after = drive_at(machine, static_cast<double>(n) / stage.frames, duration);
+        const Drive &before = drives[n - 1], &after = drives[n];
+        if (!cuts && simulation.blades_reach(before, after)) {
+            // From here on the whole cut is settled: in the matter and, along the same path, the
+            // skin.
+            cuts = true;
+            simulation.plan_cuts({drives.begin() + (n - 1), drives.end()});
+            tears = cut_ahead(stage, machine, drives, piece, skin);
+        }
         try {
             const auto lap = context.watch.lap("simulate");
             last = simulation.advance(before, after);
@@ -160,7 +178,6 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
                                                                    number, error.what()));
             break;
         }
-        before = after;
         {
             const auto lap = context.watch.lap("skin");
             follow_matter(piece, skin);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <variant>
 
 #include "sim/cell_volume.h"
@@ -26,6 +28,16 @@ double kinetic_energy(const Aggregate& matter) {
     return sum;
 }
 
+// Marks the particles of pieces that are less than a cell.
+std::vector<char> crumbs_of(const Aggregate& matter) {
+    const Pieces pieces = find_pieces(matter);
+    std::vector<int> size(pieces.count, 0);
+    for (int piece : pieces.particle_piece) ++size[piece];
+    std::vector<char> crumb;
+    for (int piece : pieces.particle_piece) crumb.push_back(size[piece] < kCrumb);
+    return crumb;
+}
+
 }  // namespace
 
 struct Simulation::Rooms {
@@ -36,6 +48,18 @@ struct Simulation::Rooms {
     int pieces = 1;
     double plastic = 0, damped = 0, severed_energy = 0;
     std::vector<double> work;
+    std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
+
+    std::vector<SeverEvent> crossed(const Aggregate& body, const Drive& from,
+                                    const Drive& to) const {
+        std::vector<std::array<Vec3, 3>> swept;
+        for (std::size_t b = 0; b < apparatus.blade.size(); ++b) {
+            const auto part = swept_triangles(apparatus.blade[b], from.world_from_blade[b],
+                                              to.world_from_blade[b]);
+            swept.insert(swept.end(), part.begin(), part.end());
+        }
+        return crossed_connections(body, swept);
+    }
 
     static std::variant<QuasistaticSolver, ExplicitSolver> choose(Aggregate& matter,
                                                                   const Apparatus& apparatus,
@@ -62,34 +86,55 @@ Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimS
 
 Simulation::~Simulation() = default;
 
+bool Simulation::blades_reach(const Drive& from, const Drive& to) const {
+    return !rooms_->crossed(rooms_->matter, from, to).empty();
+}
+
+void Simulation::plan_cuts(const std::vector<Drive>& drives) {
+    Aggregate ahead = rooms_->matter;
+    rooms_->plan.clear();
+    for (std::size_t n = 0; n + 1 < drives.size(); ++n) {
+        rooms_->plan.push_back(rooms_->crossed(ahead, drives[n], drives[n + 1]));
+        for (const SeverEvent& e : rooms_->plan.back()) {
+            ahead.connection[e.direction].weight[e.lower] = 0;
+        }
+    }
+    // What would fall off as a crumb stays with the side that it is cut from.
+    const std::vector<char> crumb = crumbs_of(ahead);
+    for (std::vector<SeverEvent>& events : rooms_->plan) {
+        std::erase_if(events,
+                      [&](const SeverEvent& e) { return crumb[e.lower] || crumb[e.upper]; });
+    }
+}
+
 FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     Rooms& r = *rooms_;
     FrameReport report;
     report.time = to.time;
 
     // Sever what the blades sweep.
-    for (std::size_t b = 0; b < r.apparatus.blade.size(); ++b) {
+    std::vector<SeverEvent> events;
+    if (r.plan.empty()) {
+        events = r.crossed(r.matter, from, to);
+    } else {
+        events = std::move(r.plan.front());
+        r.plan.pop_front();
+    }
+    if (!events.empty()) {
         const double before = elastic_energy(r.matter, r.law);
-        const std::vector<SeverEvent> events =
-            sever(r.matter, swept_triangles(r.apparatus.blade[b], from.world_from_blade[b],
-                                            to.world_from_blade[b]));
-        if (events.empty()) continue;
-        report.severed += static_cast<int>(events.size());
+        for (const SeverEvent& e : events) r.matter.connection[e.direction].weight[e.lower] = 0;
+        report.severed = static_cast<int>(events.size());
         r.severed_energy += before - elastic_energy(r.matter, r.law);
         std::visit([](auto& solver) { solver.connections_changed(); }, r.solver);
     }
     if (report.severed > 0) {
-        const Pieces pieces = find_pieces(r.matter);
-        std::vector<int> size(pieces.count, 0);
-        for (int piece : pieces.particle_piece) ++size[piece];
-        int crumbs = 0;
-        for (int s : size) crumbs += s < kCrumb;
-        if (crumbs > 0) {
+        const std::vector<char> crumb = crumbs_of(r.matter);
+        const auto loose = std::count(crumb.begin(), crumb.end(), 1);
+        if (loose > 0) {
             report.warning.push_back(fmt::format(
-                "the blade left {} crumbs of less than one cell; they stay where they are",
-                crumbs));
+                "the blade left crumbs of less than one cell, {} particles in all", loose));
         }
-        r.pieces = pieces.count;
+        r.pieces = find_pieces(r.matter).count;
     }
     report.pieces = r.pieces;
 

@@ -42,6 +42,14 @@ class Simulation {
     Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
     ~Simulation();
 
+    // Whether a blade would sever anything on this way through the matter as it is now.
+    bool blades_reach(const Drive& from, const Drive& to) const;
+
+    // Plans all cuts of the coming frames (drives[0] is now) through the matter as it is now:
+    // halves that spring apart under the blade are severed where it first aimed, so that a skin
+    // that was cut along the same path opens cleanly. Frames beyond the plan sever what they meet.
+    void plan_cuts(const std::vector<Drive>& drives);
+
     // Moves the matter on while the apparatus goes from one drive to another. What the blades
     // sweep in this frame is severed first. Throws Error(stopped) with a sentence that names what
     // to change; the matter is then in a state that was converged.

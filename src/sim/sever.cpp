@@ -61,7 +61,8 @@ std::vector<Triangle> swept_triangles(const Blade& blade, const Pose& from, cons
     return triangles;
 }
 
-std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<Triangle>& swept) {
+std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
+                                            const std::vector<Triangle>& swept) {
     const double a = matter.lattice.spacing;
     const Vec3 shift = a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
     std::vector<Triangle> triangles;
@@ -78,7 +79,7 @@ std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<Triangle>& sw
     }
     std::vector<SeverEvent> events;
     for (const Span& span : matter.lattice.span) {
-        std::vector<float>& weight = matter.connection[span.direction].weight;
+        const std::vector<float>& weight = matter.connection[span.direction].weight;
         for (int n = 0; n < span.count; ++n) {
             const ParticleId lower = span.lower + n;
             if (weight[lower] <= 0) continue;
@@ -92,12 +93,17 @@ std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<Triangle>& sw
             if (triangles.empty() || apart(all)) continue;
             for (std::size_t t = 0; t < triangles.size(); ++t) {
                 if (apart(boxes[t]) || !crosses(from, to, triangles[t])) continue;
-                events.push_back({span.direction, lower, weight[lower]});
-                weight[lower] = 0;
+                events.push_back({span.direction, lower, span.upper + n, weight[lower]});
                 break;
             }
         }
     }
+    return events;
+}
+
+std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<Triangle>& swept) {
+    std::vector<SeverEvent> events = crossed_connections(matter, swept);
+    for (const SeverEvent& e : events) matter.connection[e.direction].weight[e.lower] = 0;
     return events;
 }
 

@@ -12,8 +12,9 @@ namespace swage {
 
 struct SeverEvent {
     int direction;     // of the connection, into kForward
-    ParticleId lower;  // its lower end
-    float weight;      // share of the section that it had
+    ParticleId lower;  // its ends
+    ParticleId upper;
+    float weight;  // share of the section that it had
 };
 
 // The surface that the blade's edge sweeps between two poses, as triangles in the world. Neighbours
@@ -21,7 +22,11 @@ struct SeverEvent {
 std::vector<std::array<Vec3, 3>> swept_triangles(const Blade& blade, const Pose& from,
                                                  const Pose& to);
 
-// Sets the weight of every crossed connection to zero; returns them in the order of the lattice.
+// The unsevered connections that the surface crosses, in the order of the lattice.
+std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
+                                            const std::vector<std::array<Vec3, 3>>& swept);
+
+// Sets the weight of every crossed connection to zero; returns them.
 std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<std::array<Vec3, 3>>& swept);
 
 }  // namespace swage
