@@ -11,6 +11,11 @@ using swage::Json;
 
 namespace {
 
+// The end of assets/scenes/bar-springback.toml at 3 cells across and 6 frames. To be changed, and
+// the reason said in the commit, only when the scene, its mesh, material or machine, the mold or
+// the laws and solver are meant to give other numbers.
+constexpr const char* kShippedBarHash = "f6d495b16e464996";
+
 // Name and bytes of every file below a folder.
 std::map<std::string, std::string> files_below(const fs::path& folder) {
     std::map<std::string, std::string> files;
@@ -144,6 +149,19 @@ TEST_CASE("the state is the same to the bit at any number of threads") {
     }
     CHECK(std::count(hashes.begin(), hashes.end(), hashes[0]) == 4);
     CHECK(std::count(meshes.begin(), meshes.end(), meshes[0]) == 4);
+}
+
+TEST_CASE("a shipped scene ends in the state that it always ended in, at any number of threads") {
+    const Scratch scratch;
+    for (const char* threads : {"1", "2", "3", "8"}) {
+        const fs::path run = scratch.path() / (std::string("run") + threads);
+        const Outcome outcome = run_swage({"run", "assets/scenes/bar-springback.toml", "--out",
+                                           run.string(), "--no-render", "--threads", threads,
+                                           "--set", "mold.across=3", "--set", "stage.1.frames=6"});
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        CHECK(state_hash(run) == kShippedBarHash);
+    }
 }
 
 TEST_CASE("--set goes over what the scene says") {
