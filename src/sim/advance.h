@@ -38,7 +38,7 @@ struct FrameReport {
 
 class Simulation {
   public:
-    // Keeps references to all three; they must outlive it.
+    // Keeps references to the matter and the apparatus; they must outlive it.
     Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
     ~Simulation();
 

@@ -40,7 +40,7 @@ double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
 ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
                        const SimSettings& settings)
     : apparatus_(&apparatus),
-      settings_(&settings),
+      settings_(settings),
       spacing_(matter.lattice.spacing),
       young_modulus_(matter.material.young_modulus) {}
 
@@ -127,11 +127,11 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
     };
     // Normal and tangential stiffness are equal, so each point pulls with k in every direction.
     for (const Pair& pair : pair_) {
-        add(pair.point, point_stiffness(matter, pair.point, settings_->contact_stiffness));
+        add(pair.point, point_stiffness(matter, pair.point, settings_.contact_stiffness));
     }
     for (const Grip& grip : apparatus_->grip) {
         for (int point : grip.point) {
-            add(point, point_stiffness(matter, point, settings_->grip_stiffness));
+            add(point, point_stiffness(matter, point, settings_.grip_stiffness));
         }
     }
 }
@@ -150,7 +150,7 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
         const Vec3 x = matter.surface_position(pair.point);
         const Distance d = world_distance(tool, pose, x);
         if (d.value >= 0) continue;
-        const double k = point_stiffness(matter, pair.point, settings_->contact_stiffness);
+        const double k = point_stiffness(matter, pair.point, settings_.contact_stiffness);
         act(n, x, d, k,
             contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k, tool.friction));
     }
@@ -172,7 +172,7 @@ void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array
             const int point = grip.point[n];
             const Vec3 reach =
                 now.world_from_grip[g] * grip.anchor[n] - matter.surface_position(point);
-            spread(point, point_stiffness(matter, point, settings_->grip_stiffness) * reach);
+            spread(point, point_stiffness(matter, point, settings_.grip_stiffness) * reach);
         }
     }
 }
@@ -196,7 +196,7 @@ std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now
         LoadSum& sum = sums[apparatus_->tool.size() + g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             const Vec3 x = matter.surface_position(grip.point[n]);
-            const Vec3 f = point_stiffness(matter, grip.point[n], settings_->grip_stiffness) *
+            const Vec3 f = point_stiffness(matter, grip.point[n], settings_.grip_stiffness) *
                            (now.world_from_grip[g] * grip.anchor[n] - x);
             sum.force += f;
             sum.torque += (x - now.world_from_grip[g].translation).cross(f);

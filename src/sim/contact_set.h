@@ -72,7 +72,7 @@ class ContactSet {
     void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const;
 
     const Apparatus* apparatus_;
-    const SimSettings* settings_;
+    SimSettings settings_;
     double spacing_, young_modulus_;
     std::vector<double> stiffness_limit_;  // one a point [N/m]; empty: none
     std::vector<Pair> pair_;               // sorted by tool, then point

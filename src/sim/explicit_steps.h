@@ -35,7 +35,7 @@ class ExplicitSolver {
 
     Aggregate& matter_;
     const Apparatus& apparatus_;
-    const SimSettings& settings_;
+    SimSettings settings_;
     LatticeLaw law_;
     LatticeSweep sweep_;
     CellFlow flow_;

@@ -52,7 +52,7 @@ class QuasistaticSolver {
 
     Aggregate& matter_;
     const Apparatus& apparatus_;
-    const SimSettings& settings_;
+    SimSettings settings_;
     LatticeLaw law_;
     LatticeSweep sweep_;
     CellFlow flow_;

@@ -110,7 +110,7 @@ TEST_CASE(
     CHECK(state_hash(run) != record.at("state_hash").get<std::string>());
 }
 
-TEST_CASE("--frames draws only these stills, and more can be drawn later") {
+TEST_CASE("the option --frames draws only these stills, and more can be drawn later") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path());
     const fs::path run = scratch.path() / "run";
@@ -164,7 +164,7 @@ TEST_CASE("a shipped scene ends in the state that it always ended in, at any num
     }
 }
 
-TEST_CASE("--set goes over what the scene says") {
+TEST_CASE("the option --set goes over what the scene says") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path());
     const fs::path run = scratch.path() / "run";
