@@ -137,7 +137,8 @@ struct Aggregate {
 
     std::array<ConnectionArrays, kForwardCount> connection;
 
-    std::vector<float> cell_fill;  // share of the cell's volume inside the mesh, (0, 1]
+    std::vector<float> cell_fill;  // share of the cell's volume inside the mesh, > 0; slivers of a
+                                   // neighbour can bring it slightly above 1
     std::vector<Eigen::Vector3f> cell_centroid;  // of that share, in the cell, each -0.5 to 0.5
 
     // Committed logarithmic plastic strain that each cell gives each of its 24 connections, by slot
@@ -165,8 +166,8 @@ inline double reference_length(const Lattice& lattice, int direction) {
 Lattice make_lattice(const Vec3& origin, double spacing, const Vec3i& cell_count,
                      const std::vector<Vec3i>& active_cells);
 
-// Whether all 24 connections of the cell with these low row ends still hold. A cell that a blade has
-// crossed is no longer a cell: its corners belong to different sides.
+// Whether all 24 connections of the cell with these low row ends still hold. A cell that a blade
+// has crossed is no longer a cell: its corners belong to different sides.
 bool cell_is_whole(const Aggregate& matter, const std::array<ParticleId, 4>& row);
 
 // Pieces connected through unsevered connections: piece[p] for each particle, numbered in order

@@ -21,8 +21,9 @@ constexpr double kDrag = 1e-7;  // settles free modes; 1e-5 already falsifies fo
 constexpr double kLatticeMassShare = 0.5;
 constexpr double kContactMassShare = 0.6;
 constexpr double kSmallestCellVolume = 0.05;
-// Least push, over E a^2, that the residual is measured by: a tenth of what bends a bar of 4 cells
-// by a visible angle. At the first touch of a slender body the true push is next to nothing.
+// Least push, over E a^2, that the residual is measured by: about a tenth of E I / L^2 of a bar 4
+// cells thick and 10 times as long (an estimate). At the first touch of a slender body the true
+// push is next to nothing.
 constexpr double kLeastPush = 1e-3;
 // Shares of the most that a tool has carried: loaded, and not any more.
 constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.05;

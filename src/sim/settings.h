@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the matter is moved on. Defaults are those measured in 120 random bends and twists.
+// How the matter is moved on.
 #pragma once
 
 #include "base/math.h"
