@@ -191,7 +191,7 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     if (matter.cell_fill.empty()) refuse_thin(2 * volume / area, spacing);
     place_particles(frame, matter);
     share_out(layers, frame, matter);
-    matter.surface = carry_patches(layers, frame, matter.lattice);
+    matter.surface = carry_patches(layers, frame, matter.lattice, matter.cell_fill);
     tell_findings(mesh, frame, volume, layers, lost, matter);
     return matter;
 }

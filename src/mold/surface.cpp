@@ -18,6 +18,11 @@ constexpr std::size_t kChunk = 2048;  // patches
 // How far from its carrier a point may lie, in cells. Farther ones are drawn in: the weights would
 // grow and with them the stiffness that contact puts on the carrier's far corners.
 constexpr double kOverhang = 0.25;
+// A cell filled less than this does not carry its points where a fuller one lies within reach, in
+// cells: pressed hard, the far corners of a sliver, which hardly anything holds, are driven through
+// the body, all the more when the material yields.
+constexpr float kFirmFill = 0.4f;
+constexpr double kReach = 0.5;
 
 double distance_squared(const Vec3& point, const Vec3i& cell) {
     const Vec3 low = cell.cast<double>();
@@ -54,6 +59,24 @@ CellId nearest_cell(const Lattice& lattice, const Vec3i& home, const Vec3& point
     return best;
 }
 
+// The nearest firm cell within reach of a point, or -1; the fuller of two that are equally near.
+CellId firm_cell(const Lattice& lattice, const std::vector<float>& fill, const Vec3i& home,
+                 const Vec3& point) {
+    CellId best = -1;
+    double best_distance = kReach * kReach;
+    for (int n = 0; n < 27; ++n) {
+        const Vec3i site = home + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+        if (cell < 0 || fill[cell] < kFirmFill) continue;
+        const double d = distance_squared(point, site);
+        if (d < best_distance || (d == best_distance && best >= 0 && fill[cell] > fill[best])) {
+            best = cell;
+            best_distance = d;
+        }
+    }
+    return best;
+}
+
 // Trilinear weights in steps of 2^-23, so that as floats they still sum to exactly one.
 std::array<float, 8> corner_weights(const Vec3& local) {
     constexpr double kOne = 1 << 23;
@@ -76,7 +99,7 @@ std::array<float, 8> corner_weights(const Vec3& local) {
 }  // namespace
 
 SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFrame& frame,
-                            const Lattice& lattice) {
+                            const Lattice& lattice, const std::vector<float>& fill) {
     struct Chunk {
         int k;
         std::size_t begin, end, first;  // patches of the layer; the first's number in all
@@ -105,12 +128,19 @@ SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFram
             const Vec3 point = 0.5 * patch.center;
             Vec3i site(patch.i, patch.j, chunk.k);
             CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
-            if (cell < 0) {
-                cell = nearest_cell(lattice, site, point);
+            double overhang = kOverhang;
+            if (cell < 0 || fill[cell] < kFirmFill) {
+                const CellId firm = firm_cell(lattice, fill, site, point);
+                if (firm >= 0) {
+                    cell = firm;
+                    overhang = kReach;
+                } else if (cell < 0) {
+                    cell = nearest_cell(lattice, site, point);
+                }
                 site = lattice.cell_site(cell);
             }
             const Vec3 free = point - site.cast<double>();
-            const Vec3 local = free.cwiseMax(-kOverhang).cwiseMin(1 + kOverhang);
+            const Vec3 local = free.cwiseMax(-overhang).cwiseMin(1 + overhang);
             surface.corner[p] = lattice.cell_corners(cell);
             surface.weight[p] = corner_weights(local);
             surface.area[p] = patch.area;

@@ -8,6 +8,6 @@
 namespace swage {
 
 SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFrame& frame,
-                            const Lattice& lattice);
+                            const Lattice& lattice, const std::vector<float>& fill);
 
 }  // namespace swage

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "laws/spring_damper.h"
+#include "laws/volume_guard.h"
 #include "laws/yield.h"
 #include "sim/cell_volume.h"
 #include "sim/vector_clones.h"
@@ -93,7 +94,7 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                 };
                 cell_volumes(matter, run, at, count, theta);
                 for (int n = 0; n < count; ++n) {
-                    theta[n] = log_ratio(std::max(theta[n], 0.01)) / 3;
+                    theta[n] = log_ratio(std::clamp(theta[n], kGuardedVolume, 1 / kGuardedVolume)) / 3;
                 }
                 std::fill_n(distortion, count, 0.0);
                 for (int slot = 0; slot < kCellConnectionCount; ++slot) {

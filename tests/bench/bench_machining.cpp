@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // 40 bends and 20 twists of random work-pieces by the shipped machines: all must converge, and a
-// work-piece that slips out of its tools must be reported as such. The seed of a case is its
-// number, so every run is the same. `bench_machining SEED...` runs those cases frame by frame.
+// work-piece that slips out of its tools must be reported as such. The seed of a case is drawn from
+// its number, so every run is the same. `bench_machining CASE...` runs those frame by frame.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -35,7 +35,8 @@ constexpr double kNothing = 0.05;  // share of the most that any tool has carrie
 // S. Vigna, "splitmix64", 2015.
 class Random {
   public:
-    explicit Random(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u) {}
+    // The number is mixed first: neighbours would otherwise draw each other's values, one later.
+    explicit Random(std::uint64_t number) : state_(number) { state_ = next(); }
     double between(double low, double high) {
         return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53;
     }
@@ -58,6 +59,7 @@ struct Case {
     bool bend = true;
     std::string shape;
     std::map<std::string, double> size;
+    double slender = 0;  // length over thickness
     Material material;
     MoldSettings mold;
     int frames = 0;
@@ -70,8 +72,8 @@ Case make_case(int seed, Random& random) {
     c.bend = seed <= kBends;
     c.shape = std::vector<std::string>{"bar", "rod", "tube", "wrench"}[(seed - 1) % 4];
     const double thickness = random.between(0.01, 0.04);
-    const double slender = random.between(6, 12);
-    c.size["length"] = slender * thickness;
+    c.slender = random.between(6, 12);
+    c.size["length"] = c.slender * thickness;
     if (c.shape == "bar") {
         c.size["height"] = thickness;
         c.size["width"] = thickness * random.between(0.8, 1.6);
@@ -102,6 +104,15 @@ std::map<std::string, double> random_parameters(const Case& c, double height, Ra
             {"place", random.between(-0.1, 0.1)},
             {"friction", random.between(0, 0.6)},
             {"angle", random.between(40, 100) * degree}};
+}
+
+// The made wrench is 19 thick: it is thickened to the case's own slenderness.
+TriMesh make_work_piece(const Case& c) {
+    TriMesh mesh = make_shape(c.shape, c.size).mesh;
+    const Vec3 size = box_of(mesh.position).size();
+    const double thicken = size.x() / (c.slender * size.y());
+    for (Vec3& p : mesh.position) p.y() *= thicken;
+    return mesh;
 }
 
 // The lengthwise direction at one end: how the outer 12 % have turned as a whole.
@@ -147,7 +158,7 @@ Result run_case(int seed, const std::vector<MachineSpec>& machines, bool frame_b
     const auto start = Stopwatch::Clock::now();
     Random random(seed);
     const Case c = make_case(seed, random);
-    const TriMesh mesh = make_shape(c.shape, c.size).mesh;
+    const TriMesh mesh = make_work_piece(c);
     Aggregate matter = mold(mesh, c.material, c.mold);
     const WorkFrame frame = place_work_frame(matter, "auto", "auto");
     const auto given = random_parameters(c, frame.size.y(), random);

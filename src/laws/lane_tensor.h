@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors and symmetric tensors over any number: a double, a batch of lanes, a dual number. Everything
+// is inlined, so that a law written with them becomes part of the loop that calls it.
+#pragma once
+
+#include <cmath>
+
+#define SWAGE_INLINE inline __attribute__((always_inline))
+
+namespace swage {
+
+// Eight cells at a time, whatever the machine's vectors are.
+inline constexpr int kLanes = 8;
+typedef double Lanes __attribute__((vector_size(8 * kLanes)));
+
+SWAGE_INLINE double root(double a) { return std::sqrt(a); }
+SWAGE_INLINE Lanes root(const Lanes& a) {
+    Lanes r;
+    for (int l = 0; l < kLanes; ++l) r[l] = __builtin_sqrt(a[l]);
+    return r;
+}
+SWAGE_INLINE double larger(double a, double b) { return a > b ? a : b; }
+SWAGE_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+
+template <typename N>
+struct Triple {
+    N x, y, z;
+};
+
+template <typename N>
+SWAGE_INLINE Triple<N> operator+(const Triple<N>& a, const Triple<N>& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <typename N>
+SWAGE_INLINE Triple<N> operator-(const Triple<N>& a, const Triple<N>& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <typename N>
+SWAGE_INLINE Triple<N> operator*(const N& s, const Triple<N>& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+template <typename N>
+SWAGE_INLINE N dot(const Triple<N>& a, const Triple<N>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <typename N>
+SWAGE_INLINE Triple<N> cross(const Triple<N>& a, const Triple<N>& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// Columns: the images of the material axes.
+template <typename N>
+struct Columns {
+    Triple<N> x, y, z;
+};
+template <typename N>
+SWAGE_INLINE Triple<N> operator*(const Columns<N>& f, const Triple<N>& a) {
+    return a.x * f.x + a.y * f.y + a.z * f.z;
+}
+template <typename N>
+SWAGE_INLINE Triple<N> transposed_times(const Columns<N>& f, const Triple<N>& a) {
+    return {dot(f.x, a), dot(f.y, a), dot(f.z, a)};
+}
+
+template <typename N>
+struct Symmetric {
+    N xx, yy, zz, xy, yz, zx;
+};
+template <typename N>
+SWAGE_INLINE Symmetric<N> operator+(const Symmetric<N>& a, const Symmetric<N>& b) {
+    return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
+}
+template <typename N>
+SWAGE_INLINE Symmetric<N> operator-(const Symmetric<N>& a, const Symmetric<N>& b) {
+    return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.zx - b.zx};
+}
+template <typename N>
+SWAGE_INLINE Symmetric<N> operator*(const N& s, const Symmetric<N>& a) {
+    return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.yz, s * a.zx};
+}
+template <typename N>
+SWAGE_INLINE N trace(const Symmetric<N>& a) {
+    return a.xx + a.yy + a.zz;
+}
+template <typename N>
+SWAGE_INLINE N contract(const Symmetric<N>& a, const Symmetric<N>& b) {
+    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz +
+           2.0 * (a.xy * b.xy + a.yz * b.yz + a.zx * b.zx);
+}
+// a b + b a
+template <typename N>
+SWAGE_INLINE Symmetric<N> both_ways(const Symmetric<N>& a, const Symmetric<N>& b) {
+    return {2.0 * (a.xx * b.xx + a.xy * b.xy + a.zx * b.zx),
+            2.0 * (a.xy * b.xy + a.yy * b.yy + a.yz * b.yz),
+            2.0 * (a.zx * b.zx + a.yz * b.yz + a.zz * b.zz),
+            a.xx * b.xy + a.xy * (b.xx + b.yy) + a.yy * b.xy + a.zx * b.yz + a.yz * b.zx,
+            a.yy * b.yz + a.yz * (b.yy + b.zz) + a.zz * b.yz + a.xy * b.zx + a.zx * b.xy,
+            a.zz * b.zx + a.zx * (b.zz + b.xx) + a.xx * b.zx + a.yz * b.xy + a.xy * b.yz};
+}
+template <typename N>
+SWAGE_INLINE Symmetric<N> square(const Symmetric<N>& a) {
+    return {a.xx * a.xx + a.xy * a.xy + a.zx * a.zx, a.xy * a.xy + a.yy * a.yy + a.yz * a.yz,
+            a.zx * a.zx + a.yz * a.yz + a.zz * a.zz, a.xy * (a.xx + a.yy) + a.zx * a.yz,
+            a.yz * (a.yy + a.zz) + a.xy * a.zx,      a.zx * (a.zz + a.xx) + a.yz * a.xy};
+}
+// The product of two symmetric tensors that commute.
+template <typename N>
+SWAGE_INLINE Symmetric<N> commuting(const Symmetric<N>& a, const Symmetric<N>& b) {
+    return {a.xx * b.xx + a.xy * b.xy + a.zx * b.zx, a.xy * b.xy + a.yy * b.yy + a.yz * b.yz,
+            a.zx * b.zx + a.yz * b.yz + a.zz * b.zz, a.xx * b.xy + a.xy * b.yy + a.zx * b.yz,
+            a.xy * b.zx + a.yy * b.yz + a.yz * b.zz, a.zx * b.xx + a.yz * b.xy + a.zz * b.zx};
+}
+// a b a
+template <typename N>
+SWAGE_INLINE Symmetric<N> sandwich(const Symmetric<N>& a, const Symmetric<N>& b) {
+    // m = b a, by columns; only then a m, which is symmetric.
+    const Triple<N> mx = {b.xx * a.xx + b.xy * a.xy + b.zx * a.zx,
+                          b.xy * a.xx + b.yy * a.xy + b.yz * a.zx,
+                          b.zx * a.xx + b.yz * a.xy + b.zz * a.zx};
+    const Triple<N> my = {b.xx * a.xy + b.xy * a.yy + b.zx * a.yz,
+                          b.xy * a.xy + b.yy * a.yy + b.yz * a.yz,
+                          b.zx * a.xy + b.yz * a.yy + b.zz * a.yz};
+    const Triple<N> mz = {b.xx * a.zx + b.xy * a.yz + b.zx * a.zz,
+                          b.xy * a.zx + b.yy * a.yz + b.yz * a.zz,
+                          b.zx * a.zx + b.yz * a.yz + b.zz * a.zz};
+    return {a.xx * mx.x + a.xy * mx.y + a.zx * mx.z, a.xy * my.x + a.yy * my.y + a.yz * my.z,
+            a.zx * mz.x + a.yz * mz.y + a.zz * mz.z, a.xx * my.x + a.xy * my.y + a.zx * my.z,
+            a.xy * mz.x + a.yy * mz.y + a.yz * mz.z, a.xx * mz.x + a.xy * mz.y + a.zx * mz.z};
+}
+template <typename N>
+SWAGE_INLINE Symmetric<N> inverse(const Symmetric<N>& a) {
+    const N xx = a.yy * a.zz - a.yz * a.yz, xy = a.yz * a.zx - a.xy * a.zz,
+            zx = a.xy * a.yz - a.yy * a.zx;
+    const N over = 1.0 / (a.xx * xx + a.xy * xy + a.zx * zx);
+    return {over * xx,
+            over * (a.xx * a.zz - a.zx * a.zx),
+            over * (a.xx * a.yy - a.xy * a.xy),
+            over * xy,
+            over * (a.xy * a.zx - a.xx * a.yz),
+            over * zx};
+}
+// F S
+template <typename N>
+SWAGE_INLINE Columns<N> operator*(const Columns<N>& f, const Symmetric<N>& s) {
+    return {f * Triple<N>{s.xx, s.xy, s.zx}, f * Triple<N>{s.xy, s.yy, s.yz},
+            f * Triple<N>{s.zx, s.yz, s.zz}};
+}
+
+}  // namespace swage
