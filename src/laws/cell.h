@@ -219,12 +219,38 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
     return r;
 }
 
-// Forces that the cell exerts on its corners, from the gradient of its energy with the sums.
+// Energy of the mean strain, elastic part, per volume of material.
 template <typename N>
-SWAGE_INLINE CornerSums<N> sum_forces(const CornerSums<N>& c, const Columns<N>& f,
-                                      const Symmetric<N>& stress, const CellModes<N>& g,
-                                      const Triple<N>& at, double spacing) {
-    Columns<N> p = f * stress;  // dW/dF
+SWAGE_INLINE N strain_energy(const CellModuli& law, const Symmetric<N>& strain,
+                             const CellHistory<N>& history) {
+    const Symmetric<N> e = deviator(strain) - history.strain;
+    const N size = trace(strain);
+    return law.shear * contract(e, e) + (0.5 * law.bulk) * size * size;
+}
+
+// Rubber: energy per volume of material, and its gradient dW/dF.
+template <typename N>
+SWAGE_INLINE N rubber_energy(const CellModuli& law, const Columns<N>& f) {
+    const N grown = dot(f.x, cross(f.y, f.z)) - 1.0;
+    const double lame = law.bulk - 2.0 / 3 * law.shear;
+    return (0.5 * law.shear) * (dot(f.x, f.x) + dot(f.y, f.y) + dot(f.z, f.z) - 3.0) -
+           law.shear * grown + (0.5 * (lame + law.shear)) * grown * grown;
+}
+template <typename N>
+SWAGE_INLINE Columns<N> rubber_stress(const CellModuli& law, const Columns<N>& f) {
+    const Columns<N> cofactor = {cross(f.y, f.z), cross(f.z, f.x), cross(f.x, f.y)};
+    const double lame = law.bulk - 2.0 / 3 * law.shear;
+    const N pressure = (lame + law.shear) * (dot(f.x, cofactor.x) - 1.0) - law.shear;
+    const N mu = law.shear + 0.0 * pressure;
+    return {mu * f.x + pressure * cofactor.x, mu * f.y + pressure * cofactor.y,
+            mu * f.z + pressure * cofactor.z};
+}
+
+// Forces that the cell exerts on its corners, as forces on their sums: from p = dW/dF and g, the stress
+// of the modes.
+template <typename N>
+SWAGE_INLINE CornerSums<N> sum_forces(const CornerSums<N>& c, const Columns<N>& f, Columns<N> p,
+                                      const CellModes<N>& g, const Triple<N>& at, double spacing) {
     p.x = p.x + (g.xy.x * c.xy + g.yz.x * c.yz + g.zx.x * c.zx + g.xyz.x * c.xyz);
     p.y = p.y + (g.xy.y * c.xy + g.yz.y * c.yz + g.zx.y * c.zx + g.xyz.y * c.xyz);
     p.z = p.z + (g.xy.z * c.xy + g.yz.z * c.yz + g.zx.z * c.zx + g.xyz.z * c.xyz);

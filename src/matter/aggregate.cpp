@@ -53,6 +53,8 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
+    for (const std::vector<float>& v : cell_plastic_strain) sum += bytes_of(v);
+    for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);
     for (const ConnectionArrays& direction : connection) {
         sum += bytes_of(direction.weight) + bytes_of(direction.plastic);
     }
@@ -112,6 +114,12 @@ std::uint64_t state_hash(const Aggregate& matter) {
     }
     for (const std::vector<float>& slot : matter.cell_plastic) {
         hasher.add(std::span<const float>(slot));
+    }
+    for (const std::vector<float>& v : matter.cell_plastic_strain) {
+        hasher.add(std::span<const float>(v));
+    }
+    for (const std::vector<float>& v : matter.cell_plastic_modes) {
+        hasher.add(std::span<const float>(v));
     }
     hasher.add(std::span<const float>(matter.cell_hardening));
     return hasher.value();

@@ -141,11 +141,15 @@ struct Aggregate {
                                    // neighbour can bring it slightly above 1
     std::vector<Eigen::Vector3f> cell_centroid;  // of that share, in the cell, each -0.5 to 0.5
 
-    // Committed logarithmic plastic strain that each cell gives each of its 24 connections, by slot
-    // (kCellConnection), then cell, and the accumulated plastic strain; all empty while nothing has
-    // ever yielded.
+    // History of the cells, committed; all empty while nothing has ever yielded.
+    std::vector<float> cell_hardening;  // accumulated plastic strain
+    // Mechanics of cells (laws/cell.h): plastic strain xx, yy, zz, xy, yz, zx, and plastic part of the
+    // modes xy, yz, zx, xyz, three components each [m].
+    std::array<std::vector<float>, 6> cell_plastic_strain;
+    std::array<std::vector<float>, 12> cell_plastic_modes;
+    // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24 connections, by
+    // slot (kCellConnection), then cell.
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
-    std::vector<float> cell_hardening;
 
     SurfacePoints surface;
 

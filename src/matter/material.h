@@ -7,10 +7,22 @@
 
 namespace swage {
 
+enum class Mechanics {
+    cells,    // strain of whole cells: any Poisson's ratio, right in bending on coarse lattices
+    springs,  // the papers' connections alone: Poisson's ratio 1/4
+};
+
+enum class Elasticity {
+    hencky,       // linear in the logarithmic strain; what can yield
+    neo_hookean,  // rubber: resists being turned inside out
+};
+
 struct Material {
     std::string name = "custom";
+    Mechanics mechanics = Mechanics::cells;
+    Elasticity elasticity = Elasticity::hencky;
     double young_modulus = 1e6;   // [Pa], > 0
-    double poisson_ratio = 0.25;  // NOTE: lattices of springs alone are 1/4 whatever is asked
+    double poisson_ratio = 0.25;  // 0 to 0.49; springs are 1/4 whatever is asked
     double density = 1000;        // [kg/m3], > 0
     double yield_stress = std::numeric_limits<double>::infinity();  // [Pa], > 0; inf: never yields
     double hardening =

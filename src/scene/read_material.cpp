@@ -26,7 +26,11 @@ bool is_infinite(const Node* node) {
 void read_material_numbers(TableReader& table, bool needs_all, Material& material) {
     const bool has_modulus =
         table.quantity("young_modulus", Quantity::stress, above(0), material.young_modulus);
-    table.quantity("poisson_ratio", Quantity::number, inside(-1, 0.5), material.poisson_ratio);
+    table.quantity("poisson_ratio", Quantity::number, between(0, 0.49), material.poisson_ratio);
+    table.choice<Elasticity>(
+        "elasticity",
+        {{"hencky", Elasticity::hencky}, {"neo-hookean", Elasticity::neo_hookean}},
+        material.elasticity);
     const bool has_density =
         table.quantity("density", Quantity::density, above(0), material.density);
     if (is_infinite(table.find("yield_stress"))) {
@@ -87,15 +91,24 @@ void read_material(TableReader& table, const AssetPaths& assets,
         }
         is_custom = false;
     }
-    const double ratio_of_name = material.poisson_ratio;
-    material.poisson_ratio = std::numeric_limits<double>::quiet_NaN();
+    table.choice<Mechanics>(
+        "mechanics", {{"cells", Mechanics::cells}, {"springs", Mechanics::springs}},
+        material.mechanics);
     read_material_numbers(table, is_custom, material);
-    if (std::isnan(material.poisson_ratio)) {
-        material.poisson_ratio = ratio_of_name;
-    } else if (std::abs(material.poisson_ratio - kLatticePoisson) > kPoissonSlack) {
+    if (material.mechanics == Mechanics::springs && table.find("poisson_ratio") != nullptr &&
+        std::abs(material.poisson_ratio - kLatticePoisson) > kPoissonSlack) {
         table.warn("poisson_ratio", fmt::format("poisson_ratio = {} has no effect: a lattice of "
                                                 "springs has {}",
                                                 material.poisson_ratio, kLatticePoisson));
+    }
+    if (material.elasticity == Elasticity::neo_hookean) {
+        if (std::isfinite(material.yield_stress)) {
+            table.mistake("elasticity",
+                          "neo-hookean matter does not yield: leave yield_stress out (or inf), or "
+                          "use elasticity = \"hencky\"");
+        } else if (material.mechanics == Mechanics::springs) {
+            table.warn("elasticity", "elasticity has no effect on springs");
+        }
     }
     if (table.find("hardening") != nullptr && std::isinf(material.yield_stress)) {
         table.warn("hardening", "hardening has no effect without yield_stress");

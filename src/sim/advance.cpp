@@ -8,9 +8,8 @@
 #include <deque>
 #include <variant>
 
-#include "sim/cell_volume.h"
 #include "sim/explicit_steps.h"
-#include "sim/lattice_sweep.h"
+#include "sim/lattice_forces.h"
 #include "sim/quasistatic.h"
 #include "sim/sever.h"
 
@@ -43,12 +42,15 @@ std::vector<char> crumbs_of(const Aggregate& matter) {
 struct Simulation::Rooms {
     Aggregate& matter;
     const Apparatus& apparatus;
-    LatticeLaw law;
     std::variant<QuasistaticSolver, ExplicitSolver> solver;
     int pieces = 1;
     double plastic = 0, damped = 0, severed_energy = 0;
     std::vector<double> work;
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
+
+    double elastic() const {
+        return std::visit([](const auto& solver) { return solver.elastic_energy(); }, solver);
+    }
 
     std::vector<SeverEvent> crossed(const Aggregate& body, const Drive& from,
                                     const Drive& to) const {
@@ -72,7 +74,7 @@ struct Simulation::Rooms {
 };
 
 Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)
-    : rooms_(new Rooms{matter, apparatus, lattice_law(matter),
+    : rooms_(new Rooms{matter, apparatus,
                        Rooms::choose(matter, apparatus, settings), find_pieces(matter).count, 0, 0,
                        0,
                        std::vector<double>(apparatus.tool.size() + apparatus.grip.size(), 0.0)}) {
@@ -121,11 +123,11 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         r.plan.pop_front();
     }
     if (!events.empty()) {
-        const double before = elastic_energy(r.matter, r.law);
+        const double before = r.elastic();
         for (const SeverEvent& e : events) r.matter.connection[e.direction].weight[e.lower] = 0;
         report.severed = static_cast<int>(events.size());
-        r.severed_energy += before - elastic_energy(r.matter, r.law);
         std::visit([](auto& solver) { solver.connections_changed(); }, r.solver);
+        r.severed_energy += before - r.elastic();
     }
     if (report.severed > 0) {
         const std::vector<char> crumb = crumbs_of(r.matter);
@@ -154,7 +156,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.plastic = r.plastic;
     report.damped = r.damped;
     report.severed_energy = r.severed_energy;
-    report.elastic = elastic_energy(r.matter, r.law) + guard_energy_of(r.matter);
+    report.elastic = r.elastic();
     report.kinetic = kinetic_energy(r.matter);
     const std::size_t tools = r.apparatus.tool.size();
     for (std::size_t n = 0; n < outcome.load.size(); ++n) {

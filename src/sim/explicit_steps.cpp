@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "sim/cell_volume.h"
+#include "laws/spring_damper.h"
 
 namespace swage {
 
 namespace {
 
-double highest_frequency(const Aggregate& matter, const LatticeLaw& law) {
-    const std::vector<double> bound = stiffness_bound(matter, law);
+double highest_frequency(const Aggregate& matter) {
+    const std::vector<double> bound = LatticeForces(matter).stiffness_bound(matter);
     double highest = 0;
     for (std::size_t p = 0; p < bound.size(); ++p) {
         highest = std::max(highest, bound[p] / matter.particle_mass[p]);
@@ -29,7 +29,7 @@ bool finite(const Vec3Array& a) {
 }  // namespace
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
-    const double w = highest_frequency(matter, lattice_law(matter));
+    const double w = highest_frequency(matter);
     const double zeta = matter.material.damping_ratio;
     return settings.step_safety * 2 / w * (std::sqrt(1 + zeta * zeta) - zeta);
 }
@@ -39,20 +39,19 @@ ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
     : matter_(matter),
       apparatus_(apparatus),
       settings_(settings),
-      law_(lattice_law(matter)),
-      sweep_(matter),
-      flow_(matter),
+      lattice_(matter),
       contacts_(matter, apparatus, settings),
       step_(explicit_step(matter, settings)),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
     // A dashpot of b damps a mode of frequency w with zeta = b w / 2 k.
-    const double w = highest_frequency(matter, law_);
-    law_.damping = 2 * matter.material.damping_ratio * law_.stiffness / w;
+    const double w = highest_frequency(matter);
+    damping_ = 2 * matter.material.damping_ratio *
+               lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing) / w;
     contacts_.limit_stiffness(matter, step_);
 }
 
 void ExplicitSolver::connections_changed() {
-    // Fewer connections are never faster, so the step stays.
+    lattice_.connections_changed(matter_);  // fewer are never faster, so the step stays
 }
 
 bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOutcome& outcome) {
@@ -66,9 +65,8 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
     for (long n = 1; n <= count; ++n) {
         const Drive now = n == count ? to : drive_between(from, to, double(n) / double(count));
         contacts_.begin_move(matter_, before);
-        // Flow is committed after every step, so the committed rest strains are the present ones.
-        outcome.damped_work += dt * sweep_.forces(matter_, law_, nullptr, force_);
-        add_guard_forces(matter_, force_);
+        lattice_.find(matter_, force_);
+        if (damping_ > 0) outcome.damped_work += dt * lattice_.add_dashpots(matter_, damping_, force_);
         contacts_.add_forces(matter_, now, force_);
         double farthest = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {
@@ -83,7 +81,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
                                  std::abs(x.y[p] - listed.y[p]), std::abs(x.z[p] - listed.z[p])});
         }
         if (!finite(x)) return false;
-        outcome.plastic_work += flow_.commit(matter_);
+        outcome.plastic_work += lattice_.commit(matter_);
         contacts_.commit(matter_, now);
         std::vector<LoadSum> load = contacts_.loads(matter_, now);
         add_work(before, now, load_, load, outcome.work);
@@ -104,6 +102,8 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     const Vec3Array start_x = matter_.particle_position, start_v = matter_.particle_velocity;
     const auto start_connections = matter_.connection;
     const auto start_plastic = matter_.cell_plastic;
+    const auto start_strain = matter_.cell_plastic_strain;
+    const auto start_modes = matter_.cell_plastic_modes;
     const auto start_hardening = matter_.cell_hardening;
     const ContactSet start_contacts = contacts_;
     double dt = step_;
@@ -115,6 +115,8 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         matter_.particle_velocity = start_v;
         matter_.connection = start_connections;
         matter_.cell_plastic = start_plastic;
+        matter_.cell_plastic_strain = start_strain;
+        matter_.cell_plastic_modes = start_modes;
         matter_.cell_hardening = start_hardening;
         contacts_ = start_contacts;
         if (outcome.halvings == settings_.halving_limit) {

@@ -10,9 +10,8 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
-#include "sim/cell_flow.h"
 #include "sim/contact_set.h"
-#include "sim/lattice_sweep.h"
+#include "sim/lattice_forces.h"
 #include "sim/move_outcome.h"
 #include "sim/settings.h"
 
@@ -29,6 +28,7 @@ class ExplicitSolver {
     // then as it was before the move.
     MoveOutcome advance(const Drive& from, const Drive& to);
     void connections_changed();
+    double elastic_energy() const { return lattice_.elastic_energy(matter_); }  // [J]
 
   private:
     bool steps(const Drive& from, const Drive& to, double dt, MoveOutcome& outcome);
@@ -36,9 +36,8 @@ class ExplicitSolver {
     Aggregate& matter_;
     const Apparatus& apparatus_;
     SimSettings settings_;
-    LatticeLaw law_;
-    LatticeSweep sweep_;
-    CellFlow flow_;
+    LatticeForces lattice_;
+    double damping_;  // of a full connection [N s/m]
     ContactSet contacts_;
     double step_;
     Vec3Array force_;

@@ -85,33 +85,32 @@ LatticeSweep::LatticeSweep(const Aggregate& matter) {
     const std::size_t slabs = std::clamp<std::size_t>(particles / kSlabParticles, 1, 64);
     std::size_t s = 0;
     for (std::size_t n = 0; n < slabs; ++n) {
-        Slab slab{};
-        slab.span_begin = s;
-        slab.begin = s < spans.size() ? spans[s].lower : static_cast<ParticleId>(particles);
-        slab.reach = slab.begin;
+        Slab slab{s, s, 0};
+        ForceSlab part;
+        part.begin = s < spans.size() ? spans[s].lower : static_cast<ParticleId>(particles);
+        part.reach = part.begin;
         const std::size_t stop = particles * (n + 1) / slabs;
         while (s < spans.size() &&
                (n + 1 == slabs || static_cast<std::size_t>(spans[s].lower) < stop)) {
-            slab.begin = std::min(slab.begin, spans[s].lower);
-            slab.reach = std::max(slab.reach, spans[s].upper + spans[s].count);
+            part.begin = std::min(part.begin, spans[s].lower);
+            part.reach = std::max(part.reach, spans[s].upper + spans[s].count);
             ++s;
         }
         slab.span_end = s;
         if (slab.span_end == slab.span_begin) continue;
-        slab.part.resize(static_cast<std::size_t>(slab.reach - slab.begin));
-        slab_.push_back(std::move(slab));
+        part.part.resize(static_cast<std::size_t>(part.reach - part.begin));
+        slab_.push_back(slab);
+        part_.push_back(std::move(part));
     }
 }
 
 double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
                             Vec3Array& force) {
     const std::size_t particles = matter.particle_count();
-    force.resize(particles);
     parallel_for(slab_.size(), [&](std::size_t index) {
         Slab& slab = slab_[index];
-        std::fill(slab.part.x.begin(), slab.part.x.end(), 0.0);
-        std::fill(slab.part.y.begin(), slab.part.y.end(), 0.0);
-        std::fill(slab.part.z.begin(), slab.part.z.end(), 0.0);
+        ForceSlab& sum = part_[index];
+        sum.clear();
         alignas(64) double fx[kBlock], fy[kBlock], fz[kBlock], power[kBlock];
         slab.damping_power = 0;
         for (std::size_t n = slab.span_begin; n < slab.span_end; ++n) {
@@ -132,34 +131,17 @@ double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, cons
                     dashpot_block(s, v, law.damping, count, fx, fy, fz, power);
                     for (int c = 0; c < count; ++c) slab.damping_power += power[c];
                 }
-                const std::size_t l = lower - slab.begin, u = upper - slab.begin;
-                add_block(fx, count, slab.part.x.data() + l);
-                add_block(fy, count, slab.part.y.data() + l);
-                add_block(fz, count, slab.part.z.data() + l);
-                subtract_block(fx, count, slab.part.x.data() + u);
-                subtract_block(fy, count, slab.part.y.data() + u);
-                subtract_block(fz, count, slab.part.z.data() + u);
+                const std::size_t l = lower - sum.begin, u = upper - sum.begin;
+                add_block(fx, count, sum.part.x.data() + l);
+                add_block(fy, count, sum.part.y.data() + l);
+                add_block(fz, count, sum.part.z.data() + l);
+                subtract_block(fx, count, sum.part.x.data() + u);
+                subtract_block(fy, count, sum.part.y.data() + u);
+                subtract_block(fz, count, sum.part.z.data() + u);
             }
         }
     });
-    // Each particle adds what the slabs that reach it found, in the order of the slabs.
-    const std::size_t chunks = std::max<std::size_t>(1, slab_.size());
-    parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t begin = particles * chunk / chunks;
-        const std::size_t end = particles * (chunk + 1) / chunks;
-        std::fill(force.x.begin() + begin, force.x.begin() + end, 0.0);
-        std::fill(force.y.begin() + begin, force.y.begin() + end, 0.0);
-        std::fill(force.z.begin() + begin, force.z.begin() + end, 0.0);
-        for (const Slab& slab : slab_) {
-            const std::size_t from = std::max<std::size_t>(begin, slab.begin);
-            const std::size_t to = std::min<std::size_t>(end, slab.reach);
-            if (from >= to) continue;
-            const int count = static_cast<int>(to - from);
-            add_block(slab.part.x.data() + (from - slab.begin), count, force.x.data() + from);
-            add_block(slab.part.y.data() + (from - slab.begin), count, force.y.data() + from);
-            add_block(slab.part.z.data() + (from - slab.begin), count, force.z.data() + from);
-        }
-    });
+    sum_slabs(part_, particles, force);
     double power = 0;
     for (const Slab& slab : slab_) power += slab.damping_power;
     return power;

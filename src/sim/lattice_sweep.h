@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "sim/force_slabs.h"
 
 namespace swage {
 
@@ -33,12 +34,10 @@ class LatticeSweep {
   private:
     struct Slab {
         std::size_t span_begin, span_end;
-        ParticleId begin, end;  // lower ends of its connections
-        ParticleId reach;       // one past the highest upper end
-        Vec3Array part;         // forces on begin ... reach
-        double damping_power;   // [W]
+        double damping_power;  // [W]
     };
     std::vector<Slab> slab_;
+    ForceSlabs part_;
 };
 
 // Elastic energy stored in the connections [J].

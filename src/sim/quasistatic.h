@@ -16,9 +16,8 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
-#include "sim/cell_flow.h"
 #include "sim/contact_set.h"
-#include "sim/lattice_sweep.h"
+#include "sim/lattice_forces.h"
 #include "sim/move_outcome.h"
 #include "sim/settings.h"
 
@@ -34,6 +33,7 @@ class QuasistaticSolver {
 
     // The connections have changed (severed): masses are found anew.
     void connections_changed();
+    double elastic_energy() const { return lattice_.elastic_energy(matter_); }  // [J]
 
   private:
     struct Relaxation {
@@ -53,9 +53,7 @@ class QuasistaticSolver {
     Aggregate& matter_;
     const Apparatus& apparatus_;
     SimSettings settings_;
-    LatticeLaw law_;
-    LatticeSweep sweep_;
-    CellFlow flow_;
+    LatticeForces lattice_;
     ContactSet contacts_;
     double body_size_;  // [m]
     std::vector<double> lattice_bound_;
