@@ -14,6 +14,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kSlabCells = 8192;
+constexpr double kNeverYields = 1e100;  // [Pa]
 constexpr int kStrains = 6, kModes = 12;
 // Cells that share a particle never all move in their stiffest way at once: measured, the fastest
 // motion of a block is 0.46 (nu = 0.49) to 0.62 (nu = 0.25) of the sum of its cells' bounds.
@@ -303,7 +304,9 @@ void CellSweep::cells_changed(const Aggregate& matter) {
                   });
 }
 
-void CellSweep::forces(const Aggregate& matter, Vec3Array& force) {
+void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
+    CellModuli law = law_;
+    if (flow == Flow::none) law.yield_stress = kNeverYields;
     const Vec3Array& x = matter.particle_position;
     const double* const component[3] = {x.x.data(), x.y.data(), x.z.data()};
     const std::vector<float> fresh(yields_ && matter.cell_plastic_strain[0].empty() ? fill_.size() : 0);
@@ -324,7 +327,7 @@ void CellSweep::forces(const Aggregate& matter, Vec3Array& force) {
             }
             arrays.batch.fill = fill_.data() + run.first;
             if (rubber_) {
-                rubber_run(law_, arrays);
+                rubber_run(law, arrays);
             } else if (yields_) {
                 const auto from = [&](const std::vector<float>& v) {
                     return (v.empty() ? fresh : v).data() + run.first;
@@ -336,9 +339,9 @@ void CellSweep::forces(const Aggregate& matter, Vec3Array& force) {
                     arrays.batch.modes[n] = from(matter.cell_plastic_modes[n]);
                 }
                 arrays.batch.alpha = from(matter.cell_hardening);
-                yielding_run(law_, arrays);
+                yielding_run(law, arrays);
             } else {
-                elastic_run(law_, arrays);
+                elastic_run(law, arrays);
             }
         }
     });

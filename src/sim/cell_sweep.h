@@ -11,6 +11,11 @@
 
 namespace swage {
 
+enum class Flow {
+    trial,  // what yields flows on from the committed history
+    none,   // nothing flows further
+};
+
 class CellSweep {
   public:
     explicit CellSweep(const Aggregate& matter);
@@ -19,8 +24,8 @@ class CellSweep {
     void cells_changed(const Aggregate& matter);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole
 
-    // force = sum of the cells' forces on each particle [N], flowing from the committed history.
-    void forces(const Aggregate& matter, Vec3Array& force);
+    // force = sum of the cells' forces on each particle [N].
+    void forces(const Aggregate& matter, Flow flow, Vec3Array& force);
 
     // Remembers the flow of a converged state; returns the work that it took [J].
     double commit(Aggregate& matter) const;

@@ -136,6 +136,24 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
     }
 }
 
+std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Drive& now) const {
+    std::vector<HeldPoint> held;
+    for_each_touch(matter, now,
+                   [&](std::size_t n, const Vec3&, const Distance& d, double k,
+                       const ContactForce& contact) {
+                       const Mat3 across = d.normal * d.normal.transpose();
+                       held.push_back({pair_[n].point,
+                                       k * (contact.slips ? across : Mat3(Mat3::Identity()))});
+                   });
+    for (const Grip& grip : apparatus_->grip) {
+        for (int point : grip.point) {
+            held.push_back({point, point_stiffness(matter, point, settings_.grip_stiffness) *
+                                       Mat3::Identity()});
+        }
+    }
+    return held;
+}
+
 Vec3 ContactSet::anchor_of(const Pair& pair) const {
     return pair.stuck ? pair.anchor
                       : tool_from_world_at_start_[pair.tool] * start_position_[pair.point];

@@ -8,6 +8,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/coarse_modes.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -38,6 +39,10 @@ class ContactSet {
 
     // Adds to `stiffness` what the present candidates and grips can add to each particle [N/m].
     void add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const;
+
+    // What holds the body now: touching points, across the tool's surface only where they slip, and
+    // gripped ones.
+    std::vector<HeldPoint> held_points(const Aggregate& matter, const Drive& now) const;
 
     // Adds all contact and grip forces.
     void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;

@@ -60,22 +60,35 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
     }
 }
 
+void LatticeForces::add_loose(const Aggregate& matter, Vec3Array& force) const {
+    const Vec3Array& x = matter.particle_position;
+    for (const LooseSpring& s : loose_) {
+        const Vec3 reach = x.at(s.upper) - x.at(s.lower);
+        const double distance = reach.norm();
+        const Vec3 pull = s.stiffness * (distance - s.rest_length) / (distance + 1e-300) * reach;
+        force.add(s.lower, pull);
+        force.add(s.upper, -pull);
+    }
+}
+
 void LatticeForces::find(const Aggregate& matter, Vec3Array& force) {
     if (cells_) {
-        cells_->forces(matter, force);
-        const Vec3Array& x = matter.particle_position;
-        for (const LooseSpring& s : loose_) {
-            const Vec3 reach = x.at(s.upper) - x.at(s.lower);
-            const double distance = reach.norm();
-            const Vec3 pull = s.stiffness * (distance - s.rest_length) / (distance + 1e-300) * reach;
-            force.add(s.lower, pull);
-            force.add(s.upper, -pull);
-        }
+        cells_->forces(matter, Flow::trial, force);
+        add_loose(matter, force);
     } else {
         spring_sweep_.forces(matter, spring_law_,
                              spring_flow_ ? &spring_flow_->rest_strains(matter) : nullptr, force);
     }
     if (guarded_) add_guard_forces(matter, force);
+}
+
+void LatticeForces::find_elastic(const Aggregate& matter, Vec3Array& force) {
+    if (cells_) {
+        cells_->forces(matter, Flow::none, force);
+        add_loose(matter, force);
+    } else {
+        spring_sweep_.forces(matter, spring_law_, nullptr, force);
+    }
 }
 
 double LatticeForces::add_dashpots(const Aggregate& matter, double damping, Vec3Array& force) {

@@ -23,6 +23,9 @@ class LatticeForces {
     // Forces on every particle at the present positions, flowing from the committed history [N].
     void find(const Aggregate& matter, Vec3Array& force);
 
+    // The same as if nothing could flow any further.
+    void find_elastic(const Aggregate& matter, Vec3Array& force);
+
     // Adds the forces of dashpots along all connections, `damping` [N s/m] of a full one; returns the
     // power that they take [W].
     double add_dashpots(const Aggregate& matter, double damping, Vec3Array& force);
@@ -37,6 +40,8 @@ class LatticeForces {
     std::vector<double> stiffness_bound(const Aggregate& matter) const;
 
   private:
+    void add_loose(const Aggregate& matter, Vec3Array& force) const;
+
     struct LooseSpring {
         int direction;
         ParticleId lower, upper;

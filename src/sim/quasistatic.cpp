@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -29,6 +30,8 @@ constexpr double kLeastPush = 1e-3;
 constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.05;
 constexpr double kDrawsBack = 0.3;  // share of a tool's way that is away from the body
 constexpr int kCheckInterval = 10;
+constexpr int kRenewInterval = 200;
+constexpr double kStaleStiffness = 0.5;  // spacings that a particle moves until the modes are found anew
 constexpr std::size_t kChunk = 8192;
 
 std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
@@ -54,6 +57,17 @@ double chunked_sum(std::size_t count, const Term& term) {
 
 double largest_extent(const Aggregate& matter) {
     return matter.lattice.spacing * matter.lattice.cell_count.maxCoeff();
+}
+
+// Infinite when there is nothing to compare with.
+double farthest_move(const Vec3Array& from, const Vec3Array& to) {
+    if (from.size() != to.size()) return std::numeric_limits<double>::infinity();
+    double farthest = 0;
+    for (std::size_t p = 0; p < to.size(); ++p) {
+        farthest = std::max({farthest, std::abs(to.x[p] - from.x[p]),
+                             std::abs(to.y[p] - from.y[p]), std::abs(to.z[p] - from.z[p])});
+    }
+    return farthest;
 }
 
 // State of the FIRE schedule.
@@ -82,6 +96,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       apparatus_(apparatus),
       settings_(settings),
       lattice_(matter),
+      coarse_(matter),
       contacts_(matter, apparatus, settings),
       body_size_(largest_extent(matter)),
       load_(apparatus.tool.size() + apparatus.grip.size()),
@@ -93,6 +108,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
 void QuasistaticSolver::connections_changed() {
     lattice_.connections_changed(matter_);
     lattice_bound_ = lattice_.stiffness_bound(matter_);
+    probed_.resize(0);
     const double a = matter_.lattice.spacing;
     const double full_mass = matter_.material.density * a * a * a;
     drag_.resize(matter_.particle_count());
@@ -150,13 +166,19 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     for (auto* component : {&v.x, &v.y, &v.z}) std::fill(component->begin(), component->end(), 0.0);
     const auto list_candidates = [&] {
         contacts_.find_candidates(matter_, to);
+        if (farthest_move(probed_, x) > kStaleStiffness * a) {
+            coarse_.find_stiffness(matter_, [&](Vec3Array& force) { lattice_.find_elastic(matter_, force); });
+            probed_ = x;
+        }
         find_masses();
+        coarse_.find_modes(matter_, mass_, contacts_.held_points(matter_, to));
         listed_ = x;
     };
     list_candidates();
 
     Schedule schedule;
     Relaxation result;
+    int renewed = 0;
     std::vector<double> farthest(chunks_of(n));
     for (int iteration = 1; iteration <= settings_.iteration_limit; ++iteration) {
         result.iterations = iteration;
@@ -176,27 +198,38 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         const double power = chunked_sum(
             n, [&](std::size_t p) { return v.x[p] * f.x[p] + v.y[p] * f.y[p] + v.z[p] * f.z[p]; });
         double keep = 0, pull = 0;  // v = keep v + pull f / m
+        CoarseModes::Vector total;
+        if (coarse_.gains()) total = coarse_.restricted(f);
         if (power > 0) {
             const double vv = chunked_sum(n, [&](std::size_t p) {
                 return mass_[p] * (v.x[p] * v.x[p] + v.y[p] * v.y[p] + v.z[p] * v.z[p]);
             });
-            const double ff = chunked_sum(n, [&](std::size_t p) {
+            double ff = chunked_sum(n, [&](std::size_t p) {
                 return inverse_mass_[p] * (f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
             });
+            if (coarse_.gains()) ff += coarse_.gain_size(total);
             keep = 1 - schedule.mixing;
             pull = ff > 0 ? schedule.mixing * std::sqrt(vv / ff) : 0;
             schedule.downhill();
         } else {
             schedule.uphill();
+            // Other points touch or slip by now.
+            if (iteration >= renewed + kRenewInterval) {
+                coarse_.find_modes(matter_, mass_, contacts_.held_points(matter_, to));
+                if (coarse_.gains()) total = coarse_.restricted(f);
+                renewed = iteration;
+            }
         }
         const double dt = schedule.step;
+        if (coarse_.gains()) coarse_.add(coarse_.gain((pull + dt) * total), keep, v);
+        const double kept = coarse_.gains() ? 1 : keep;  // else done just now
         parallel_for(chunks_of(n), [&](std::size_t chunk) {
             const std::size_t end = std::min(n, (chunk + 1) * kChunk);
             const auto move = [&](std::vector<double>& xs, std::vector<double>& vs,
                                   const std::vector<double>& fs, const std::vector<double>& from) {
                 double most = 0;
                 for (std::size_t p = chunk * kChunk; p < end; ++p) {
-                    vs[p] = keep * vs[p] + (pull + dt) * fs[p] * inverse_mass_[p];
+                    vs[p] = kept * vs[p] + (pull + dt) * fs[p] * inverse_mass_[p];
                     const double way = dt * vs[p];
                     xs[p] += way > longest ? longest : way < -longest ? -longest : way;
                     const double gone = std::abs(xs[p] - from[p]);

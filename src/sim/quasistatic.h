@@ -16,6 +16,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/coarse_modes.h"
 #include "sim/contact_set.h"
 #include "sim/lattice_forces.h"
 #include "sim/move_outcome.h"
@@ -54,6 +55,8 @@ class QuasistaticSolver {
     const Apparatus& apparatus_;
     SimSettings settings_;
     LatticeForces lattice_;
+    CoarseModes coarse_;
+    Vec3Array probed_;  // positions at which its stiffness was found
     ContactSet contacts_;
     double body_size_;  // [m]
     std::vector<double> lattice_bound_;
