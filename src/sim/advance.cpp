@@ -150,7 +150,15 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.halvings = outcome.halvings;
     report.steps = outcome.steps;
     report.residual = outcome.residual;
-    report.warning.insert(report.warning.end(), outcome.warning.begin(), outcome.warning.end());
+    if (!outcome.lost.empty()) {
+        std::string names;
+        for (std::size_t n = 0; n < outcome.lost.size(); ++n) {
+            if (n > 0) names += n + 1 == outcome.lost.size() ? " and " : ", ";
+            names += outcome.lost[n];
+        }
+        report.warning.push_back(
+            fmt::format("the work-piece slipped away from {} although no tool drew back", names));
+    }
     r.plastic += outcome.plastic_work;
     r.damped += outcome.damped_work;
     report.plastic = r.plastic;

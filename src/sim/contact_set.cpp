@@ -265,21 +265,6 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
     return farthest;
 }
 
-double ContactSet::advance(const Aggregate& matter, std::size_t tool, const Drive& from,
-                           const Drive& to) const {
-    double normal = 0, size = 0;
-    for_each_touch(
-        matter, from,
-        [&](std::size_t n, const Vec3& x, const Distance& d, double, const ContactForce&) {
-            if (pair_[n].tool != static_cast<int>(tool)) return;
-            const Vec3 local = from.world_from_tool[tool].inverse() * x;
-            const Vec3 way = to.world_from_tool[tool] * local - x;
-            normal += d.normal.dot(way);
-            size += way.norm();
-        });
-    return size > 0 ? normal / size : 0;
-}
-
 std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {
     double hardest = -1;
     std::string text = "no tool in contact";

@@ -56,11 +56,6 @@ class ContactSet {
     // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
 
-    // How straight the tool moves at the points that touch it now: 1 presses, -1 draws back, 0
-    // slides or rests.
-    double advance(const Aggregate& matter, std::size_t tool, const Drive& from,
-                   const Drive& to) const;
-
     // The point with the largest force, for error messages: "tool at (x, y, z)".
     std::string hardest_point(const Aggregate& matter, const Drive& now) const;
 

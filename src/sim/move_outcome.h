@@ -19,7 +19,7 @@ struct MoveOutcome {
     double damped_work = 0;     // [J]; explicit steps only
     std::vector<double> work;   // by tool, then grip [J]
     std::vector<LoadSum> load;  // at the end, by tool, then grip
-    std::vector<std::string> warning;
+    std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };
 
 // Work [J] that each tool and grip did while its pose went from one to another under these loads

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -27,9 +28,10 @@ constexpr double kSmallestCellVolume = 0.05;
 // push is next to nothing.
 constexpr double kLeastPush = 1e-3;
 // Shares of the most that a tool has carried: loaded, and not any more.
-constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.05;
-constexpr double kDrawsBack = 0.3;  // share of a tool's way that is away from the body
+constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
 constexpr int kCheckInterval = 10;
+constexpr double kFastest = 0.1;  // spacings a step, on the whole
+constexpr int kEscape = 10;  // times the iterations for a body that still goes far
 constexpr int kRenewInterval = 200;
 constexpr double kStaleStiffness = 0.5;  // spacings that a particle moves until the modes are found anew
 constexpr std::size_t kChunk = 8192;
@@ -100,7 +102,9 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       contacts_(matter, apparatus, settings),
       body_size_(largest_extent(matter)),
       load_(apparatus.tool.size() + apparatus.grip.size()),
-      most_load_(load_.size(), 0.0) {
+      most_load_(load_.size(), 0.0),
+      carries_(apparatus.tool.size(), false),
+      pressing_motion_(6 * apparatus.tool.size(), 0.0) {
     velocity_.resize(matter.particle_count());
     connections_changed();
 }
@@ -179,9 +183,20 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Schedule schedule;
     Relaxation result;
     int renewed = 0;
+    const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
     std::vector<double> farthest(chunks_of(n));
-    for (int iteration = 1; iteration <= settings_.iteration_limit; ++iteration) {
+    int limit = settings_.iteration_limit;
+    Vec3Array halfway = x;
+    for (int iteration = 1; iteration <= limit; ++iteration) {
         result.iterations = iteration;
+        if (iteration == limit - settings_.iteration_limit / 2) halfway = x;
+        // A body that snaps or slips out is let go where it will: smaller increments would only come
+        // to the same brink.
+        if (iteration == limit && limit < kEscape * settings_.iteration_limit &&
+            farthest_move(halfway, x) > a) {
+            limit += settings_.iteration_limit / 2;
+            halfway = x;
+        }
         evaluate(to);
         if (iteration % kCheckInterval == 0) {
             const double residual = chunked_sum(n, [&](std::size_t p) {
@@ -209,6 +224,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             });
             if (coarse_.gains()) ff += coarse_.gain_size(total);
             keep = 1 - schedule.mixing;
+            // A body that is let go must not run into the next tool at full tilt.
+            const double way = schedule.step * std::sqrt(vv / whole_mass);
+            if (way > kFastest * a) keep *= kFastest * a / way;
             pull = ff > 0 ? schedule.mixing * std::sqrt(vv / ff) : 0;
             schedule.downhill();
         } else {
@@ -283,15 +301,27 @@ void QuasistaticSolver::predict(const std::vector<double>& motion) {
     extrapolate(x.z, previous_.z);
 }
 
-// A tool that loses its load at one blow, while none draws back, has lost the work-piece.
-void QuasistaticSolver::check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) const {
+// Whether any tool moves otherwise than it did when it last pressed.
+bool QuasistaticSolver::draws_back(const std::vector<double>& motion) const {
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        if (load_[t].size > kLoadedShare * most_load_[t] &&
-            after[t].size <= kUnloadedShare * most_load_[t]) {
-            outcome.warning.push_back(
-                fmt::format("the work-piece slipped away from {} although no tool drew back",
-                            apparatus_.tool[t].name));
+        double along = 0, now = 0, then = 0;
+        for (std::size_t n = 6 * t; n < 6 * t + 6; ++n) {
+            along += motion[n] * pressing_motion_[n];
+            now += motion[n] * motion[n];
+            then += pressing_motion_[n] * pressing_motion_[n];
         }
+        if (now > 0 && then > 0 && along < 0.1 * std::sqrt(now * then)) return true;
+    }
+    return false;
+}
+
+// A tool that loses its load while none draws back has lost the work-piece.
+void QuasistaticSolver::check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) {
+    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
+        if (after[t].size > kLoadedShare * most_load_[t]) carries_[t] = true;
+        if (!carries_[t] || after[t].size > kUnloadedShare * most_load_[t]) continue;
+        carries_[t] = false;
+        outcome.lost.push_back(apparatus_.tool[t].name);
     }
 }
 
@@ -299,11 +329,8 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome) {
     start_ = matter_.particle_position;
     contacts_.begin_move(matter_, from);
-    bool released = false;
-    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        released = released || contacts_.advance(matter_, t, from, to) < -kDrawsBack;
-    }
     std::vector<double> motion = motion_of(from, to);
+    const bool released = draws_back(motion);
     predict(motion);
 
     const Relaxation relaxed = relax(to);
@@ -338,8 +365,19 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         largest_push_ = std::max(largest_push_, load[n].size);
         most_load_[n] = std::max(most_load_[n], load[n].size);
     }
-    if (!released) check_slip(load, outcome);
-    add_work(from, to, load_, load, outcome.work);
+    if (released) {
+        std::fill(carries_.begin(), carries_.end(), false);
+    } else {
+        check_slip(load, outcome);
+    }
+    std::vector<double> work(load_.size(), 0.0);
+    add_work(from, to, load_, load, work);
+    for (std::size_t n = 0; n < work.size(); ++n) {
+        outcome.work[n] += work[n];
+        if (n < carries_.size() && carries_[n] && work[n] > 0) {
+            std::copy_n(motion.begin() + 6 * n, 6, pressing_motion_.begin() + 6 * n);
+        }
+    }
     load_ = std::move(load);
     previous_ = start_;
     previous_motion_ = std::move(motion);

@@ -49,7 +49,8 @@ class QuasistaticSolver {
     double push_limit(const Drive& to) const;
     std::vector<double> motion_of(const Drive& from, const Drive& to) const;
     void predict(const std::vector<double>& motion);
-    void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) const;
+    bool draws_back(const std::vector<double>& motion) const;
+    void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome);
 
     Aggregate& matter_;
     const Apparatus& apparatus_;
@@ -68,6 +69,8 @@ class QuasistaticSolver {
     double largest_push_ = 0;              // of any tool so far [N]
     std::vector<LoadSum> load_;            // at the end of the last increment, by tool, then grip
     std::vector<double> most_load_;        // that each has carried so far [N]
+    std::vector<bool> carries_;            // tools that are loaded and have not drawn back since
+    std::vector<double> pressing_motion_;  // six numbers a tool, of when it last pressed: loaded, and working on the matter
 };
 
 }  // namespace swage

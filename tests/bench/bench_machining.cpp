@@ -29,8 +29,9 @@ using namespace swage;
 namespace {
 
 constexpr int kBends = 40, kTwists = 20;
-constexpr double kReached = 0.8;   // share of the angle: such a bend has not slipped
-constexpr double kNothing = 0.05;  // share of the most that any tool has carried
+constexpr double kReached = 0.8;  // share of the angle: such a bend has not slipped
+constexpr double kMissed = 0.4;   // and such a one has
+constexpr double kNothing = 0.1;  // share of the most that any tool has carried
 
 // S. Vigna, "splitmix64", 2015.
 class Random {
@@ -209,7 +210,7 @@ Result run_case(int seed, const std::vector<MachineSpec>& machines, bool frame_b
             }
             if (c.bend && std::abs(t - machine.parameter.at("press")) < 0.5 / c.frames) {
                 pressed = angle_between_ends(matter);
-                result.slipped = carried <= kNothing * carried_most;
+                result.slipped = carried <= kNothing * carried_most || pressed < kMissed * angle;
                 result.silent = result.slipped && !result.reported;
             }
             if (frame_by_frame) {
