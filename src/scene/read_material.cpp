@@ -101,13 +101,17 @@ void read_material(TableReader& table, const AssetPaths& assets,
                                                 "springs has {}",
                                                 material.poisson_ratio, kLatticePoisson));
     }
-    if (material.elasticity == Elasticity::neo_hookean) {
-        if (std::isfinite(material.yield_stress)) {
+    const bool asks_elasticity = table.find("elasticity") != nullptr;
+    if (asks_elasticity && material.mechanics == Mechanics::springs) {
+        table.warn("elasticity", "elasticity has no effect on springs");
+    }
+    if (material.elasticity == Elasticity::neo_hookean && std::isfinite(material.yield_stress)) {
+        // A rubber that is told to yield is taken as what can.
+        material.elasticity = Elasticity::hencky;
+        if (asks_elasticity) {
             table.mistake("elasticity",
                           "neo-hookean matter does not yield: leave yield_stress out (or inf), or "
                           "use elasticity = \"hencky\"");
-        } else if (material.mechanics == Mechanics::springs) {
-            table.warn("elasticity", "elasticity has no effect on springs");
         }
     }
     if (table.find("hardening") != nullptr && std::isinf(material.yield_stress)) {

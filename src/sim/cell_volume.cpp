@@ -98,8 +98,10 @@ Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {
     return gradient;
 }
 
-void add_guard_forces(const Aggregate& matter, Vec3Array& force) {
+int add_guard_forces(const Aggregate& matter, Vec3Array& force) {
+    int mirrored = 0;
     for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
+        mirrored += cell.volume < 0;
         const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
         Mat3 cofactor;
         cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
@@ -112,6 +114,20 @@ void add_guard_forces(const Aggregate& matter, Vec3Array& force) {
             }
             force.add(cell.run->row[c >> 1] + cell.n + (c & 1), -(stress * slope));
         }
+    }
+    return mirrored;
+}
+
+void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness) {
+    for (const SmallCell& cell : cells_below(matter, 0)) {
+        const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
+        const double cofactor = f.col(1).cross(f.col(2)).squaredNorm() +
+                                f.col(2).cross(f.col(0)).squaredNorm() +
+                                f.col(0).cross(f.col(1)).squaredNorm();
+        const double own = material_volume(matter, cell) * (1 + kMirroredStiffness) *
+                           matter.material.young_modulus * cofactor /
+                           (2 * matter.lattice.spacing * matter.lattice.spacing);
+        for (int c = 0; c < 8; ++c) stiffness[cell.run->row[c >> 1] + cell.n + (c & 1)] += own;
     }
 }
 

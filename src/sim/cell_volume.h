@@ -15,9 +15,12 @@ void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count
 // Mean deformation gradient of cell n of a run.
 Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n);
 
-// Adds the forces by which crushed cells resist (laws/volume_guard.h), in the order of the cells.
+// Adds the forces by which crushed cells resist (laws/volume_guard.h), in the order of the cells;
+// returns how many of them are inside out.
 // Cells that a blade has crossed have no volume of their own and resist nothing.
-void add_guard_forces(const Aggregate& matter, Vec3Array& force);
+int add_guard_forces(const Aggregate& matter, Vec3Array& force);
+// Adds to each particle what the guard of cells inside out can add to its stiffness [N/m].
+void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness);
 double guard_energy_of(const Aggregate& matter);  // [J]
 
 // The volume ratio of the most compressed cell that is at least a quarter full; below 0 it is

@@ -13,7 +13,7 @@ namespace swage {
 namespace {
 
 constexpr int kMostNodes = 40;
-constexpr double kMostGain = 1000;
+constexpr double kMostGain = 300;
 constexpr int kChunkParticles = 8192;
 
 // As many coarse cells along each axis as make them about cubes, without too many nodes.

@@ -4,7 +4,7 @@
 // motions P the particles follow trilinearly; there each mode is given the mass that suits its own
 // stiffness:
 //
-//     a = M^-1 f + P V (s - 1) V^T P^T f,   s = 1 / (2 l), 1 to 1000
+//     a = M^-1 f + P V (s - 1) V^T P^T f,   s = 1 / (2 l), 1 to 300
 //
 // V, l: modes of the coarse stiffness, V^T P^T M P V = 1, V^T P^T K P V = l. K is the lattice's elastic
 // stiffness now, by differences of its forces, and the contacts'.

@@ -71,7 +71,7 @@ void LatticeForces::add_loose(const Aggregate& matter, Vec3Array& force) const {
     }
 }
 
-void LatticeForces::find(const Aggregate& matter, Vec3Array& force) {
+int LatticeForces::find(const Aggregate& matter, Vec3Array& force) {
     if (cells_) {
         cells_->forces(matter, Flow::trial, force);
         add_loose(matter, force);
@@ -79,7 +79,7 @@ void LatticeForces::find(const Aggregate& matter, Vec3Array& force) {
         spring_sweep_.forces(matter, spring_law_,
                              spring_flow_ ? &spring_flow_->rest_strains(matter) : nullptr, force);
     }
-    if (guarded_) add_guard_forces(matter, force);
+    return guarded_ ? add_guard_forces(matter, force) : 0;
 }
 
 void LatticeForces::find_elastic(const Aggregate& matter, Vec3Array& force) {
@@ -89,6 +89,7 @@ void LatticeForces::find_elastic(const Aggregate& matter, Vec3Array& force) {
     } else {
         spring_sweep_.forces(matter, spring_law_, nullptr, force);
     }
+    if (guarded_) add_guard_forces(matter, force);
 }
 
 double LatticeForces::add_dashpots(const Aggregate& matter, double damping, Vec3Array& force) {

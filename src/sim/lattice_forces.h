@@ -21,7 +21,9 @@ class LatticeForces {
     void connections_changed(const Aggregate& matter);
 
     // Forces on every particle at the present positions, flowing from the committed history [N].
-    void find(const Aggregate& matter, Vec3Array& force);
+    // Returns the number of cells that are inside out: they are stiffer than stiffness_bound() says,
+    // by add_guard_stiffness().
+    int find(const Aggregate& matter, Vec3Array& force);
 
     // The same as if nothing could flow any further.
     void find_elastic(const Aggregate& matter, Vec3Array& force);

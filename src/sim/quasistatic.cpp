@@ -31,7 +31,7 @@ constexpr double kLeastPush = 1e-3;
 constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
 constexpr int kCheckInterval = 10;
 constexpr double kFastest = 0.1;  // spacings a step, on the whole
-constexpr int kEscape = 10;  // times the iterations for a body that still goes far
+constexpr int kEscape = 10;  // times the iterations, for a body that still goes far or settles
 constexpr int kRenewInterval = 200;
 constexpr double kStaleStiffness = 0.5;  // spacings that a particle moves until the modes are found anew
 constexpr std::size_t kChunk = 8192;
@@ -126,16 +126,18 @@ void QuasistaticSolver::find_masses() {
     const std::size_t n = matter_.particle_count();
     std::vector<double> contact(n, 0.0);
     contacts_.add_stiffness(matter_, contact);
+    std::vector<double> guard(n, 0.0);
+    add_guard_stiffness(matter_, guard);
     mass_.resize(n);
     inverse_mass_.resize(n);
     for (std::size_t p = 0; p < n; ++p) {
-        mass_[p] = kLatticeMassShare * lattice_bound_[p] + kContactMassShare * contact[p];
+        mass_[p] = kLatticeMassShare * (lattice_bound_[p] + guard[p]) + kContactMassShare * contact[p];
         inverse_mass_[p] = mass_[p] > 0 ? 1 / mass_[p] : 0;  // a loose particle stays where it is
     }
 }
 
 void QuasistaticSolver::evaluate(const Drive& to) {
-    lattice_.find(matter_, force_);
+    mirrored_ = lattice_.find(matter_, force_);
     contacts_.add_forces(matter_, to, force_);
     const Vec3 g = settings_.gravity;
     const Vec3Array& x = matter_.particle_position;
@@ -182,22 +184,31 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
 
     Schedule schedule;
     Relaxation result;
-    int renewed = 0;
+    int renewed = 0, weighted_mirrors = 0;
     const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
     std::vector<double> farthest(chunks_of(n));
     int limit = settings_.iteration_limit;
     Vec3Array halfway = x;
+    double halfway_residual = 0;
     for (int iteration = 1; iteration <= limit; ++iteration) {
         result.iterations = iteration;
-        if (iteration == limit - settings_.iteration_limit / 2) halfway = x;
-        // A body that snaps or slips out is let go where it will: smaller increments would only come
-        // to the same brink.
+        // A body that snaps or slips out is let go where it will, and one that settles may settle:
+        // smaller increments would only come to the same brink.
+        if (iteration == limit - settings_.iteration_limit / 2) {
+            halfway = x;
+            halfway_residual = result.residual;
+        }
         if (iteration == limit && limit < kEscape * settings_.iteration_limit &&
-            farthest_move(halfway, x) > a) {
+            (farthest_move(halfway, x) > a || result.residual < 0.5 * halfway_residual)) {
             limit += settings_.iteration_limit / 2;
             halfway = x;
+            halfway_residual = result.residual;
         }
         evaluate(to);
+        if (mirrored_ > weighted_mirrors) {
+            find_masses();
+            weighted_mirrors = mirrored_;
+        }
         if (iteration % kCheckInterval == 0) {
             const double residual = chunked_sum(n, [&](std::size_t p) {
                 return std::sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
@@ -214,7 +225,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             n, [&](std::size_t p) { return v.x[p] * f.x[p] + v.y[p] * f.y[p] + v.z[p] * f.z[p]; });
         double keep = 0, pull = 0;  // v = keep v + pull f / m
         CoarseModes::Vector total;
-        if (coarse_.gains()) total = coarse_.restricted(f);
+        const bool coarse = coarse_.gains() && mirrored_ == 0;
+        if (coarse) total = coarse_.restricted(f);
         if (power > 0) {
             const double vv = chunked_sum(n, [&](std::size_t p) {
                 return mass_[p] * (v.x[p] * v.x[p] + v.y[p] * v.y[p] + v.z[p] * v.z[p]);
@@ -222,7 +234,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             double ff = chunked_sum(n, [&](std::size_t p) {
                 return inverse_mass_[p] * (f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
             });
-            if (coarse_.gains()) ff += coarse_.gain_size(total);
+            if (coarse) ff += coarse_.gain_size(total);
             keep = 1 - schedule.mixing;
             // A body that is let go must not run into the next tool at full tilt.
             const double way = schedule.step * std::sqrt(vv / whole_mass);
@@ -234,13 +246,13 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             // Other points touch or slip by now.
             if (iteration >= renewed + kRenewInterval) {
                 coarse_.find_modes(matter_, mass_, contacts_.held_points(matter_, to));
-                if (coarse_.gains()) total = coarse_.restricted(f);
+                if (coarse) total = coarse_.restricted(f);
                 renewed = iteration;
             }
         }
         const double dt = schedule.step;
-        if (coarse_.gains()) coarse_.add(coarse_.gain((pull + dt) * total), keep, v);
-        const double kept = coarse_.gains() ? 1 : keep;  // else done just now
+        if (coarse) coarse_.add(coarse_.gain((pull + dt) * total), keep, v);
+        const double kept = coarse ? 1 : keep;  // else done just now
         parallel_for(chunks_of(n), [&](std::size_t chunk) {
             const std::size_t end = std::min(n, (chunk + 1) * kChunk);
             const auto move = [&](std::vector<double>& xs, std::vector<double>& vs,

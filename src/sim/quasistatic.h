@@ -62,6 +62,7 @@ class QuasistaticSolver {
     double body_size_;  // [m]
     std::vector<double> lattice_bound_;
     std::vector<double> mass_, inverse_mass_, drag_;
+    int mirrored_ = 0;  // cells inside out
     Vec3Array force_, velocity_;
     Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
                                            // the candidates were found
