@@ -5,8 +5,10 @@
 //     F = grad x at the centroid of the cell's material       C = F^T F
 //     Y = (C - I)(C + I)^-1                                   Cayley strain, tanh(ln U)
 //     E = Y + Y^3/3 + Y^5/5                                   ln U but for |E|^7/7
-//     q_m = F^T Q_m,  Q_m = sum of h_m x                      bending and twist of the corners, m = xy, yz,
-//                                                             zx, xyz; h_xy = s_x s_y, s = -1, +1 [m]
+//     q_m = F^T Q_m,  Q_m = sum of h_m x                      bending and twist of the corners, m =
+//     xy, yz,
+//                                                             zx, xyz; h_xy = s_x s_y, s = -1, +1
+//                                                             [m]
 //     W = f V [mu |dev E|^2 + K (tr E)^2 / 2] + f^3 W_q       [J]
 //     W_q = c_e/2 [xy_x^2 + xy_y^2 + yz_y^2 + yz_z^2 + zx_z^2 + zx_x^2 + |xyz|^2]
 //         + c_d/2 [(yz_y + zx_x)^2 + (yz_z + xy_x)^2 + (zx_z + xy_y)^2
@@ -15,54 +17,33 @@
 //                                                                          eta_d = 1/3
 //
 // f: share of the cell's volume V = a^3 inside the body. W_q is the deviations' part of the 18
-// connections of stiffness mu a, edges counted eta_e and diagonals eta_d times: with these a cell bends
-// and twists as a slice of a beam does. Strain and modes are functions of C and F^T Q alone: a rotation
-// leaves them as they are, so no rotation is ever split off.
+// connections of stiffness mu a, edges counted eta_e and diagonals eta_d times: with these a cell
+// bends and twists as a slice of a beam does. Strain and modes are functions of C and F^T Q alone:
+// a rotation leaves them as they are, so no rotation is ever split off.
 //
 // Plastic flow after von Mises, of mean and deviations by one factor w, with linear hardening:
 //
 //     s = 2 mu dev(E - E_p)     n^2 = s : s + 4 mu f^2 W_q(q - q_p) / V     t = sqrt(3/2) n
-//     t > sigma_y + H alpha:    d_alpha = (t - sigma_y - H alpha) / (3 mu + H),  w = 1 - 3 mu d_alpha / t
-//                               E_p += (1 - w) dev(E - E_p),  q_p += (1 - w)(q - q_p),  alpha += d_alpha
+//     t > sigma_y + H alpha:    d_alpha = (t - sigma_y - H alpha) / (3 mu + H),  w = 1 - 3 mu
+//     d_alpha / t
+//                               E_p += (1 - w) dev(E - E_p),  q_p += (1 - w)(q - q_p),  alpha +=
+//                               d_alpha
 //
-// The history (E_p, q_p, alpha) has a committed value; every evaluation returns from it and leaves no
-// trace. Forces are the exact gradient of the increment's energy.
+// The history (E_p, q_p, alpha) has a committed value; every evaluation returns from it and leaves
+// no trace. Forces are the exact gradient of the increment's energy.
 //
-// Rubber is W = f V [mu (|F|^2 - 3)/2 - mu (J - 1) + (lambda + mu)(J - 1)^2 / 2] + f^3 W_q, J = det F,
-// which resists being turned inside out (Smith, de Goes, Kim, "Stable neo-Hookean flesh simulation", ACM
-// Trans. Graph. 37, 2018, without its logarithm).
+// Rubber is W = f V [mu (|F|^2 - 3)/2 - mu (J - 1) + (lambda + mu)(J - 1)^2 / 2] + f^3 W_q, J = det
+// F, which resists being turned inside out (Smith, de Goes, Kim, "Stable neo-Hookean flesh
+// simulation", ACM Trans. Graph. 37, 2018, without its logarithm).
 //
-// NOTE: the papers have springs alone, whose Poisson's ratio is 1/4 and which are a quarter too stiff in
-// bending at three cells across.
+// NOTE: the papers have springs alone, whose Poisson's ratio is 1/4 and which are a quarter too
+// stiff in bending at three cells across.
 #pragma once
 
+#include "laws/cell_moduli.h"
 #include "laws/lane_tensor.h"
 
 namespace swage {
-
-// One material at one spacing.
-struct CellModuli {
-    double spacing;        // a [m]
-    double shear;          // mu [Pa]
-    double bulk;           // K [Pa]
-    double edge;           // c_e [N/m]
-    double diagonal;       // c_d [N/m]
-    double yield_stress;   // sigma_y [Pa], finite
-    double hardening;      // H [Pa]
-};
-
-inline CellModuli cell_moduli(double young_modulus, double poisson_ratio, double spacing,
-                              double yield_stress = 0, double hardening = 0) {
-    const double mu = young_modulus / (2 * (1 + poisson_ratio));
-    const double edge = (poisson_ratio + std::sqrt((1 + poisson_ratio) * (1 + poisson_ratio) + 1)) / 3;
-    return {spacing,
-            mu,
-            young_modulus / (3 * (1 - 2 * poisson_ratio)),
-            mu * spacing * edge / 16,
-            mu * spacing / 48,
-            yield_stress,
-            hardening};
-}
 
 // How the eight corners stand: D_j and Q_m, sums over the corners with the signs s_j and h_m.
 template <typename N>
@@ -125,10 +106,11 @@ SWAGE_INLINE N product(const CellModes<N>& a, const CellModes<N>& b) {
     return dot(a.xy, b.xy) + dot(a.yz, b.yz) + dot(a.zx, b.zx) + dot(a.xyz, b.xyz);
 }
 
-// The cell's state as seen from the centroid of its material, which lies at (xi, eta, zeta), each -1 to
-// 1, in the cell.
+// The cell's state as seen from the centroid of its material, which lies at (xi, eta, zeta), each
+// -1 to 1, in the cell.
 template <typename N>
-SWAGE_INLINE Columns<N> centroid_gradient(const CornerSums<N>& c, const Triple<N>& at, double spacing) {
+SWAGE_INLINE Columns<N> centroid_gradient(const CornerSums<N>& c, const Triple<N>& at,
+                                          double spacing) {
     const double s = 0.25 / spacing;
     const N xi = s * at.x, eta = s * at.y, zeta = s * at.z;
     const N one = s + 0.0 * at.x;
@@ -170,8 +152,7 @@ SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const Symmetri
     const Symmetric<N>&y = e.cayley, &a = e.square;
     const Symmetric<N> ta = both_ways(t, a);
     const Symmetric<N> cube = ta + sandwich(y, t);
-    const Symmetric<N> fifth_power =
-        both_ways(t, square(a)) + sandwich(y, ta) + sandwich(a, t);
+    const Symmetric<N> fifth_power = both_ways(t, square(a)) + sandwich(y, ta) + sandwich(a, t);
     return four * sandwich(e.inner, t + third * cube + fifth * fifth_power);
 }
 
@@ -189,7 +170,7 @@ struct CellFlowed {
     Symmetric<N> distortion;  // dev(E - E_p) before the return
     CellModes<N> modes;       // q - q_p before the return
     N trace;
-    N kept;                   // w
+    N kept;  // w
     N d_alpha;
 };
 
@@ -208,9 +189,9 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
     r.distortion = deviator(strain) - history.strain;
     r.modes = modes - history.modes;
     const double volume = law.spacing * law.spacing * law.spacing;
-    const N n2 = (4 * law.shear * law.shear) * contract(r.distortion, r.distortion) +
-                 (2 * law.shear / volume) * (fill * fill) *
-                     product(mode_stress(law, r.modes), r.modes);
+    const N n2 =
+        (4 * law.shear * law.shear) * contract(r.distortion, r.distortion) +
+        (2 * law.shear / volume) * (fill * fill) * product(mode_stress(law, r.modes), r.modes);
     const N stress = root(1.5 * n2) + 1e-300;
     const N over = stress - law.yield_stress - law.hardening * history.alpha;
     const N zero = 0.0 * stress;
@@ -246,8 +227,8 @@ SWAGE_INLINE Columns<N> rubber_stress(const CellModuli& law, const Columns<N>& f
             mu * f.z + pressure * cofactor.z};
 }
 
-// Forces that the cell exerts on its corners, as forces on their sums: from p = dW/dF and g, the stress
-// of the modes.
+// Forces that the cell exerts on its corners, as forces on their sums: from p = dW/dF and g, the
+// stress of the modes.
 template <typename N>
 SWAGE_INLINE CornerSums<N> sum_forces(const CornerSums<N>& c, const Columns<N>& f, Columns<N> p,
                                       const CellModes<N>& g, const Triple<N>& at, double spacing) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors and symmetric tensors over any number: a double, a batch of lanes, a dual number. Everything
-// is inlined, so that a law written with them becomes part of the loop that calls it.
+// Vectors and symmetric tensors over any number: a double, a batch of lanes, a dual number.
+// Everything is inlined, so that a law written with them becomes part of the loop that calls it.
 #pragma once
 
 #include <cmath>
@@ -132,12 +132,8 @@ SWAGE_INLINE Symmetric<N> inverse(const Symmetric<N>& a) {
     const N xx = a.yy * a.zz - a.yz * a.yz, xy = a.yz * a.zx - a.xy * a.zz,
             zx = a.xy * a.yz - a.yy * a.zx;
     const N over = 1.0 / (a.xx * xx + a.xy * xy + a.zx * zx);
-    return {over * xx,
-            over * (a.xx * a.zz - a.zx * a.zx),
-            over * (a.xx * a.yy - a.xy * a.xy),
-            over * xy,
-            over * (a.xy * a.zx - a.xx * a.yz),
-            over * zx};
+    return {over * xx, over * (a.xx * a.zz - a.zx * a.zx), over * (a.xx * a.yy - a.xy * a.xy),
+            over * xy, over * (a.xy * a.zx - a.xx * a.yz), over * zx};
 }
 // F S
 template <typename N>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neither springs nor a strain of C = F^T F know inside from outside: a mirrored cell is as content as
-// the cell, and on the way there the log law drives it on. Below half of its volume a cell therefore
-// also resists by its volume, and more once it is inside out:
+// Neither springs nor a strain of C = F^T F know inside from outside: a mirrored cell is as content
+// as the cell, and on the way there the log law drives it on. Below half of its volume a cell
+// therefore also resists by its volume, and more once it is inside out:
 //
 //     W = E (1/2 - J)^2 / 2  [J < 1/2]  +  30 E J^2 / 2  [J < 0]     per volume at molding [J/m3]
 //     P = dW/dF = W'(J) cof F                                        [Pa]
 //
-// J = det F. 30 outweighs the log law's push wherever it points the wrong way. Nothing above half the
-// volume feels it, so it changes no answer that can be trusted.
+// J = det F. 30 outweighs the log law's push wherever it points the wrong way. Nothing above half
+// the volume feels it, so it changes no answer that can be trusted.
 #pragma once
 
 namespace swage {

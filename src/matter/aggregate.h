@@ -143,12 +143,12 @@ struct Aggregate {
 
     // History of the cells, committed; all empty while nothing has ever yielded.
     std::vector<float> cell_hardening;  // accumulated plastic strain
-    // Mechanics of cells (laws/cell.h): plastic strain xx, yy, zz, xy, yz, zx, and plastic part of the
-    // modes xy, yz, zx, xyz, three components each [m].
+    // Mechanics of cells (laws/cell.h): plastic strain xx, yy, zz, xy, yz, zx, and plastic part of
+    // the modes xy, yz, zx, xyz, three components each [m].
     std::array<std::vector<float>, 6> cell_plastic_strain;
     std::array<std::vector<float>, 12> cell_plastic_modes;
-    // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24 connections, by
-    // slot (kCellConnection), then cell.
+    // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24
+    // connections, by slot (kCellConnection), then cell.
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
 
     SurfacePoints surface;

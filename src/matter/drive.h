@@ -36,11 +36,19 @@ struct Blade {
     Vec3 color = {0.75, 0.76, 0.78};
 };
 
+// Dead forces on points of the work-piece's true surface.
+struct Load {
+    std::string name;
+    std::vector<int> point;   // into Aggregate::surface
+    std::vector<Vec3> force;  // on each at full strength, in the world [N]
+};
+
 struct Apparatus {
     std::string name;
     std::vector<Tool> tool;
     std::vector<Grip> grip;
     std::vector<Blade> blade;
+    std::vector<Load> load;
 };
 
 // Poses at one time, in the order of the apparatus.
@@ -49,6 +57,7 @@ struct Drive {
     std::vector<Pose> world_from_tool;
     std::vector<Pose> world_from_grip;
     std::vector<Pose> world_from_blade;
+    std::vector<double> load_strength;  // 1: full
 };
 
 // The drive a share `s` of the way between two.

@@ -28,8 +28,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
         table.quantity("young_modulus", Quantity::stress, above(0), material.young_modulus);
     table.quantity("poisson_ratio", Quantity::number, between(0, 0.49), material.poisson_ratio);
     table.choice<Elasticity>(
-        "elasticity",
-        {{"hencky", Elasticity::hencky}, {"neo-hookean", Elasticity::neo_hookean}},
+        "elasticity", {{"hencky", Elasticity::hencky}, {"neo-hookean", Elasticity::neo_hookean}},
         material.elasticity);
     const bool has_density =
         table.quantity("density", Quantity::density, above(0), material.density);
@@ -91,9 +90,9 @@ void read_material(TableReader& table, const AssetPaths& assets,
         }
         is_custom = false;
     }
-    table.choice<Mechanics>(
-        "mechanics", {{"cells", Mechanics::cells}, {"springs", Mechanics::springs}},
-        material.mechanics);
+    table.choice<Mechanics>("mechanics",
+                            {{"cells", Mechanics::cells}, {"springs", Mechanics::springs}},
+                            material.mechanics);
     read_material_numbers(table, is_custom, material);
     if (material.mechanics == Mechanics::springs && table.find("poisson_ratio") != nullptr &&
         std::abs(material.poisson_ratio - kLatticePoisson) > kPoissonSlack) {

@@ -74,9 +74,8 @@ struct Simulation::Rooms {
 };
 
 Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)
-    : rooms_(new Rooms{matter, apparatus,
-                       Rooms::choose(matter, apparatus, settings), find_pieces(matter).count, 0, 0,
-                       0,
+    : rooms_(new Rooms{matter, apparatus, Rooms::choose(matter, apparatus, settings),
+                       find_pieces(matter).count, 0, 0, 0,
                        std::vector<double>(apparatus.tool.size() + apparatus.grip.size(), 0.0)}) {
     if (settings.solver == Solver::quasistatic) {
         // Equilibria have no speed; whatever an explicit stage left behind is gone.

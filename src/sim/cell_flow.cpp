@@ -94,7 +94,8 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                 };
                 cell_volumes(matter, run, at, count, theta);
                 for (int n = 0; n < count; ++n) {
-                    theta[n] = log_ratio(std::clamp(theta[n], kGuardedVolume, 1 / kGuardedVolume)) / 3;
+                    theta[n] =
+                        log_ratio(std::clamp(theta[n], kGuardedVolume, 1 / kGuardedVolume)) / 3;
                 }
                 std::fill_n(distortion, count, 0.0);
                 for (int slot = 0; slot < kCellConnectionCount; ++slot) {

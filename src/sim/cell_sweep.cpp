@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "laws/cell.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -33,8 +34,8 @@ SWAGE_INLINE Lanes load(const float* from) {
     return __builtin_convertvector(v, Lanes);
 }
 
-// What the sweep reads of eight cells of a run; the last batch of a run is copied out, its lanes past
-// the end empty.
+// What the sweep reads of eight cells of a run; the last batch of a run is copied out, its lanes
+// past the end empty.
 struct Batch {
     const double* corner[3][4];  // component, row: of the first cell's low end
     const float* fill;
@@ -64,8 +65,8 @@ SWAGE_INLINE N mode_fill(const N& fill) {
 // Stress in the material's axes times the cell's volume of material, and the stress of its modes.
 template <typename N, bool kYields>
 SWAGE_INLINE void cell_stress(const CellModuli& law, const CellStrain<N>& strain,
-                              const CellModes<N>& modes, const CellHistory<N>& history, const N& fill,
-                              Symmetric<N>& stress, CellModes<N>& mode_force) {
+                              const CellModes<N>& modes, const CellHistory<N>& history,
+                              const N& fill, Symmetric<N>& stress, CellModes<N>& mode_force) {
     const double volume = law.spacing * law.spacing * law.spacing;
     N kept = 1.0 + 0.0 * fill;
     CellFlowed<N> r;
@@ -204,9 +205,13 @@ SWAGE_INLINE void run_forces(const CellModuli& law, const RunArrays& run) {
 }
 
 SWAGE_VECTOR_CLONES
-void elastic_run(const CellModuli& law, const RunArrays& run) { run_forces<false, false>(law, run); }
+void elastic_run(const CellModuli& law, const RunArrays& run) {
+    run_forces<false, false>(law, run);
+}
 SWAGE_VECTOR_CLONES
-void yielding_run(const CellModuli& law, const RunArrays& run) { run_forces<true, false>(law, run); }
+void yielding_run(const CellModuli& law, const RunArrays& run) {
+    run_forces<true, false>(law, run);
+}
 SWAGE_VECTOR_CLONES
 void rubber_run(const CellModuli& law, const RunArrays& run) { run_forces<false, true>(law, run); }
 
@@ -233,7 +238,8 @@ OneCell one_cell(const Aggregate& matter, const CellRun& run, int n,
     sum_corners(corner, c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
     gather(x.z);
     sum_corners(corner, c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    r.gradient = centroid_gradient(c, Triple<double>{at[0][cell], at[1][cell], at[2][cell]}, matter.lattice.spacing);
+    r.gradient = centroid_gradient(c, Triple<double>{at[0][cell], at[1][cell], at[2][cell]},
+                                   matter.lattice.spacing);
     r.modes = {transposed_times(r.gradient, c.xy), transposed_times(r.gradient, c.yz),
                transposed_times(r.gradient, c.zx), transposed_times(r.gradient, c.xyz)};
     return r;
@@ -309,7 +315,8 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     if (flow == Flow::none) law.yield_stress = kNeverYields;
     const Vec3Array& x = matter.particle_position;
     const double* const component[3] = {x.x.data(), x.y.data(), x.z.data()};
-    const std::vector<float> fresh(yields_ && matter.cell_plastic_strain[0].empty() ? fill_.size() : 0);
+    const std::vector<float> fresh(yields_ && matter.cell_plastic_strain[0].empty() ? fill_.size()
+                                                                                    : 0);
     parallel_for(slab_.size(), [&](std::size_t index) {
         ForceSlab& slab = part_[index];
         slab.clear();
@@ -357,8 +364,9 @@ double CellSweep::commit(Aggregate& matter) const {
     for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
         if (fill_[cell] <= 0) return;
         const OneCell c = one_cell(matter, run, n, at_);
-        const CellFlowed<double> r = flow_cell(law_, history_of(matter, cell),
-                                               cell_strain(c.gradient).log, c.modes, double(fill_[cell]));
+        const CellFlowed<double> r =
+            flow_cell(law_, history_of(matter, cell), cell_strain(c.gradient).log, c.modes,
+                      double(fill_[cell]));
         if (!(r.d_alpha > 0)) return;
         if (fresh) {
             for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
@@ -366,8 +374,8 @@ double CellSweep::commit(Aggregate& matter) const {
             matter.cell_hardening.assign(fill_.size(), 0.0f);
             fresh = false;
         }
-        // The stress that did the flow's work is the one after the return, less what hardening stores:
-        // linear hardening is booked as lost.
+        // The stress that did the flow's work is the one after the return, less what hardening
+        // stores: linear hardening is booked as lost.
         const double alpha = matter.cell_hardening[cell];
         lost += volume * fill_[cell] * r.d_alpha *
                 (law_.yield_stress + law_.hardening * (alpha + 0.5 * r.d_alpha));
@@ -410,9 +418,9 @@ double CellSweep::elastic_energy(const Aggregate& matter) const {
     });
 }
 
-// Of one cell: the mean strain's share is bounded by the largest eigenvalue of Hooke's law times that of
-// the gradient's Gram matrix, which grows as the centroid leaves the middle; the modes' by the largest of
-// the blocks in laws/cell.h.
+// Of one cell: the mean strain's share is bounded by the largest eigenvalue of Hooke's law times
+// that of the gradient's Gram matrix, which grows as the centroid leaves the middle; the modes' by
+// the largest of the blocks in laws/cell.h.
 void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const {
     const double a = law_.spacing, hooke = std::max(2 * law_.shear, 3 * law_.bulk);
     const double modes = 8 * std::max(law_.edge + 2 * law_.diagonal, 4 * law_.diagonal);

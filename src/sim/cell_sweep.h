@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sweep over all cells of a lattice: forces of the cell law (laws/cell.h), eight cells of a row at a
-// time.
+// The sweep over all cells of a lattice: forces of the cell law (laws/cell.h), eight cells of a row
+// at a time.
 #pragma once
 
 #include <vector>
 
-#include "laws/cell.h"
+#include "laws/cell_moduli.h"
 #include "matter/aggregate.h"
 #include "sim/force_slabs.h"
 
@@ -32,8 +32,8 @@ class CellSweep {
 
     double elastic_energy(const Aggregate& matter) const;  // [J]
 
-    // Adds to each particle a stiffness [N/m] such that no motion is faster than the fastest of these on
-    // their own masses.
+    // Adds to each particle a stiffness [N/m] such that no motion is faster than the fastest of
+    // these on their own masses.
     void add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const;
 
     bool yields() const { return yields_; }

@@ -2,9 +2,9 @@
 #include "sim/coarse_modes.h"
 
 #include <Eigen/Eigenvalues>
-#include <unsupported/Eigen/KroneckerProduct>
 #include <algorithm>
 #include <cmath>
+#include <unsupported/Eigen/KroneckerProduct>
 
 #include "base/parallel.h"
 
@@ -13,7 +13,6 @@ namespace swage {
 namespace {
 
 constexpr int kMostNodes = 40;
-constexpr double kMostGain = 300;
 constexpr int kChunkParticles = 8192;
 
 // As many coarse cells along each axis as make them about cubes, without too many nodes.
@@ -193,9 +192,9 @@ Eigen::MatrixXd CoarseModes::restricted_points(const Aggregate& matter,
         Vector share = Vector::Zero(count);
         for (int c = 0; c < 8; ++c) {
             const double carried = matter.surface.weight[h.point][c];
-            const Vec3 site = (matter.particle_reference.at(matter.surface.corner[h.point][c]) -
-                               lattice.origin) /
-                              lattice.spacing;
+            const Vec3 site =
+                (matter.particle_reference.at(matter.surface.corner[h.point][c]) - lattice.origin) /
+                lattice.spacing;
             Vec3i node;
             Vec3 at;
             for (int d = 0; d < 3; ++d) {
@@ -231,12 +230,16 @@ void CoarseModes::find_modes(const Aggregate& matter, const std::vector<double>&
     gains_ = modes.info() == Eigen::Success;
     if (!gains_) return;
     modes_ = modes.eigenvectors();
-    Vector more(modes_.cols());
-    for (Eigen::Index m = 0; m < more.size(); ++m) {
-        more[m] = std::clamp(0.5 / std::max(modes.eigenvalues()[m], 1e-30), 1.0, kMostGain) - 1;
-    }
-    more_ = more.asDiagonal();
-    gains_ = more.maxCoeff() > 0;
+    eigenvalues_ = modes.eigenvalues();
+    limit_gain(most_gain_);
+}
+
+void CoarseModes::limit_gain(double most) {
+    most_gain_ = most;
+    if (eigenvalues_.size() == 0) return;
+    const Vector gain = (0.5 / eigenvalues_.array().max(1e-30)).max(1.0).min(std::max(most, 1.0));
+    more_ = (gain.array() - 1).matrix().asDiagonal();
+    gains_ = gain.maxCoeff() > 1;
 }
 
 double CoarseModes::gain_size(const Vector& total) const {

@@ -138,13 +138,12 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
 
 std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Drive& now) const {
     std::vector<HeldPoint> held;
-    for_each_touch(matter, now,
-                   [&](std::size_t n, const Vec3&, const Distance& d, double k,
-                       const ContactForce& contact) {
-                       const Mat3 across = d.normal * d.normal.transpose();
-                       held.push_back({pair_[n].point,
-                                       k * (contact.slips ? across : Mat3(Mat3::Identity()))});
-                   });
+    for_each_touch(
+        matter, now,
+        [&](std::size_t n, const Vec3&, const Distance& d, double k, const ContactForce& contact) {
+            const Mat3 across = d.normal * d.normal.transpose();
+            held.push_back({pair_[n].point, k * (contact.slips ? across : Mat3(Mat3::Identity()))});
+        });
     for (const Grip& grip : apparatus_->grip) {
         for (int point : grip.point) {
             held.push_back({point, point_stiffness(matter, point, settings_.grip_stiffness) *
@@ -191,6 +190,12 @@ void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array
             const Vec3 reach =
                 now.world_from_grip[g] * grip.anchor[n] - matter.surface_position(point);
             spread(point, point_stiffness(matter, point, settings_.grip_stiffness) * reach);
+        }
+    }
+    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        const Load& load = apparatus_->load[l];
+        for (std::size_t n = 0; n < load.point.size(); ++n) {
+            spread(load.point[n], now.load_strength[l] * load.force[n]);
         }
     }
 }

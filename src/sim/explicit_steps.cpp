@@ -66,7 +66,8 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
         const Drive now = n == count ? to : drive_between(from, to, double(n) / double(count));
         contacts_.begin_move(matter_, before);
         lattice_.find(matter_, force_);
-        if (damping_ > 0) outcome.damped_work += dt * lattice_.add_dashpots(matter_, damping_, force_);
+        if (damping_ > 0)
+            outcome.damped_work += dt * lattice_.add_dashpots(matter_, damping_, force_);
         contacts_.add_forces(matter_, now, force_);
         double farthest = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {

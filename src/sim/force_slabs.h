@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces found slab by slab and added up in the order of the slabs, so that the order of all sums, and
-// with it every bit of the result, is the same for any number of threads.
+// Forces found slab by slab and added up in the order of the slabs, so that the order of all sums,
+// and with it every bit of the result, is the same for any number of threads.
 #pragma once
 
 #include <vector>

@@ -51,7 +51,8 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
                 const auto& f = kForward[c.direction];
                 const int high = c.corner + f[0] + 2 * f[1] + 4 * f[2];
                 const ParticleId upper = run.row[high >> 1] + n + (high & 1);
-                const double share = (c.direction < kEdgeCount ? 0.25 : 0.5) * matter.cell_fill[cell];
+                const double share =
+                    (c.direction < kEdgeCount ? 0.25 : 0.5) * matter.cell_fill[cell];
                 loose_.push_back({c.direction, lower, upper, spring_law_.stiffness * share,
                                   reference_length(matter.lattice, c.direction) *
                                       rest_ratio(matter, cell, c.direction)});

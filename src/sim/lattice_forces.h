@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The forces inside the matter by the mechanics that its material asks for, flow and guard included.
+// The forces inside the matter by the mechanics that its material asks for, flow and guard
+// included.
 #pragma once
 
 #include <memory>
@@ -21,15 +22,15 @@ class LatticeForces {
     void connections_changed(const Aggregate& matter);
 
     // Forces on every particle at the present positions, flowing from the committed history [N].
-    // Returns the number of cells that are inside out: they are stiffer than stiffness_bound() says,
-    // by add_guard_stiffness().
+    // Returns the number of cells that are inside out: they are stiffer than stiffness_bound()
+    // says, by add_guard_stiffness().
     int find(const Aggregate& matter, Vec3Array& force);
 
     // The same as if nothing could flow any further.
     void find_elastic(const Aggregate& matter, Vec3Array& force);
 
-    // Adds the forces of dashpots along all connections, `damping` [N s/m] of a full one; returns the
-    // power that they take [W].
+    // Adds the forces of dashpots along all connections, `damping` [N s/m] of a full one; returns
+    // the power that they take [W].
     double add_dashpots(const Aggregate& matter, double damping, Vec3Array& force);
 
     // Remembers the flow of a converged state; returns the work that it took [J].
@@ -37,8 +38,9 @@ class LatticeForces {
 
     double elastic_energy(const Aggregate& matter) const;  // [J]
 
-    // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the fastest
-    // of these on their own masses: w_max^2 <= max(bound / mass). Zero for a loose particle.
+    // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the
+    // fastest of these on their own masses: w_max^2 <= max(bound / mass). Zero for a loose
+    // particle.
     std::vector<double> stiffness_bound(const Aggregate& matter) const;
 
   private:
@@ -47,15 +49,15 @@ class LatticeForces {
     struct LooseSpring {
         int direction;
         ParticleId lower, upper;
-        double stiffness;     // [N/m]
-        double rest_length;   // [m]
+        double stiffness;    // [N/m]
+        double rest_length;  // [m]
     };
     LatticeLaw spring_law_;
     LatticeSweep spring_sweep_;
     std::unique_ptr<CellFlow> spring_flow_;  // springs that yield
     std::unique_ptr<CellSweep> cells_;       // null: springs
     bool guarded_;
-    std::vector<LooseSpring> loose_;         // of cells that are not whole
+    std::vector<LooseSpring> loose_;  // of cells that are not whole
     Vec3Array extra_;
 };
 

@@ -13,12 +13,12 @@ struct MoveOutcome {
     int iterations = 0;
     int increments = 0;
     int halvings = 0;
-    long steps = 0;             // explicit steps only
-    double residual = 0;        // of the last increment, over its reference force
-    double plastic_work = 0;    // [J]
-    double damped_work = 0;     // [J]; explicit steps only
-    std::vector<double> work;   // by tool, then grip [J]
-    std::vector<LoadSum> load;  // at the end, by tool, then grip
+    long steps = 0;                 // explicit steps only
+    double residual = 0;            // of the last increment, over its reference force
+    double plastic_work = 0;        // [J]
+    double damped_work = 0;         // [J]; explicit steps only
+    std::vector<double> work;       // by tool, then grip [J]
+    std::vector<LoadSum> load;      // at the end, by tool, then grip
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };
 

@@ -31,9 +31,12 @@ constexpr double kLeastPush = 1e-3;
 constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
 constexpr int kCheckInterval = 10;
 constexpr double kFastest = 0.1;  // spacings a step, on the whole
-constexpr int kEscape = 10;  // times the iterations, for a body that still goes far or settles
+constexpr int kEscape = 10;       // times the iterations, for a body that still goes far or settles
+// How much lighter a coarse mode may be: no one number suits all bodies, so they take turns.
+constexpr double kGain[] = {100, 10, 300, 1};
 constexpr int kRenewInterval = 200;
-constexpr double kStaleStiffness = 0.5;  // spacings that a particle moves until the modes are found anew
+constexpr double kStaleStiffness =
+    0.5;  // spacings that a particle moves until the modes are found anew
 constexpr std::size_t kChunk = 8192;
 
 std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
@@ -66,8 +69,8 @@ double farthest_move(const Vec3Array& from, const Vec3Array& to) {
     if (from.size() != to.size()) return std::numeric_limits<double>::infinity();
     double farthest = 0;
     for (std::size_t p = 0; p < to.size(); ++p) {
-        farthest = std::max({farthest, std::abs(to.x[p] - from.x[p]),
-                             std::abs(to.y[p] - from.y[p]), std::abs(to.z[p] - from.z[p])});
+        farthest = std::max({farthest, std::abs(to.x[p] - from.x[p]), std::abs(to.y[p] - from.y[p]),
+                             std::abs(to.z[p] - from.z[p])});
     }
     return farthest;
 }
@@ -117,7 +120,8 @@ void QuasistaticSolver::connections_changed() {
     const double full_mass = matter_.material.density * a * a * a;
     drag_.resize(matter_.particle_count());
     for (std::size_t p = 0; p < drag_.size(); ++p) {
-        drag_[p] = kDrag * matter_.material.young_modulus * a * matter_.particle_mass[p] / full_mass;
+        drag_[p] =
+            kDrag * matter_.material.young_modulus * a * matter_.particle_mass[p] / full_mass;
     }
     previous_motion_.clear();
 }
@@ -131,7 +135,8 @@ void QuasistaticSolver::find_masses() {
     mass_.resize(n);
     inverse_mass_.resize(n);
     for (std::size_t p = 0; p < n; ++p) {
-        mass_[p] = kLatticeMassShare * (lattice_bound_[p] + guard[p]) + kContactMassShare * contact[p];
+        mass_[p] =
+            kLatticeMassShare * (lattice_bound_[p] + guard[p]) + kContactMassShare * contact[p];
         inverse_mass_[p] = mass_[p] > 0 ? 1 / mass_[p] : 0;  // a loose particle stays where it is
     }
 }
@@ -152,12 +157,17 @@ void QuasistaticSolver::evaluate(const Drive& to) {
     });
 }
 
-// The largest force that any tool or grip carries now, or gravity asks for: the measure of the
-// residual. A force not yet carried through the body shows in the residual itself.
+// The largest force that any tool or grip carries now, or a load or gravity asks for: the measure
+// of the residual. A force not yet carried through the body shows in the residual itself.
 double QuasistaticSolver::push_limit(const Drive& to) const {
     const double a = matter_.lattice.spacing;
     double push = kLeastPush * matter_.material.young_modulus * a * a;
     for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
+    for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
+        double sum = 0;
+        for (const Vec3& force : apparatus_.load[l].force) sum += force.norm();
+        push = std::max(push, std::abs(to.load_strength[l]) * sum);
+    }
     if (settings_.gravity != Vec3::Zero()) {
         push = std::max(push, matter_.mass() * settings_.gravity.norm());
     }
@@ -173,7 +183,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     const auto list_candidates = [&] {
         contacts_.find_candidates(matter_, to);
         if (farthest_move(probed_, x) > kStaleStiffness * a) {
-            coarse_.find_stiffness(matter_, [&](Vec3Array& force) { lattice_.find_elastic(matter_, force); });
+            coarse_.find_stiffness(
+                matter_, [&](Vec3Array& force) { lattice_.find_elastic(matter_, force); });
             probed_ = x;
         }
         find_masses();
@@ -192,6 +203,10 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     double halfway_residual = 0;
     for (int iteration = 1; iteration <= limit; ++iteration) {
         result.iterations = iteration;
+        if (iteration % (settings_.iteration_limit / 4) == 1) {
+            const int turn = iteration / (settings_.iteration_limit / 4);
+            coarse_.limit_gain(kGain[turn % std::size(kGain)]);
+        }
         // A body that snaps or slips out is let go where it will, and one that settles may settle:
         // smaller increments would only come to the same brink.
         if (iteration == limit - settings_.iteration_limit / 2) {

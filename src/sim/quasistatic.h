@@ -71,7 +71,8 @@ class QuasistaticSolver {
     std::vector<LoadSum> load_;            // at the end of the last increment, by tool, then grip
     std::vector<double> most_load_;        // that each has carried so far [N]
     std::vector<bool> carries_;            // tools that are loaded and have not drawn back since
-    std::vector<double> pressing_motion_;  // six numbers a tool, of when it last pressed: loaded, and working on the matter
+    std::vector<double> pressing_motion_;  // six numbers a tool, of when it last pressed: loaded,
+                                           // and working on the matter
 };
 
 }  // namespace swage

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The constants of the cell law (laws/cell.h).
+#pragma once
+
+#include <cmath>
+
+namespace swage {
+
+// One material at one spacing.
+struct CellModuli {
+    double spacing;       // a [m]
+    double shear;         // mu [Pa]
+    double bulk;          // K [Pa]
+    double edge;          // c_e [N/m]
+    double diagonal;      // c_d [N/m]
+    double yield_stress;  // sigma_y [Pa], finite
+    double hardening;     // H [Pa]
+};
+
+inline CellModuli cell_moduli(double young_modulus, double poisson_ratio, double spacing,
+                              double yield_stress = 0, double hardening = 0) {
+    const double mu = young_modulus / (2 * (1 + poisson_ratio));
+    const double edge =
+        (poisson_ratio + std::sqrt((1 + poisson_ratio) * (1 + poisson_ratio) + 1)) / 3;
+    return {spacing,
+            mu,
+            young_modulus / (3 * (1 - 2 * poisson_ratio)),
+            mu * spacing * edge / 16,
+            mu * spacing / 48,
+            yield_stress,
+            hardening};
+}
+
+}  // namespace swage
