@@ -243,9 +243,11 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
 
 Drive drive_at(const Machine& machine, double t, double duration) {
     const Pose& world_from_work = machine.frame.world_from_work;
-    return {t * duration, placed(world_from_work, machine.work_from_tool, machine.tool_motion, t),
+    return {t * duration,
+            placed(world_from_work, machine.work_from_tool, machine.tool_motion, t),
             placed(world_from_work, machine.work_from_grip, machine.grip_motion, t),
-            placed(world_from_work, machine.work_from_blade, machine.blade_motion, t)};
+            placed(world_from_work, machine.work_from_blade, machine.blade_motion, t),
+            {}};
 }
 
 }  // namespace swage

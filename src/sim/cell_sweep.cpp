@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t kSlabCells = 8192;
 constexpr double kNeverYields = 1e100;  // [Pa]
 constexpr int kStrains = 6, kModes = 12;
-// Cells that share a particle never all move in their stiffest way at once: measured, the fastest
-// motion of a block is 0.46 (nu = 0.49) to 0.62 (nu = 0.25) of the sum of its cells' bounds.
-constexpr double kAssembled = 0.65;
+// Cells that share a particle never all move in their stiffest way at once. Of the sum over eight
+// cells the fastest motion of a block has, measured for nu = 0 to 0.49, this much of each modulus.
+constexpr double kAssembledBulk = 0.47, kAssembledShear = 0.55;
 
 typedef float FloatLanes __attribute__((vector_size(4 * kLanes)));
 
@@ -420,32 +420,44 @@ double CellSweep::elastic_energy(const Aggregate& matter) const {
 
 // Of one cell: the mean strain's share is bounded by the largest eigenvalue of Hooke's law times
 // that of the gradient's Gram matrix, which grows as the centroid leaves the middle; the modes' by
-// the largest of the blocks in laws/cell.h.
+// the largest of the blocks in laws/cell.h. The fewer cells a particle has, the less they hold each
+// other back.
 void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const {
-    const double a = law_.spacing, hooke = std::max(2 * law_.shear, 3 * law_.bulk);
+    const double a = law_.spacing;
+    const double alone = std::max(2 * law_.shear, 3 * law_.bulk);
+    const double among = kAssembledShear * 2 * law_.shear + kAssembledBulk * 3 * law_.bulk;
     const double modes = 8 * std::max(law_.edge + 2 * law_.diagonal, 4 * law_.diagonal);
-    for_each_cell(
-        matter, 0, matter.lattice.cell_run.size(), [&](const CellRun& run, int n, CellId cell) {
-            const double fill = fill_[cell];
-            if (fill <= 0) return;
-            const Vec3 at(at_[0][cell], at_[1][cell], at_[2][cell]);
-            double gram = 1;  // times 1 / (2 a^2)
-            if (at != Vec3::Zero()) {
-                Mat3 g;
-                for (int i = 0; i < 3; ++i) {
-                    const int j = (i + 1) % 3, k = (i + 2) % 3;
-                    g(i, i) = (1 + at[j] * at[j]) * (1 + at[k] * at[k]);
-                    g(i, j) = g(j, i) = at[i] * at[j] * (1 + at[k] * at[k]);
-                }
-                gram = g.cwiseAbs().rowwise().sum().maxCoeff();
-            }
-            const double mean = fill * a * a * a * hooke * gram / (2 * a * a);
-            const double own = at == Vec3::Zero() ? std::max(mean, mode_fill(fill) * modes)
-                                                  : mean + mode_fill(fill) * modes;
-            for (int q = 0; q < 4; ++q) {
-                for (int e = 0; e < 2; ++e) bound[run.row[q] + n + e] += kAssembled * own;
-            }
-        });
+    std::vector<double> held_back(bound.size(), 0.0);
+    std::vector<char> cells(bound.size(), 0);
+    for_each_cell(matter, 0, matter.lattice.cell_run.size(),
+                  [&](const CellRun& run, int n, CellId cell) {
+                      const double fill = fill_[cell];
+                      if (fill <= 0) return;
+                      const Vec3 at(at_[0][cell], at_[1][cell], at_[2][cell]);
+                      const bool centred = at == Vec3::Zero();
+                      double gram = 1;  // times 1 / (2 a^2)
+                      if (!centred) {
+                          Mat3 g;
+                          for (int i = 0; i < 3; ++i) {
+                              const int j = (i + 1) % 3, k = (i + 2) % 3;
+                              g(i, i) = (1 + at[j] * at[j]) * (1 + at[k] * at[k]);
+                              g(i, j) = g(j, i) = at[i] * at[j] * (1 + at[k] * at[k]);
+                          }
+                          gram = g.cwiseAbs().rowwise().sum().maxCoeff();
+                      }
+                      const double mean = 0.5 * fill * a * gram, own = mode_fill(fill) * modes;
+                      const auto of = [&](double hooke) {
+                          return centred ? std::max(mean * hooke, own) : mean * hooke + own;
+                      };
+                      const double most = of(alone), less = of(among);
+                      for (int c = 0; c < 8; ++c) {
+                          const ParticleId p = run.row[c >> 1] + n + (c & 1);
+                          bound[p] += most;
+                          held_back[p] += most - less;
+                          ++cells[p];
+                      }
+                  });
+    for (std::size_t p = 0; p < bound.size(); ++p) bound[p] -= cells[p] / 8.0 * held_back[p];
 }
 
 }  // namespace swage

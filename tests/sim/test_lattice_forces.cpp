@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
+
+#include "base/parallel.h"
+#include "sim/lattice_forces.h"
+#include "sim/sever.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kSpacing = 0.1;
+
+// A block with random fills, centroids and positions; rows longer than a batch of lanes and not a
+// multiple of it.
+Aggregate shaken_block(const Material& material, int seed, double by = 0.08) {
+    Aggregate m = make_block(11, 3, 2, kSpacing, material);
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+        m.cell_fill[c] = static_cast<float>(0.55 + 0.45 * draw(engine));
+        for (int i = 0; i < 3; ++i) m.cell_centroid[c][i] = static_cast<float>(0.3 * draw(engine));
+    }
+    for (auto* x : {&m.particle_position.x, &m.particle_position.y, &m.particle_position.z}) {
+        for (double& v : *x) v += by * kSpacing * draw(engine);
+    }
+    return m;
+}
+
+// Severs everything that crosses the plane x = 0.02.
+void cut(Aggregate& m) {
+    const double far = 10;
+    sever(m, {{Vec3(0.02, -far, -far), Vec3(0.02, far, -far), Vec3(0.02, far, far)},
+              {Vec3(0.02, -far, -far), Vec3(0.02, far, far), Vec3(0.02, -far, far)}});
+}
+
+const Material kMaterials[] = {
+    {.young_modulus = 1e5, .poisson_ratio = 0.4},
+    {.elasticity = Elasticity::neo_hookean, .young_modulus = 1e5, .poisson_ratio = 0.45},
+    {.mechanics = Mechanics::springs, .young_modulus = 1e5},
+};
+
+}  // namespace
+
+TEST_CASE("the lattice's forces are minus the gradient of its energy, whole or cut") {
+    for (const Material& material : kMaterials) {
+        for (bool severed : {false, true}) {
+            Aggregate m = shaken_block(material, 3);
+            if (severed) cut(m);
+            LatticeForces forces(m);
+            Vec3Array f;
+            forces.find(m, f);
+            double largest = 0;
+            for (std::size_t p = 0; p < f.size(); ++p) largest = std::max(largest, f.at(p).norm());
+            const double h = 1e-4 * kSpacing;
+            for (std::size_t p = 0; p < m.particle_count(); p += 5) {
+                const auto at = [&](double by) {
+                    m.particle_position.y[p] += by;
+                    const double energy = forces.elastic_energy(m);
+                    m.particle_position.y[p] -= by;
+                    return energy;
+                };
+                const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+                CHECK(f.y[p] == Approx(-slope).margin(1e-8 * largest));
+            }
+        }
+    }
+}
+
+TEST_CASE("forces inside matter neither push nor turn it, and vanish under a rigid motion") {
+    for (const Material& material : kMaterials) {
+        Aggregate m = shaken_block(material, 5);
+        LatticeForces forces(m);
+        Vec3Array f;
+        forces.find(m, f);
+        Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
+        double size = 0;
+        for (std::size_t p = 0; p < f.size(); ++p) {
+            sum += f.at(p);
+            torque += m.particle_position.at(p).cross(f.at(p));
+            size += f.at(p).norm();
+        }
+        CHECK(sum.norm() < 1e-13 * size);
+        CHECK(torque.norm() < 1e-13 * size);
+        const Pose moved{Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())), Vec3(3, -1, 2)};
+        for (std::size_t p = 0; p < f.size(); ++p) {
+            m.particle_position.set(p, moved * m.particle_reference.at(p));
+        }
+        forces.find(m, f);
+        for (std::size_t p = 0; p < f.size(); ++p) {
+            CHECK(f.at(p).norm() < 1e-12 * material.young_modulus * kSpacing * kSpacing);
+        }
+    }
+}
+
+TEST_CASE("a cut leaves no force between the sides, and cells away from it as they were") {
+    for (const Material& material : kMaterials) {
+        Aggregate m = shaken_block(material, 7);
+        LatticeForces whole(m);
+        Vec3Array before, after;
+        whole.find(m, before);
+        cut(m);
+        LatticeForces halves(m);
+        halves.find(m, after);
+        Vec3 left = Vec3::Zero();
+        double size = 0;
+        for (std::size_t p = 0; p < after.size(); ++p) {
+            const double x = m.particle_reference.x[p];
+            if (x < 0.02) left += after.at(p);
+            size += after.at(p).norm();
+            if (std::abs(x - 0.02) > 2 * kSpacing) {
+                CHECK((after.at(p) - before.at(p)).norm() <= 1e-12 * before.at(p).norm());
+            }
+        }
+        CHECK(left.norm() < 1e-13 * size);
+    }
+}
+
+TEST_CASE("the bound on stiffness is above the stiffest motion, and not twice above in the bulk") {
+    for (double ratio : {0.0, 0.25, 0.4, 0.49}) {
+        const Material material{.young_modulus = 1e5, .poisson_ratio = ratio};
+        for (bool ragged : {false, true}) {
+            Aggregate m =
+                ragged ? shaken_block(material, 9, 0) : make_block(9, 7, 8, kSpacing, material);
+            LatticeForces forces(m);
+            const std::vector<double> bound = forces.stiffness_bound(m);
+            // Power iteration on M^-1 K with M the bound: the eigenvalue must not exceed one.
+            std::mt19937 engine(1);
+            std::uniform_real_distribution<double> draw(-1, 1);
+            std::vector<Vec3> u(m.particle_count());
+            for (Vec3& v : u) v = Vec3(draw(engine), draw(engine), draw(engine));
+            const Vec3Array rest = m.particle_position;
+            double value = 0;
+            for (int n = 0; n < 150; ++n) {
+                double norm = 0;
+                for (std::size_t p = 0; p < u.size(); ++p) norm += bound[p] * u[p].squaredNorm();
+                const double step = 1e-7 * kSpacing;
+                for (std::size_t p = 0; p < u.size(); ++p) {
+                    u[p] /= std::sqrt(norm);
+                    m.particle_position.set(p, rest.at(p) + step * std::sqrt(bound[0]) * u[p]);
+                }
+                Vec3Array f;
+                forces.find(m, f);
+                value = 0;
+                for (std::size_t p = 0; p < u.size(); ++p) {
+                    const Vec3 ku = -f.at(p) / (step * std::sqrt(bound[0]));
+                    value += u[p].dot(ku);
+                    u[p] = ku / bound[p];
+                }
+            }
+            INFO("nu " << ratio << (ragged ? " ragged" : " block"));
+            CHECK(value < 1.0);
+            if (!ragged) CHECK(value > 0.5);
+        }
+    }
+}
+
+TEST_CASE("every bit of the forces is the same at any number of threads") {
+    Material material = kMaterials[0];
+    material.yield_stress = 2e3;
+    Aggregate m = make_block(41, 23, 29, kSpacing, material);
+    std::mt19937 engine(2);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (double& v : m.particle_position.y) v += 0.1 * kSpacing * draw(engine);
+    std::vector<double> first;
+    for (int threads : {1, 2, 3, 8}) {
+        set_thread_count(threads);
+        LatticeForces forces(m);
+        Vec3Array f;
+        forces.find(m, f);
+        if (first.empty()) first = f.x;
+        CHECK(f.x == first);
+    }
+    set_thread_count(0);
+}
