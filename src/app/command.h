@@ -34,6 +34,7 @@ void add_info_command(CLI::App& app, Action& chosen);
 void add_machines_command(CLI::App& app, Action& chosen);
 void add_render_command(CLI::App& app, Action& chosen);
 void add_make_command(CLI::App& app, Action& chosen);
+void add_verify_command(CLI::App& app, Action& chosen);
 
 // Data for stdout; a reader that has gone away is no error, a full disk is.
 void put_out(std::string_view text);

@@ -48,6 +48,7 @@ int run_command_line(int argc, char** argv) {
     add_machines_command(app, chosen);
     add_render_command(app, chosen);
     add_make_command(app, chosen);
+    add_verify_command(app, chosen);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

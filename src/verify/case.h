@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Verification: cases whose answers are known from elsewhere, run through the rooms as a user's
+// scene would be. A case gives values, each beside what it should be and how far off it may be.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace swage {
+
+struct Value {
+    std::string what;
+    int across = 0;  // cells across; 0: does not depend on them
+    double expected = 0, got = 0;
+    double error = 0;  // relative to what is expected, or absolute where that is said in `what`
+    double bound = std::numeric_limits<double>::infinity();  // infinite: only told
+    double seconds = 0;
+
+    bool bounded() const { return bound < std::numeric_limits<double>::infinity(); }
+    bool missed() const { return bounded() && !(error <= bound); }
+};
+
+Value relative(std::string what, int across, double expected, double got, double bound);
+Value absolute(std::string what, int across, double expected, double got, double bound);
+// Only told: there is nothing that it must be, or nothing sure enough.
+Value told(std::string what, int across, double expected, double got);
+
+// Each takes the seconds since the one before.
+class Values {
+  public:
+    void add(Value value);
+    const std::vector<Value>& all() const { return value_; }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last_ = Clock::now();
+    std::vector<Value> value_;
+};
+
+// Values of one `what` at two resolutions or more: error ~ across^-order.
+struct Series {
+    std::string what;
+    std::vector<Value> value;  // from coarse to fine
+    double order = 0;          // between the two finest: what coarse ones follow is no power yet
+};
+
+struct Result {
+    std::vector<Value> value;
+    std::vector<Series> series;
+    std::string failure;  // why the case ended early, empty: it did not
+    double seconds = 0;
+    bool missed = false;  // a bound, the order, or the end
+};
+
+struct Case {
+    std::string name;
+    std::string help;
+    std::string source;      // of what is expected
+    double least_order = 0;  // of every series; 0: any. The order of an error that falls as the
+                             // square of the spacing rounds to 2.
+    bool quick = false;      // part of the short run, with its coarse resolutions alone
+    // Adds its values one by one, so that those before a failure are kept.
+    std::function<void(bool brief, Values& values)> run;
+};
+
+// In the order of importance.
+std::vector<Case> verification_cases();
+
+bool order_missed(const Case& verification, const Series& series);
+Result run_case(const Case& verification, bool brief);
+
+// One family a file.
+void add_solid_cases(std::vector<Case>& cases);
+void add_beam_cases(std::vector<Case>& cases);
+void add_large_bending_cases(std::vector<Case>& cases);
+void add_oblique_cases(std::vector<Case>& cases);
+void add_invariance_cases(std::vector<Case>& cases);
+void add_plastic_cases(std::vector<Case>& cases);
+
+}  // namespace swage

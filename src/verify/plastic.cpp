@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Square bars of a material that yields and does not harden.
+#include <array>
+#include <cmath>
+
+#include "verify/case.h"
+#include "verify/stand.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kLength = 8, kYield = 0.002;   // over E
+constexpr double kYieldCurvature = 2 * kYield;  // of a side of 1
+
+Material yielding() {
+    Material material = unit_material();
+    material.yield_stress = kYield;
+    return material;
+}
+
+// Moment over that of first yield, for sections that stay plane.
+double plastic_share(double curvature) {
+    const double y = kYieldCurvature / curvature;
+    return y > 1 ? 1 / y : 1.5 * (1 - y * y / 3);
+}
+
+double middle_curvature(const Aggregate& matter) {
+    return turn_rate(matter, Vec3::UnitX(), 1.5, 0.5, -Vec3::UnitY());
+}
+
+// Both end faces on one circle through the origin.
+Drive bent(const Stand& stand, double curvature) {
+    Drive to = stand.drive;
+    for (int side : {-1, 1}) {
+        const double turn = 0.5 * side * curvature * kLength;
+        to.world_from_grip[side > 0] = {Quat(Eigen::AngleAxisd(-turn, Vec3::UnitY())),
+                                        Vec3(std::sin(turn), 0, 1 - std::cos(turn)) / curvature};
+    }
+    return to;
+}
+
+void plastic_bending(bool, Values& values) {
+    struct Level {
+        int across;
+        double moment, springback;
+    };
+    constexpr double kTold = std::numeric_limits<double>::infinity();
+    for (const auto& [across, moment, springback] :
+         {Level{4, 0.06, kTold}, Level{8, 0.015, 0.01}}) {
+        Stand stand(unit_bar(kLength, across, yielding()), 1e-5);
+        stand.grip(end_face(stand.matter, -Vec3::UnitX()));
+        stand.grip(end_face(stand.matter, Vec3::UnitX()));
+        for (int half_yields = 1; half_yields <= 10; ++half_yields) {
+            const double asked = 0.5 * half_yields * kYieldCurvature;
+            stand.move(bent(stand, asked));
+            if (half_yields != 6 && half_yields != 10) continue;
+            const ToolLoad load = stand.settle().load[1];
+            const Vec3 about_middle = load.torque + load.pose.translation.cross(load.force);
+            // The curvature of the middle is not quite what the ends ask for.
+            const double curvature = middle_curvature(stand.matter);
+            const std::string at = half_yields == 6 ? ", 3 yields" : ", 5 yields";
+            const double share = plastic_share(curvature);
+            values.add(relative("moment / first yield" + at, across, share,
+                                -about_middle.y() / (kYield / 6), moment));
+            Stand free(stand.matter, 1e-5);
+            free.settle();
+            values.add(absolute("share sprung back" + at, across,
+                                share * kYieldCurvature / curvature,
+                                1 - middle_curvature(free.matter) / curvature, springback));
+        }
+    }
+}
+
+void plastic_torsion(bool, Values& values) {
+    constexpr int kAcross = 8, kFrames = 10;
+    constexpr double kTurn = 0.4;  // about ten times that of first yield
+    Stand stand(unit_bar(kLength, kAcross, yielding()), 1e-4);
+    stand.grip(end_face(stand.matter, -Vec3::UnitX()));
+    stand.grip(end_face(stand.matter, Vec3::UnitX()));
+    for (int frame = 1; frame <= kFrames; ++frame) {
+        Drive to = stand.drive;
+        to.world_from_grip[1].rotation =
+            Quat(Eigen::AngleAxisd(kTurn * frame / kFrames, Vec3::UnitX()));
+        stand.move(to);
+    }
+    const double shear_yield = kYield / std::sqrt(3.0);
+    values.add(relative("torque / shear yield h^3", kAcross, 1.0 / 3,
+                        stand.settle().load[1].torque.x() / shear_yield, 0.1));
+}
+
+}  // namespace
+
+void add_plastic_cases(std::vector<Case>& cases) {
+    cases.push_back({"plastic-bending", "a square bar bent past yield and let go", "plane sections",
+                     0, false, plastic_bending});
+    cases.push_back({"plastic-torsion", "a square bar twisted until all of it flows", "sand hill",
+                     0, false, plastic_torsion});
+}
+
+}  // namespace swage

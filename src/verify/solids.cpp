@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Uniform strain, and solids whose strain is known in closed form.
+#include <cmath>
+
+#include "geometry/make_shape.h"
+#include "geometry/mesh_edit.h"
+#include "sim/lattice_forces.h"
+#include "verify/case.h"
+#include "verify/moduli.h"
+#include "verify/stand.h"
+
+namespace swage {
+
+namespace {
+
+void patch_test(bool, Values& values) {
+    constexpr int kAcross = 2;
+    for (double nu : {0.0, 0.25, 0.4, 0.49}) {
+        const Stretch got = stretch(unit_bar(10, kAcross, unit_material(nu)), Vec3::UnitX(), 1);
+        const std::string with = " (nu " + std::to_string(nu).substr(0, 4) + ")";
+        values.add(relative("E" + with, kAcross, 1, got.young_modulus, 1e-3));
+        values.add(absolute("nu" + with, kAcross, nu, got.poisson_ratio, 1e-3));
+    }
+}
+
+void force_at_rest(bool, Values& values) {
+    constexpr int kAcross = 4;
+    const Aggregate bar = unit_bar(10, kAcross, unit_material());
+    LatticeForces forces(bar);
+    Vec3Array force;
+    force.resize(bar.particle_count());
+    forces.find(bar, force);
+    double largest = 0;
+    for (std::size_t p = 0; p < force.size(); ++p) largest = std::max(largest, force.at(p).norm());
+    const double a = bar.lattice.spacing;
+    values.add(absolute("force / E a^2", kAcross, 0, largest / (a * a), 1e-12));
+}
+
+// Lame: a hollow ball with inner pressure p, radii a and b, at radius r.
+double lame_move(double p, double a, double b, double nu, double r) {
+    const double a3 = a * a * a, b3 = b * b * b;
+    return p * a3 / (b3 - a3) * ((1 - 2 * nu) * r + (1 + nu) * b3 / (2 * r * r));
+}
+
+void hollow_ball(bool, Values& values) {
+    constexpr double kInner = 1, kOuter = 2, kPressure = 1e-4, kNu = 0.3;
+    TriMesh mesh = make_shape("sphere", {{"diameter", 2 * kOuter}, {"division", 64}}).mesh;
+    TriMesh hole = make_shape("sphere", {{"diameter", 2 * kInner}, {"division", 48}}).mesh;
+    for (std::size_t t = 0; t < hole.triangle.size(); ++t) flip_triangle(hole, t);
+    append_mesh(mesh, hole);
+    for (int across : {4, 8}) {  // through the wall
+        Stand stand(unit_mold(mesh, across, unit_material(kNu)), 1e-5);
+        std::vector<int> inner, outer;
+        const SurfacePoints& surface = stand.matter.surface;
+        Vec3 sum = Vec3::Zero();
+        Load pressure;
+        pressure.name = "pressure";
+        for (std::size_t p = 0; p < surface.size(); ++p) {
+            const bool inside = surface.reference_position[p].norm() < 0.5 * (kInner + kOuter);
+            (inside ? inner : outer).push_back(static_cast<int>(p));
+            if (!inside) continue;
+            pressure.point.push_back(static_cast<int>(p));
+            pressure.force.push_back(-kPressure * surface.area[p] * surface.reference_normal[p]);
+            sum += pressure.force.back();
+        }
+        // Rounding of areas and normals must not push the free ball as a whole.
+        for (Vec3& force : pressure.force) force -= sum / pressure.force.size();
+        stand.apparatus.load.push_back(pressure);
+        stand.drive.load_strength.push_back(1);
+        stand.settle();
+        const auto move_outward = [&](const std::vector<int>& points) {
+            double way = 0;
+            for (int p : points) {
+                way += surface.area[p] * (stand.matter.surface_position(p).norm() -
+                                          surface.reference_position[p].norm());
+            }
+            return way / area_of(stand.matter, points);
+        };
+        values.add(relative("inner u", across, lame_move(kPressure, kInner, kOuter, kNu, kInner),
+                            move_outward(inner), 0.02));
+        values.add(relative("outer u", across, lame_move(kPressure, kInner, kOuter, kNu, kOuter),
+                            move_outward(outer), 0.02));
+    }
+}
+
+}  // namespace
+
+void add_solid_cases(std::vector<Case>& cases) {
+    cases.push_back(
+        {"stretch", "pulled at both ends: E and nu of the middle", "Hooke", 0, true, patch_test});
+    cases.push_back({"rest", "a molded body pushes nothing", "exact", 0, true, force_at_rest});
+    cases.push_back(
+        {"hollow-ball", "pressure inside a thick ball", "Lame 1852", 0, false, hollow_ball});
+}
+
+}  // namespace swage
