@@ -120,14 +120,13 @@ void ring(bool, Values& values) {
         }
         if (!is_quarter) continue;
         const std::string at = ", " + std::to_string(360 * frame / kFrames) + " degrees";
-        values.add({"end off the circle / L" + at, kAcross, 0, aside.norm() / kLength,
-                    aside.norm() / kLength, 0.02, 0});
+        values.add(
+            absolute("end off the circle / L" + at, kAcross, 0, aside.norm() / kLength, 0.02));
         values.add(told("moment L / E I" + at, kAcross, t,
                         report.load[1].torque.y() * kLength / kInertia));
-        values.add({"force left L^2 / E I" + at, kAcross, 0,
-                    report.load[1].force.norm() * kLength * kLength / kInertia,
-                    report.load[1].force.norm() * kLength * kLength / kInertia,
-                    std::numeric_limits<double>::infinity(), 0});
+        values.add(absolute("force left L^2 / E I" + at, kAcross, 0,
+                            report.load[1].force.norm() * kLength * kLength / kInertia,
+                            std::numeric_limits<double>::infinity()));
     }
 }
 

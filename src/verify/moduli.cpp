@@ -30,14 +30,18 @@ Stretch stretch(Aggregate bar, const Vec3& along, double section) {
     return {kStress * lengthened / std::log(lengthened), -std::log(thinned) / std::log(lengthened)};
 }
 
-double bending_compliance(Aggregate bar, const Vec3& along, const Vec3& across) {
+double bending_compliance(Aggregate bar, const Vec3& along, const Vec3& across,
+                          std::optional<Aggregate>& rested) {
     constexpr double kForce = 1e-5;  // the tip goes 0.4 % of ten sides
     Stand stand(std::move(bar));
     const std::vector<int> tip = end_face(stand.matter, along);
     stand.grip(end_face(stand.matter, -along));
     stand.load(tip, kForce * across);
+    if (rested) stand.start_from(*rested);
     stand.settle();
-    return across.dot(mean_move(stand.matter, tip)) / kForce;
+    const double way = across.dot(mean_move(stand.matter, tip));
+    rested = std::move(stand.matter);
+    return way / kForce;
 }
 
 double torsion_stiffness(Aggregate bar, const Vec3& along) {

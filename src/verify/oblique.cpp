@@ -37,6 +37,7 @@ void oblique(const Section& section, bool brief, Values& values) {
     const TriMesh mesh = turned(section.mesh, turn);
     const Vec3 along = turn * Vec3::UnitX();
     const double volume = signed_volume(mesh);
+    std::array<std::optional<Aggregate>, 2> rested;
     struct Level {
         int across;
         double bending, torsion;
@@ -52,7 +53,8 @@ void oblique(const Section& section, bool brief, Values& values) {
             const Vec3 axis = upright ? Vec3::UnitZ() : Vec3::UnitY();
             const std::string plane = upright ? "E v / P, in xz" : "E v / P, in xy";
             values.add(relative(plane, across, section.compliance,
-                                bending_compliance(bar, along, turn * axis), bending));
+                                bending_compliance(bar, along, turn * axis, rested[upright]),
+                                bending));
         }
         values.add(relative("J", across, section.torsion, torsion_stiffness(bar, along) / kShear,
                             torsion));
