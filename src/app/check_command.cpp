@@ -2,6 +2,7 @@
 #include "app/command.h"
 #include "app/scene_argument.h"
 #include "base/log.h"
+#include "pipeline/accuracy.h"
 #include "pipeline/cost.h"
 #include "pipeline/run_record.h"
 
@@ -37,6 +38,17 @@ std::string cost_text(const SceneSpec& scene, const InputMesh& input, const RunC
                               length_text(cost.mold.spacing)));
     line("particles", about + count_text(cost.mold.particles));
     line("connections", about + count_text(cost.mold.connections));
+    if (scene.material.mechanics == Mechanics::cells) {
+        const double across = cost.mold.cell_count.minCoeff();
+        const Accuracy accuracy = accuracy_at(across);
+        line("accuracy",
+             fmt::format("stiffness of a part {:g} cells thick: bending about {:.2g} %, "
+                         "torsion {:.2g} %; 1 % at {} cells",
+                         across, 100 * accuracy.bending, 100 * accuracy.torsion,
+                         accuracy.cells_for_percent));
+    } else {
+        line("accuracy", "springs: stretch alone is right; bending and torsion are too stiff");
+    }
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));
     line("steps", "about " + count_text(cost.steps));
@@ -64,6 +76,12 @@ int check(const CheckArguments& given) {
         const RunCost cost = count_cost(*reading.scene, input, options);
         json["mesh"] = mesh_json(input);
         json["cost"] = cost_json(cost);
+        if (reading.scene->material.mechanics == Mechanics::cells) {
+            const Accuracy accuracy = accuracy_at(cost.mold.cell_count.minCoeff());
+            json["accuracy"] = {{"bending", accuracy.bending},
+                                {"torsion", accuracy.torsion},
+                                {"across_for_percent", accuracy.cells_for_percent}};
+        }
         if (!given.json) put_out(cost_text(*reading.scene, input, cost));
         refuse_excess(cost, options);
     } catch (const Error& error) {
