@@ -74,6 +74,7 @@ int verify(const VerifyArguments& given) {
     std::vector<Verified> all;
     bool missed = false;
     for (const Case& c : chosen_cases(given)) {
+        throw_if_interrupted();
         log_info("{}: {}", c.name, c.help);
         all.push_back({c, run_case(c, given.brief)});
         missed = missed || all.back().result.missed;
