@@ -2,42 +2,43 @@
 // A cell of eight particles as matter: the mean of its connections' strains carries Hooke's law for
 // any Poisson's ratio, their deviations carry bending and twist.
 //
-//     F = grad x at the centroid of the cell's material       C = F^T F
-//     Y = (C - I)(C + I)^-1                                   Cayley strain, tanh(ln U)
-//     E = Y + Y^3/3 + Y^5/5                                   ln U but for |E|^7/7
-//     q_m = F^T Q_m,  Q_m = sum of h_m x                      bending and twist of the corners, m =
-//     xy, yz,
-//                                                             zx, xyz; h_xy = s_x s_y, s = -1, +1
-//                                                             [m]
-//     W = f V [mu |dev E|^2 + K (tr E)^2 / 2] + f^3 W_q       [J]
+//     F = grad x at the centroid of the cell's material      C = F^T F
+//     Y = (C - I)(C + I)^-1                                  Cayley strain, tanh(ln U)
+//     E = Y + Y^3/3 + Y^5/5                                  ln U but for |E|^7/7
+//     Q_m = sum of h_m x over the corners [m]                m = xy, yz, zx, xyz; h_xy = s_x s_y,
+//     ...; q_m = F^T Q_m                                          s = -1, +1 at the two ends of an
+//     axis
+//
+//     W = f V [mu |dev E|^2 + K (tr E)^2 / 2] + f^3 W_q      [J]
 //     W_q = c_e/2 [xy_x^2 + xy_y^2 + yz_y^2 + yz_z^2 + zx_z^2 + zx_x^2 + |xyz|^2]
 //         + c_d/2 [(yz_y + zx_x)^2 + (yz_z + xy_x)^2 + (zx_z + xy_y)^2
 //                + (yz_x + zx_y)^2 + (zx_y + xy_z)^2 + (xy_z + yz_x)^2]
-//     c_e = mu a eta_e / 16,  eta_e = [nu + sqrt((1 + nu)^2 + 1)] / 3      c_d = mu a eta_d / 16,
-//                                                                          eta_d = 1/3
+//     c_e = mu a eta_e / 16,  eta_e = [nu + sqrt((1 + nu)^2 + 1)] / 3
+//     c_d = mu a eta_d / 16,  eta_d = 1/3
 //
-// f: share of the cell's volume V = a^3 inside the body. W_q is the deviations' part of the 18
-// connections of stiffness mu a, edges counted eta_e and diagonals eta_d times: with these a cell
-// bends and twists as a slice of a beam does. Strain and modes are functions of C and F^T Q alone:
-// a rotation leaves them as they are, so no rotation is ever split off.
+// f: share of the cell's volume V = a^3 inside the body; f^3 is never taken below f/1000. W_q is
+// the deviations' part of the 18 connections of stiffness mu a, edges counted eta_e and diagonals
+// eta_d times: with these a cell bends and twists as a slice of a beam does. Strain and modes are
+// functions of C and F^T Q alone, which a rotation leaves as they are: none is ever split off.
 //
 // Plastic flow after von Mises, of mean and deviations by one factor w, with linear hardening:
 //
-//     s = 2 mu dev(E - E_p)     n^2 = s : s + 4 mu f^2 W_q(q - q_p) / V     t = sqrt(3/2) n
-//     t > sigma_y + H alpha:    d_alpha = (t - sigma_y - H alpha) / (3 mu + H),  w = 1 - 3 mu
-//     d_alpha / t
-//                               E_p += (1 - w) dev(E - E_p),  q_p += (1 - w)(q - q_p),  alpha +=
-//                               d_alpha
+//     s = 2 mu dev(E - E_p)
+//     t^2 = 3/2 [s : s + 4 mu f^2 W_q(q - q_p) / V]          equivalent stress [Pa]
+//     t > sigma_y + H alpha:    d_alpha = (t - sigma_y - H alpha) / (3 mu + H)
+//                               w = 1 - 3 mu d_alpha / t
+//                               E_p += (1 - w) dev(E - E_p)
+//                               q_p += (1 - w)(q - q_p),  alpha += d_alpha
 //
 // The history (E_p, q_p, alpha) has a committed value; every evaluation returns from it and leaves
 // no trace. Forces are the exact gradient of the increment's energy.
 //
-// Rubber is W = f V [mu (|F|^2 - 3)/2 - mu (J - 1) + (lambda + mu)(J - 1)^2 / 2] + f^3 W_q, J = det
-// F, which resists being turned inside out (Smith, de Goes, Kim, "Stable neo-Hookean flesh
+// Rubber is W = f V [mu (|F|^2 - 3)/2 - mu (J - 1) + (lambda + mu)(J - 1)^2 / 2] + f^3 W_q with
+// J = det F, which resists being turned inside out (Smith, de Goes, Kim, "Stable neo-Hookean flesh
 // simulation", ACM Trans. Graph. 37, 2018, without its logarithm).
 //
-// NOTE: the papers have springs alone, whose Poisson's ratio is 1/4 and which are a quarter too
-// stiff in bending at three cells across.
+// NOTE: the papers have springs alone, whose Poisson's ratio is 1/4 and which are too stiff in
+// bending and torsion on coarse lattices.
 #pragma once
 
 #include "laws/cell_moduli.h"

@@ -93,6 +93,27 @@ struct Schedule {
     }
 };
 
+// How long to go on. A body that snaps or slips out is let go where it will, and one that settles
+// may settle: smaller increments would only come to the same brink.
+struct Patience {
+    int limit, half, most;
+    Vec3Array position;  // half a limit ago
+    double residual = 0;
+
+    Patience(int iterations, const Vec3Array& x)
+        : limit(iterations), half(iterations / 2), most(kEscape * iterations), position(x) {}
+
+    void watch(int iteration, const Vec3Array& x, double spacing, double now) {
+        const bool at_end = iteration == limit && limit < most;
+        if (at_end && !(farthest_move(position, x) > spacing || now < 0.5 * residual)) return;
+        if (at_end) limit += half;
+        if (at_end || iteration == limit - half) {
+            position = x;
+            residual = now;
+        }
+    }
+};
+
 }  // namespace
 
 QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparatus,
@@ -198,27 +219,12 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     int renewed = 0, weighted_mirrors = 0;
     const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
     std::vector<double> farthest(chunks_of(n));
-    int limit = settings_.iteration_limit;
-    Vec3Array halfway = x;
-    double halfway_residual = 0;
-    for (int iteration = 1; iteration <= limit; ++iteration) {
+    Patience patience(settings_.iteration_limit, x);
+    const int turn = settings_.iteration_limit / int(std::size(kGain));
+    for (int iteration = 1; iteration <= patience.limit; ++iteration) {
         result.iterations = iteration;
-        if (iteration % (settings_.iteration_limit / 4) == 1) {
-            const int turn = iteration / (settings_.iteration_limit / 4);
-            coarse_.limit_gain(kGain[turn % std::size(kGain)]);
-        }
-        // A body that snaps or slips out is let go where it will, and one that settles may settle:
-        // smaller increments would only come to the same brink.
-        if (iteration == limit - settings_.iteration_limit / 2) {
-            halfway = x;
-            halfway_residual = result.residual;
-        }
-        if (iteration == limit && limit < kEscape * settings_.iteration_limit &&
-            (farthest_move(halfway, x) > a || result.residual < 0.5 * halfway_residual)) {
-            limit += settings_.iteration_limit / 2;
-            halfway = x;
-            halfway_residual = result.residual;
-        }
+        if (iteration % turn == 1) coarse_.limit_gain(kGain[iteration / turn % std::size(kGain)]);
+        patience.watch(iteration, x, a, result.residual);
         evaluate(to);
         if (mirrored_ > weighted_mirrors) {
             find_masses();

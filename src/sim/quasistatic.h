@@ -5,7 +5,8 @@
 // overshoots of the relaxation leave no trace.
 //
 // Relaxation: FIRE (Bitzek, Koskinen, Gaehler, Moseler, Gumbsch, Phys. Rev. Lett. 97, 170201, 2006)
-// with a mass for each particle under which a step of one is stable everywhere.
+// with a mass for each particle under which a step of one is stable everywhere, and lighter ones
+// for the slow motions of the body as a whole (sim/coarse_modes.h).
 //
 // NOTE: relaxation follows *some* path to a stable state; kinetic energy set free by a snap is
 // lost, and an unstable equilibrium that nothing disturbs is not left.
