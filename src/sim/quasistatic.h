@@ -65,6 +65,7 @@ class QuasistaticSolver {
     std::vector<double> mass_, inverse_mass_, drag_;
     int mirrored_ = 0;  // cells inside out
     Vec3Array force_, velocity_;
+    Vec3Array held_;                       // positions that the drag pulls back to
     Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
                                            // the candidates were found
     std::vector<double> previous_motion_;  // empty: nothing to extrapolate from
