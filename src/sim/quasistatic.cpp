@@ -31,7 +31,9 @@ constexpr double kLeastPush = 1e-3;
 constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
 constexpr int kCheckInterval = 10;
 constexpr double kFastest = 0.1;  // spacings a step, on the whole
-constexpr int kEscape = 10;       // times the iterations, for a body that still goes far or settles
+constexpr double kLetGo =
+    0.1;                     // share of the drag that stays when it is found to hold the body back
+constexpr int kEscape = 10;  // times the iterations, for a body that still goes far or settles
 // How much lighter a coarse mode may be: no one number suits all bodies, so they take turns.
 constexpr double kGain[] = {100, 10, 300, 1};
 constexpr int kRenewInterval = 200;
@@ -170,7 +172,7 @@ void QuasistaticSolver::evaluate(const Drive& to) {
     parallel_for(chunks_of(x.size()), [&](std::size_t chunk) {
         const std::size_t end = std::min(x.size(), (chunk + 1) * kChunk);
         for (std::size_t p = chunk * kChunk; p < end; ++p) {
-            const double c = drag_[p], m = matter_.particle_mass[p];
+            const double c = hold_ * drag_[p], m = matter_.particle_mass[p];
             force_.x[p] += m * g.x() - c * (x.x[p] - held_.x[p]);
             force_.y[p] += m * g.y() - c * (x.y[p] - held_.y[p]);
             force_.z[p] += m * g.z() - c * (x.z[p] - held_.z[p]);
@@ -195,13 +197,12 @@ double QuasistaticSolver::push_limit(const Drive& to) const {
     return push;
 }
 
-QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
+QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     const std::size_t n = matter_.particle_count();
     const double a = matter_.lattice.spacing, longest = 0.2 * a;
     Vec3Array& x = matter_.particle_position;
     Vec3Array &v = velocity_, &f = force_;
     for (auto* component : {&v.x, &v.y, &v.z}) std::fill(component->begin(), component->end(), 0.0);
-    held_ = start_;
     const auto list_candidates = [&] {
         contacts_.find_candidates(matter_, to);
         if (farthest_move(probed_, x) > kStaleStiffness * a) {
@@ -239,12 +240,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             const double reference = std::max(largest_push_, push_limit(to));
             result.residual = residual / reference;
             if (result.residual <= settings_.tolerance) {
-                // What the drag still holds back shows in the residual once it is let go.
-                const double dragged = chunked_sum(
-                    n, [&](std::size_t p) { return drag_[p] * (x.at(p) - held_.at(p)).norm(); });
-                result.converged = dragged <= settings_.tolerance * reference;
-                if (result.converged) return result;
-                held_ = x;
+                result.converged = true;
+                return result;
             }
         }
         const double power = chunked_sum(
@@ -300,6 +297,23 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         if (*std::max_element(farthest.begin(), farthest.end()) > 0.45 * a) list_candidates();
     }
     return result;
+}
+
+// The drag is let go until what it holds back is no more than the residual may be.
+QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
+    Relaxation result;
+    held_ = start_;
+    for (hold_ = 1;; hold_ *= kLetGo) {
+        const Relaxation round = settle(to);
+        result = {round.converged, result.iterations + round.iterations, round.residual};
+        if (!round.converged) return result;
+        const Vec3Array& x = matter_.particle_position;
+        const double dragged = hold_ * chunked_sum(x.size(), [&](std::size_t p) {
+                                   return drag_[p] * (x.at(p) - held_.at(p)).norm();
+                               });
+        if (dragged <= settings_.tolerance * std::max(largest_push_, push_limit(to))) return result;
+        held_ = x;
+    }
 }
 
 // How the drive moves, as one vector: translations, and turns times the size of the body.

@@ -45,6 +45,7 @@ class QuasistaticSolver {
     };
     void increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome);
     Relaxation relax(const Drive& to);
+    Relaxation settle(const Drive& to);
     void find_masses();
     void evaluate(const Drive& to);
     double push_limit(const Drive& to) const;
@@ -65,6 +66,7 @@ class QuasistaticSolver {
     std::vector<double> mass_, inverse_mass_, drag_;
     int mirrored_ = 0;  // cells inside out
     Vec3Array force_, velocity_;
+    double hold_ = 1;                      // share of the drag that acts
     Vec3Array held_;                       // positions that the drag pulls back to
     Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
                                            // the candidates were found
