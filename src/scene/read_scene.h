@@ -2,8 +2,9 @@
 // Scene files. Quantities carry units ("18 cm"); a bare number is SI.
 //
 //     [mesh]      file, length
-//     [material]  name; young_modulus, poisson_ratio, density, yield_stress,
-//                 hardening, damping_ratio, friction
+//     [material]  name; mechanics ("cells", "springs"), elasticity ("hencky", "neo-hookean"),
+//                 young_modulus, poisson_ratio, density, yield_stress, hardening, damping_ratio,
+//                 friction
 //     [mold]      across or spacing, kind ("shape", "block"), cell_limit
 //     [skin]      kind ("mount", "frame4", "boundary")
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",

@@ -55,8 +55,8 @@ class CoarseModes {
     // Particles of one run within one coarse cell along x.
     struct Stretch {
         ParticleId begin, end;
-        double at,
-            step;     // of the first particle in the coarse cell along x, and from one to the next
+        double at;    // place of the first particle along x in the coarse cell, 0 to 1
+        double step;  // from one particle to the next
         int node;     // lowest of the coarse cell
         double y, z;  // place in the coarse cell
     };

@@ -11,13 +11,18 @@ namespace swage {
 
 namespace {
 
-double highest_frequency(const Aggregate& matter) {
-    const std::vector<double> bound = LatticeForces(matter).stiffness_bound(matter);
+double highest_frequency(const Aggregate& matter, const LatticeForces& lattice) {
+    const std::vector<double> bound = lattice.stiffness_bound(matter);
     double highest = 0;
     for (std::size_t p = 0; p < bound.size(); ++p) {
         highest = std::max(highest, bound[p] / matter.particle_mass[p]);
     }
     return std::sqrt(highest);
+}
+
+double stable_step(const Aggregate& matter, const SimSettings& settings, double frequency) {
+    const double zeta = matter.material.damping_ratio;
+    return settings.step_safety * 2 / frequency * (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
 bool finite(const Vec3Array& a) {
@@ -29,9 +34,7 @@ bool finite(const Vec3Array& a) {
 }  // namespace
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
-    const double w = highest_frequency(matter);
-    const double zeta = matter.material.damping_ratio;
-    return settings.step_safety * 2 / w * (std::sqrt(1 + zeta * zeta) - zeta);
+    return stable_step(matter, settings, highest_frequency(matter, LatticeForces(matter)));
 }
 
 ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
@@ -41,10 +44,10 @@ ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
       settings_(settings),
       lattice_(matter),
       contacts_(matter, apparatus, settings),
-      step_(explicit_step(matter, settings)),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
     // A dashpot of b damps a mode of frequency w with zeta = b w / 2 k.
-    const double w = highest_frequency(matter);
+    const double w = highest_frequency(matter, lattice_);
+    step_ = stable_step(matter, settings, w);
     damping_ = 2 * matter.material.damping_ratio *
                lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing) / w;
     contacts_.limit_stiffness(matter, step_);
@@ -65,7 +68,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
     for (long n = 1; n <= count; ++n) {
         const Drive now = n == count ? to : drive_between(from, to, double(n) / double(count));
         contacts_.begin_move(matter_, before);
-        lattice_.find(matter_, force_);
+        lattice_.find(matter_, Flow::trial, force_);
         if (damping_ > 0)
             outcome.damped_work += dt * lattice_.add_dashpots(matter_, damping_, force_);
         contacts_.add_forces(matter_, now, force_);

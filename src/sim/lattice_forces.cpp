@@ -53,7 +53,7 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
                 const ParticleId upper = run.row[high >> 1] + n + (high & 1);
                 const double share =
                     (c.direction < kEdgeCount ? 0.25 : 0.5) * matter.cell_fill[cell];
-                loose_.push_back({c.direction, lower, upper, spring_law_.stiffness * share,
+                loose_.push_back({lower, upper, spring_law_.stiffness * share,
                                   reference_length(matter.lattice, c.direction) *
                                       rest_ratio(matter, cell, c.direction)});
             }
@@ -66,31 +66,24 @@ void LatticeForces::add_loose(const Aggregate& matter, Vec3Array& force) const {
     for (const LooseSpring& s : loose_) {
         const Vec3 reach = x.at(s.upper) - x.at(s.lower);
         const double distance = reach.norm();
-        const Vec3 pull = s.stiffness * (distance - s.rest_length) / (distance + 1e-300) * reach;
+        const double tension =
+            spring_tension(SpringDamper{s.stiffness, 0, s.rest_length}, distance, 0.0);
+        const Vec3 pull = tension / (distance + 1e-300) * reach;
         force.add(s.lower, pull);
         force.add(s.upper, -pull);
     }
 }
 
-int LatticeForces::find(const Aggregate& matter, Vec3Array& force) {
+int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force) {
     if (cells_) {
-        cells_->forces(matter, Flow::trial, force);
+        cells_->forces(matter, flow, force);
         add_loose(matter, force);
     } else {
+        const bool flows = spring_flow_ && flow == Flow::trial;
         spring_sweep_.forces(matter, spring_law_,
-                             spring_flow_ ? &spring_flow_->rest_strains(matter) : nullptr, force);
+                             flows ? &spring_flow_->rest_strains(matter) : nullptr, force);
     }
     return guarded_ ? add_guard_forces(matter, force) : 0;
-}
-
-void LatticeForces::find_elastic(const Aggregate& matter, Vec3Array& force) {
-    if (cells_) {
-        cells_->forces(matter, Flow::none, force);
-        add_loose(matter, force);
-    } else {
-        spring_sweep_.forces(matter, spring_law_, nullptr, force);
-    }
-    if (guarded_) add_guard_forces(matter, force);
 }
 
 double LatticeForces::add_dashpots(const Aggregate& matter, double damping, Vec3Array& force) {

@@ -21,13 +21,10 @@ class LatticeForces {
     // acts as plain springs, with the plastic strain it had.
     void connections_changed(const Aggregate& matter);
 
-    // Forces on every particle at the present positions, flowing from the committed history [N].
+    // Forces on every particle at the present positions [N].
     // Returns the number of cells that are inside out: they are stiffer than stiffness_bound()
     // says, by add_guard_stiffness().
-    int find(const Aggregate& matter, Vec3Array& force);
-
-    // The same as if nothing could flow any further.
-    void find_elastic(const Aggregate& matter, Vec3Array& force);
+    int find(const Aggregate& matter, Flow flow, Vec3Array& force);
 
     // Adds the forces of dashpots along all connections, `damping` [N s/m] of a full one; returns
     // the power that they take [W].
@@ -47,7 +44,6 @@ class LatticeForces {
     void add_loose(const Aggregate& matter, Vec3Array& force) const;
 
     struct LooseSpring {
-        int direction;
         ParticleId lower, upper;
         double stiffness;    // [N/m]
         double rest_length;  // [m]

@@ -16,7 +16,7 @@ namespace swage {
 
 namespace {
 
-constexpr double kDrag = 3e-7;  // settles free modes; 1e-5 already falsifies forces by 3 %
+constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
 // Masses under which a step of one is stable. A quarter of the stiffness bound would do for plain
 // steps; the mixing of FIRE adds a kick along the force, and with 0.27 the stiffest modes restart
 // it for ever. Contact at 0.26 chatters with friction.
@@ -165,7 +165,7 @@ void QuasistaticSolver::find_masses() {
 }
 
 void QuasistaticSolver::evaluate(const Drive& to) {
-    mirrored_ = lattice_.find(matter_, force_);
+    mirrored_ = lattice_.find(matter_, Flow::trial, force_);
     contacts_.add_forces(matter_, to, force_);
     const Vec3 g = settings_.gravity;
     const Vec3Array& x = matter_.particle_position;
@@ -207,7 +207,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         contacts_.find_candidates(matter_, to);
         if (farthest_move(probed_, x) > kStaleStiffness * a) {
             coarse_.find_stiffness(
-                matter_, [&](Vec3Array& force) { lattice_.find_elastic(matter_, force); });
+                matter_, [&](Vec3Array& force) { lattice_.find(matter_, Flow::none, force); });
             probed_ = x;
         }
         find_masses();

@@ -18,7 +18,7 @@ constexpr double kLength = 4;
 Vec3Array forces_of(const Aggregate& matter) {
     Vec3Array force;
     force.resize(matter.particle_count());
-    LatticeForces(matter).find(matter, force);
+    LatticeForces(matter).find(matter, Flow::trial, force);
     return force;
 }
 

@@ -29,7 +29,7 @@ void force_at_rest(bool, Values& values) {
     LatticeForces forces(bar);
     Vec3Array force;
     force.resize(bar.particle_count());
-    forces.find(bar, force);
+    forces.find(bar, Flow::trial, force);
     double largest = 0;
     for (std::size_t p = 0; p < force.size(); ++p) largest = std::max(largest, force.at(p).norm());
     const double a = bar.lattice.spacing;

@@ -43,7 +43,7 @@ class Stand {
 
     // Puts the particles where a coarser body of the same shape has its matter: a first guess.
     void start_from(const Aggregate& coarse);
-    // Goes on to another drive. What drags on free motions in one frame is not let go yet.
+    // Goes on to another drive.
     FrameReport move(const Drive& to);
     // Repeats the present drive until nothing moves on. Matter that cannot yield jumps ahead on
     // the way; what can would remember.
