@@ -84,8 +84,8 @@ template <typename N>
 SWAGE_INLINE CellModes<N> operator-(const CellModes<N>& a, const CellModes<N>& b) {
     return {a.xy - b.xy, a.yz - b.yz, a.zx - b.zx, a.xyz - b.xyz};
 }
-template <typename N>
-SWAGE_INLINE CellModes<N> operator*(const N& s, const CellModes<N>& a) {
+template <typename S, typename N>
+SWAGE_INLINE CellModes<N> operator*(const S& s, const CellModes<N>& a) {
     return {s * a.xy, s * a.yz, s * a.zx, s * a.xyz};
 }
 
@@ -107,17 +107,46 @@ SWAGE_INLINE N product(const CellModes<N>& a, const CellModes<N>& b) {
     return dot(a.xy, b.xy) + dot(a.yz, b.yz) + dot(a.zx, b.zx) + dot(a.xyz, b.xyz);
 }
 
-// The cell's state as seen from the centroid of its material, which lies at (xi, eta, zeta), each
-// -1 to 1, in the cell.
+// What stresses of the modes along one of the material's axes do to the gradient there.
 template <typename N>
+SWAGE_INLINE Triple<N> pulled_by(const N& xy, const N& yz, const N& zx, const N& xyz,
+                                 const CornerSums<N>& c) {
+    return xy * c.xy + yz * c.yz + zx * c.zx + xyz * c.xyz;
+}
+
+// The cell's state as seen from the centroid of its material, which lies at (xi, eta, zeta), each
+// -1 to 1, in the cell: 4 a F.
+template <typename N>
+SWAGE_INLINE Columns<N> centroid_sums(const CornerSums<N>& c, const Triple<N>& at) {
+    return {c.x + at.y * c.xy + at.z * c.zx + (at.y * at.z) * c.xyz,
+            c.y + at.x * c.xy + at.z * c.yz + (at.x * at.z) * c.xyz,
+            c.z + at.y * c.yz + at.x * c.zx + (at.x * at.y) * c.xyz};
+}
+template <typename N>  // F
 SWAGE_INLINE Columns<N> centroid_gradient(const CornerSums<N>& c, const Triple<N>& at,
                                           double spacing) {
+    const Columns<N> d = centroid_sums(c, at);
     const double s = 0.25 / spacing;
-    const N xi = s * at.x, eta = s * at.y, zeta = s * at.z;
-    const N one = s + 0.0 * at.x;
-    return {one * c.x + eta * c.xy + zeta * c.zx + (eta * at.z) * c.xyz,
-            one * c.y + xi * c.xy + zeta * c.yz + (xi * at.z) * c.xyz,
-            one * c.z + eta * c.yz + xi * c.zx + (xi * at.y) * c.xyz};
+    return {s * d.x, s * d.y, s * d.z};
+}
+template <typename N>
+SWAGE_INLINE CellModes<N> pulled_back(const Columns<N>& f, const CornerSums<N>& c) {
+    return {transposed_times(f, c.xy), transposed_times(f, c.yz), transposed_times(f, c.zx),
+            transposed_times(f, c.xyz)};
+}
+
+// a + b Y + c Y^2, which every function of Y alone can be written as (Cayley and Hamilton).
+template <typename N>
+struct CayleySeries {
+    N a, b, c;
+};
+template <typename N>
+SWAGE_INLINE CayleySeries<N> operator+(const CayleySeries<N>& p, const CayleySeries<N>& q) {
+    return {p.a + q.a, p.b + q.b, p.c + q.c};
+}
+template <typename N>
+SWAGE_INLINE CayleySeries<N> operator-(const CayleySeries<N>& p, const CayleySeries<N>& q) {
+    return {p.a - q.a, p.b - q.b, p.c - q.c};
 }
 
 // The logarithmic strain and what its gradient needs.
@@ -125,36 +154,78 @@ template <typename N>
 struct CellStrain {
     Symmetric<N> log;             // E
     Symmetric<N> cayley, square;  // Y, Y^2
-    Symmetric<N> inner;           // (C + I)^-1
+    N i1, i2, i3;                 // Y's invariants: Y^3 = i1 Y^2 - i2 Y + i3
+    CayleySeries<N> series;       // of E
 };
 template <typename N>
-SWAGE_INLINE CellStrain<N> cell_strain(const Columns<N>& f) {
+SWAGE_INLINE CayleySeries<N> times_cayley(const CellStrain<N>& e, const CayleySeries<N>& p) {
+    return {e.i3 * p.c, p.a - e.i2 * p.c, p.b + e.i1 * p.c};
+}
+template <typename N>
+SWAGE_INLINE Symmetric<N> evaluate(const CellStrain<N>& e, const CayleySeries<N>& p) {
+    const Symmetric<N>&y = e.cayley, &s = e.square;
+    return {p.b * y.xx + p.c * s.xx + p.a, p.b * y.yy + p.c * s.yy + p.a,
+            p.b * y.zz + p.c * s.zz + p.a, p.b * y.xy + p.c * s.xy,
+            p.b * y.yz + p.c * s.yz,       p.b * y.zx + p.c * s.zx};
+}
+// From C + I.
+template <typename N>
+SWAGE_INLINE CellStrain<N> strain_of_sum(const Symmetric<N>& m) {
     CellStrain<N> e;
-    e.inner = inverse(Symmetric<N>{dot(f.x, f.x) + 1.0, dot(f.y, f.y) + 1.0, dot(f.z, f.z) + 1.0,
-                                   dot(f.x, f.y), dot(f.y, f.z), dot(f.z, f.x)});
-    const Symmetric<N>& g = e.inner;
-    e.cayley = {1.0 - 2.0 * g.xx, 1.0 - 2.0 * g.yy, 1.0 - 2.0 * g.zz,
-                -2.0 * g.xy,      -2.0 * g.yz,      -2.0 * g.zx};
-    e.square = square(e.cayley);
-    // Y (I + Y^2 (I/3 + Y^2/5)), all of which commute.
-    const Symmetric<N>& a = e.square;
-    Symmetric<N> series = {0.2 * a.xx + 1.0 / 3, 0.2 * a.yy + 1.0 / 3, 0.2 * a.zz + 1.0 / 3,
-                           0.2 * a.xy,           0.2 * a.yz,           0.2 * a.zx};
-    series = commuting(a, series);
-    series.xx = series.xx + 1.0, series.yy = series.yy + 1.0, series.zz = series.zz + 1.0;
-    e.log = commuting(e.cayley, series);
+    // Y = I - 2 (C + I)^-1
+    const N xx = m.yy * m.zz - m.yz * m.yz, xy = m.yz * m.zx - m.xy * m.zz,
+            zx = m.xy * m.yz - m.yy * m.zx;
+    const N over = -2.0 / (m.xx * xx + m.xy * xy + m.zx * zx);
+    e.cayley = {1.0 + over * xx,
+                1.0 + over * (m.xx * m.zz - m.zx * m.zx),
+                1.0 + over * (m.xx * m.yy - m.xy * m.xy),
+                over * xy,
+                over * (m.xy * m.zx - m.xx * m.yz),
+                over * zx};
+    const Symmetric<N>& y = e.cayley;
+    e.square = square(y);
+    const N minor = y.yy * y.zz - y.yz * y.yz;
+    e.i1 = trace(y);
+    e.i2 = minor + (y.xx * y.zz - y.zx * y.zx) + (y.xx * y.yy - y.xy * y.xy);
+    e.i3 = y.xx * minor + y.xy * (y.yz * y.zx - y.xy * y.zz) + y.zx * (y.xy * y.yz - y.yy * y.zx);
+    // Y + Y^3/3 + Y^5/5
+    const N p = e.i1 * e.i1 - e.i2;
+    e.series = {e.i3 * (1.0 / 3 + 0.2 * p), 1.0 - (1.0 / 3) * e.i2 + 0.2 * (e.i1 * e.i3 - e.i2 * p),
+                (1.0 / 3) * e.i1 + 0.2 * (e.i1 * (p - e.i2) + e.i3)};
+    e.log = evaluate(e, e.series);
     return e;
 }
+template <typename N>
+SWAGE_INLINE CellStrain<N> cell_strain(const Columns<N>& f) {
+    return strain_of_sum(Symmetric<N>{dot(f.x, f.x) + 1.0, dot(f.y, f.y) + 1.0, dot(f.z, f.z) + 1.0,
+                                      dot(f.x, f.y), dot(f.y, f.z), dot(f.z, f.x)});
+}
 
-// The second Piola-Kirchhoff stress of the conjugate of E: dW/dE turned into 2 dW/dC.
+// The second Piola-Kirchhoff stress of the conjugate of E: dW/dE turned into 2 dW/dC. E's series
+// is differentiated with its coefficients, and 2 dY = (I - Y) dC (I - Y).
 template <typename N>
 SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const Symmetric<N>& t) {
-    const N third = 1.0 / 3 + 0.0 * t.xx, fifth = 0.2 + 0.0 * t.xx, four = 4.0 + 0.0 * t.xx;
-    const Symmetric<N>&y = e.cayley, &a = e.square;
-    const Symmetric<N> ta = both_ways(t, a);
-    const Symmetric<N> cube = ta + sandwich(y, t);
-    const Symmetric<N> fifth_power = both_ways(t, square(a)) + sandwich(y, ta) + sandwich(a, t);
-    return four * sandwich(e.inner, t + third * cube + fifth * fifth_power);
+    const Symmetric<N>& y = e.cayley;
+    const N t0 = trace(t), t1 = contract(t, y), t2 = contract(t, e.square);
+    const N i11 = e.i1 * e.i1, p = 0.2 * (i11 - e.i2);
+    const N k1 = 0.4 * (e.i1 * e.i3) * t0 + (0.2 * e.i3 - 0.4 * (e.i1 * e.i2)) * t1 +
+                 (1.0 / 3 + 0.6 * i11 - 0.4 * e.i2) * t2;
+    const N k2 = 0.2 * (e.i3 * t0) + (1.0 / 3 + p - 0.2 * e.i2) * t1 + 0.4 * (e.i1 * t2);
+    const N k3 = (1.0 / 3 + p) * t0 + 0.2 * (e.i1 * t1 + t2);
+    const Symmetric<N> s =
+        e.series.b * t + e.series.c * both_ways(y, t) +
+        evaluate(e, CayleySeries<N>{k1 - e.i1 * k2 + e.i2 * k3, k2 - e.i1 * k3, k3});
+    return sandwich(Symmetric<N>{y.xx - 1.0, y.yy - 1.0, y.zz - 1.0, y.xy, y.yz, y.zx}, s);
+}
+// The same of a dW/dE that is a function of Y.
+template <typename N>
+SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const CayleySeries<N>& t) {
+    // (I - Y)^2 (I + Y^2 + Y^4) t
+    CayleySeries<N> s = t + times_cayley(e, times_cayley(e, t));
+    s = t + times_cayley(e, times_cayley(e, s));
+    s = s - times_cayley(e, s);
+    s = s - times_cayley(e, s);
+    return evaluate(e, s);
 }
 
 // What a cell has flowed, committed.
@@ -168,8 +239,9 @@ struct CellHistory {
 // Trial state and return.
 template <typename N>
 struct CellFlowed {
-    Symmetric<N> distortion;  // dev(E - E_p) before the return
-    CellModes<N> modes;       // q - q_p before the return
+    Symmetric<N> distortion;   // dev(E - E_p) before the return
+    CellModes<N> modes;        // q - q_p before the return
+    CellModes<N> mode_stress;  // of these
     N trace;
     N kept;  // w
     N d_alpha;
@@ -181,6 +253,25 @@ SWAGE_INLINE Symmetric<N> deviator(const Symmetric<N>& e) {
     return {e.xx - third, e.yy - third, e.zz - third, e.xy, e.yz, e.zx};
 }
 
+// The trial state's distance from the yield surface, in flow: dev(E - E_p) squared, and f^2 times
+// twice W_q.
+template <typename N>
+struct CellReturn {
+    N d_alpha, kept;
+};
+template <typename N>
+SWAGE_INLINE CellReturn<N> return_cell(const CellModuli& law, const N& distortion,
+                                       const N& mode_energy, const N& alpha) {
+    const double volume = law.spacing * law.spacing * law.spacing;
+    const N stress =
+        root((6 * law.shear * law.shear) * distortion + (3 * law.shear / volume) * mode_energy) +
+        1e-300;
+    const N over = stress - law.yield_stress - law.hardening * alpha;
+    const N flows = larger(over, 0.0 * over);
+    return {(1 / (3 * law.shear + law.hardening)) * flows,
+            1.0 - (3 * law.shear / (3 * law.shear + law.hardening)) * flows / stress};
+}
+
 template <typename N>
 SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>& history,
                                      const Symmetric<N>& strain, const CellModes<N>& modes,
@@ -189,15 +280,12 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
     r.trace = trace(strain);
     r.distortion = deviator(strain) - history.strain;
     r.modes = modes - history.modes;
-    const double volume = law.spacing * law.spacing * law.spacing;
-    const N n2 =
-        (4 * law.shear * law.shear) * contract(r.distortion, r.distortion) +
-        (2 * law.shear / volume) * (fill * fill) * product(mode_stress(law, r.modes), r.modes);
-    const N stress = root(1.5 * n2) + 1e-300;
-    const N over = stress - law.yield_stress - law.hardening * history.alpha;
-    const N zero = 0.0 * stress;
-    r.d_alpha = larger(over, zero) * (1 / (3 * law.shear + law.hardening));
-    r.kept = 1.0 - (3 * law.shear) * r.d_alpha / stress;
+    r.mode_stress = mode_stress(law, r.modes);
+    const CellReturn<N> back =
+        return_cell(law, contract(r.distortion, r.distortion),
+                    (fill * fill) * product(r.mode_stress, r.modes), history.alpha);
+    r.kept = back.kept;
+    r.d_alpha = back.d_alpha;
     return r;
 }
 
@@ -223,9 +311,17 @@ SWAGE_INLINE Columns<N> rubber_stress(const CellModuli& law, const Columns<N>& f
     const Columns<N> cofactor = {cross(f.y, f.z), cross(f.z, f.x), cross(f.x, f.y)};
     const double lame = law.bulk - 2.0 / 3 * law.shear;
     const N pressure = (lame + law.shear) * (dot(f.x, cofactor.x) - 1.0) - law.shear;
-    const N mu = law.shear + 0.0 * pressure;
-    return {mu * f.x + pressure * cofactor.x, mu * f.y + pressure * cofactor.y,
-            mu * f.z + pressure * cofactor.z};
+    return {law.shear * f.x + pressure * cofactor.x, law.shear * f.y + pressure * cofactor.y,
+            law.shear * f.z + pressure * cofactor.z};
+}
+
+// The lever of a force on D through the centroid, back on the sums.
+template <typename N>
+SWAGE_INLINE void add_levers(const Columns<N>& p, const Triple<N>& at, CornerSums<N>& r) {
+    r.xy = r.xy + at.y * p.x + at.x * p.y;
+    r.yz = r.yz + at.z * p.y + at.y * p.z;
+    r.zx = r.zx + at.z * p.x + at.x * p.z;
+    r.xyz = r.xyz + (at.y * at.z) * p.x + (at.x * at.z) * p.y + (at.x * at.y) * p.z;
 }
 
 // Forces that the cell exerts on its corners, as forces on their sums: from p = dW/dF and g, the
@@ -233,17 +329,13 @@ SWAGE_INLINE Columns<N> rubber_stress(const CellModuli& law, const Columns<N>& f
 template <typename N>
 SWAGE_INLINE CornerSums<N> sum_forces(const CornerSums<N>& c, const Columns<N>& f, Columns<N> p,
                                       const CellModes<N>& g, const Triple<N>& at, double spacing) {
-    p.x = p.x + (g.xy.x * c.xy + g.yz.x * c.yz + g.zx.x * c.zx + g.xyz.x * c.xyz);
-    p.y = p.y + (g.xy.y * c.xy + g.yz.y * c.yz + g.zx.y * c.zx + g.xyz.y * c.xyz);
-    p.z = p.z + (g.xy.z * c.xy + g.yz.z * c.yz + g.zx.z * c.zx + g.xyz.z * c.xyz);
-    const N s = -0.25 / spacing + 0.0 * at.x, minus = -1.0 + 0.0 * at.x;
-    p = {s * p.x, s * p.y, s * p.z};
-    CornerSums<N> r;
-    r.x = p.x, r.y = p.y, r.z = p.z;
-    r.xy = minus * (f * g.xy) + at.y * p.x + at.x * p.y;
-    r.yz = minus * (f * g.yz) + at.z * p.y + at.y * p.z;
-    r.zx = minus * (f * g.zx) + at.z * p.x + at.x * p.z;
-    r.xyz = minus * (f * g.xyz) + (at.y * at.z) * p.x + (at.x * at.z) * p.y + (at.x * at.y) * p.z;
+    const double s = -0.25 / spacing;
+    p = {s * (p.x + pulled_by(g.xy.x, g.yz.x, g.zx.x, g.xyz.x, c)),
+         s * (p.y + pulled_by(g.xy.y, g.yz.y, g.zx.y, g.xyz.y, c)),
+         s * (p.z + pulled_by(g.xy.z, g.yz.z, g.zx.z, g.xyz.z, c))};
+    CornerSums<N> r{
+        p.x, p.y, p.z, -1.0 * (f * g.xy), -1.0 * (f * g.yz), -1.0 * (f * g.zx), -1.0 * (f * g.xyz)};
+    add_levers(p, at, r);
     return r;
 }
 

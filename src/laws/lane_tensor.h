@@ -4,23 +4,45 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <type_traits>
 
 #define SWAGE_INLINE inline __attribute__((always_inline))
 
 namespace swage {
 
-// Eight cells at a time, whatever the machine's vectors are.
+// Several cells at a time, one a lane.
+template <int kWidth>
+struct LaneBatch {
+    typedef double Numbers __attribute__((vector_size(8 * kWidth)));
+    typedef long long Indices __attribute__((vector_size(8 * kWidth)));
+    typedef float Floats __attribute__((vector_size(4 * kWidth)));
+};
+template <int kWidth>
+using LanesOf = typename LaneBatch<kWidth>::Numbers;
+
 inline constexpr int kLanes = 8;
-typedef double Lanes __attribute__((vector_size(8 * kLanes)));
+using Lanes = LanesOf<kLanes>;
 
 SWAGE_INLINE double root(double a) { return std::sqrt(a); }
-SWAGE_INLINE Lanes root(const Lanes& a) {
-    Lanes r;
-    for (int l = 0; l < kLanes; ++l) r[l] = __builtin_sqrt(a[l]);
+SWAGE_INLINE double larger(double a, double b) { return a > b ? a : b; }
+// Vectors of the compiler have no names to be called by.
+template <typename V>
+concept LaneVector = requires(V v) {
+    v[0] = 1.0;
+    v = v > v ? v : v;
+}
+&&!std::is_pointer_v<V>;
+template <LaneVector V>
+SWAGE_INLINE V root(const V& a) {
+    V r;
+    for (std::size_t l = 0; l < sizeof(V) / sizeof(double); ++l) r[l] = __builtin_sqrt(a[l]);
     return r;
 }
-SWAGE_INLINE double larger(double a, double b) { return a > b ? a : b; }
-SWAGE_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+template <LaneVector V>
+SWAGE_INLINE V larger(const V& a, const V& b) {
+    return a > b ? a : b;
+}
 
 template <typename N>
 struct Triple {
@@ -35,8 +57,8 @@ template <typename N>
 SWAGE_INLINE Triple<N> operator-(const Triple<N>& a, const Triple<N>& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-template <typename N>
-SWAGE_INLINE Triple<N> operator*(const N& s, const Triple<N>& a) {
+template <typename S, typename N>  // a number, or N itself
+SWAGE_INLINE Triple<N> operator*(const S& s, const Triple<N>& a) {
     return {s * a.x, s * a.y, s * a.z};
 }
 template <typename N>
@@ -74,8 +96,8 @@ template <typename N>
 SWAGE_INLINE Symmetric<N> operator-(const Symmetric<N>& a, const Symmetric<N>& b) {
     return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.zx - b.zx};
 }
-template <typename N>
-SWAGE_INLINE Symmetric<N> operator*(const N& s, const Symmetric<N>& a) {
+template <typename S, typename N>  // a number, or N itself
+SWAGE_INLINE Symmetric<N> operator*(const S& s, const Symmetric<N>& a) {
     return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.yz, s * a.zx};
 }
 template <typename N>

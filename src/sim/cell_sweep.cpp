@@ -3,217 +3,175 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
-#include "laws/cell.h"
+#include "laws/cell_forces.h"
+#include "laws/volume_guard.h"
+#include "sim/cell_batch.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
 
-constexpr std::size_t kSlabCells = 8192;
 constexpr double kNeverYields = 1e100;  // [Pa]
 constexpr int kStrains = 6, kModes = 12;
+constexpr int kShares = 4;               // fill and centroid
+constexpr ParticleId kZeroAhead = 2048;  // particles whose forces are zeroed at a time
 // Cells that share a particle never all move in their stiffest way at once. Of the sum over eight
 // cells the fastest motion of a block has, measured for nu = 0 to 0.49, this much of each modulus.
 constexpr double kAssembledBulk = 0.47, kAssembledShear = 0.55;
+// Where the guard's own pass is asked, of the volume of a whole cell.
+constexpr double kMaybeCrushed = kGuardedVolume + 1e-6;
 
-typedef float FloatLanes __attribute__((vector_size(4 * kLanes)));
+constexpr std::int32_t kWhole = -1;
+int batches_of(const CellRun& run) { return (run.count + kLanes - 1) / kLanes; }
 
-SWAGE_INLINE Lanes load(const double* from) {
-    Lanes v;
-    std::memcpy(&v, from, sizeof v);
-    return v;
-}
-SWAGE_INLINE Lanes load(const float* from) {
-    FloatLanes v;
-    std::memcpy(&v, from, sizeof v);
-    return __builtin_convertvector(v, Lanes);
-}
-
-// What the sweep reads of eight cells of a run; the last batch of a run is copied out, its lanes
-// past the end empty.
-struct Batch {
-    const double* corner[3][4];  // component, row: of the first cell's low end
-    const float* fill;
-    const float* at[3];
-    const float* strain[kStrains];  // committed; null while nothing has flowed
-    const float* modes[kModes];
-    const float* alpha;
+// What a kernel is given of a slab.
+struct SlabTask {
+    CellConstants constants;
+    double crushed;  // det D below which a run is reported
+    const CellRun *run = nullptr, *run_end = nullptr;
+    const std::int32_t* batch = nullptr;  // of the first run: kWhole, or where its shares begin
+    const float* share;
+    int particles, cells;
+    const double* position[3];
+    double* force[3];
+    double* seam[3] = {};
+    ParticleId begin = 0, end = 0, reach = 0;
+    const float* strain[kStrains] = {};  // committed
+    const float* modes[kModes] = {};
+    const float* alpha = nullptr;  // null: nothing has flowed
+    std::vector<const CellRun*>* crushed_run = nullptr;
 };
 
-struct Tail {
-    double corner[3][4][kLanes + 1];
-    float number[4 + kStrains + kModes + 1][kLanes];
-};
-
-template <typename T>
-SWAGE_INLINE void copy_out(const T*& from, T* to, int count, int room) {
-    for (int n = 0; n < room; ++n) to[n] = n < count ? from[n] : T(0);
-    from = to;
-}
-
-// The floor on slivers: f^3 alone leaves nothing to hold their corners.
-template <typename N>
-SWAGE_INLINE N mode_fill(const N& fill) {
-    return larger(fill * fill * fill, 1e-3 * fill);
-}
-
-// Stress in the material's axes times the cell's volume of material, and the stress of its modes.
-template <typename N, bool kYields>
-SWAGE_INLINE void cell_stress(const CellModuli& law, const CellStrain<N>& strain,
-                              const CellModes<N>& modes, const CellHistory<N>& history,
-                              const N& fill, Symmetric<N>& stress, CellModes<N>& mode_force) {
-    const double volume = law.spacing * law.spacing * law.spacing;
-    N kept = 1.0 + 0.0 * fill;
-    CellFlowed<N> r;
-    if constexpr (kYields) {
-        r = flow_cell(law, history, strain.log, modes, fill);
-        kept = r.kept;
-    } else {
-        r.trace = trace(strain.log);
-        r.distortion = deviator(strain.log);
-        r.modes = modes;
-    }
-    const N pressure = law.bulk * r.trace;
-    Symmetric<N> t = ((2 * law.shear) * kept) * r.distortion;
-    t.xx = t.xx + pressure, t.yy = t.yy + pressure, t.zz = t.zz + pressure;
-    stress = (volume * fill) * material_stress(strain, t);
-    mode_force = (mode_fill(fill) * kept) * mode_stress(law, r.modes);
-}
-
-template <bool kYields, bool kRubber>
-SWAGE_INLINE void batch_forces(const CellModuli& law, const Batch& b, Lanes (&force)[3][8]) {
-    CornerSums<Lanes> c;
-    Lanes corner[8];
-    const auto gather = [&](int i) __attribute__((always_inline)) {
-        for (int q = 0; q < 4; ++q) {
-            corner[2 * q] = load(b.corner[i][q]);
-            corner[2 * q + 1] = load(b.corner[i][q] + 1);
+template <typename V>
+SWAGE_INLINE CellHistory<V> load_history(const SlabTask& task, CellId cell) {
+    float copy[kStrains + kModes + 1][kLanes];
+    const float* from[kStrains + kModes + 1];
+    for (int n = 0; n < kStrains; ++n) from[n] = task.strain[n] + cell;
+    for (int n = 0; n < kModes; ++n) from[kStrains + n] = task.modes[n] + cell;
+    from[kStrains + kModes] = task.alpha + cell;
+    if (cell + kWidthOf < V >> task.cells) [[unlikely]] {
+        for (int n = 0; n < kStrains + kModes + 1; ++n) {
+            for (int l = 0; l < kWidthOf<V>; ++l) {
+                copy[n][l] = cell + l < task.cells ? from[n][l] : 0.0f;
+            }
+            from[n] = copy[n];
         }
+    }
+    const auto triple = [&](int m) __attribute__((always_inline)) {
+        return Triple<V>{load<V>(from[m]), load<V>(from[m + 1]), load<V>(from[m + 2])};
     };
-    gather(0);
-    sum_corners(corner, c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-    gather(1);
-    sum_corners(corner, c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-    gather(2);
-    sum_corners(corner, c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    const Lanes fill = load(b.fill);
-    const Triple<Lanes> at = {load(b.at[0]), load(b.at[1]), load(b.at[2])};
-    const Columns<Lanes> f = centroid_gradient(c, at, law.spacing);
-    const CellModes<Lanes> modes = {transposed_times(f, c.xy), transposed_times(f, c.yz),
-                                    transposed_times(f, c.zx), transposed_times(f, c.xyz)};
-    CornerSums<Lanes> r;
-    if constexpr (kRubber) {
-        const double volume = law.spacing * law.spacing * law.spacing;
-        const Columns<Lanes> first = rubber_stress(law, f);
-        const Lanes scale = volume * fill;
-        r = sum_forces(c, f, Columns<Lanes>{scale * first.x, scale * first.y, scale * first.z},
-                       mode_fill(fill) * mode_stress(law, modes), at, law.spacing);
-    } else {
-        CellHistory<Lanes> history{};
-        if constexpr (kYields) {
-            history.strain = {load(b.strain[0]), load(b.strain[1]), load(b.strain[2]),
-                              load(b.strain[3]), load(b.strain[4]), load(b.strain[5])};
-            const auto mode = [&](int m) __attribute__((always_inline)) {
-                return Triple<Lanes>{load(b.modes[m]), load(b.modes[m + 1]), load(b.modes[m + 2])};
-            };
-            history.modes = {mode(0), mode(3), mode(6), mode(9)};
-            history.alpha = load(b.alpha);
-        }
-        Symmetric<Lanes> stress;
-        CellModes<Lanes> mode_force;
-        cell_stress<Lanes, kYields>(law, cell_strain(f), modes, history, fill, stress, mode_force);
-        r = sum_forces(c, f, f * stress, mode_force, at, law.spacing);
-    }
-    spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, force[0]);
-    spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, force[1]);
-    spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, force[2]);
+    return {{load<V>(from[0]), load<V>(from[1]), load<V>(from[2]), load<V>(from[3]),
+             load<V>(from[4]), load<V>(from[5])},
+            {triple(6), triple(9), triple(12), triple(15)},
+            load<V>(from[18])};
 }
 
-// Everything of a run that a batch reads, from its first cell on.
-struct RunArrays {
-    Batch batch;
-    double* force[3][4];
-    int count;
-};
+// Whether any cell of a batch of eight has flowed.
+SWAGE_INLINE bool has_flowed(const SlabTask& task, CellId cell) {
+    if (task.alpha == nullptr) return false;
+    const int count = std::min(kLanes, task.cells - cell);
+    float sum = 0;
+    for (int l = 0; l < count; ++l) sum += task.alpha[cell + l];
+    return sum > 0;
+}
 
-// Forces of the two ends of a cell's edges along x meet on the particles between: they are added in
-// registers, so that no particle is written twice in a row.
-template <bool kYields, bool kRubber>
-SWAGE_INLINE void run_forces(const CellModuli& law, const RunArrays& run) {
-    Lanes carry[3][4] = {};  // lane 0: what the last batch left for its last particle
-    Tail tail;
-    for (int done = 0; done < run.count; done += kLanes) {
-        Batch b = run.batch;
-        const int left = run.count - done;
-        for (auto& rows : b.corner) {
-            for (const double*& row : rows) row += done;
-        }
-        b.fill += done;
-        for (const float*& v : b.at) v += done;
-        if constexpr (kYields) {
-            for (const float*& v : b.strain) v += done;
-            for (const float*& v : b.modes) v += done;
-            b.alpha += done;
-        }
-        if (left < kLanes) {
+template <int kWidth, CellKind kKind>
+SWAGE_INLINE void slab_forces(const SlabTask& task) {
+    typedef LanesOf<kWidth> V;
+    typename LaneBatch<kWidth>::Indices lane;
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    const std::int32_t* batch = task.batch;
+    ParticleId zeroed = task.begin;
+    const auto zero_up_to = [&](ParticleId reach) {
+        if (reach <= zeroed) return;
+        for (double* component : task.force) std::fill(component + zeroed, component + reach, 0.0);
+        zeroed = reach;
+    };
+    for (const CellRun* run = task.run; run != task.run_end; ++run) {
+        const ParticleId reach = std::min(task.end, run->row[3] + run->count + 1);
+        if (reach > zeroed) zero_up_to(std::min(task.end, std::max(reach, zeroed + kZeroAhead)));
+        CornerRows<const double> x;
+        CornerRows<double> force;
+        int room[4];
+        for (int q = 0; q < 4; ++q) {
+            const ParticleId row = run->row[q];
+            const bool own = row < task.end;
+            room[q] = (own ? task.end : task.reach + kSeamRoom) - row;
             for (int i = 0; i < 3; ++i) {
-                for (int q = 0; q < 4; ++q) {
-                    copy_out(b.corner[i][q], tail.corner[i][q], left + 1, kLanes + 1);
-                }
-            }
-            int slot = 0;
-            copy_out(b.fill, tail.number[slot++], left, kLanes);
-            for (const float*& v : b.at) copy_out(v, tail.number[slot++], left, kLanes);
-            if constexpr (kYields) {
-                for (const float*& v : b.strain) copy_out(v, tail.number[slot++], left, kLanes);
-                for (const float*& v : b.modes) copy_out(v, tail.number[slot++], left, kLanes);
-                copy_out(b.alpha, tail.number[slot++], left, kLanes);
+                x.at[i][q] = task.position[i] + row;
+                force.at[i][q] = own ? task.force[i] + row : task.seam[i] + (row - task.end);
             }
         }
-        Lanes force[3][8];
-        batch_forces<kYields, kRubber>(law, b, force);
-        const int count = left < kLanes ? left : kLanes;
-        for (int i = 0; i < 3; ++i) {
-            for (int q = 0; q < 4; ++q) {
-                typedef long long Index __attribute__((vector_size(8 * kLanes)));
-                const Lanes high = force[i][2 * q + 1];
-                const Lanes shifted =
-                    __builtin_shuffle(high, carry[i][q], Index{8, 0, 1, 2, 3, 4, 5, 6});
-                const Lanes sum = force[i][2 * q] + shifted;
-                double* to = run.force[i][q] + done;
-                if (count == kLanes) {
-                    Lanes old;
-                    std::memcpy(&old, to, sizeof old);
-                    old += sum;
-                    std::memcpy(to, &old, sizeof old);
-                    carry[i][q][0] = high[kLanes - 1];
+        ForceCarry<V> carry;
+        V smallest = V{} + task.crushed;
+        bool flowed = false;
+        for (int begin = 0; begin < run->count; begin += kWidth) {
+            const std::int32_t shares = batch[begin / kLanes];
+            const int left = run->count - begin, count = left < kWidth ? left : kWidth;
+            const CornerSums<V> c = gather<V>(x, begin, count, task.particles - run->row[3]);
+            if constexpr (kKind != CellKind::rubber) {
+                V size = dot(c.x, cross(c.y, c.z));
+                if (count < kWidth) size = lane < count ? size : smallest;
+                smallest = size < smallest ? size : smallest;
+            }
+            const CellId cell = run->first + begin;
+            if (kKind == CellKind::yielding && begin % kLanes == 0) flowed = has_flowed(task, cell);
+            CornerSums<V> r;
+            if (shares == kWhole) {
+                const CellShare<V> whole{};
+                if (flowed) {
+                    r = cell_forces<kKind, false, true>(task.constants, c, whole,
+                                                        load_history<V>(task, cell));
                 } else {
-                    for (int l = 0; l < count; ++l) to[l] += sum[l];
-                    carry[i][q][0] = high[count - 1];
+                    r = cell_forces<kKind, false, false>(task.constants, c, whole,
+                                                         CellHistory<V>{});
+                }
+            } else {
+                const float* from = task.share + shares + begin % kLanes;
+                const CellShare<V> part{load<V>(from),
+                                        {load<V>(from + kLanes), load<V>(from + 2 * kLanes),
+                                         load<V>(from + 3 * kLanes)}};
+                if (flowed) {
+                    r = cell_forces<kKind, true, true>(task.constants, c, part,
+                                                       load_history<V>(task, cell));
+                } else {
+                    r = cell_forces<kKind, true, false>(task.constants, c, part, CellHistory<V>{});
                 }
             }
+            add_forces(r, force, room, begin, count, carry);
         }
+        if (run->count % kWidth == 0) add_carried(force, run->count, carry);
+        bool crushed = false;
+        for (int l = 0; l < kWidth; ++l) crushed = crushed || smallest[l] < task.crushed;
+        if (crushed) task.crushed_run->push_back(run);
+        batch += batches_of(*run);
     }
-    for (int i = 0; i < 3; ++i) {
-        for (int q = 0; q < 4; ++q) run.force[i][q][run.count] += carry[i][q][0];
-    }
+    zero_up_to(task.end);
 }
 
-SWAGE_VECTOR_CLONES
-void elastic_run(const CellModuli& law, const RunArrays& run) {
-    run_forces<false, false>(law, run);
+template <CellKind kKind>
+SWAGE_WIDE_VECTORS void wide_slab(const SlabTask& task) {
+    slab_forces<8, kKind>(task);
 }
-SWAGE_VECTOR_CLONES
-void yielding_run(const CellModuli& law, const RunArrays& run) {
-    run_forces<true, false>(law, run);
+template <CellKind kKind>
+SWAGE_MIDDLE_VECTORS void middle_slab(const SlabTask& task) {
+    slab_forces<4, kKind>(task);
 }
-SWAGE_VECTOR_CLONES
-void rubber_run(const CellModuli& law, const RunArrays& run) { run_forces<false, true>(law, run); }
+template <CellKind kKind>
+void narrow_slab(const SlabTask& task) {
+    slab_forces<2, kKind>(task);
+}
+template <CellKind kKind>
+void sweep_slab(const SlabTask& task) {
+    const int width = vector_width();
+    width == 8   ? wide_slab<kKind>(task)
+    : width == 4 ? middle_slab<kKind>(task)
+                 : narrow_slab<kKind>(task);
+}
 
 // One cell as plain numbers, for what is done once a frame.
 struct OneCell {
@@ -222,8 +180,7 @@ struct OneCell {
     CellModes<double> modes;
 };
 
-OneCell one_cell(const Aggregate& matter, const CellRun& run, int n,
-                 const std::array<std::vector<float>, 3>& at) {
+OneCell one_cell(const Aggregate& matter, const CellRun& run, int n) {
     const CellId cell = run.first + n;
     OneCell r;
     CornerSums<double>& c = r.sums;
@@ -238,10 +195,10 @@ OneCell one_cell(const Aggregate& matter, const CellRun& run, int n,
     sum_corners(corner, c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
     gather(x.z);
     sum_corners(corner, c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    r.gradient = centroid_gradient(c, Triple<double>{at[0][cell], at[1][cell], at[2][cell]},
-                                   matter.lattice.spacing);
-    r.modes = {transposed_times(r.gradient, c.xy), transposed_times(r.gradient, c.yz),
-               transposed_times(r.gradient, c.zx), transposed_times(r.gradient, c.xyz)};
+    const Eigen::Vector3d at = 2 * matter.cell_centroid[cell].cast<double>();
+    r.gradient =
+        centroid_gradient(c, Triple<double>{at.x(), at.y(), at.z()}, matter.lattice.spacing);
+    r.modes = pulled_back(r.gradient, c);
     return r;
 }
 
@@ -271,88 +228,94 @@ CellSweep::CellSweep(const Aggregate& matter)
     : law_(cell_moduli(matter.material.young_modulus, matter.material.poisson_ratio,
                        matter.lattice.spacing)),
       yields_(std::isfinite(matter.material.yield_stress)),
-      rubber_(matter.material.elasticity == Elasticity::neo_hookean) {
+      rubber_(matter.material.elasticity == Elasticity::neo_hookean),
+      slab_(cell_slabs(matter)),
+      crushed_(slab_.size()) {
     if (yields_) {
         law_.yield_stress = matter.material.yield_stress;
         law_.hardening = matter.material.hardening;
-    }
-    for (int i = 0; i < 3; ++i) {
-        for (const Eigen::Vector3f& c : matter.cell_centroid) at_[i].push_back(2 * c[i]);
-    }
-    const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    const std::size_t cells = matter.cell_fill.size();
-    const std::size_t slabs = std::clamp<std::size_t>(cells / kSlabCells, 1, 64);
-    std::size_t r = 0;
-    for (std::size_t s = 0; s < slabs; ++s) {
-        const std::size_t begin = r, stop = cells * (s + 1) / slabs;
-        ForceSlab part{std::numeric_limits<ParticleId>::max(), 0, {}};
-        for (; r < runs.size() && (s + 1 == slabs || std::size_t(runs[r].first) < stop); ++r) {
-            for (ParticleId p : runs[r].row) {
-                part.begin = std::min(part.begin, p);
-                part.reach = std::max(part.reach, p + runs[r].count + 1);
-            }
-        }
-        if (r == begin) continue;
-        part.part.resize(static_cast<std::size_t>(part.reach - part.begin));
-        slab_.push_back({begin, r});
-        part_.push_back(std::move(part));
     }
     cells_changed(matter);
 }
 
 void CellSweep::cells_changed(const Aggregate& matter) {
     fill_ = matter.cell_fill;
-    for_each_cell(matter, 0, matter.lattice.cell_run.size(),
-                  [&](const CellRun& run, int n, CellId cell) {
-                      std::array<ParticleId, 4> row = run.row;
-                      for (ParticleId& p : row) p += n;
-                      if (!cell_is_whole(matter, row)) fill_[cell] = 0;
-                  });
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
+        std::array<ParticleId, 4> row = run.row;
+        for (ParticleId& p : row) p += n;
+        if (!cell_is_whole(matter, row)) fill_[cell] = 0;
+    });
+    batch_.clear();
+    share_.clear();
+    slab_batch_.clear();
+    for (const CellSlab& slab : slab_) {
+        slab_batch_.push_back(batch_.size());
+        for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
+            for (int begin = 0; begin < runs[r].count; begin += kLanes) {
+                const int count = std::min(kLanes, runs[r].count - begin);
+                bool whole = true;
+                for (CellId c = runs[r].first + begin; c < runs[r].first + begin + count; ++c) {
+                    whole = whole && fill_[c] == 1 && matter.cell_centroid[c].isZero(0);
+                }
+                batch_.push_back(whole ? kWhole : static_cast<std::int32_t>(share_.size()));
+                if (whole) continue;
+                const std::size_t at = share_.size();
+                share_.resize(at + kShares * kLanes, 0.0f);
+                for (int n = 0; n < count; ++n) {
+                    const CellId c = runs[r].first + begin + n;
+                    share_[at + n] = fill_[c];
+                    for (int i = 0; i < 3; ++i) {
+                        share_[at + (i + 1) * kLanes + n] = 2 * matter.cell_centroid[c][i];
+                    }
+                }
+            }
+        }
+    }
 }
 
 void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     CellModuli law = law_;
     if (flow == Flow::none) law.yield_stress = kNeverYields;
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const Vec3Array& x = matter.particle_position;
-    const double* const component[3] = {x.x.data(), x.y.data(), x.z.data()};
-    const std::vector<float> fresh(yields_ && matter.cell_plastic_strain[0].empty() ? fill_.size()
-                                                                                    : 0);
+    force.resize(x.size());
+    const CellKind kind = rubber_ ? CellKind::rubber
+                          : yields_ && (flow == Flow::trial || !matter.cell_hardening.empty())
+                              ? CellKind::yielding
+                              : CellKind::elastic;
+    SlabTask whole{.constants = CellConstants(law),
+                   .crushed = kMaybeCrushed * 64 * std::pow(law.spacing, 3),
+                   .share = share_.data(),
+                   .particles = static_cast<int>(x.size()),
+                   .cells = static_cast<int>(matter.cell_fill.size()),
+                   .position = {x.x.data(), x.y.data(), x.z.data()},
+                   .force = {force.x.data(), force.y.data(), force.z.data()}};
+    if (!matter.cell_hardening.empty()) {
+        for (int n = 0; n < kStrains; ++n) whole.strain[n] = matter.cell_plastic_strain[n].data();
+        for (int n = 0; n < kModes; ++n) whole.modes[n] = matter.cell_plastic_modes[n].data();
+        whole.alpha = matter.cell_hardening.data();
+    }
     parallel_for(slab_.size(), [&](std::size_t index) {
-        ForceSlab& slab = part_[index];
-        slab.clear();
-        double* const part[3] = {slab.part.x.data(), slab.part.y.data(), slab.part.z.data()};
-        for (std::size_t r = slab_[index].run_begin; r < slab_[index].run_end; ++r) {
-            const CellRun& run = matter.lattice.cell_run[r];
-            RunArrays arrays;
-            arrays.count = run.count;
-            for (int i = 0; i < 3; ++i) {
-                for (int q = 0; q < 4; ++q) {
-                    arrays.batch.corner[i][q] = component[i] + run.row[q];
-                    arrays.force[i][q] = part[i] + (run.row[q] - slab.begin);
-                }
-                arrays.batch.at[i] = at_[i].data() + run.first;
-            }
-            arrays.batch.fill = fill_.data() + run.first;
-            if (rubber_) {
-                rubber_run(law, arrays);
-            } else if (yields_) {
-                const auto from = [&](const std::vector<float>& v) {
-                    return (v.empty() ? fresh : v).data() + run.first;
-                };
-                for (int n = 0; n < kStrains; ++n) {
-                    arrays.batch.strain[n] = from(matter.cell_plastic_strain[n]);
-                }
-                for (int n = 0; n < kModes; ++n) {
-                    arrays.batch.modes[n] = from(matter.cell_plastic_modes[n]);
-                }
-                arrays.batch.alpha = from(matter.cell_hardening);
-                yielding_run(law, arrays);
-            } else {
-                elastic_run(law, arrays);
-            }
+        CellSlab& slab = slab_[index];
+        SlabTask task = whole;
+        task.run = runs.data() + slab.run_begin;
+        task.run_end = runs.data() + slab.run_end;
+        task.batch = batch_.data() + slab_batch_[index];
+        task.begin = slab.begin, task.end = slab.end, task.reach = slab.reach;
+        double** seam = task.seam;
+        for (std::vector<double>* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
+            std::fill(component->begin(), component->end(), 0.0);
+            *seam++ = component->data();
         }
+        crushed_[index].clear();
+        task.crushed_run = &crushed_[index];
+        const auto sweep = kind == CellKind::rubber     ? sweep_slab<CellKind::rubber>
+                           : kind == CellKind::yielding ? sweep_slab<CellKind::yielding>
+                                                        : sweep_slab<CellKind::elastic>;
+        sweep(task);
     });
-    sum_slabs(part_, matter.particle_count(), force);
+    add_seams(slab_, force);
 }
 
 double CellSweep::commit(Aggregate& matter) const {
@@ -363,7 +326,7 @@ double CellSweep::commit(Aggregate& matter) const {
     double lost = 0;
     for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
         if (fill_[cell] <= 0) return;
-        const OneCell c = one_cell(matter, run, n, at_);
+        const OneCell c = one_cell(matter, run, n);
         const CellFlowed<double> r =
             flow_cell(law_, history_of(matter, cell), cell_strain(c.gradient).log, c.modes,
                       double(fill_[cell]));
@@ -404,7 +367,7 @@ double CellSweep::elastic_energy(const Aggregate& matter) const {
                       [&](const CellRun& run, int n, CellId cell) {
                           const double fill = fill_[cell];
                           if (fill <= 0) return;
-                          const OneCell c = one_cell(matter, run, n, at_);
+                          const OneCell c = one_cell(matter, run, n);
                           const CellHistory<double> history = history_of(matter, cell);
                           const CellModes<double> q = c.modes - history.modes;
                           const double modes =
@@ -433,7 +396,7 @@ void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>
                   [&](const CellRun& run, int n, CellId cell) {
                       const double fill = fill_[cell];
                       if (fill <= 0) return;
-                      const Vec3 at(at_[0][cell], at_[1][cell], at_[2][cell]);
+                      const Vec3 at = 2 * matter.cell_centroid[cell].cast<double>();
                       const bool centred = at == Vec3::Zero();
                       double gram = 1;  // times 1 / (2 a^2)
                       if (!centred) {

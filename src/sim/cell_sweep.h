@@ -38,16 +38,21 @@ class CellSweep {
 
     bool yields() const { return yields_; }
 
+    // Runs of the last sweep in which a cell may have lost half of its volume (sim/cell_volume.h),
+    // slab by slab.
+    const std::vector<std::vector<const CellRun*>>& crushed_runs() const { return crushed_; }
+
   private:
-    struct Slab {
-        std::size_t run_begin, run_end;  // cell runs
-    };
     CellModuli law_;
     bool yields_, rubber_;
     std::vector<float> fill_;
-    std::array<std::vector<float>, 3> at_;  // centroid of the material, -1 to 1 in the cell
-    std::vector<Slab> slab_;
-    ForceSlabs part_;
+    std::vector<CellSlab> slab_;
+    // By batches of eight cells of a run: whether all are full and whole, or where their fills and
+    // centroids, -1 to 1 in the cell, begin in share_.
+    std::vector<std::int32_t> batch_;
+    std::vector<float> share_;
+    std::vector<std::size_t> slab_batch_;  // first batch of each slab
+    std::vector<std::vector<const CellRun*>> crushed_;
 };
 
 }  // namespace swage

@@ -42,27 +42,31 @@ struct SmallCell {
     double volume;
 };
 
-// Whole cells below a volume ratio, in the order of the cells.
+// Of a run: whole cells below a volume ratio, in their order.
+void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
+                     std::vector<SmallCell>& found) {
+    double volume[kCellBlock];
+    for (int at = 0; at < run.count; at += kCellBlock) {
+        const int count = std::min(kCellBlock, run.count - at);
+        cell_volumes(matter, run, at, count, volume);
+        for (int n = 0; n < count; ++n) {
+            if (!(volume[n] < limit)) continue;
+            std::array<ParticleId, 4> row = run.row;
+            for (ParticleId& p : row) p += at + n;
+            if (!cell_is_whole(matter, row)) continue;
+            found.push_back({&run, at + n, volume[n]});
+        }
+    }
+}
+
 std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
     std::vector<std::vector<SmallCell>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
-        double volume[kCellBlock];
         const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
         for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
-            const CellRun& run = runs[r];
-            for (int at = 0; at < run.count; at += kCellBlock) {
-                const int count = std::min(kCellBlock, run.count - at);
-                cell_volumes(matter, run, at, count, volume);
-                for (int n = 0; n < count; ++n) {
-                    if (!(volume[n] < limit)) continue;
-                    std::array<ParticleId, 4> row = run.row;
-                    for (ParticleId& p : row) p += at + n;
-                    if (!cell_is_whole(matter, row)) continue;
-                    part[chunk].push_back({&run, at + n, volume[n]});
-                }
-            }
+            add_cells_below(matter, runs[r], limit, part[chunk]);
         }
     });
     std::vector<SmallCell> found;
@@ -73,6 +77,27 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
 double material_volume(const Aggregate& matter, const SmallCell& cell) {
     const double a = matter.lattice.spacing;
     return matter.cell_fill[cell.run->first + cell.n] * a * a * a;
+}
+
+// Their forces; returns how many are inside out.
+int resist(const Aggregate& matter, const std::vector<SmallCell>& crushed, Vec3Array& force) {
+    int mirrored = 0;
+    for (const SmallCell& cell : crushed) {
+        mirrored += cell.volume < 0;
+        const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
+        Mat3 cofactor;
+        cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
+        const Mat3 stress = material_volume(matter, cell) *
+                            guard_slope(matter.material.young_modulus, cell.volume) * cofactor;
+        for (int c = 0; c < 8; ++c) {
+            Vec3 slope;  // of the gradient's columns with the corner's position
+            for (int axis = 0; axis < 3; ++axis) {
+                slope[axis] = (c >> axis & 1 ? 0.25 : -0.25) / matter.lattice.spacing;
+            }
+            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), -(stress * slope));
+        }
+    }
+    return mirrored;
 }
 
 }  // namespace
@@ -99,23 +124,16 @@ Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {
 }
 
 int add_guard_forces(const Aggregate& matter, Vec3Array& force) {
-    int mirrored = 0;
-    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
-        mirrored += cell.volume < 0;
-        const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
-        Mat3 cofactor;
-        cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
-        const Mat3 stress = material_volume(matter, cell) *
-                            guard_slope(matter.material.young_modulus, cell.volume) * cofactor;
-        for (int c = 0; c < 8; ++c) {
-            Vec3 slope;  // of the gradient's columns with the corner's position
-            for (int axis = 0; axis < 3; ++axis) {
-                slope[axis] = (c >> axis & 1 ? 0.25 : -0.25) / matter.lattice.spacing;
-            }
-            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), -(stress * slope));
-        }
+    return resist(matter, cells_below(matter, kGuardedVolume), force);
+}
+
+int add_guard_forces(const Aggregate& matter,
+                     const std::vector<std::vector<const CellRun*>>& crushed, Vec3Array& force) {
+    std::vector<SmallCell> found;
+    for (const std::vector<const CellRun*>& part : crushed) {
+        for (const CellRun* run : part) add_cells_below(matter, *run, kGuardedVolume, found);
     }
-    return mirrored;
+    return resist(matter, found, force);
 }
 
 void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness) {

@@ -19,6 +19,9 @@ Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n);
 // returns how many of them are inside out.
 // Cells that a blade has crossed have no volume of their own and resist nothing.
 int add_guard_forces(const Aggregate& matter, Vec3Array& force);
+// The same when these runs are all that have such cells (CellSweep::crushed_runs).
+int add_guard_forces(const Aggregate& matter,
+                     const std::vector<std::vector<const CellRun*>>& crushed, Vec3Array& force);
 // Adds to each particle what the guard of cells inside out can add to its stiffness [N/m].
 void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness);
 double guard_energy_of(const Aggregate& matter);  // [J]

@@ -10,6 +10,8 @@ namespace swage {
 
 namespace {
 
+constexpr std::size_t kSlabCells = 8192, kMostSlabs = 32;
+
 SWAGE_VECTOR_CLONES
 void add_block(const double* __restrict f, std::size_t count, double* __restrict sum) {
     for (std::size_t n = 0; n < count; ++n) sum[n] += f[n];
@@ -39,6 +41,61 @@ void sum_slabs(const ForceSlabs& slabs, std::size_t particles, Vec3Array& force)
             add_block(slab.part.x.data() + (from - slab.begin), to - from, force.x.data() + from);
             add_block(slab.part.y.data() + (from - slab.begin), to - from, force.y.data() + from);
             add_block(slab.part.z.data() + (from - slab.begin), to - from, force.z.data() + from);
+        }
+    });
+}
+
+std::vector<CellSlab> cell_slabs(const Aggregate& matter) {
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const auto same_row = [](const CellRun& a, const CellRun& b) {
+        return a.j == b.j && a.k == b.k;
+    };
+    // The first particle at (j, k).
+    const auto row_begin = [&](const CellRun& run) {
+        const auto& rows = matter.lattice.particle_run;
+        return std::lower_bound(rows.begin(), rows.end(), std::pair(run.k, run.j),
+                                [](const ParticleRun& row, const std::pair<int, int>& at) {
+                                    return std::pair(row.k, row.j) < at;
+                                })
+            ->first;
+    };
+    const std::size_t cells = matter.cell_fill.size();
+    const std::size_t count = std::clamp<std::size_t>(cells / kSlabCells, 1, kMostSlabs);
+    std::vector<CellSlab> slabs;
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        const bool full = !slabs.empty() && !same_row(runs[r], runs[r - 1]) &&
+                          std::size_t(runs[r].first) >= cells * slabs.size() / count;
+        if (slabs.empty() || full) slabs.push_back({r, r, 0, 0, 0, {}});
+        slabs.back().run_end = r + 1;
+    }
+    for (std::size_t s = 0; s < slabs.size(); ++s) {
+        CellSlab& slab = slabs[s];
+        slab.begin = s == 0 ? 0 : slabs[s - 1].end;
+        slab.end = s + 1 == slabs.size() ? static_cast<ParticleId>(matter.particle_count())
+                                         : row_begin(runs[slab.run_end]);
+        slab.reach = slab.end;
+        for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
+            slab.reach = std::max(slab.reach, runs[r].row[3] + runs[r].count + 1);
+        }
+        const ParticleId seam = slab.reach - slab.end;
+        slab.seam.resize(seam > 0 ? static_cast<std::size_t>(seam + kSeamRoom) : 0);
+    }
+    return slabs;
+}
+
+void add_seams(const std::vector<CellSlab>& slabs, Vec3Array& force) {
+    if (slabs.size() <= 1) return;
+    parallel_for(slabs.size() - 1, [&](std::size_t index) {
+        const CellSlab& to = slabs[index + 1];
+        for (std::size_t s = 0; s <= index; ++s) {
+            const CellSlab& from = slabs[s];
+            const ParticleId begin = std::max(to.begin, from.end);
+            const ParticleId end = std::min(to.end, from.reach);
+            if (begin >= end) continue;
+            const std::size_t skip = begin - from.end, count = end - begin;
+            add_block(from.seam.x.data() + skip, count, force.x.data() + begin);
+            add_block(from.seam.y.data() + skip, count, force.y.data() + begin);
+            add_block(from.seam.z.data() + skip, count, force.z.data() + begin);
         }
     });
 }

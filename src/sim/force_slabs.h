@@ -21,4 +21,18 @@ using ForceSlabs = std::vector<ForceSlab>;
 // force = sum of the slabs' parts.
 void sum_slabs(const ForceSlabs& slabs, std::size_t particles, Vec3Array& force);
 
+// Rows of cells that add their forces in place: to the particles begin ... end - 1 of the result,
+// which no other slab writes. What they give to particles behind waits in the seam.
+struct CellSlab {
+    std::size_t run_begin, run_end;  // cell runs
+    ParticleId begin, end, reach;    // pushes particles up to reach - 1
+    Vec3Array seam;                  // forces on end ... reach - 1 [N], and kSeamRoom behind
+};
+inline constexpr int kSeamRoom = 8;
+
+std::vector<CellSlab> cell_slabs(const Aggregate& matter);
+
+// Adds the seams, in the order of the slabs, when all slabs are done.
+void add_seams(const std::vector<CellSlab>& slabs, Vec3Array& force);
+
 }  // namespace swage

@@ -78,12 +78,12 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force) {
     if (cells_) {
         cells_->forces(matter, flow, force);
         add_loose(matter, force);
-    } else {
-        const bool flows = spring_flow_ && flow == Flow::trial;
-        spring_sweep_.forces(matter, spring_law_,
-                             flows ? &spring_flow_->rest_strains(matter) : nullptr, force);
+        return guarded_ ? add_guard_forces(matter, cells_->crushed_runs(), force) : 0;
     }
-    return guarded_ ? add_guard_forces(matter, force) : 0;
+    const bool flows = spring_flow_ && flow == Flow::trial;
+    spring_sweep_.forces(matter, spring_law_, flows ? &spring_flow_->rest_strains(matter) : nullptr,
+                         force);
+    return add_guard_forces(matter, force);
 }
 
 double LatticeForces::add_dashpots(const Aggregate& matter, double damping, Vec3Array& force) {

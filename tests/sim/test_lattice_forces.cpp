@@ -2,8 +2,11 @@
 #include <random>
 
 #include "base/parallel.h"
+#include "laws/volume_guard.h"
+#include "sim/cell_volume.h"
 #include "sim/lattice_forces.h"
 #include "sim/sever.h"
+#include "sim/vector_clones.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 
@@ -175,4 +178,76 @@ TEST_CASE("every bit of the forces is the same at any number of threads") {
         CHECK(f.x == first);
     }
     set_thread_count(0);
+}
+
+namespace {
+
+// Several slabs, rows of 43 cells, some of them partly filled, some that have flowed, some crushed.
+Aggregate large_block(Material material) {
+    material.young_modulus = 1e5;
+    Aggregate m = make_block(43, 25, 24, kSpacing, material);
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+        if (c / 43 % 3 == 0 && c % 43 < 20) {
+            m.cell_fill[c] = static_cast<float>(0.55 + 0.45 * draw(engine));
+            m.cell_centroid[c].x() = static_cast<float>(0.3 * draw(engine));
+        }
+    }
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p);
+        const double squeeze = x.z() > 0.9 ? 0.45 : 1;
+        m.particle_position.set(
+            p, Vec3(x.x() * squeeze, x.y(), x.z()) +
+                   0.03 * kSpacing * Vec3(draw(engine), draw(engine), draw(engine)));
+    }
+    return m;
+}
+
+// The first particle whose force differs in any bit, or -1.
+int first_difference(const Vec3Array& a, const Vec3Array& b) {
+    for (std::size_t p = 0; p < std::max(a.size(), b.size()); ++p) {
+        if (a.at(p) != b.at(p)) return static_cast<int>(p);
+    }
+    return -1;
+}
+
+}  // namespace
+
+TEST_CASE("vectors of any width give the same bytes") {
+    for (Material material : kMaterials) {
+        for (double yield : {2e3, std::numeric_limits<double>::infinity()}) {
+            material.yield_stress = yield;
+            Aggregate m = large_block(material);
+            LatticeForces forces(m);
+            forces.commit(m);
+            cut(m);
+            forces.connections_changed(m);
+            Vec3Array expected;
+            forces.find(m, Flow::trial, expected);
+            for (int width : {4, 2}) {
+                limit_vector_width(width);
+                Vec3Array f;
+                forces.find(m, Flow::trial, f);
+                CHECK(first_difference(f, expected) == -1);
+            }
+            limit_vector_width(0);
+        }
+    }
+}
+
+TEST_CASE("the sweep misses no cell that the volume guard acts on") {
+    Aggregate m = large_block(kMaterials[0]);
+    CellSweep sweep(m);
+    Vec3Array f;
+    sweep.forces(m, Flow::trial, f);
+    Vec3Array all = f;
+    add_guard_forces(m, all);
+    add_guard_forces(m, sweep.crushed_runs(), f);
+    CHECK(first_difference(f, all) == -1);
+    CHECK(smallest_cell_volume(m) < kGuardedVolume);
+    std::size_t runs = 0;
+    for (const auto& slab : sweep.crushed_runs()) runs += slab.size();
+    CHECK(runs > 0);
+    CHECK(runs < m.lattice.cell_run.size() / 2);
 }

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A cell's forces (laws/cell.h) as a sweep over many wants them, in as few operations as there
+// are: factors that all cells share go into the moduli once, 4 a F stands for F, and a stress that
+// is a function of the strain stays a series in it.
+#pragma once
+
+#include "laws/cell.h"
+
+namespace swage {
+
+enum class CellKind { elastic, yielding, rubber };
+
+// What all cells share.
+struct CellConstants {
+    explicit CellConstants(const CellModuli& moduli) : law(moduli), folded(moduli) {
+        const double volume = law.spacing * law.spacing * law.spacing;
+        scale = 0.25 / law.spacing;
+        gram = scale * scale;
+        folded.shear *= -gram * volume;
+        folded.bulk *= -gram * volume;
+        folded.edge *= -gram;
+        folded.diagonal *= -gram;
+        const double lame = folded.bulk - 2.0 / 3 * folded.shear;
+        rubber_rise = scale * (lame + folded.shear) * (scale * gram);
+        rubber_rest = scale * (lame + 2 * folded.shear);
+    }
+    CellModuli law;
+    double scale;                     // s = 1 / 4a
+    double gram;                      // s^2
+    CellModuli folded;                // give the forces on the sums from D and F^T Q / s
+    double rubber_rise, rubber_rest;  // of the factor of cof D, with det D
+};
+
+// What a partly filled cell has of its own.
+template <typename N>
+struct CellShare {
+    N fill;
+    Triple<N> at;  // centroid of the material, -1 to 1
+};
+
+// f^3 alone leaves nothing to hold a sliver's corners.
+template <typename N>
+SWAGE_INLINE N mode_fill(const N& fill) {
+    return larger(fill * fill * fill, 1e-3 * fill);
+}
+
+// Forces on the sums of the corners. kPart: the cell is partly filled; kFlowed: it has a history.
+// What does not apply is not looked at.
+template <CellKind kKind, bool kPart, bool kFlowed, typename N>
+SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<N>& c,
+                                       const CellShare<N>& share, const CellHistory<N>& history) {
+    const Columns<N> d = kPart ? centroid_sums(c, share.at) : Columns<N>{c.x, c.y, c.z};
+    const CellModes<N> modes = pulled_back(d, c);  // F^T Q / s
+    CellModes<N> g;                                // stress of the modes
+    Columns<N> p;                                  // of D
+    if constexpr (kKind == CellKind::rubber) {
+        const Columns<N> cofactor = {cross(d.y, d.z), cross(d.z, d.x), cross(d.x, d.y)};
+        N shear = k.folded.shear + N{};
+        N pressure = k.rubber_rise * dot(d.x, cofactor.x) - k.rubber_rest;
+        g = mode_stress(k.folded, modes);
+        if constexpr (kPart) {
+            shear = share.fill * shear;
+            pressure = share.fill * pressure;
+            g = mode_fill(share.fill) * g;
+        }
+        p = {shear * d.x + pressure * cofactor.x, shear * d.y + pressure * cofactor.y,
+             shear * d.z + pressure * cofactor.z};
+    } else {
+        const CellStrain<N> e =
+            strain_of_sum(Symmetric<N>{k.gram * dot(d.x, d.x) + 1.0, k.gram * dot(d.y, d.y) + 1.0,
+                                       k.gram * dot(d.z, d.z) + 1.0, k.gram * dot(d.x, d.y),
+                                       k.gram * dot(d.y, d.z), k.gram * dot(d.z, d.x)});
+        const N size = 3.0 * e.series.a + e.i1 * e.series.b + trace(e.square) * e.series.c;
+        N shear = (2 * k.folded.shear) + N{};
+        N pressure = k.folded.bulk * size;
+        Symmetric<N> stress;
+        if constexpr (kPart) {
+            shear = share.fill * shear;
+            pressure = share.fill * pressure;
+        }
+        if constexpr (kFlowed) {
+            const CellFlowed<N> r =
+                flow_cell(k.law, history, e.log, k.scale * modes, kPart ? share.fill : N{} + 1.0);
+            N mode_scale = -k.scale * r.kept;
+            if constexpr (kPart) mode_scale = mode_fill(share.fill) * mode_scale;
+            g = mode_scale * r.mode_stress;
+            Symmetric<N> t = (shear * r.kept) * r.distortion;
+            t.xx = t.xx + pressure, t.yy = t.yy + pressure, t.zz = t.zz + pressure;
+            stress = material_stress(e, t);
+        } else {
+            g = mode_stress(k.folded, modes);
+            if constexpr (kKind == CellKind::yielding) {
+                const Symmetric<N> distortion = deviator(e.log);
+                N mode_energy = -1.0 * product(g, modes);
+                if constexpr (kPart) mode_energy = (share.fill * share.fill) * mode_energy;
+                const N kept =
+                    return_cell(k.law, contract(distortion, distortion), mode_energy, N{}).kept;
+                shear = shear * kept;
+                g = kept * g;
+            }
+            if constexpr (kPart) g = mode_fill(share.fill) * g;
+            const N third = (1.0 / 3) * size;
+            stress = material_stress(e, CayleySeries<N>{shear * (e.series.a - third) + pressure,
+                                                        shear * e.series.b, shear * e.series.c});
+        }
+        p = d * stress;
+    }
+    p = {p.x + pulled_by(g.xy.x, g.yz.x, g.zx.x, g.xyz.x, c),
+         p.y + pulled_by(g.xy.y, g.yz.y, g.zx.y, g.xyz.y, c),
+         p.z + pulled_by(g.xy.z, g.yz.z, g.zx.z, g.xyz.z, c)};
+    CornerSums<N> r{p.x, p.y, p.z, d * g.xy, d * g.yz, d * g.zx, d * g.xyz};
+    if constexpr (kPart) add_levers(p, share.at, r);
+    return r;
+}
+
+}  // namespace swage
