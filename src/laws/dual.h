@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A number and its derivative along one direction, exact: a law written over any number, called
+// with these, gives the product of its Hessian with that direction.
+#pragma once
+
+#include "laws/lane_tensor.h"
+
+namespace swage {
+
+template <typename N>
+struct Dual {
+    N value, slope;
+};
+
+template <typename N>
+SWAGE_INLINE Dual<N> operator+(const Dual<N>& a, const Dual<N>& b) {
+    return {a.value + b.value, a.slope + b.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator-(const Dual<N>& a, const Dual<N>& b) {
+    return {a.value - b.value, a.slope - b.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator*(const Dual<N>& a, const Dual<N>& b) {
+    return {a.value * b.value, a.value * b.slope + a.slope * b.value};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator/(const Dual<N>& a, const Dual<N>& b) {
+    const N quotient = a.value / b.value;
+    return {quotient, (a.slope - quotient * b.slope) / b.value};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator+(const Dual<N>& a, double b) {
+    return {a.value + b, a.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator+(double a, const Dual<N>& b) {
+    return {a + b.value, b.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator-(const Dual<N>& a, double b) {
+    return {a.value - b, a.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator-(double a, const Dual<N>& b) {
+    return {a - b.value, -b.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator*(double a, const Dual<N>& b) {
+    return {a * b.value, a * b.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator*(const Dual<N>& a, double b) {
+    return {a.value * b, a.slope * b};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> operator/(double a, const Dual<N>& b) {
+    const N quotient = a / b.value;
+    return {quotient, -(quotient * b.slope) / b.value};
+}
+
+// The root of zero is taken to have no slope.
+template <typename N>
+SWAGE_INLINE Dual<N> root(const Dual<N>& a) {
+    const N r = root(a.value);
+    return {r, 0.5 * a.slope / (r + 1e-300)};
+}
+// Of two equal numbers the second, as the plain number does.
+SWAGE_INLINE Dual<double> larger(const Dual<double>& a, const Dual<double>& b) {
+    return a.value > b.value ? a : b;
+}
+SWAGE_INLINE Dual<Lanes> larger(const Dual<Lanes>& a, const Dual<Lanes>& b) {
+    const auto first = a.value > b.value;
+    return {first ? a.value : b.value, first ? a.slope : b.slope};
+}
+template <typename N>
+SWAGE_INLINE Dual<N> larger(const Dual<N>& a, double b) {
+    return larger(a, Dual<N>{b + 0.0 * a.value, 0.0 * a.value});
+}
+
+}  // namespace swage

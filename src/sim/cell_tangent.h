@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the forces of a lattice's cells (laws/cell.h) change with the positions: products of the
+// tangent with a direction, exact and without a matrix, and the tangent of coarser cells as small
+// dense matrices.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "laws/cell_moduli.h"
+#include "matter/aggregate.h"
+#include "sim/cell_sweep.h"
+#include "sim/force_slabs.h"
+
+namespace swage {
+
+// Symmetric, of the eight corners' three components, 3 corner + component: the upper triangle by
+// columns.
+struct CellMatrix {
+    static constexpr int kSize = 24;
+    std::array<double, kSize*(kSize + 1) / 2> upper{};
+
+    static int place(int row, int column) { return column * (column + 1) / 2 + row; }
+    double operator()(int a, int b) const { return upper[a < b ? place(a, b) : place(b, a)]; }
+};
+
+class CellTangent {
+  public:
+    // `fill`: of each cell, what it carries (CellSweep::carried_fill).
+    CellTangent(const Aggregate& matter, const std::vector<float>& fill);
+
+    // Which tangent: of what flows or not; a share `geometric` of what the stress does by turning
+    // with the matter, 1 being exact, and 0 the part that never makes a body unstable.
+    struct Kind {
+        Flow flow = Flow::trial;
+        double geometric = 1;
+    };
+
+    // result = -d(force)/d(position) direction, at the present positions.
+    void product(const Aggregate& matter, Kind kind, const Vec3Array& direction,
+                 Vec3Array& result);
+
+    // One matrix a cell of the coarse lattice, whose sites are those of every `ratio`-th particle:
+    // sum of its cells' tangents, the particles following its corners trilinearly.
+    std::vector<CellMatrix> coarse_cells(const Aggregate& matter, Kind kind,
+                                         const Lattice& coarse, const Vec3i& ratio) const;
+
+  private:
+    struct Law {
+        CellModuli moduli;
+        bool yields, rubber;
+    };
+    Law law_for(const Aggregate& matter, Flow flow) const;
+
+    const std::vector<float>& fill_;
+    std::array<std::vector<float>, 3> at_;
+    struct Slab {
+        std::size_t run_begin, run_end;
+    };
+    std::vector<Slab> slab_;
+    ForceSlabs part_;
+};
+
+}  // namespace swage

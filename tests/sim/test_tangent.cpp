@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
+
+#include "sim/cell_tangent.h"
+#include "sim/lattice_forces.h"
+#include "sim/lattice_transfer.h"
+#include "sim/node_stiffness.h"
+#include "sim/slab_cholesky.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kSpacing = 0.1;
+
+void shake(Vec3Array& v, int seed, double by) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (auto* x : {&v.x, &v.y, &v.z}) {
+        for (double& c : *x) c += by * draw(engine);
+    }
+}
+
+// Random fills, centroids and positions; rows that are no multiple of a batch of lanes.
+Aggregate shaken_block(const Material& material) {
+    Aggregate m = make_block(11, 3, 4, kSpacing, material);
+    std::mt19937 engine(7);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+        m.cell_fill[c] = static_cast<float>(0.55 + 0.45 * draw(engine));
+        for (int i = 0; i < 3; ++i) m.cell_centroid[c][i] = static_cast<float>(0.3 * draw(engine));
+    }
+    shake(m.particle_position, 3, 0.06 * kSpacing);
+    return m;
+}
+
+Vec3Array random_direction(std::size_t count) {
+    Vec3Array d;
+    d.resize(count);
+    shake(d, 11, 1);
+    return d;
+}
+
+double dot(const Vec3Array& a, const Vec3Array& b) {
+    double sum = 0;
+    for (std::size_t p = 0; p < a.size(); ++p) sum += a.at(p).dot(b.at(p));
+    return sum;
+}
+
+const Material kMaterials[] = {
+    {.young_modulus = 1e5, .poisson_ratio = 0.4},
+    {.young_modulus = 1e5, .poisson_ratio = 0.3, .yield_stress = 2e3, .hardening = 1e4},
+    {.elasticity = Elasticity::neo_hookean, .young_modulus = 1e5, .poisson_ratio = 0.45},
+};
+
+}  // namespace
+
+TEST_CASE("the tangent's product is how the forces change, flow included") {
+    for (const Material& material : kMaterials) {
+        Aggregate m = shaken_block(material);
+        LatticeForces forces(m);
+        if (std::isfinite(material.yield_stress)) forces.commit(m);  // and flow on from there
+        shake(m.particle_position, 5, 0.01 * kSpacing);
+        const Vec3Array direction = random_direction(m.particle_count());
+        CellTangent tangent(m, m.cell_fill);
+        Vec3Array product;
+        tangent.product(m, {}, direction, product);
+        const Vec3Array here = m.particle_position;
+        const double h = 1e-5 * kSpacing;
+        Vec3Array f[4];
+        const double at[4] = {-2 * h, -h, h, 2 * h};
+        for (int n = 0; n < 4; ++n) {
+            m.particle_position = here;
+            for (std::size_t p = 0; p < here.size(); ++p) {
+                m.particle_position.add(p, at[n] * direction.at(p));
+            }
+            forces.find(m, Flow::trial, f[n]);
+        }
+        double largest = 0, off = 0;
+        for (std::size_t p = 0; p < here.size(); ++p) {
+            const Vec3 slope = (8 * (f[2].at(p) - f[1].at(p)) - (f[3].at(p) - f[0].at(p))) / (12 * h);
+            largest = std::max(largest, slope.norm());
+            off = std::max(off, (slope + product.at(p)).norm());
+        }
+        CHECK(off < 1e-7 * largest);
+    }
+}
+
+TEST_CASE("coarse matrices are the tangent seen through the coarse corners, at any ratio") {
+    for (const Material& material : kMaterials) {
+        Aggregate m = shaken_block(material);
+        CellTangent tangent(m, m.cell_fill);
+        for (const Vec3i& ratio : {Vec3i(1, 1, 1), Vec3i(2, 1, 2), Vec3i(2, 2, 2), Vec3i(4, 3, 1)}) {
+            const Lattice coarse = coarse_lattice(m.lattice, ratio);
+            const LatticeTransfer transfer(m.lattice, coarse, ratio);
+            NodeStiffness matrix(coarse);
+            matrix.add_cells(coarse, tangent.coarse_cells(m, {}, coarse, ratio));
+            const Vec3Array u = random_direction(particle_count(coarse));
+            Vec3Array fine, product, back, got;
+            fine.resize(m.particle_count());
+            for (auto* x : {&fine.x, &fine.y, &fine.z}) std::fill(x->begin(), x->end(), 0.0);
+            transfer.add_prolonged(u, fine);
+            tangent.product(m, {}, fine, product);
+            transfer.restricted(product, back);
+            matrix.product(u, got);
+            double largest = 0, off = 0;
+            for (std::size_t p = 0; p < back.size(); ++p) {
+                largest = std::max(largest, back.at(p).norm());
+                off = std::max(off, (back.at(p) - got.at(p)).norm());
+            }
+            CHECK(off < 1e-12 * largest);
+        }
+    }
+}
+
+TEST_CASE("restriction is the transpose of prolongation") {
+    const Aggregate m = make_block(13, 5, 6, kSpacing, kMaterials[0]);
+    for (const Vec3i& ratio : {Vec3i(2, 2, 2), Vec3i(3, 1, 2)}) {
+        const Lattice coarse = coarse_lattice(m.lattice, ratio);
+        const LatticeTransfer transfer(m.lattice, coarse, ratio);
+        const Vec3Array u = random_direction(particle_count(coarse));
+        const Vec3Array f = random_direction(m.particle_count());
+        Vec3Array up = f, down;
+        transfer.add_prolonged(u, up);
+        transfer.restricted(f, down);
+        CHECK(dot(f, up) - dot(f, f) == Approx(dot(u, down)));
+    }
+}
+
+TEST_CASE("the slabs' factor solves what the matrix multiplies, and refuses what is indefinite") {
+    Aggregate m = shaken_block(kMaterials[0]);
+    m.particle_position = m.particle_reference;
+    CellTangent tangent(m, m.cell_fill);
+    NodeStiffness matrix(m.lattice);
+    matrix.add_cells(m.lattice, tangent.coarse_cells(m, {}, m.lattice, Vec3i::Ones()));
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        matrix.add_diagonal(static_cast<ParticleId>(p), 1);
+    }
+    SlabCholesky direct(m.lattice);
+    REQUIRE(direct.factor(matrix));
+    const Vec3Array x = random_direction(m.particle_count());
+    Vec3Array b, got;
+    matrix.product(x, b);
+    direct.solve(b, got);
+    for (std::size_t p = 0; p < x.size(); ++p) CHECK((got.at(p) - x.at(p)).norm() < 1e-8);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        matrix.add_diagonal(static_cast<ParticleId>(p), -100);
+    }
+    CHECK_FALSE(direct.factor(matrix));
+}
