@@ -37,6 +37,9 @@ class ContactSet {
     // Pairs within one spacing of a tool; pairs with an anchor always stay.
     void find_candidates(const Aggregate& matter, const Drive& now);
 
+    // Whether any tool has a candidate.
+    bool tools_near() const { return !pair_.empty(); }
+
     // Adds to `stiffness` what the present candidates and grips can add to each particle [N/m].
     void add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const;
 

@@ -35,6 +35,11 @@ class LatticeForces {
 
     double elastic_energy(const Aggregate& matter) const;  // [J]
 
+    // What the cells carry, where forces are theirs alone; null: some connection acts by itself.
+    const std::vector<float>* cells_alone() const {
+        return cells_ && loose_.empty() ? &cells_->carried_fill() : nullptr;
+    }
+
     // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the
     // fastest of these on their own masses: w_max^2 <= max(bound / mass). Zero for a loose
     // particle.

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "sim/cell_volume.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
@@ -39,29 +40,6 @@ constexpr double kGain[] = {100, 10, 300, 1};
 constexpr int kRenewInterval = 200;
 constexpr double kStaleStiffness =
     0.5;  // spacings that a particle moves until the modes are found anew
-constexpr std::size_t kChunk = 8192;
-
-std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
-
-// Sums of one chunk in four lanes: the order is fixed and the loop still vectorises.
-template <typename Term>
-double lane_sum(std::size_t begin, std::size_t end, const Term& term) {
-    double lane[4] = {0, 0, 0, 0};
-    std::size_t i = begin;
-    for (; i + 4 <= end; i += 4) {
-        for (int l = 0; l < 4; ++l) lane[l] += term(i + l);
-    }
-    for (; i < end; ++i) lane[0] += term(i);
-    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
-}
-
-template <typename Term>
-double chunked_sum(std::size_t count, const Term& term) {
-    return ordered_sum(chunks_of(count), [&](std::size_t chunk) {
-        return lane_sum(chunk * kChunk, std::min(count, (chunk + 1) * kChunk), term);
-    });
-}
-
 double largest_extent(const Aggregate& matter) {
     return matter.lattice.spacing * matter.lattice.cell_count.maxCoeff();
 }
@@ -139,6 +117,8 @@ void QuasistaticSolver::connections_changed() {
     lattice_.connections_changed(matter_);
     lattice_bound_ = lattice_.stiffness_bound(matter_);
     probed_.resize(0);
+    const std::vector<float>* cells = lattice_.cells_alone();
+    newton_ = cells != nullptr ? std::make_unique<Newton>(matter_, *cells) : nullptr;
     const double a = matter_.lattice.spacing;
     const double full_mass = matter_.material.density * a * a * a;
     drag_.resize(matter_.particle_count());
@@ -169,9 +149,9 @@ void QuasistaticSolver::evaluate(const Drive& to) {
     contacts_.add_forces(matter_, to, force_);
     const Vec3 g = settings_.gravity;
     const Vec3Array& x = matter_.particle_position;
-    parallel_for(chunks_of(x.size()), [&](std::size_t chunk) {
-        const std::size_t end = std::min(x.size(), (chunk + 1) * kChunk);
-        for (std::size_t p = chunk * kChunk; p < end; ++p) {
+    parallel_for(vector_chunks(x.size()), [&](std::size_t chunk) {
+        const std::size_t end = std::min(x.size(), (chunk + 1) * kVectorChunk);
+        for (std::size_t p = chunk * kVectorChunk; p < end; ++p) {
             const double c = hold_ * drag_[p], m = matter_.particle_mass[p];
             force_.x[p] += m * g.x() - c * (x.x[p] - held_.x[p]);
             force_.y[p] += m * g.y() - c * (x.y[p] - held_.y[p]);
@@ -197,6 +177,31 @@ double QuasistaticSolver::push_limit(const Drive& to) const {
     return push;
 }
 
+double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) const {
+    const Vec3Array& f = force;
+    const double sum = chunked_sum(f.size(), [&](std::size_t p) {
+        return std::sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
+    });
+    return sum / std::max(largest_push_, push_limit(to));
+}
+
+QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
+    NewtonProblem problem;
+    problem.forces = [&](Vec3Array& force) {
+        evaluate(to);
+        force = force_;
+    };
+    problem.residual = [&](const Vec3Array& force) { return residual_of(force, to); };
+    problem.tolerance = settings_.tolerance;
+    problem.held = contacts_.held_points(matter_, to);
+    problem.diagonal = lattice_bound_;
+    contacts_.add_stiffness(matter_, problem.diagonal);
+    problem.drag.resize(drag_.size());
+    for (std::size_t p = 0; p < drag_.size(); ++p) problem.drag[p] = hold_ * drag_[p];
+    const Newton::Result found = newton_->solve(matter_, problem);
+    return {found.converged && mirrored_ == 0, found.steps, found.residual};
+}
+
 QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     const std::size_t n = matter_.particle_count();
     const double a = matter_.lattice.spacing, longest = 0.2 * a;
@@ -220,7 +225,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     Relaxation result;
     int renewed = 0, weighted_mirrors = 0;
     const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
-    std::vector<double> farthest(chunks_of(n));
+    std::vector<double> farthest(vector_chunks(n));
     Patience patience(settings_.iteration_limit, x);
     const int turn = settings_.iteration_limit / int(std::size(kGain));
     for (int iteration = 1; iteration <= patience.limit; ++iteration) {
@@ -233,12 +238,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
             weighted_mirrors = mirrored_;
         }
         if (iteration % kCheckInterval == 0) {
-            const double residual = chunked_sum(n, [&](std::size_t p) {
-                return std::sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
-            });
-            if (!std::isfinite(residual)) return result;
-            const double reference = std::max(largest_push_, push_limit(to));
-            result.residual = residual / reference;
+            result.residual = residual_of(f, to);
+            if (!std::isfinite(result.residual)) return result;
             if (result.residual <= settings_.tolerance) {
                 result.converged = true;
                 return result;
@@ -276,12 +277,12 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         const double dt = schedule.step;
         if (coarse) coarse_.add(coarse_.gain((pull + dt) * total), keep, v);
         const double kept = coarse ? 1 : keep;  // else done just now
-        parallel_for(chunks_of(n), [&](std::size_t chunk) {
-            const std::size_t end = std::min(n, (chunk + 1) * kChunk);
+        parallel_for(vector_chunks(n), [&](std::size_t chunk) {
+            const std::size_t end = std::min(n, (chunk + 1) * kVectorChunk);
             const auto move = [&](std::vector<double>& xs, std::vector<double>& vs,
                                   const std::vector<double>& fs, const std::vector<double>& from) {
                 double most = 0;
-                for (std::size_t p = chunk * kChunk; p < end; ++p) {
+                for (std::size_t p = chunk * kVectorChunk; p < end; ++p) {
                     vs[p] = kept * vs[p] + (pull + dt) * fs[p] * inverse_mass_[p];
                     const double way = dt * vs[p];
                     xs[p] += way > longest ? longest : way < -longest ? -longest : way;
@@ -299,12 +300,28 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     return result;
 }
 
+// How many rounds of letting go of the drag Newton's method goes ahead.
+constexpr double kSmoothHold = 1e-3;
+
 // The drag is let go until what it holds back is no more than the residual may be.
 QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = start_;
-    for (hold_ = 1;; hold_ *= kLetGo) {
-        const Relaxation round = settle(to);
+    contacts_.find_candidates(matter_, to);
+    bool smooth = newton_ && !contacts_.tools_near();
+    for (hold_ = smooth ? kSmoothHold : 1;; hold_ *= kLetGo) {
+        Relaxation round;
+        if (smooth) {
+            const Vec3Array before = matter_.particle_position;
+            round = solve_smooth(to);
+            contacts_.find_candidates(matter_, to);
+            if (!round.converged || contacts_.tools_near()) {
+                matter_.particle_position = before;
+                smooth = false;
+                hold_ = 1;
+            }
+        }
+        if (!smooth) round = settle(to);
         result = {round.converged, result.iterations + round.iterations, round.residual};
         if (!round.converged) return result;
         const Vec3Array& x = matter_.particle_position;

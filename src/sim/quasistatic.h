@@ -12,6 +12,7 @@
 // lost, and an unstable equilibrium that nothing disturbs is not left.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "sim/contact_set.h"
 #include "sim/lattice_forces.h"
 #include "sim/move_outcome.h"
+#include "sim/newton.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -46,6 +48,8 @@ class QuasistaticSolver {
     void increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome);
     Relaxation relax(const Drive& to);
     Relaxation settle(const Drive& to);
+    Relaxation solve_smooth(const Drive& to);
+    double residual_of(const Vec3Array& force, const Drive& to) const;
     void find_masses();
     void evaluate(const Drive& to);
     double push_limit(const Drive& to) const;
@@ -58,6 +62,7 @@ class QuasistaticSolver {
     const Apparatus& apparatus_;
     SimSettings settings_;
     LatticeForces lattice_;
+    std::unique_ptr<Newton> newton_;  // null: the matter is not smooth
     CoarseModes coarse_;
     Vec3Array probed_;  // positions at which its stiffness was found
     ContactSet contacts_;

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/newton.h"
+
+#include <cmath>
+
+#include "sim/vector_sums.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kMostSteps = 60;
+constexpr int kMostIterations = 400;  // of conjugate gradients
+constexpr int kMostTries = 12;        // of the length of a step
+constexpr double kOvershoot = 0.5;    // of the work along a step that may be left, either way
+
+}  // namespace
+
+Newton::Newton(const Aggregate& matter, const std::vector<float>& carried_fill)
+    : tangent_(matter, carried_fill), multigrid_(matter) {}
+
+void Newton::product(const Aggregate& matter, const NewtonProblem& problem,
+                     CellTangent::Kind kind, const Vec3Array& direction, Vec3Array& result) {
+    ++products_;
+    tangent_.product(matter, kind, direction, result);
+    for (const HeldPoint& h : problem.held) {
+        const auto& corner = matter.surface.corner[h.point];
+        const auto& weight = matter.surface.weight[h.point];
+        Vec3 way = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) way += double(weight[c]) * direction.at(corner[c]);
+        const Vec3 force = h.stiffness * way;
+        for (int c = 0; c < 8; ++c) result.add(corner[c], double(weight[c]) * force);
+    }
+    for_each_chunk(direction.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            result.add(p, problem.drag[p] * direction.at(p));
+        }
+    });
+}
+
+// The exact tangent where that is stable, else the part of it that is.
+bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem) {
+    for (double geometric : {1.0, 0.0}) {
+        kind_ = {Flow::trial, geometric};
+        const auto times = [&](const Vec3Array& d, Vec3Array& r) {
+            product(matter, problem, kind_, d, r);
+        };
+        if (multigrid_.prepare(matter, tangent_, kind_, problem.held, problem.diagonal,
+                               problem.drag, times)) {
+            prepared_ = true;
+            stale_ = false;
+            fresh_iterations_ = -1;
+            return true;
+        }
+    }
+    return false;
+}
+
+// Conjugate gradients for the exact tangent; ends early where that has no positive curvature.
+bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& problem,
+                            double accuracy) {
+    const auto times = [&](const Vec3Array& d, Vec3Array& r) {
+        product(matter, problem, kind_, d, r);
+    };
+    residual_ = force_;
+    set_zero(matter.particle_count(), direction_);
+    multigrid_.solve(times, residual_, better_);
+    double size = dot(residual_, better_);
+    if (!(size > 0)) return false;
+    const double first = size;
+    search_ = better_;
+    for (int n = 1; n <= kMostIterations; ++n) {
+        product(matter, problem, {Flow::trial, 1.0}, search_, image_);
+        const double curvature = dot(search_, image_);
+        if (!(curvature > 0)) {
+            if (!std::isfinite(curvature)) return false;
+            if (n == 1) direction_ = search_;
+            return true;
+        }
+        const double length = size / curvature;
+        combine(1, length, search_, direction_);
+        combine(1, -length, image_, residual_);
+        multigrid_.solve(times, residual_, better_);
+        const double next = dot(residual_, better_);
+        if (!std::isfinite(next)) return false;
+        if (next <= accuracy * accuracy * first) {
+            if (fresh_iterations_ < 0) fresh_iterations_ = n;
+            stale_ = n > fresh_iterations_ + fresh_iterations_ / 2 + 4;
+            return true;
+        }
+        combine(next / size, 1, better_, search_);
+        size = next;
+    }
+    stale_ = true;
+    return true;
+}
+
+// Goes as far as the forces still work along the way; they are found there. Returns the share of
+// the direction gone, 0 when nowhere is better.
+double Newton::line_search(Aggregate& matter, const NewtonProblem& problem) {
+    from_ = matter.particle_position;
+    const double start = dot(force_, direction_);
+    if (!(start > 0)) return 0;
+    double share = 1;
+    for (int n = 0; n < kMostTries; ++n) {
+        matter.particle_position = from_;
+        combine(1, share, direction_, matter.particle_position);
+        problem.forces(force_);
+        const double work = dot(force_, direction_);
+        if (std::isfinite(work) && work >= -kOvershoot * start) return share;
+        const double zero = std::isfinite(work) ? start / (start - work) : 0;
+        share *= std::clamp(zero, 0.1, 0.7);
+    }
+    return 0;
+}
+
+Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
+    Result result;
+    products_ = 0;
+    problem.forces(force_);
+    for (result.steps = 0; result.steps < kMostSteps; ++result.steps) {
+        result.residual = problem.residual(force_);
+        if (!std::isfinite(result.residual)) break;
+        result.converged = result.residual <= problem.tolerance;
+        if (result.converged) break;
+        if (stale_ || !prepared_) {
+            prepared_ = false;
+            if (!prepare(matter, problem)) break;
+        }
+        const double accuracy = std::clamp(std::sqrt(result.residual) / 10, 1e-4, 0.1);
+        if (!find_direction(matter, problem, accuracy)) break;
+        const double share = line_search(matter, problem);
+        if (share == 0) break;
+        if (share < 1) stale_ = true;
+    }
+    result.products = products_;
+    return result;
+}
+
+}  // namespace swage

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibrium by Newton's method, for bodies that are held and loaded smoothly: no tool touches, no
+// connection is severed. The tangent is never stored; its system is solved by conjugate gradients
+// with a multigrid or direct solution before them (sim/multigrid.h), and each step is as long as
+// the work along it says.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "sim/cell_tangent.h"
+#include "sim/coarse_modes.h"
+#include "sim/multigrid.h"
+
+namespace swage {
+
+// What the solver asks of the body.
+struct NewtonProblem {
+    std::function<void(Vec3Array& force)> forces;  // at the present positions
+    std::function<double(const Vec3Array& force)> residual;  // 1: as much as is pushed with
+    double tolerance;                                        // of that residual
+    std::vector<HeldPoint> held;
+    std::vector<double> diagonal;  // of each particle, no less than its stiffness [N/m]
+    std::vector<double> drag;      // springs to where the particles began [N/m]
+};
+
+class Newton {
+  public:
+    Newton(const Aggregate& matter, const std::vector<float>& carried_fill);
+
+    struct Result {
+        bool converged = false;
+        int steps = 0;     // of Newton
+        int products = 0;  // with the tangent, in all
+        double residual = 0;
+    };
+    // Moves the particles. What it leaves when it does not converge means nothing.
+    Result solve(Aggregate& matter, const NewtonProblem& problem);
+
+    // The coarse matrices are of another body by now.
+    void forget() { prepared_ = false; }
+
+  private:
+    bool prepare(const Aggregate& matter, const NewtonProblem& problem);
+    bool find_direction(const Aggregate& matter, const NewtonProblem& problem, double accuracy);
+    double line_search(Aggregate& matter, const NewtonProblem& problem);
+    void product(const Aggregate& matter, const NewtonProblem& problem,
+                 CellTangent::Kind kind, const Vec3Array& direction, Vec3Array& result);
+
+    CellTangent tangent_;
+    Multigrid multigrid_;
+    bool prepared_ = false;
+    CellTangent::Kind kind_;
+    int fresh_iterations_ = -1;  // of the first solution with these coarse matrices; -1: none yet
+    bool stale_ = true;
+    int products_ = 0;
+    Vec3Array force_, direction_, residual_, search_, image_, better_, from_;
+};
+
+}  // namespace swage
