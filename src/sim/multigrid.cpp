@@ -13,7 +13,7 @@ constexpr double kDirectWork = 3e8;  // multiplications that a direct solution m
 constexpr int kFewCells = 4;         // across, that an axis is not made coarser from
 constexpr int kDegree = 3;           // of the smoothing polynomial
 constexpr double kSmoothed = 8;      // eigenvalues down to the largest over this are smoothed
-constexpr int kPowerIterations = 8;
+constexpr int kFirstIterations = 8, kMoreIterations = 2;  // of the power method
 constexpr double kEigenvalueMargin = 1.2;  // power iterations end below the largest
 
 }  // namespace
@@ -114,22 +114,26 @@ bool Multigrid::prepare(const Aggregate& matter, const CellTangent& tangent,
 template <typename Scale>
 void Multigrid::find_largest(const Product& product, const Scale& scale, std::size_t count,
                              Smoother& s) {
-    s.step.resize(count);
-    // Any start that is no eigenvector will do; this one changes sign from particle to particle.
-    for (std::size_t p = 0; p < count; ++p) {
-        const auto wave = [&](double turn) { return std::sin(turn * double(p) + 0.3); };
-        s.step.set(p, Vec3(wave(2.1), wave(2.7), wave(1.9)));
+    int left = kMoreIterations;
+    if (s.largest == 0) {
+        // Any start that is no eigenvector will do.
+        s.mode.resize(count);
+        for (std::size_t p = 0; p < count; ++p) {
+            const auto wave = [&](double turn) { return std::sin(turn * double(p) + 0.3); };
+            s.mode.set(p, Vec3(wave(2.1), wave(2.7), wave(1.9)));
+        }
+        left = kFirstIterations;
     }
-    for (int n = 0; n < kPowerIterations; ++n) {
-        product(s.step, s.product);
+    for (; left > 0; --left) {
+        product(s.mode, s.product);
         for_each_chunk(count, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) s.product.set(p, scale(p, s.product.at(p)));
         });
-        const double before = std::sqrt(dot(s.step, s.step));
+        const double before = std::sqrt(dot(s.mode, s.mode));
         const double after = std::sqrt(dot(s.product, s.product));
         s.largest = kEigenvalueMargin * after / before;
-        std::swap(s.step, s.product);
-        combine(1 / after, 0, s.step, s.step);
+        std::swap(s.mode, s.product);
+        combine(1 / after, 0, s.product, s.mode);
     }
 }
 

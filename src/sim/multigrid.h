@@ -40,7 +40,8 @@ class Multigrid {
 
   private:
     struct Smoother {
-        double largest = 1;  // eigenvalue of the scaled matrix
+        double largest = 0;  // eigenvalue of the scaled matrix; 0: not known yet
+        Vec3Array mode;      // about its vector
         Vec3Array step, residual, product;
     };
     struct Level {

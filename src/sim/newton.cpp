@@ -38,9 +38,11 @@ void Newton::product(const Aggregate& matter, const NewtonProblem& problem,
     });
 }
 
-// The exact tangent where that is stable, else the part of it that is.
-bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem) {
+// The exact tangent where that is stable and wanted, else the part of it that is.
+bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact) {
+    prepared_ = false;
     for (double geometric : {1.0, 0.0}) {
+        if (geometric == 1 && !exact) continue;
         kind_ = {Flow::trial, geometric};
         const auto times = [&](const Vec3Array& d, Vec3Array& r) {
             product(matter, problem, kind_, d, r);
@@ -114,6 +116,7 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem) {
     return 0;
 }
 
+#include <cstdio>
 Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
     Result result;
     products_ = 0;
@@ -123,13 +126,14 @@ Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
         if (!std::isfinite(result.residual)) break;
         result.converged = result.residual <= problem.tolerance;
         if (result.converged) break;
-        if (stale_ || !prepared_) {
-            prepared_ = false;
-            if (!prepare(matter, problem)) break;
-        }
+        if ((stale_ || !prepared_) && !prepare(matter, problem, true)) break;
         const double accuracy = std::clamp(std::sqrt(result.residual) / 10, 1e-4, 0.1);
-        if (!find_direction(matter, problem, accuracy)) break;
+        if (!find_direction(matter, problem, accuracy) &&
+            !(prepare(matter, problem, false) && find_direction(matter, problem, accuracy))) {
+            break;
+        }
         const double share = line_search(matter, problem);
+        fprintf(stderr,"  step %d res %.3g share %.3g products %d fresh %d stale %d geo %g\n", result.steps, result.residual, share, products_, fresh_iterations_, stale_, kind_.geometric);
         if (share == 0) break;
         if (share < 1) stale_ = true;
     }

@@ -42,7 +42,7 @@ class Newton {
     void forget() { prepared_ = false; }
 
   private:
-    bool prepare(const Aggregate& matter, const NewtonProblem& problem);
+    bool prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact);
     bool find_direction(const Aggregate& matter, const NewtonProblem& problem, double accuracy);
     double line_search(Aggregate& matter, const NewtonProblem& problem);
     void product(const Aggregate& matter, const NewtonProblem& problem,
