@@ -9,10 +9,10 @@ namespace swage {
 
 namespace {
 
-constexpr double kDirectWork = 3e8;  // multiplications that a direct solution may take
+constexpr double kDirectWork = 1e8;  // multiplications that a direct solution may take
 constexpr int kFewCells = 4;         // across, that an axis is not made coarser from
-constexpr int kDegree = 3;           // of the smoothing polynomial
-constexpr double kSmoothed = 8;      // eigenvalues down to the largest over this are smoothed
+constexpr int kDegree = 2;           // of the smoothing polynomial
+constexpr double kSmoothed = 6;      // eigenvalues down to the largest over this are smoothed
 constexpr int kFirstIterations = 8, kMoreIterations = 2;  // of the power method
 constexpr double kEigenvalueMargin = 1.2;  // power iterations end below the largest
 

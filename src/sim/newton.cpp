@@ -66,10 +66,17 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
     };
     residual_ = force_;
     set_zero(matter.particle_count(), direction_);
+    // Scaled by the diagonal.
+    const auto norm = [&] {
+        return chunked_sum(residual_.size(), [&](std::size_t p) {
+            const double k = problem.diagonal[p];
+            return k > 0 ? residual_.at(p).squaredNorm() / k : 0.0;
+        });
+    };
+    const double enough = accuracy * accuracy * norm();
     multigrid_.solve(times, residual_, better_);
     double size = dot(residual_, better_);
     if (!(size > 0)) return false;
-    const double first = size;
     search_ = better_;
     for (int n = 1; n <= kMostIterations; ++n) {
         product(matter, problem, {Flow::trial, 1.0}, search_, image_);
@@ -82,14 +89,14 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
         const double length = size / curvature;
         combine(1, length, search_, direction_);
         combine(1, -length, image_, residual_);
-        multigrid_.solve(times, residual_, better_);
-        const double next = dot(residual_, better_);
-        if (!std::isfinite(next)) return false;
-        if (next <= accuracy * accuracy * first) {
+        if (norm() <= enough) {
             if (fresh_iterations_ < 0) fresh_iterations_ = n;
             stale_ = n > fresh_iterations_ + fresh_iterations_ / 2 + 4;
             return true;
         }
+        multigrid_.solve(times, residual_, better_);
+        const double next = dot(residual_, better_);
+        if (!(next > 0)) return false;
         combine(next / size, 1, better_, search_);
         size = next;
     }
@@ -116,7 +123,6 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem) {
     return 0;
 }
 
-#include <cstdio>
 Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
     Result result;
     products_ = 0;
@@ -133,7 +139,6 @@ Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
             break;
         }
         const double share = line_search(matter, problem);
-        fprintf(stderr,"  step %d res %.3g share %.3g products %d fresh %d stale %d geo %g\n", result.steps, result.residual, share, products_, fresh_iterations_, stale_, kind_.geometric);
         if (share == 0) break;
         if (share < 1) stale_ = true;
     }
