@@ -16,7 +16,7 @@
 //     c_e = mu a eta_e / 16,  eta_e = [nu + sqrt((1 + nu)^2 + 1)] / 3
 //     c_d = mu a eta_d / 16,  eta_d = 1/3
 //
-// f: share of the cell's volume V = a^3 inside the body; f^3 is never taken below f/1000. W_q is
+// f: share of the cell's volume V = a^3 inside the body; f^3 is never taken below 0.03 f. W_q is
 // the deviations' part of the 18 connections of stiffness mu a, edges counted eta_e and diagonals
 // eta_d times: with these a cell bends and twists as a slice of a beam does. Strain and modes are
 // functions of C and F^T Q alone, which a rotation leaves as they are: none is ever split off.

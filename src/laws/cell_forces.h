@@ -41,7 +41,7 @@ struct CellShare {
 // f^3 alone leaves nothing to hold a sliver's corners.
 template <typename N>
 SWAGE_INLINE N mode_fill(const N& fill) {
-    return larger(fill * fill * fill, 1e-3 * fill);
+    return larger(fill * fill * fill, kLeastModeFill * fill);
 }
 
 // Forces on the sums of the corners. kPart: the cell is partly filled; kFlowed: it has a history.

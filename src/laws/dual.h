@@ -69,7 +69,8 @@ SWAGE_INLINE Dual<N> root(const Dual<N>& a) {
 SWAGE_INLINE Dual<double> larger(const Dual<double>& a, const Dual<double>& b) {
     return a.value > b.value ? a : b;
 }
-SWAGE_INLINE Dual<Lanes> larger(const Dual<Lanes>& a, const Dual<Lanes>& b) {
+template <LaneVector V>
+SWAGE_INLINE Dual<V> larger(const Dual<V>& a, const Dual<V>& b) {
     const auto first = a.value > b.value;
     return {first ? a.value : b.value, first ? a.slope : b.slope};
 }

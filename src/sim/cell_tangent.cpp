@@ -81,7 +81,7 @@ SWAGE_INLINE Triple<Number> scale_slope(const Triple<Number>& a, double s) {
 }
 
 SWAGE_INLINE Number mode_fill(const Lanes& fill) {
-    return constant(larger(fill * fill * fill, 1e-3 * fill));
+    return constant(larger(fill * fill * fill, kLeastModeFill * fill));
 }
 
 // Minus the change of the cell's forces on its corners' sums.
@@ -189,6 +189,16 @@ SWAGE_INLINE void run_product(const CellModuli& law, const RunView& run, double 
     }
 }
 
+// A direction along one axis, from the sums of how far each corner goes.
+SWAGE_INLINE CornerSums<Lanes> along_axis(const Lanes (&sum)[7], int axis) {
+    const Lanes none{};
+    const auto along = [&](const Lanes& v) __attribute__((always_inline)) {
+        return Triple<Lanes>{axis == 0 ? v : none, axis == 1 ? v : none, axis == 2 ? v : none};
+    };
+    return {along(sum[0]), along(sum[1]), along(sum[2]), along(sum[3]),
+            along(sum[4]), along(sum[5]), along(sum[6])};
+}
+
 // Places of the low and high side of eight cells in their coarse cells, along each axis, 0 to 1.
 struct Places {
     Lanes low[3], high[3];
@@ -212,16 +222,10 @@ SWAGE_INLINE void batch_matrices(const CellModuli& law, const RunView& run, int 
         }
         sum_corners(follow, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
         for (int axis = 0; axis < 3; ++axis) {
-            const Lanes none{};
-            const auto along = [&](const Lanes& v) __attribute__((always_inline)) {
-                return Triple<Lanes>{axis == 0 ? v : none, axis == 1 ? v : none,
-                                     axis == 2 ? v : none};
-            };
-            const CornerSums<Lanes> p = {along(sum[0]), along(sum[1]), along(sum[2]),
-                                         along(sum[3]), along(sum[4]), along(sum[5]),
-                                         along(sum[6])};
             Lanes force[3][8];
-            spread(tangent_forces<kYields, kRubber>(law, run, done, geometric, x, p), force);
+            spread(tangent_forces<kYields, kRubber>(law, run, done, geometric, x,
+                                                    along_axis(sum, axis)),
+                   force);
             const int column = 3 * corner + axis;
             for (int i = 0; i < 3; ++i) {
                 // Back to the coarse corners, axis by axis.
@@ -243,6 +247,29 @@ SWAGE_INLINE void batch_matrices(const CellModuli& law, const RunView& run, int 
     }
 }
 
+// Of eight cells' corners, the blocks that are their own: xx, yy, zz, xy, yz, zx.
+template <bool kYields, bool kRubber>
+SWAGE_INLINE void batch_blocks(const CellModuli& law, const RunView& run, int done,
+                               double geometric, Lanes (*block)[6]) {
+    CornerSums<Lanes> x;
+    gather(run.x, done, run.count - done, x);
+    for (int corner = 0; corner < 8; ++corner) {
+        Lanes alone[8] = {}, sum[7], column[3][3];
+        alone[corner] = 1.0 + Lanes{};
+        sum_corners(alone, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
+        for (int axis = 0; axis < 3; ++axis) {
+            Lanes force[3][8];
+            spread(tangent_forces<kYields, kRubber>(law, run, done, geometric, x,
+                                                    along_axis(sum, axis)),
+                   force);
+            for (int i = 0; i < 3; ++i) column[axis][i] = force[i][corner];
+        }
+        const Lanes own[6] = {column[0][0], column[1][1], column[2][2],
+                              column[1][0], column[2][1], column[2][0]};
+        for (int n = 0; n < 6; ++n) block[corner][n] = own[n];
+    }
+}
+
 #define SWAGE_TANGENT(name, yields, rubber)                                                       \
     SWAGE_VECTOR_CLONES                                                                           \
     void name##_product(const CellModuli& law, const RunView& run, double geometric,              \
@@ -253,6 +280,11 @@ SWAGE_INLINE void batch_matrices(const CellModuli& law, const RunView& run, int 
     void name##_matrices(const CellModuli& law, const RunView& run, int done, double geometric,   \
                          const Places& place, Lanes* matrix) {                                    \
         batch_matrices<yields, rubber>(law, run, done, geometric, place, matrix);                 \
+    }                                                                                             \
+    SWAGE_VECTOR_CLONES                                                                           \
+    void name##_blocks(const CellModuli& law, const RunView& run, int done, double geometric,     \
+                       Lanes (*block)[6]) {                                                       \
+        batch_blocks<yields, rubber>(law, run, done, geometric, block);                           \
     }
 SWAGE_TANGENT(elastic, false, false)
 SWAGE_TANGENT(yielding, true, false)
@@ -348,6 +380,42 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
         }
     });
     sum_slabs(part_, matter.particle_count(), result);
+}
+
+std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) const {
+    const Law law = law_for(matter, kind.flow);
+    const auto blocks = law.rubber   ? rubber_blocks
+                        : law.yields ? yielding_blocks
+                                     : elastic_blocks;
+    std::vector<Mat3> own(matter.particle_count(), Mat3::Zero());
+    // Planes of cells share particles with the next ones only: every other plane at a time.
+    std::vector<std::size_t> plane(matter.lattice.cell_count.z() + 1, 0);
+    for (const CellRun& run : matter.lattice.cell_run) ++plane[run.k + 1];
+    for (std::size_t n = 1; n < plane.size(); ++n) plane[n] += plane[n - 1];
+    for (std::size_t odd = 0; odd < 2; ++odd) {
+        parallel_for(plane.size() / 2, [&](std::size_t half) {
+            const std::size_t index = 2 * half + odd;
+            if (index + 1 >= plane.size()) return;
+            Lanes block[8][6];
+            for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
+                const CellRun& run = matter.lattice.cell_run[r];
+                const RunView view = view_of(matter, run, fill_, at_);
+                for (int done = 0; done < run.count; done += kLanes) {
+                    blocks(law.moduli, view, done, kind.geometric, block);
+                    for (int l = 0; l < kLanes && done + l < run.count; ++l) {
+                        for (int c = 0; c < 8; ++c) {
+                            const Lanes(&b)[6] = block[c];
+                            Mat3 add;
+                            add << b[0][l], b[3][l], b[5][l], b[3][l], b[1][l], b[4][l], b[5][l],
+                                b[4][l], b[2][l];
+                            own[run.row[c >> 1] + done + l + (c & 1)] += add;
+                        }
+                    }
+                }
+            }
+        });
+    }
+    return own;
 }
 
 std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind kind,

@@ -66,12 +66,8 @@ void Multigrid::add_points(Level& level, const Aggregate& matter,
 
 bool Multigrid::prepare(const Aggregate& matter, const CellTangent& tangent,
                         CellTangent::Kind kind, const std::vector<HeldPoint>& held,
-                        const std::vector<double>& diagonal, const std::vector<double>& drag,
+                        const std::vector<double>& drag,
                         const Product& product) {
-    inverse_scale_.resize(diagonal.size());
-    for (std::size_t p = 0; p < diagonal.size(); ++p) {
-        inverse_scale_[p] = diagonal[p] > 0 ? 1 / diagonal[p] : 0;
-    }
     Vec3Array held_back;
     held_back.x = held_back.y = held_back.z = drag;
     for (Level& level : level_) {
@@ -99,8 +95,10 @@ bool Multigrid::prepare(const Aggregate& matter, const CellTangent& tangent,
     }
     if (!direct_->factor(*level_.back().matrix)) return false;
     if (is_direct()) return true;
-    find_largest(product, [&](std::size_t p, const Vec3& v) -> Vec3 { return inverse_scale_[p] * v; },
-                 matter.particle_count(), finest_);
+    find_own_blocks(matter, tangent, kind, held, drag);
+    find_largest(
+        product, [&](std::size_t p, const Vec3& v) -> Vec3 { return inverse_blocks_[p] * v; },
+        matter.particle_count(), finest_);
     for (std::size_t n = 0; n + 1 < level_.size(); ++n) {
         Level& level = level_[n];
         find_largest(
@@ -109,6 +107,26 @@ bool Multigrid::prepare(const Aggregate& matter, const CellTangent& tangent,
             level.matrix->size(), level.smoother);
     }
     return true;
+}
+
+void Multigrid::find_own_blocks(const Aggregate& matter, const CellTangent& tangent,
+                                CellTangent::Kind kind, const std::vector<HeldPoint>& held,
+                                const std::vector<double>& drag) {
+    inverse_blocks_ = tangent.own_blocks(matter, kind);
+    for (const HeldPoint& h : held) {
+        for (int c = 0; c < 8; ++c) {
+            const double weight = matter.surface.weight[h.point][c];
+            inverse_blocks_[matter.surface.corner[h.point][c]] += weight * weight * h.stiffness;
+        }
+    }
+    for_each_chunk(drag.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            Mat3& block = inverse_blocks_[p];
+            block.diagonal().array() += drag[p];
+            const double size = block.trace();
+            block = size > 0 ? Mat3(block.inverse()) : Mat3(Mat3::Zero());
+        }
+    });
 }
 
 template <typename Scale>
@@ -207,7 +225,7 @@ void Multigrid::solve(const Product& product, const Vec3Array& b, Vec3Array& x) 
         direct_->solve(b, x);
         return;
     }
-    const auto scale = [&](std::size_t p, const Vec3& v) -> Vec3 { return inverse_scale_[p] * v; };
+    const auto scale = [&](std::size_t p, const Vec3& v) -> Vec3 { return inverse_blocks_[p] * v; };
     smooth(product, scale, b, true, finest_, x);
     product(x, finest_.product);
     Vec3Array rest = b;

@@ -27,11 +27,10 @@ class Multigrid {
     using Product = std::function<void(const Vec3Array& direction, Vec3Array& result)>;
 
     // Finds the coarse matrices at the present positions. False: a level is not positive definite.
-    // `diagonal`: a scale for each particle [N/m], about its stiffness; `drag`: what of it is a
-    // spring to a fixed place.
+    // `drag`: of each particle, a spring to a fixed place [N/m].
     bool prepare(const Aggregate& matter, const CellTangent& tangent, CellTangent::Kind kind,
-                 const std::vector<HeldPoint>& held, const std::vector<double>& diagonal,
-                 const std::vector<double>& drag, const Product& product);
+                 const std::vector<HeldPoint>& held, const std::vector<double>& drag,
+                 const Product& product);
 
     // x = about K^-1 b
     void solve(const Product& product, const Vec3Array& b, Vec3Array& x);
@@ -55,6 +54,9 @@ class Multigrid {
     };
     void add_points(Level& level, const Aggregate& matter,
                     const std::vector<HeldPoint>& held) const;
+    void find_own_blocks(const Aggregate& matter, const CellTangent& tangent,
+                         CellTangent::Kind kind, const std::vector<HeldPoint>& held,
+                         const std::vector<double>& drag);
     template <typename Scale>
     void find_largest(const Product& product, const Scale& scale, std::size_t count, Smoother& s);
     template <typename Scale>
@@ -63,7 +65,7 @@ class Multigrid {
     void cycle(std::size_t level, const Vec3Array& b, Vec3Array& x);
 
     std::vector<Vec3i> site_;  // of each particle
-    std::vector<double> inverse_scale_;  // of the finest
+    std::vector<Mat3> inverse_blocks_;  // of the finest
     Smoother finest_;
     Vec3Array coarse_;
     std::vector<Level> level_;  // from fine to coarse

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/newton.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "sim/vector_sums.h"
@@ -11,8 +12,14 @@ namespace {
 
 constexpr int kMostSteps = 60;
 constexpr int kMostIterations = 400;  // of conjugate gradients
+constexpr int kKeptSteps = 3;         // that coarse matrices serve in one solution
 constexpr int kMostTries = 12;        // of the length of a step
 constexpr double kOvershoot = 0.5;    // of the work along a step that may be left, either way
+
+Mat3 rotation_by(const Vec3& turn) {
+    const double angle = turn.norm();
+    return angle > 0 ? Mat3(Eigen::AngleAxisd(angle, turn / angle)) : Mat3(Mat3::Identity());
+}
 
 }  // namespace
 
@@ -47,8 +54,7 @@ bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem, bool
         const auto times = [&](const Vec3Array& d, Vec3Array& r) {
             product(matter, problem, kind_, d, r);
         };
-        if (multigrid_.prepare(matter, tangent_, kind_, problem.held, problem.diagonal,
-                               problem.drag, times)) {
+        if (multigrid_.prepare(matter, tangent_, kind_, problem.held, problem.drag, times)) {
             prepared_ = true;
             stale_ = false;
             fresh_iterations_ = -1;
@@ -104,16 +110,51 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
     return true;
 }
 
+Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {
+    const Vec3Array& x = matter.particle_position;
+    const std::vector<double>& mass = matter.particle_mass;
+    Way way{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), direction_};
+    if (!loose) return way;
+    double whole = 0;
+    for (std::size_t p = 0; p < x.size(); ++p) {
+        whole += mass[p];
+        way.center += mass[p] * x.at(p);
+        way.shift += mass[p] * direction_.at(p);
+    }
+    way.center /= whole;
+    way.shift /= whole;
+    Mat3 inertia = Mat3::Zero();
+    Vec3 momentum = Vec3::Zero();
+    for (std::size_t p = 0; p < x.size(); ++p) {
+        const Vec3 arm = x.at(p) - way.center;
+        inertia += mass[p] * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+        momentum += mass[p] * arm.cross(direction_.at(p));
+    }
+    way.turn = inertia.ldlt().solve(momentum);
+    for (std::size_t p = 0; p < x.size(); ++p) {
+        way.rest.add(p, -way.shift - way.turn.cross(x.at(p) - way.center));
+    }
+    return way;
+}
+
 // Goes as far as the forces still work along the way; they are found there. Returns the share of
 // the direction gone, 0 when nowhere is better.
 double Newton::line_search(Aggregate& matter, const NewtonProblem& problem) {
     from_ = matter.particle_position;
     const double start = dot(force_, direction_);
     if (!(start > 0)) return 0;
+    const Way way = way_of(matter, problem.held.empty());
+    Vec3Array& x = matter.particle_position;
     double share = 1;
     for (int n = 0; n < kMostTries; ++n) {
-        matter.particle_position = from_;
-        combine(1, share, direction_, matter.particle_position);
+        const Mat3 turned = rotation_by(share * way.turn);
+        for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const Vec3 arm = turned * (from_.at(p) - way.center);
+                x.set(p, way.center + arm + share * (way.shift + way.rest.at(p)));
+                direction_.set(p, way.turn.cross(arm) + way.shift + way.rest.at(p));
+            }
+        });
         problem.forces(force_);
         const double work = dot(force_, direction_);
         if (std::isfinite(work) && work >= -kOvershoot * start) return share;
@@ -140,7 +181,7 @@ Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
         }
         const double share = line_search(matter, problem);
         if (share == 0) break;
-        if (share < 1) stale_ = true;
+        if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) stale_ = true;
     }
     result.products = products_;
     return result;

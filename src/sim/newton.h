@@ -48,6 +48,14 @@ class Newton {
     void product(const Aggregate& matter, const NewtonProblem& problem,
                  CellTangent::Kind kind, const Vec3Array& direction, Vec3Array& result);
 
+    // A step apart from the shift and turn of the whole body, which is done as such: a body that
+    // nothing holds turns far, and along straight lines it would grow.
+    struct Way {
+        Vec3 center, shift, turn;  // [m], [m], [rad]
+        Vec3Array rest;            // [m]
+    };
+    Way way_of(const Aggregate& matter, bool loose) const;
+
     CellTangent tangent_;
     Multigrid multigrid_;
     bool prepared_ = false;
