@@ -16,7 +16,7 @@
 //     c_e = mu a eta_e / 16,  eta_e = [nu + sqrt((1 + nu)^2 + 1)] / 3
 //     c_d = mu a eta_d / 16,  eta_d = 1/3
 //
-// f: share of the cell's volume V = a^3 inside the body; f^3 is never taken below 0.03 f. W_q is
+// f: share of the cell's volume V = a^3 inside the body; f^2 is never taken below 0.03. W_q is
 // the deviations' part of the 18 connections of stiffness mu a, edges counted eta_e and diagonals
 // eta_d times: with these a cell bends and twists as a slice of a beam does. Strain and modes are
 // functions of C and F^T Q alone, which a rotation leaves as they are: none is ever split off.
@@ -228,6 +228,16 @@ SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const CayleySe
     return evaluate(e, s);
 }
 
+// f^2, which alone leaves nothing to hold a sliver's corners; and f times that.
+template <typename N>
+SWAGE_INLINE N mode_share(const N& fill) {
+    return larger(fill * fill, kLeastModeFill + N{});
+}
+template <typename N>
+SWAGE_INLINE N mode_fill(const N& fill) {
+    return fill * mode_share(fill);
+}
+
 // What a cell has flowed, committed.
 template <typename N>
 struct CellHistory {
@@ -283,7 +293,7 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
     r.mode_stress = mode_stress(law, r.modes);
     const CellReturn<N> back =
         return_cell(law, contract(r.distortion, r.distortion),
-                    (fill * fill) * product(r.mode_stress, r.modes), history.alpha);
+                    mode_share(fill) * product(r.mode_stress, r.modes), history.alpha);
     r.kept = back.kept;
     r.d_alpha = back.d_alpha;
     return r;

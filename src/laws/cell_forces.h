@@ -38,12 +38,6 @@ struct CellShare {
     Triple<N> at;  // centroid of the material, -1 to 1
 };
 
-// f^3 alone leaves nothing to hold a sliver's corners.
-template <typename N>
-SWAGE_INLINE N mode_fill(const N& fill) {
-    return larger(fill * fill * fill, kLeastModeFill * fill);
-}
-
 // Forces on the sums of the corners. kPart: the cell is partly filled; kFlowed: it has a history.
 // What does not apply is not looked at.
 template <CellKind kKind, bool kPart, bool kFlowed, typename N>
@@ -92,7 +86,7 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             if constexpr (kKind == CellKind::yielding) {
                 const Symmetric<N> distortion = deviator(e.log);
                 N mode_energy = -1.0 * product(g, modes);
-                if constexpr (kPart) mode_energy = (share.fill * share.fill) * mode_energy;
+                if constexpr (kPart) mode_energy = mode_share(share.fill) * mode_energy;
                 const N kept =
                     return_cell(k.law, contract(distortion, distortion), mode_energy, N{}).kept;
                 shear = shear * kept;

@@ -80,9 +80,6 @@ SWAGE_INLINE Triple<Number> scale_slope(const Triple<Number>& a, double s) {
     return {{a.x.value, s * a.x.slope}, {a.y.value, s * a.y.slope}, {a.z.value, s * a.z.slope}};
 }
 
-SWAGE_INLINE Number mode_fill(const Lanes& fill) {
-    return constant(larger(fill * fill * fill, kLeastModeFill * fill));
-}
 
 // Minus the change of the cell's forces on its corners' sums.
 template <bool kYields, bool kRubber>
@@ -111,7 +108,7 @@ SWAGE_INLINE CornerSums<Lanes> tangent_forces(const CellModuli& law, const RunVi
         const Number scale = volume * fill;
         first = rubber_stress(law, f);
         first = {scale * first.x, scale * first.y, scale * first.z};
-        mode_force = mode_fill(fill_value) * mode_stress(law, modes);
+        mode_force = mode_fill(fill) * mode_stress(law, modes);
         freeze_turn();
     } else {
         const CellStrain<Number> strain = cell_strain(f);
@@ -141,7 +138,7 @@ SWAGE_INLINE CornerSums<Lanes> tangent_forces(const CellModuli& law, const RunVi
         Symmetric<Number> t = ((2 * law.shear) * kept) * distortion;
         t.xx = t.xx + pressure, t.yy = t.yy + pressure, t.zz = t.zz + pressure;
         const Symmetric<Number> stress = (volume * fill) * material_stress(strain, t);
-        mode_force = (mode_fill(fill_value) * kept) * mode_stress(law, elastic);
+        mode_force = (mode_fill(fill) * kept) * mode_stress(law, elastic);
         freeze_turn();
         first = f * stress;
     }
