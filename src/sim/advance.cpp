@@ -158,6 +158,10 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         report.warning.push_back(
             fmt::format("the work-piece slipped away from {} although no tool drew back", names));
     }
+    if (outcome.buckled) {
+        report.warning.push_back(
+            "the work-piece buckled: it left its shape for one that bears less");
+    }
     r.plastic += outcome.plastic_work;
     r.damped += outcome.damped_work;
     report.plastic = r.plastic;

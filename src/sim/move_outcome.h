@@ -19,6 +19,7 @@ struct MoveOutcome {
     double damped_work = 0;         // [J]; explicit steps only
     std::vector<double> work;       // by tool, then grip [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
+    bool buckled = false;           // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };
 
