@@ -6,7 +6,9 @@
 
 #include "base/suggest.h"
 #include "base/text.h"
+#include "scene/expressions.h"
 #include "scene/file_text.h"
+#include "scene/read_load.h"
 #include "scene/read_machine.h"
 #include "scene/stage_keys.h"
 
@@ -19,21 +21,13 @@ namespace fs = std::filesystem;
 constexpr int kMostFrames = 1'000'000'000;  // of a scene; what a machine can hold is judged later
 constexpr double kRangeSlack = 1e-9;        // a value computed to lie at its limit may miss it
 
-const std::vector<std::string> kStageKeys = {"machine",
-                                             "name",
-                                             "frames",
-                                             "duration",
-                                             "axis",
-                                             "up",
-                                             "remold",
-                                             "solver",
-                                             "gravity",
-                                             "tolerance",
-                                             "iteration_limit",
-                                             "halving_limit",
-                                             "contact_stiffness",
-                                             "grip_stiffness",
-                                             "step_safety"};
+const std::vector<std::string> kStageKeys = {
+    "machine",          "name",          "frames",
+    "duration",         "axis",          "up",
+    "remold",           "solver",        "gravity",
+    "gravity_strength", "load",          "tolerance",
+    "iteration_limit",  "halving_limit", "contact_stiffness",
+    "grip_stiffness",   "step_safety"};
 
 bool is_path(const std::string& machine) {
     return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";
@@ -151,6 +145,44 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
     }
 }
 
+// The machine's own expressions see the same names.
+void StageReader::read_loads(TableReader& table, StageSpec& stage) {
+    ExpressionReader expression;
+    expression.add_names(work_piece_names());
+    std::set<std::string> parts = {"gravity"};
+    for (const ParameterSpec& parameter : stage.machine.parameter) {
+        expression.add_name(parameter.name);
+    }
+    for (const ToolSpec& tool : stage.machine.tool) {
+        for (const char* axis : {"_x", "_y", "_z"}) expression.add_name(tool.name + axis);
+        parts.insert(tool.name);
+    }
+    for (const GripSpec& grip : stage.machine.grip) parts.insert(grip.name);
+    for (const BladeSpec& blade : stage.machine.blade) parts.insert(blade.name);
+    for (const LoadSpec& load : stage.machine.load) parts.insert(load.name);
+    int number = 0;
+    for (const Node* node : table.tables("load", "[[stage.load]]")) {
+        TableReader one(*node, "[[stage.load]]", reading_);
+        LoadSpec load;
+        load.name = fmt::format("load_{}", ++number);
+        if (one.find("name") != nullptr) {
+            load.name = read_part_name(one, parts);
+        } else if (!parts.insert(load.name).second) {
+            one.mistake("name", fmt::format("two parts are called \"{}\"; give this load a name",
+                                            load.name));
+        }
+        read_load_keys(one, expression, load);
+        one.finish();
+        stage.machine.load.push_back(std::move(load));
+    }
+    ExpressionReader timed = expression;
+    timed.add_name("t");
+    if (timed.read(table, "gravity_strength", Quantity::number, stage.machine.gravity_strength) &&
+        stage.sim.gravity == Vec3::Zero()) {
+        table.warn("gravity_strength", "gravity_strength has no effect without gravity");
+    }
+}
+
 void StageReader::read_solver(TableReader& table, SimSettings& sim) {
     table.choice<Solver>(
         "solver", {{"quasistatic", Solver::quasistatic}, {"explicit", Solver::explicit_steps}},
@@ -236,7 +268,9 @@ StageSpec StageReader::read(const Node& node) {
         stage.machine = *loaded->machine;
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
         read_parameters(table, *loaded, stage);
+        read_loads(table, stage);
     } else {
+        for (const char* key : {"load", "gravity_strength"}) table.find(key);
         table.leave_unknown();
     }
     table.finish();

@@ -44,6 +44,7 @@ ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
       settings_(settings),
       lattice_(matter),
       contacts_(matter, apparatus, settings),
+      pushes_(apparatus, settings),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
     // A dashpot of b damps a mode of frequency w with zeta = b w / 2 k.
     const double w = highest_frequency(matter, lattice_);
@@ -72,12 +73,14 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
         if (damping_ > 0)
             outcome.damped_work += dt * lattice_.add_dashpots(matter_, damping_, force_);
         contacts_.add_forces(matter_, now, force_);
+        pushes_.add_forces(matter_, now, force_);
+        const Vec3 g = pushes_.gravity(now);
         double farthest = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {
             const double push = dt / matter_.particle_mass[p];
-            v.x[p] += push * force_.x[p] + dt * settings_.gravity.x();
-            v.y[p] += push * force_.y[p] + dt * settings_.gravity.y();
-            v.z[p] += push * force_.z[p] + dt * settings_.gravity.z();
+            v.x[p] += push * force_.x[p] + dt * g.x();
+            v.y[p] += push * force_.y[p] + dt * g.y();
+            v.z[p] += push * force_.z[p] + dt * g.z();
             x.x[p] += dt * v.x[p];
             x.y[p] += dt * v.y[p];
             x.z[p] += dt * v.z[p];
@@ -89,6 +92,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
         contacts_.commit(matter_, now);
         std::vector<LoadSum> load = contacts_.loads(matter_, now);
         add_work(before, now, load_, load, outcome.work);
+        pushes_.commit(matter_, now, outcome.push_work);
         load_ = std::move(load);
         const double tool_way = contacts_.travel(matter_, before, now) * double(n);
         if (farthest + tool_way > 0.45 * matter_.lattice.spacing) {
@@ -110,9 +114,12 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     const auto start_modes = matter_.cell_plastic_modes;
     const auto start_hardening = matter_.cell_hardening;
     const ContactSet start_contacts = contacts_;
+    pushes_.start(matter_, from);
+    const LoadSet start_pushes = pushes_;
     double dt = step_;
     for (;; dt *= 0.5, ++outcome.halvings) {
         outcome.work.assign(load_.size(), 0.0);
+        outcome.push_work.assign(pushes_.count(), 0.0);
         outcome.plastic_work = outcome.damped_work = 0;
         if (steps(from, to, dt, outcome)) break;
         matter_.particle_position = start_x;
@@ -123,6 +130,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         matter_.cell_plastic_modes = start_modes;
         matter_.cell_hardening = start_hardening;
         contacts_ = start_contacts;
+        pushes_ = start_pushes;
         if (outcome.halvings == settings_.halving_limit) {
             fail(ExitCode::stopped,
                  "{}: the motion is not finite at {:.4g} s even with steps of {:.3g} s; move the "

@@ -12,6 +12,7 @@
 #include "matter/drive.h"
 #include "sim/contact_set.h"
 #include "sim/lattice_forces.h"
+#include "sim/load_set.h"
 #include "sim/move_outcome.h"
 #include "sim/settings.h"
 
@@ -29,6 +30,7 @@ class ExplicitSolver {
     MoveOutcome advance(const Drive& from, const Drive& to);
     void connections_changed();
     double elastic_energy() const { return lattice_.elastic_energy(matter_); }  // [J]
+    const LoadSet& pushes() const { return pushes_; }
 
   private:
     bool steps(const Drive& from, const Drive& to, double dt, MoveOutcome& outcome);
@@ -39,6 +41,7 @@ class ExplicitSolver {
     LatticeForces lattice_;
     double damping_;  // of a full connection [N s/m]
     ContactSet contacts_;
+    LoadSet pushes_;
     double step_;
     Vec3Array force_;
     std::vector<LoadSum> load_;

@@ -18,6 +18,7 @@ struct MoveOutcome {
     double plastic_work = 0;        // [J]
     double damped_work = 0;         // [J]; explicit steps only
     std::vector<double> work;       // by tool, then grip [J]
+    std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };

@@ -104,6 +104,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       lattice_(matter),
       coarse_(matter),
       contacts_(matter, apparatus, settings),
+      pushes_(apparatus, settings),
       body_size_(largest_extent(matter)),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       most_load_(load_.size(), 0.0),
@@ -147,7 +148,8 @@ void QuasistaticSolver::find_masses() {
 void QuasistaticSolver::evaluate(const Drive& to) {
     mirrored_ = lattice_.find(matter_, Flow::trial, force_);
     contacts_.add_forces(matter_, to, force_);
-    const Vec3 g = settings_.gravity;
+    pushes_.add_forces(matter_, to, force_);
+    const Vec3 g = pushes_.gravity(to);
     const Vec3Array& x = matter_.particle_position;
     parallel_for(vector_chunks(x.size()), [&](std::size_t chunk) {
         const std::size_t end = std::min(x.size(), (chunk + 1) * kVectorChunk);
@@ -161,19 +163,13 @@ void QuasistaticSolver::evaluate(const Drive& to) {
 }
 
 // The largest force that any tool or grip carries now, or a load or gravity asks for: the measure
-// of the residual. A force not yet carried through the body shows in the residual itself.
+// of the residual. A force not yet carried through the body shows in the residual itself. What
+// loads and gravity ask for is known beforehand, however little a stiff body minds it.
 double QuasistaticSolver::push_limit(const Drive& to) const {
     const double a = matter_.lattice.spacing;
-    double push = kLeastPush * matter_.material.young_modulus * a * a;
+    const double asked = pushes_.size(matter_, to);
+    double push = asked > 0 ? asked : kLeastPush * matter_.material.young_modulus * a * a;
     for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
-    for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
-        double sum = 0;
-        for (const Vec3& force : apparatus_.load[l].force) sum += force.norm();
-        push = std::max(push, std::abs(to.load_strength[l]) * sum);
-    }
-    if (settings_.gravity != Vec3::Zero()) {
-        push = std::max(push, matter_.mass() * settings_.gravity.norm());
-    }
     return push;
 }
 
@@ -333,7 +329,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     }
 }
 
-// How the drive moves, as one vector: translations, and turns times the size of the body.
+// How the drive moves, as one vector: translations; turns and strengths times the body's size.
 std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive& to) const {
     std::vector<double> motion;
     const auto add = [&](const std::vector<Pose>& a, const std::vector<Pose>& b) {
@@ -345,6 +341,10 @@ std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive&
     };
     add(from.world_from_tool, to.world_from_tool);
     add(from.world_from_grip, to.world_from_grip);
+    for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
+        motion.push_back(body_size_ * (to.load_strength[l] - from.load_strength[l]));
+    }
+    motion.push_back(body_size_ * (to.gravity_strength - from.gravity_strength));
     return motion;
 }
 
@@ -370,8 +370,10 @@ void QuasistaticSolver::predict(const std::vector<double>& motion) {
     extrapolate(x.z, previous_.z);
 }
 
-// Whether any tool moves otherwise than it did when it last pressed.
-bool QuasistaticSolver::draws_back(const std::vector<double>& motion) const {
+// Whether any tool moves otherwise than it did when it last pressed, or a load is taken off.
+bool QuasistaticSolver::draws_back(const Drive& from, const Drive& to,
+                                   const std::vector<double>& motion) const {
+    if (pushes_.eases(from, to)) return true;
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
         double along = 0, now = 0, then = 0;
         for (std::size_t n = 6 * t; n < 6 * t + 6; ++n) {
@@ -399,7 +401,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     start_ = matter_.particle_position;
     contacts_.begin_move(matter_, from);
     std::vector<double> motion = motion_of(from, to);
-    const bool released = draws_back(motion);
+    const bool released = draws_back(from, to, motion);
     predict(motion);
 
     const Relaxation relaxed = relax(to);
@@ -450,12 +452,15 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     load_ = std::move(load);
     previous_ = start_;
     previous_motion_ = std::move(motion);
+    pushes_.commit(matter_, to, outcome.push_work);
     ++outcome.increments;
 }
 
 MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     outcome.work.assign(load_.size(), 0.0);
+    outcome.push_work.assign(pushes_.count(), 0.0);
+    pushes_.start(matter_, from);
     const double travel = contacts_.travel(matter_, from, to);
     const int count = std::max(1, static_cast<int>(std::ceil(travel / matter_.lattice.spacing)));
     Drive before = from;

@@ -24,7 +24,7 @@ struct SimSettings {
     // Explicit steps.
     double step_safety = 0.8;  // share of the stable step, 0 to 1
 
-    Vec3 gravity = Vec3::Zero();  // [m/s2]
+    Vec3 gravity = Vec3::Zero();  // in the world [m/s2]
 };
 
 }  // namespace swage

@@ -279,6 +279,34 @@ TEST_CASE("values out of range are refused with the range") {
     CHECK(mistakes_in(stage("angle = \"180 deg\"").text()) == "");  // the end itself is allowed
 }
 
+TEST_CASE("mistakes in loads are found at their place") {
+    const auto load = [](const std::string& lines) { return stage("[[stage.load]]\n" + lines); };
+    check_all({
+        {"nothing", load("on = \"top\""), {"9:1: [[stage.load]] needs \"force\""}},
+        {"both",
+         load("pressure = 1\nforce = [0, 1, 0]"),
+         {"10:12: a load is a force or a pressure"}},
+        {"unit", load("pressure = \"3 N\""), {"10:15: pressure: \"3 N\" is a force; a stress"}},
+        {"unit of one", load("force = [0, \"2 mm\", 0]"), {"10:16: force: \"2 mm\" is a length"}},
+        {"one number", load("force = 3"), {"10:9: force has to be three numbers"}},
+        {"a stranger", load("force = [0, \"2*weight\", 0]"), {"10:16: force: "}},
+        {"time", load("pressure = \"t\""), {"10:13: pressure: "}},
+        {"side", load("pressure = 1\non = \"tpo\""), {"11:6: on = \"tpo\" is not one of"}},
+        {"one corner",
+         load("pressure = 1\nfrom = [0, 0, 0]"),
+         {"11:8: from and to are opposite corners"}},
+        {"name", load("pressure = 1\nname = \"2\""), {"11:8: \"2\" has to be letters"}},
+        {"name of a tool",
+         load("pressure = 1\nname = \"support\""),
+         {"11:8: two parts are called \"support\""}},
+        {"misspelt", load("presure = 1"), {"9:1: [[stage.load]] needs \"force\"", "10:1: unknown key \"presure\""}},
+        {"idle gravity",
+         stage("gravity_strength = \"t\""),
+         {"9:20: warning: gravity_strength has no effect without gravity"}},
+        {"single brackets", stage("[stage.load]\npressure = 1"), {"double brackets"}},
+    });
+}
+
 TEST_CASE("a huge picture is refused for resources, a missing mesh as a mesh") {
     const Scratch scratch;
     const auto code = [&](const Parts& parts) {
