@@ -162,15 +162,16 @@ void QuasistaticSolver::evaluate(const Drive& to) {
     });
 }
 
-// The largest force that any tool or grip carries now, or a load or gravity asks for: the measure
-// of the residual. A force not yet carried through the body shows in the residual itself. What
-// loads and gravity ask for is known beforehand, however little a stiff body minds it.
+// The measure of the residual. Where tools or grips have moved, it is the largest force that any of
+// them carries or has carried, or a load or gravity asks for. Where loads alone have driven the
+// body it is what they ask for: a slender body's grips carry far more, against each other.
 double QuasistaticSolver::push_limit(const Drive& to) const {
-    const double a = matter_.lattice.spacing;
     const double asked = pushes_.size(matter_, to);
-    double push = asked > 0 ? asked : kLeastPush * matter_.material.young_modulus * a * a;
+    if (!moved_ && asked > 0) return asked;
+    const double a = matter_.lattice.spacing;
+    double push = std::max(largest_push_, kLeastPush * matter_.material.young_modulus * a * a);
     for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
-    return push;
+    return std::max(push, asked);
 }
 
 double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) const {
@@ -178,7 +179,7 @@ double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) c
     const double sum = chunked_sum(f.size(), [&](std::size_t p) {
         return std::sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
     });
-    return sum / std::max(largest_push_, push_limit(to));
+    return sum / push_limit(to);
 }
 
 QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
@@ -324,7 +325,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         const double dragged = hold_ * chunked_sum(x.size(), [&](std::size_t p) {
                                    return drag_[p] * (x.at(p) - held_.at(p)).norm();
                                });
-        if (dragged <= settings_.tolerance * std::max(largest_push_, push_limit(to))) return result;
+        if (dragged <= settings_.tolerance * push_limit(to)) return result;
         held_ = x;
     }
 }
@@ -462,6 +463,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     outcome.push_work.assign(pushes_.count(), 0.0);
     pushes_.start(matter_, from);
     const double travel = contacts_.travel(matter_, from, to);
+    moved_ = moved_ || travel > 0;
     const int count = std::max(1, static_cast<int>(std::ceil(travel / matter_.lattice.spacing)));
     Drive before = from;
     for (int n = 1; n <= count; ++n) {

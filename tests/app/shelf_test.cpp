@@ -15,7 +15,10 @@ namespace {
 
 // Of assets/scenes/shelf.toml and its board, SI.
 constexpr double kYoung = 1e9, kDensity = 955, kWidth = 0.08, kHeight = 0.01, kLength = 0.4;
-constexpr double kSpan = 0.36, kLoaded = 0.2;  // between the rests; of the books, in the middle
+constexpr double kLoaded = 0.2;  // of the books, in the middle
+// Between the rows of surface points that touch the rests: each a quarter of a cell inside its
+// line.
+constexpr double kSpan = 0.36 - 0.5 * 0.005;
 
 // How far the middle `kLoaded` of the beam sags below its rests, in the mean: its curvature M / E I
 // integrated twice from the middle, where it is level.
@@ -48,8 +51,9 @@ std::vector<std::string> cells_of(const std::string& line) {
 TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
     const Scratch scratch;
     const fs::path run = scratch.path() / "run";
-    const Outcome outcome = run_swage({"run", "assets/scenes/shelf.toml", "--out", run.string(),
-                                       "--no-render", "--set", "stage.1.frames=10", "--quiet"});
+    const Outcome outcome =
+        run_swage({"run", "assets/scenes/shelf.toml", "--out", run.string(), "--no-render", "--set",
+                   "stage.1.frames=10", "--set", "stage.1.friction=0", "--quiet"});
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     std::istringstream table(bytes_of(run / "curves/1-shelf.csv"));
@@ -68,8 +72,8 @@ TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
         return row[0].at("books y [m]") - row[frame].at("books y [m]");
     };
     const double weight = kDensity * kWidth * kHeight * kLength * 9.81;
-    // The rests' lines of contact roll inward as the board bends, by about 1 % of the span.
-    CHECK(sunk(3) == Approx(mean_sag(weight, 0)).epsilon(0.03));
+    // What is left is its two cells of a thickness, and how far the rests' contact rolls.
+    CHECK(sunk(3) == Approx(mean_sag(weight, 0)).epsilon(0.05));
     CHECK(sunk(10) == Approx(mean_sag(weight, 147.15)).epsilon(0.03));
     CHECK(row[10].at("left force y [N]") == Approx(0.5 * (weight + 147.15)).epsilon(0.02));
     CHECK(row[10].at("gravity force y [N]") == Approx(-weight).epsilon(0.001));
