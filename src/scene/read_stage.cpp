@@ -21,13 +21,31 @@ namespace fs = std::filesystem;
 constexpr int kMostFrames = 1'000'000'000;  // of a scene; what a machine can hold is judged later
 constexpr double kRangeSlack = 1e-9;        // a value computed to lie at its limit may miss it
 
-const std::vector<std::string> kStageKeys = {
-    "machine",          "name",          "frames",
-    "duration",         "axis",          "up",
-    "remold",           "solver",        "gravity",
-    "gravity_strength", "load",          "tolerance",
-    "iteration_limit",  "halving_limit", "contact_stiffness",
-    "grip_stiffness",   "step_safety"};
+const std::vector<std::string> kStageKeys = {"machine",
+                                             "name",
+                                             "frames",
+                                             "duration",
+                                             "axis",
+                                             "up",
+                                             "remold",
+                                             "solver",
+                                             "gravity",
+                                             "gravity_strength",
+                                             "load",
+                                             "gravity_strength",
+                                             "medium_density",
+                                             "gravity_strength",
+                                             "drag_coefficient",
+                                             "gravity_strength",
+                                             "directional_drag",
+                                             "gravity_strength",
+                                             "directional_drag_along",
+                                             "tolerance",
+                                             "iteration_limit",
+                                             "halving_limit",
+                                             "contact_stiffness",
+                                             "grip_stiffness",
+                                             "step_safety"};
 
 bool is_path(const std::string& machine) {
     return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";
@@ -206,6 +224,27 @@ void StageReader::read_solver(TableReader& table, SimSettings& sim) {
              table.quantity("step_safety", Quantity::number,
                             {.low = 0, .high = 1, .low_open = true}, sim.step_safety),
              !relaxes);
+    only_for("medium_density",
+             table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
+             !relaxes);
+    only_for(
+        "drag_coefficient",
+        table.quantity("drag_coefficient", Quantity::number, at_least(0), sim.drag_coefficient),
+        !relaxes);
+    only_for("directional_drag",
+             table.quantity("directional_drag", Quantity::drag, at_least(0), sim.directional_drag),
+             !relaxes);
+    only_for("directional_drag_along",
+             table.choice<DragAlong>("directional_drag_along",
+                                     {{"motion", DragAlong::motion}, {"normal", DragAlong::normal}},
+                                     sim.directional_drag_along),
+             !relaxes);
+    const auto idle = [&](const char* key, const char* without, double of) {
+        if (relaxes || of > 0 || table.find(key) == nullptr) return;
+        table.warn(key, fmt::format("{} has no effect without {}", key, without));
+    };
+    idle("drag_coefficient", "medium_density", sim.medium_density);
+    idle("directional_drag_along", "directional_drag", sim.directional_drag);
     const Node* gravity = table.find("gravity");
     if (gravity != nullptr && gravity->kind != Node::Kind::array) {
         double down = 0;  // a single number points down

@@ -198,6 +198,11 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         report.warning.push_back(
             fmt::format("the work-piece slipped away from {} although no tool drew back", names));
     }
+    if (outcome.drag_held) {
+        report.warning.push_back(
+            "the drag is so strong that it stops some of the surface within a few steps; there it "
+            "is held to what a step can follow");
+    }
     r.plastic += outcome.plastic_work;
     r.damped += outcome.damped_work;
     report.plastic = r.plastic;

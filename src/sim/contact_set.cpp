@@ -53,12 +53,7 @@ double ContactSet::point_stiffness(const Aggregate& matter, int point, double fa
 void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
     stiffness_limit_.resize(matter.surface.size());
     for (std::size_t p = 0; p < stiffness_limit_.size(); ++p) {
-        double lightest = std::numeric_limits<double>::infinity();
-        for (int c = 0; c < 8; ++c) {
-            if (matter.surface.weight[p][c] <= 0.05f) continue;
-            lightest = std::min(lightest, matter.particle_mass[matter.surface.corner[p][c]]);
-        }
-        stiffness_limit_[p] = 0.25 * lightest / (step * step);
+        stiffness_limit_[p] = 0.25 * lightest_carrier(matter, p) / (step * step);
     }
 }
 

@@ -305,7 +305,13 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = start_;
     contacts_.find_candidates(matter_, to);
-    bool smooth = newton_ && !contacts_.tools_near();
+    // NOTE: the tangent knows nothing of how a pressure turns with the surface. Without it a free
+    // body under pressure seems to gain by turning over.
+    const bool floats =
+        apparatus_.grip.empty() &&
+        std::any_of(apparatus_.load.begin(), apparatus_.load.end(),
+                    [](const Load& load) { return load.force.empty() && load.pressure != 0; });
+    bool smooth = newton_ && !contacts_.tools_near() && !floats;
     for (hold_ = smooth ? kSmoothHold : 1;; hold_ *= kLetGo) {
         Relaxation round;
         if (smooth) {

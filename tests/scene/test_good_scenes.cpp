@@ -120,6 +120,10 @@ pressure = "-2 kPa"
 machine = "bend"
 solver = "explicit"
 step_safety = 0.5
+medium_density = "1.2 kg/m3"
+drag_coefficient = 0.47
+directional_drag = "2 kPa s/m"
+directional_drag_along = "normal"
 gravity = [0, 0, "-1 m/s2"]
 [render]
 size = [1, 16384]
@@ -188,6 +192,10 @@ meshes_per_frame = true
     CHECK(scene.stage.at(1).name == "2-bend");
     CHECK(scene.stage.at(1).sim.solver == Solver::explicit_steps);
     CHECK(scene.stage.at(1).sim.step_safety == 0.5);
+    CHECK(scene.stage.at(1).sim.medium_density == 1.2);
+    CHECK(scene.stage.at(1).sim.drag_coefficient == 0.47);
+    CHECK(scene.stage.at(1).sim.directional_drag == 2000);
+    CHECK(scene.stage.at(1).sim.directional_drag_along == DragAlong::normal);
     CHECK(scene.stage.at(1).sim.gravity == Vec3(0, 0, -1));
     CHECK(scene.render.width == 1);
     CHECK(scene.render.height == 16384);
