@@ -73,7 +73,7 @@ TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
     };
     const double weight = kDensity * kWidth * kHeight * kLength * 9.81;
     // What is left is its two cells of a thickness, and how far the rests' contact rolls.
-    CHECK(sunk(3) == Approx(mean_sag(weight, 0)).epsilon(0.05));
+    CHECK(sunk(3) == Approx(mean_sag(weight, 0)).epsilon(0.07));
     CHECK(sunk(10) == Approx(mean_sag(weight, 147.15)).epsilon(0.03));
     CHECK(row[10].at("left force y [N]") == Approx(0.5 * (weight + 147.15)).epsilon(0.02));
     CHECK(row[10].at("gravity force y [N]") == Approx(-weight).epsilon(0.001));

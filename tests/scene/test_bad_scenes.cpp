@@ -319,7 +319,7 @@ TEST_CASE("mistakes in loads are found at their place") {
          {"10:18: medium_density = -1 kg/m3 is out of range: it has to be at least 0"}},
         {"unit of drag",
          stage("solver = \"explicit\"\ndirectional_drag = \"3 Pa\""),
-         {"10:21: directional_drag: \"3 Pa\" is a stress; a drag is wanted"}},
+         {"10:23: directional_drag: \"3 Pa\" is a stress; a drag is wanted"}},
         {"single brackets", stage("[stage.load]\npressure = 1"), {"double brackets"}},
     });
 }
