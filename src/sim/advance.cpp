@@ -203,6 +203,10 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
             "the drag is so strong that it stops some of the surface within a few steps; there it "
             "is held to what a step can follow");
     }
+    if (outcome.buckled) {
+        report.warning.push_back(
+            "the work-piece buckled: it left its shape for one that bears less");
+    }
     r.plastic += outcome.plastic_work;
     r.damped += outcome.damped_work;
     report.plastic = r.plastic;

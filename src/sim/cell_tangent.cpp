@@ -80,7 +80,6 @@ SWAGE_INLINE Triple<Number> scale_slope(const Triple<Number>& a, double s) {
     return {{a.x.value, s * a.x.slope}, {a.y.value, s * a.y.slope}, {a.z.value, s * a.z.slope}};
 }
 
-
 // Minus the change of the cell's forces on its corners' sums.
 template <bool kYields, bool kRubber>
 SWAGE_INLINE CornerSums<Lanes> tangent_forces(const CellModuli& law, const RunView& run, int done,
@@ -100,7 +99,8 @@ SWAGE_INLINE CornerSums<Lanes> tangent_forces(const CellModuli& law, const RunVi
     Columns<Number> first;
     CellModes<Number> mode_force;
     const auto freeze_turn = [&]() __attribute__((always_inline)) {
-        for (Triple<Number>* v : {&c.x, &c.y, &c.z, &c.xy, &c.yz, &c.zx, &c.xyz, &f.x, &f.y, &f.z}) {
+        for (Triple<Number>* v :
+             {&c.x, &c.y, &c.z, &c.xy, &c.yz, &c.zx, &c.xyz, &f.x, &f.y, &f.z}) {
             *v = scale_slope(*v, geometric);
         }
     };
@@ -267,21 +267,21 @@ SWAGE_INLINE void batch_blocks(const CellModuli& law, const RunView& run, int do
     }
 }
 
-#define SWAGE_TANGENT(name, yields, rubber)                                                       \
-    SWAGE_VECTOR_CLONES                                                                           \
-    void name##_product(const CellModuli& law, const RunView& run, double geometric,              \
-                        const double* const (&direction)[3][4], double* const (&to)[3][4]) {      \
-        run_product<yields, rubber>(law, run, geometric, direction, to);                          \
-    }                                                                                             \
-    SWAGE_VECTOR_CLONES                                                                           \
-    void name##_matrices(const CellModuli& law, const RunView& run, int done, double geometric,   \
-                         const Places& place, Lanes* matrix) {                                    \
-        batch_matrices<yields, rubber>(law, run, done, geometric, place, matrix);                 \
-    }                                                                                             \
-    SWAGE_VECTOR_CLONES                                                                           \
-    void name##_blocks(const CellModuli& law, const RunView& run, int done, double geometric,     \
-                       Lanes (*block)[6]) {                                                       \
-        batch_blocks<yields, rubber>(law, run, done, geometric, block);                           \
+#define SWAGE_TANGENT(name, yields, rubber)                                                     \
+    SWAGE_VECTOR_CLONES                                                                         \
+    void name##_product(const CellModuli& law, const RunView& run, double geometric,            \
+                        const double* const(&direction)[3][4], double* const(&to)[3][4]) {      \
+        run_product<yields, rubber>(law, run, geometric, direction, to);                        \
+    }                                                                                           \
+    SWAGE_VECTOR_CLONES                                                                         \
+    void name##_matrices(const CellModuli& law, const RunView& run, int done, double geometric, \
+                         const Places& place, Lanes* matrix) {                                  \
+        batch_matrices<yields, rubber>(law, run, done, geometric, place, matrix);               \
+    }                                                                                           \
+    SWAGE_VECTOR_CLONES                                                                         \
+    void name##_blocks(const CellModuli& law, const RunView& run, int done, double geometric,   \
+                       Lanes(*block)[6]) {                                                      \
+        batch_blocks<yields, rubber>(law, run, done, geometric, block);                         \
     }
 SWAGE_TANGENT(elastic, false, false)
 SWAGE_TANGENT(yielding, true, false)
@@ -381,9 +381,7 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
 
 std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) const {
     const Law law = law_for(matter, kind.flow);
-    const auto blocks = law.rubber   ? rubber_blocks
-                        : law.yields ? yielding_blocks
-                                     : elastic_blocks;
+    const auto blocks = law.rubber ? rubber_blocks : law.yields ? yielding_blocks : elastic_blocks;
     std::vector<Mat3> own(matter.particle_count(), Mat3::Zero());
     // Planes of cells share particles with the next ones only: every other plane at a time.
     std::vector<std::size_t> plane(matter.lattice.cell_count.z() + 1, 0);
@@ -416,8 +414,7 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
 }
 
 std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind kind,
-                                                  const Lattice& coarse,
-                                                  const Vec3i& ratio) const {
+                                                  const Lattice& coarse, const Vec3i& ratio) const {
     const Law law = law_for(matter, kind.flow);
     const auto matrices = law.rubber   ? rubber_matrices
                           : law.yields ? yielding_matrices

@@ -37,16 +37,15 @@ class CellTangent {
     };
 
     // result = -d(force)/d(position) direction, at the present positions.
-    void product(const Aggregate& matter, Kind kind, const Vec3Array& direction,
-                 Vec3Array& result);
+    void product(const Aggregate& matter, Kind kind, const Vec3Array& direction, Vec3Array& result);
 
     // Of each particle, the block of the tangent that is its own.
     std::vector<Mat3> own_blocks(const Aggregate& matter, Kind kind) const;
 
     // One matrix a cell of the coarse lattice, whose sites are those of every `ratio`-th particle:
     // sum of its cells' tangents, the particles following its corners trilinearly.
-    std::vector<CellMatrix> coarse_cells(const Aggregate& matter, Kind kind,
-                                         const Lattice& coarse, const Vec3i& ratio) const;
+    std::vector<CellMatrix> coarse_cells(const Aggregate& matter, Kind kind, const Lattice& coarse,
+                                         const Vec3i& ratio) const;
 
   private:
     struct Law {

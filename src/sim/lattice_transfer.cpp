@@ -22,11 +22,10 @@ void for_each_chunked(std::size_t count, const Act& act) {
 }
 
 int run_holding(const std::vector<ParticleRun>& runs, int i, int j, int k) {
-    const auto after = std::upper_bound(
-        runs.begin(), runs.end(), std::array{k, j, i},
-        [](const std::array<int, 3>& at, const ParticleRun& r) {
-            return at < std::array{r.k, r.j, r.i};
-        });
+    const auto after = std::upper_bound(runs.begin(), runs.end(), std::array{k, j, i},
+                                        [](const std::array<int, 3>& at, const ParticleRun& r) {
+                                            return at < std::array{r.k, r.j, r.i};
+                                        });
     return static_cast<int>(after - runs.begin()) - 1;
 }
 
@@ -89,7 +88,8 @@ void LatticeTransfer::add_prolonged(const Vec3Array& coarse, Vec3Array& fine) co
                 for (int q = 0; q < 4; ++q) {
                     if (s.weight[q] == 0) continue;
                     const double* row = from.data() + s.row[q] + c;
-                    sum += s.weight[q] * (phase == 0 ? row[0] : (1 - high) * row[0] + high * row[1]);
+                    sum +=
+                        s.weight[q] * (phase == 0 ? row[0] : (1 - high) * row[0] + high * row[1]);
                 }
                 to[s.first + p] += sum;
                 if (++phase == ratio_) phase = 0, ++c;

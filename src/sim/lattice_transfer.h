@@ -29,9 +29,9 @@ class LatticeTransfer {
     struct Stretch {
         ParticleId first;
         int count;
-        int phase;           // of the first particle in its coarse cell along x
-        ParticleId row[4];   // the coarse particle at or below the first one, by (y, z) side
-        double weight[4];    // 0: no such row is needed
+        int phase;          // of the first particle in its coarse cell along x
+        ParticleId row[4];  // the coarse particle at or below the first one, by (y, z) side
+        double weight[4];   // 0: no such row is needed
     };
     struct Pull {  // what one coarse run takes from one stretch, by side
         int stretch, side;

@@ -21,6 +21,7 @@ struct MoveOutcome {
     std::vector<double> work;       // by tool, then grip [J]
     std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
+    bool buckled = false;           // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };
 

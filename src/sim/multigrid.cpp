@@ -14,7 +14,7 @@ constexpr int kFewCells = 4;         // across, that an axis is not made coarser
 constexpr int kDegree = 2;           // of the smoothing polynomial
 constexpr double kSmoothed = 6;      // eigenvalues down to the largest over this are smoothed
 constexpr int kFirstIterations = 8, kMoreIterations = 2;  // of the power method
-constexpr double kEigenvalueMargin = 1.2;  // power iterations end below the largest
+constexpr double kEigenvalueMargin = 1.2;                 // power iterations end below the largest
 
 }  // namespace
 
@@ -64,9 +64,8 @@ void Multigrid::add_points(Level& level, const Aggregate& matter,
     }
 }
 
-bool Multigrid::prepare(const Aggregate& matter, const CellTangent& tangent,
-                        CellTangent::Kind kind, const std::vector<HeldPoint>& held,
-                        const std::vector<double>& drag,
+bool Multigrid::prepare(const Aggregate& matter, const CellTangent& tangent, CellTangent::Kind kind,
+                        const std::vector<HeldPoint>& held, const std::vector<double>& drag,
                         const Product& product) {
     Vec3Array held_back;
     held_back.x = held_back.y = held_back.z = drag;

@@ -64,7 +64,7 @@ class Multigrid {
                 Smoother& s, Vec3Array& x);
     void cycle(std::size_t level, const Vec3Array& b, Vec3Array& x);
 
-    std::vector<Vec3i> site_;  // of each particle
+    std::vector<Vec3i> site_;           // of each particle
     std::vector<Mat3> inverse_blocks_;  // of the finest
     Smoother finest_;
     Vec3Array coarse_;

@@ -14,6 +14,8 @@ constexpr int kMostSteps = 60;
 constexpr int kMostIterations = 400;  // of conjugate gradients
 constexpr int kKeptSteps = 3;         // that coarse matrices serve in one solution
 constexpr int kMostTries = 12;        // of the length of a step
+constexpr int kUnwatched = 3;         // increments without a look at the softest motion, at most
+constexpr double kFalls = 0.01;       // of the matter's own stiffness: less is no instability
 constexpr double kOvershoot = 0.5;    // of the work along a step that may be left, either way
 
 Mat3 rotation_by(const Vec3& turn) {
@@ -26,8 +28,8 @@ Mat3 rotation_by(const Vec3& turn) {
 Newton::Newton(const Aggregate& matter, const std::vector<float>& carried_fill)
     : tangent_(matter, carried_fill), multigrid_(matter) {}
 
-void Newton::product(const Aggregate& matter, const NewtonProblem& problem,
-                     CellTangent::Kind kind, const Vec3Array& direction, Vec3Array& result) {
+void Newton::product(const Aggregate& matter, const NewtonProblem& problem, CellTangent::Kind kind,
+                     const Vec3Array& direction, Vec3Array& result) {
     ++products_;
     tangent_.product(matter, kind, direction, result);
     for (const HeldPoint& h : problem.held) {
@@ -56,6 +58,8 @@ bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem, bool
         };
         if (multigrid_.prepare(matter, tangent_, kind_, problem.held, problem.drag, times)) {
             prepared_ = true;
+            held_ = problem.held.size();
+            prepared_at_ = matter.particle_position;
             stale_ = false;
             fresh_iterations_ = -1;
             return true;
@@ -162,6 +166,41 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem) {
         share *= std::clamp(zero, 0.1, 0.7);
     }
     return 0;
+}
+
+bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
+    if (unwatched_ > 0 && held_ == problem.held.size()) {
+        --unwatched_;
+        ++since_;
+        return false;
+    }
+    const bool moved =
+        !prepared_ || held_ != problem.held.size() ||
+        farthest_move(prepared_at_, matter.particle_position) > matter.lattice.spacing;
+    if (moved && !prepare(matter, problem, true)) return false;
+    const auto times = [&](double geometric) {
+        return [&, geometric](const Vec3Array& from, Vec3Array& to) {
+            product(matter, problem, {Flow::trial, geometric}, from, to);
+        };
+    };
+    const SoftMode::Map exact = times(1), prepared = times(kind_.geometric);
+    const double quotient = softest_.follow(
+        matter.particle_position, matter.particle_mass, exact,
+        [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
+    // Looked at again when half of what is left could have gone.
+    const double fall = (firmness_ - quotient) / (since_ + 1);
+    unwatched_ = since_ < 0 ? 0
+                 : 2 * kUnwatched * fall < quotient
+                     ? kUnwatched
+                     : static_cast<int>(std::max(0.5 * quotient / fall, 0.0));
+    firmness_ = quotient;
+    since_ = 0;
+    if (!(quotient < 0)) return false;
+    // A motion that does not strain the matter is no buckling, nor is one that hardly falls.
+    times(0)(softest_.motion(), image_);
+    const double material = dot(softest_.motion(), image_);
+    times(1)(softest_.motion(), better_);
+    return dot(softest_.motion(), better_) < -kFalls * material;
 }
 
 Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {

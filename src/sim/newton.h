@@ -12,12 +12,13 @@
 #include "sim/cell_tangent.h"
 #include "sim/coarse_modes.h"
 #include "sim/multigrid.h"
+#include "sim/soft_mode.h"
 
 namespace swage {
 
 // What the solver asks of the body.
 struct NewtonProblem {
-    std::function<void(Vec3Array& force)> forces;  // at the present positions
+    std::function<void(Vec3Array& force)> forces;            // at the present positions
     std::function<double(const Vec3Array& force)> residual;  // 1: as much as is pushed with
     double tolerance;                                        // of that residual
     std::vector<HeldPoint> held;
@@ -38,15 +39,17 @@ class Newton {
     // Moves the particles. What it leaves when it does not converge means nothing.
     Result solve(Aggregate& matter, const NewtonProblem& problem);
 
-    // The coarse matrices are of another body by now.
-    void forget() { prepared_ = false; }
+    // Whether the body, at rest, would leave this equilibrium at the slightest touch; by which
+    // motion.
+    bool buckles(const Aggregate& matter, const NewtonProblem& problem);
+    const Vec3Array& softest_motion() const { return softest_.motion(); }
 
   private:
     bool prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact);
     bool find_direction(const Aggregate& matter, const NewtonProblem& problem, double accuracy);
     double line_search(Aggregate& matter, const NewtonProblem& problem);
-    void product(const Aggregate& matter, const NewtonProblem& problem,
-                 CellTangent::Kind kind, const Vec3Array& direction, Vec3Array& result);
+    void product(const Aggregate& matter, const NewtonProblem& problem, CellTangent::Kind kind,
+                 const Vec3Array& direction, Vec3Array& result);
 
     // A step apart from the shift and turn of the whole body, which is done as such: a body that
     // nothing holds turns far, and along straight lines it would grow.
@@ -62,6 +65,12 @@ class Newton {
     CellTangent::Kind kind_;
     int fresh_iterations_ = -1;  // of the first solution with these coarse matrices; -1: none yet
     bool stale_ = true;
+    std::size_t held_ = 0;  // points, when they were prepared
+    Vec3Array prepared_at_;
+    SoftMode softest_;
+    double firmness_ = 0;  // of the softest motion, when last looked at
+    int since_ = -1;       // increments since then; -1: never looked
+    int unwatched_ = 0;    // increments that need no look at it
     int products_ = 0;
     Vec3Array force_, direction_, residual_, search_, image_, better_, from_;
 };

@@ -29,7 +29,9 @@ class NodeStiffness {
     std::size_t size() const { return neighbour_.size() / kNear; }
     // -1: none there.
     ParticleId neighbour(ParticleId p, int near) const { return neighbour_[p * kNear + near]; }
-    const Mat3& block(ParticleId p, int near) const { return block_[p * std::size_t(kNear) + near]; }
+    const Mat3& block(ParticleId p, int near) const {
+        return block_[p * std::size_t(kNear) + near];
+    }
 
   private:
     std::vector<ParticleId> neighbour_;

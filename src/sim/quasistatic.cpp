@@ -3,14 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "sim/cell_volume.h"
+#include "sim/fire_schedule.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -33,8 +36,7 @@ constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
 constexpr int kCheckInterval = 10;
 constexpr double kFastest = 0.1;  // spacings a step, on the whole
 constexpr double kLetGo =
-    0.1;                     // share of the drag that stays when it is found to hold the body back
-constexpr int kEscape = 10;  // times the iterations, for a body that still goes far or settles
+    0.1;  // share of the drag that stays when it is found to hold the body back
 // How much lighter a coarse mode may be: no one number suits all bodies, so they take turns.
 constexpr double kGain[] = {100, 10, 300, 1};
 constexpr int kRenewInterval = 200;
@@ -44,55 +46,13 @@ double largest_extent(const Aggregate& matter) {
     return matter.lattice.spacing * matter.lattice.cell_count.maxCoeff();
 }
 
-// Infinite when there is nothing to compare with.
-double farthest_move(const Vec3Array& from, const Vec3Array& to) {
-    if (from.size() != to.size()) return std::numeric_limits<double>::infinity();
-    double farthest = 0;
-    for (std::size_t p = 0; p < to.size(); ++p) {
-        farthest = std::max({farthest, std::abs(to.x[p] - from.x[p]), std::abs(to.y[p] - from.y[p]),
-                             std::abs(to.z[p] - from.z[p])});
-    }
-    return farthest;
+// NOTE: the tangent knows nothing of how a pressure turns with the surface. Without it a free body
+// under pressure seems to gain by turning over.
+bool floats_under_pressure(const Apparatus& apparatus) {
+    return apparatus.grip.empty() &&
+           std::any_of(apparatus.load.begin(), apparatus.load.end(),
+                       [](const Load& load) { return load.force.empty() && load.pressure != 0; });
 }
-
-// State of the FIRE schedule.
-struct Schedule {
-    double step = 1, mixing = 0.1;
-    int good = 0;
-
-    void downhill() {
-        if (++good > 5) {
-            step = std::min(1.0, 1.1 * step);
-            mixing *= 0.99;
-        }
-    }
-    void uphill() {
-        good = 0;
-        mixing = 0.1;
-        step = std::max(0.3, 0.5 * step);
-    }
-};
-
-// How long to go on. A body that snaps or slips out is let go where it will, and one that settles
-// may settle: smaller increments would only come to the same brink.
-struct Patience {
-    int limit, half, most;
-    Vec3Array position;  // half a limit ago
-    double residual = 0;
-
-    Patience(int iterations, const Vec3Array& x)
-        : limit(iterations), half(iterations / 2), most(kEscape * iterations), position(x) {}
-
-    void watch(int iteration, const Vec3Array& x, double spacing, double now) {
-        const bool at_end = iteration == limit && limit < most;
-        if (at_end && !(farthest_move(position, x) > spacing || now < 0.5 * residual)) return;
-        if (at_end) limit += half;
-        if (at_end || iteration == limit - half) {
-            position = x;
-            residual = now;
-        }
-    }
-};
 
 }  // namespace
 
@@ -182,7 +142,7 @@ double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) c
     return sum / push_limit(to);
 }
 
-QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
+NewtonProblem QuasistaticSolver::problem_of(const Drive& to) {
     NewtonProblem problem;
     problem.forces = [&](Vec3Array& force) {
         evaluate(to);
@@ -195,7 +155,11 @@ QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
     contacts_.add_stiffness(matter_, problem.diagonal);
     problem.drag.resize(drag_.size());
     for (std::size_t p = 0; p < drag_.size(); ++p) problem.drag[p] = hold_ * drag_[p];
-    const Newton::Result found = newton_->solve(matter_, problem);
+    return problem;
+}
+
+QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
+    const Newton::Result found = newton_->solve(matter_, problem_of(to));
     return {found.converged && mirrored_ == 0, found.steps, found.residual};
 }
 
@@ -218,7 +182,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     };
     list_candidates();
 
-    Schedule schedule;
+    FireSchedule schedule;
     Relaxation result;
     int renewed = 0, weighted_mirrors = 0;
     const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
@@ -297,6 +261,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     return result;
 }
 
+constexpr double kNudge = 0.02;  // spacings: the least that a body that buckles is moved
+constexpr int kMostTurns = 4;
+
 // How many rounds of letting go of the drag Newton's method goes ahead.
 constexpr double kSmoothHold = 1e-3;
 
@@ -305,13 +272,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = start_;
     contacts_.find_candidates(matter_, to);
-    // NOTE: the tangent knows nothing of how a pressure turns with the surface. Without it a free
-    // body under pressure seems to gain by turning over.
-    const bool floats =
-        apparatus_.grip.empty() &&
-        std::any_of(apparatus_.load.begin(), apparatus_.load.end(),
-                    [](const Load& load) { return load.force.empty() && load.pressure != 0; });
-    bool smooth = newton_ && !contacts_.tools_near() && !floats;
+    bool smooth = newton_ && !contacts_.tools_near() && !floats_under_pressure(apparatus_);
     for (hold_ = smooth ? kSmoothHold : 1;; hold_ *= kLetGo) {
         Relaxation round;
         if (smooth) {
@@ -334,6 +295,42 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         if (dragged <= settings_.tolerance * push_limit(to)) return result;
         held_ = x;
     }
+}
+
+// A body that buckles is moved the way it wants to go, as far as the forces drive it there, and
+// comes to rest from there.
+QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
+                                                              MoveOutcome& outcome) {
+    Relaxation result = relax(to);
+    for (int turn = 0; turn < kMostTurns && newton_ && result.converged; ++turn) {
+        if (floats_under_pressure(apparatus_)) break;
+        NewtonProblem problem = problem_of(to);
+        // Whether the matter itself gives way is asked: what slides now would stick if turned back.
+        for (HeldPoint& h : problem.held) {
+            const Eigen::SelfAdjointEigenSolver<Mat3> across(h.stiffness, Eigen::EigenvaluesOnly);
+            h.stiffness = across.eigenvalues().maxCoeff() * Mat3::Identity();
+        }
+        if (!newton_->buckles(matter_, problem)) break;
+        Vec3Array way = newton_->softest_motion();
+        double longest = 0;
+        for (std::size_t p = 0; p < way.size(); ++p) longest = std::max(longest, way.at(p).norm());
+        const Vec3Array from = matter_.particle_position;
+        const auto work_at = [&](double far) {
+            matter_.particle_position = from;
+            combine(1, far / longest, way, matter_.particle_position);
+            evaluate(to);
+            return far > 0 ? dot(force_, way) : -dot(force_, way);
+        };
+        const double a = matter_.lattice.spacing;
+        double far = kNudge * a;
+        if (work_at(-far) > work_at(far)) far = -far;
+        while (std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
+        work_at(far);
+        const Relaxation next = relax(to);
+        result = {next.converged, result.iterations + next.iterations, next.residual};
+        outcome.buckled = true;
+    }
+    return result;
 }
 
 // How the drive moves, as one vector: translations; turns and strengths times the body's size.
@@ -411,7 +408,10 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     const bool released = draws_back(from, to, motion);
     predict(motion);
 
-    const Relaxation relaxed = relax(to);
+    const bool had_buckled = std::exchange(outcome.buckled, false);
+    const Relaxation relaxed = relax_stably(to, outcome);
+    const bool buckled = outcome.buckled;
+    outcome.buckled = buckled || had_buckled;
     outcome.iterations += relaxed.iterations;
     outcome.residual = relaxed.residual;
     const bool whole = relaxed.converged && smallest_cell_volume(matter_) > kSmallestCellVolume;
@@ -460,6 +460,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     previous_ = start_;
     previous_motion_ = std::move(motion);
     pushes_.commit(matter_, to, outcome.push_work);
+    if (buckled) previous_motion_.clear();  // a jump does not go on
     ++outcome.increments;
 }
 

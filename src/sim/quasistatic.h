@@ -50,7 +50,9 @@ class QuasistaticSolver {
     void increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome);
     Relaxation relax(const Drive& to);
     Relaxation settle(const Drive& to);
+    Relaxation relax_stably(const Drive& to, MoveOutcome& outcome);
     Relaxation solve_smooth(const Drive& to);
+    NewtonProblem problem_of(const Drive& to);
     double residual_of(const Vec3Array& force, const Drive& to) const;
     void find_masses();
     void evaluate(const Drive& to);

@@ -24,10 +24,10 @@ class SlabCholesky {
 
   private:
     std::vector<std::vector<ParticleId>> slab_;
-    std::vector<int> place_;                   // of each particle in its slab
+    std::vector<int> place_;  // of each particle in its slab
     std::vector<int> slab_of_;
-    std::vector<Eigen::MatrixXd> diagonal_;    // lower factors
-    std::vector<Eigen::MatrixXd> below_;       // from each slab to the next
+    std::vector<Eigen::MatrixXd> diagonal_;  // lower factors
+    std::vector<Eigen::MatrixXd> below_;     // from each slab to the next
 };
 
 }  // namespace swage

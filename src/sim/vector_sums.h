@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "matter/aggregate.h"
@@ -46,6 +48,17 @@ inline double dot(const Vec3Array& a, const Vec3Array& b) {
     return chunked_sum(a.size(), [&](std::size_t p) {
         return a.x[p] * b.x[p] + a.y[p] * b.y[p] + a.z[p] * b.z[p];
     });
+}
+
+// Of any component; infinite when there is nothing to compare with.
+inline double farthest_move(const Vec3Array& from, const Vec3Array& to) {
+    if (from.size() != to.size()) return std::numeric_limits<double>::infinity();
+    double farthest = 0;
+    for (std::size_t p = 0; p < to.size(); ++p) {
+        farthest = std::max({farthest, std::abs(to.x[p] - from.x[p]), std::abs(to.y[p] - from.y[p]),
+                             std::abs(to.z[p] - from.z[p])});
+    }
+    return farthest;
 }
 
 inline void set_zero(std::size_t count, Vec3Array& v) {

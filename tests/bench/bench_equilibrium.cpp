@@ -32,7 +32,7 @@ bool wanted(int argc, char** argv, const std::string& name) {
 void own_weight(int across, double g, double tip) {
     double got = 0;
     const double seconds = seconds_of([&] {
-        Stand stand(unit_bar(10, across, unit_material()), 1e-4, {0, 0, -g * 1e-4});
+        Stand stand(unit_bar(10, across, unit_material()), 1e-6, {0, 0, -g * 1e-4});
         stand.grip(end_face(stand.matter, -Vec3::UnitX()));
         stand.move(stand.drive);
         got = mean_move(stand.matter, end_face(stand.matter, Vec3::UnitX())).z() / 10;
@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
     if (wanted(argc, argv, "weight")) {
         set_thread_count(1);
         for (const auto& [g, tip] : {std::pair{1.0, -0.1481}, {9.81, -0.7501}}) {
-            for (int across : {4, 8}) own_weight(across, g, tip);
+            for (int across : {4, 6, 8, 12}) own_weight(across, g, tip);
         }
     }
     if (wanted(argc, argv, "twist")) {

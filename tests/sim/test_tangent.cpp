@@ -81,7 +81,8 @@ TEST_CASE("the tangent's product is how the forces change, flow included") {
         }
         double largest = 0, off = 0;
         for (std::size_t p = 0; p < here.size(); ++p) {
-            const Vec3 slope = (8 * (f[2].at(p) - f[1].at(p)) - (f[3].at(p) - f[0].at(p))) / (12 * h);
+            const Vec3 slope =
+                (8 * (f[2].at(p) - f[1].at(p)) - (f[3].at(p) - f[0].at(p))) / (12 * h);
             largest = std::max(largest, slope.norm());
             off = std::max(off, (slope + product.at(p)).norm());
         }
@@ -93,7 +94,8 @@ TEST_CASE("coarse matrices are the tangent seen through the coarse corners, at a
     for (const Material& material : kMaterials) {
         Aggregate m = shaken_block(material);
         CellTangent tangent(m, m.cell_fill);
-        for (const Vec3i& ratio : {Vec3i(1, 1, 1), Vec3i(2, 1, 2), Vec3i(2, 2, 2), Vec3i(4, 3, 1)}) {
+        for (const Vec3i& ratio :
+             {Vec3i(1, 1, 1), Vec3i(2, 1, 2), Vec3i(2, 2, 2), Vec3i(4, 3, 1)}) {
             const Lattice coarse = coarse_lattice(m.lattice, ratio);
             const LatticeTransfer transfer(m.lattice, coarse, ratio);
             NodeStiffness matrix(coarse);

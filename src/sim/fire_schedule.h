@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a relaxation goes on: the step and mixing of FIRE (Bitzek and others, Phys. Rev. Lett. 97,
+// 170201, 2006), and when to give up.
+#pragma once
+
+#include "sim/vector_sums.h"
+
+namespace swage {
+
+struct FireSchedule {
+    double step = 1, mixing = 0.1;
+    int good = 0;
+
+    void downhill() {
+        if (++good > 5) {
+            step = std::min(1.0, 1.1 * step);
+            mixing *= 0.99;
+        }
+    }
+    void uphill() {
+        good = 0;
+        mixing = 0.1;
+        step = std::max(0.3, 0.5 * step);
+    }
+};
+
+// How long to go on. A body that snaps or slips out is let go where it will, and one that settles
+// may settle: smaller increments would only come to the same brink.
+struct Patience {
+    static constexpr int kEscape =
+        10;  // times the iterations, for a body that still goes far or settles
+
+    int limit, half, most;
+    Vec3Array position;  // half a limit ago
+    double residual = 0;
+
+    Patience(int iterations, const Vec3Array& x)
+        : limit(iterations), half(iterations / 2), most(kEscape * iterations), position(x) {}
+
+    void watch(int iteration, const Vec3Array& x, double spacing, double now) {
+        const bool at_end = iteration == limit && limit < most;
+        if (at_end && !(farthest_move(position, x) > spacing || now < 0.5 * residual)) return;
+        if (at_end) limit += half;
+        if (at_end || iteration == limit - half) {
+            position = x;
+            residual = now;
+        }
+    }
+};
+
+}  // namespace swage

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Euler's column: a straight bar that is shortened must not stay straight.
+#include <cmath>
+
+#include "sim/advance.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr int kAcross = 3, kLong = 60;
+constexpr double kSpacing = 0.1, kSide = kAcross * kSpacing, kLength = kLong * kSpacing;
+constexpr double kModulus = 1e6, kInertia = kSide * kSide * kSide * kSide / 12;
+// Both ends clamped.
+const double kCritical = 4 * kPi * kPi * kModulus * kInertia / (kLength * kLength);
+const double kShortened = kCritical / (kModulus * kSide * kSide) * kLength;
+
+struct Column {
+    Aggregate matter = make_block(kLong, kAcross, kAcross, kSpacing,
+                                  {.young_modulus = kModulus, .poisson_ratio = 0.3});
+    Apparatus apparatus;
+    Drive drive;
+
+    double sideways() const {
+        double most = 0;
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            const Vec3 way = matter.particle_position.at(p) - matter.particle_reference.at(p);
+            most = std::max(most, std::hypot(way.y(), way.z()));
+        }
+        return most;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a column between grips buckles at Euler's load and bears no more") {
+    Column column;
+    for (double end : {-1.0, 1.0}) {
+        Grip grip;
+        for (std::size_t n = 0; n < column.matter.surface.size(); ++n) {
+            const Vec3 x = column.matter.surface.reference_position[n];
+            if (end * x.x() < 0.5 * kLength - 1e-9) continue;
+            grip.point.push_back(static_cast<int>(n));
+            grip.anchor.push_back(x - Vec3(end * 0.5 * kLength, 0, 0));
+        }
+        column.apparatus.grip.push_back(grip);
+        column.drive.world_from_grip.push_back({Quat::Identity(), Vec3(end * 0.5 * kLength, 0, 0)});
+    }
+    Simulation simulation(column.matter, column.apparatus, {});
+    double most = 0;
+    bool told = false;
+    for (int frame = 1; frame <= 12; ++frame) {
+        Drive to = column.drive;
+        const double share = 0.25 * frame;  // of what Euler's load shortens it
+        to.world_from_grip[1].translation.x() = 0.5 * kLength - share * kShortened;
+        const FrameReport report = simulation.advance(column.drive, to);
+        column.drive = to;
+        most = std::max(most, std::abs(report.load[1].force.x()));
+        told = told || !report.warning.empty();
+        if (share <= 0.75) CHECK(column.sideways() < 0.01 * kSide);
+        if (share >= 1.5) CHECK(column.sideways() > 0.3 * kSide);
+    }
+    CHECK(told);
+    CHECK(most < 1.1 * kCritical);
+    CHECK(most > 0.9 * kCritical);
+}
+
+TEST_CASE("a column pressed between two plates buckles too") {
+    Column column;
+    for (double end : {-1.0, 1.0}) {
+        Tool plate{"plate", BoxShape{Vec3(1, 4, 4), 0.1}, 0.5};
+        column.apparatus.tool.push_back(plate);
+        column.drive.world_from_tool.push_back(
+            {Quat::Identity(), Vec3(end * (0.5 * kLength + 0.5), 0, 0)});
+    }
+    Simulation simulation(column.matter, column.apparatus, {});
+    double most = 0;
+    for (int frame = 1; frame <= 10; ++frame) {
+        Drive to = column.drive;
+        to.world_from_tool[1].translation.x() = 0.5 * kLength + 0.5 - 0.4 * frame * kShortened;
+        const FrameReport report = simulation.advance(column.drive, to);
+        column.drive = to;
+        most = std::max(most, std::abs(report.load[1].force.x()));
+    }
+    CHECK(column.sideways() > 0.3 * kSide);
+    CHECK(most < 1.2 * kCritical);
+}
