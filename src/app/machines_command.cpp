@@ -60,6 +60,7 @@ std::string machine_text(const MachineSpec& machine) {
     for (const ToolSpec& tool : machine.tool) parts.push_back("tool " + tool.name);
     for (const GripSpec& grip : machine.grip) parts.push_back("grip " + grip.name);
     for (const BladeSpec& blade : machine.blade) parts.push_back("blade " + blade.name);
+    for (const LoadSpec& load : machine.load) parts.push_back("load " + load.name);
     text += "\n  ";
     for (const std::string& part : parts) text += (&part == &parts.front() ? "" : ", ") + part;
     return text +
@@ -81,7 +82,7 @@ Json machine_json(const MachineSpec& machine) {
     return {{"name", machine.name},          {"help", machine.help},
             {"file", machine.file.string()}, {"parameters", parameters},
             {"tools", machine.tool.size()},  {"grips", machine.grip.size()},
-            {"blades", machine.blade.size()}};
+            {"blades", machine.blade.size()}, {"loads", machine.load.size()}};
 }
 
 int machines(const MachinesArguments& given) {

@@ -79,6 +79,10 @@ constexpr Unit kUnits[] = {
     {"J/m2", Quantity::toughness, 1, true},
     {"N/m", Quantity::toughness, 1},
     {"N/mm", Quantity::toughness, 1e3},
+    {"kPa s/m", Quantity::drag, 1e3, true},
+    {"Pa s/m", Quantity::drag, 1, true},
+    {"mPa s/m", Quantity::drag, 1e-3, true},
+    {"N s/m3", Quantity::drag, 1},
     {"%", Quantity::number, 1e-2},
 };
 
@@ -101,6 +105,7 @@ constexpr QuantityName kQuantities[] = {
     {Quantity::force, "force", "N", "a force"},
     {Quantity::acceleration, "acceleration", "m/s2", "an acceleration"},
     {Quantity::toughness, "toughness", "J/m2", "a toughness"},
+    {Quantity::drag, "drag", "Pa s/m", "a drag"},
 };
 
 const QuantityName& about(Quantity quantity) {

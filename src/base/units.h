@@ -24,6 +24,7 @@ enum class Quantity {
     force,         // [N]
     acceleration,  // [m/s2]
     toughness,     // [J/m2]
+    drag,          // of a surface [Pa s/m]
 };
 
 std::string quantity_name(Quantity quantity);  // "length"

@@ -10,6 +10,7 @@
 #include "geometry/mesh_read.h"
 #include "machines/bodies.h"
 #include "machines/parameters.h"
+#include "machines/region.h"
 #include "machines/touch.h"
 
 namespace swage {
@@ -146,6 +147,7 @@ void add_grip(Machine& machine, const Setting& setting, const GripSpec& spec,
     }
     const Pose work_from_grip{Quat::Identity(), held.center()};
     for (int p : grip.point) grip.anchor.push_back(setting.point[p] - held.center());
+    for (int axis = 0; axis < 3; ++axis) grip.hold[axis] = spec.along[axis];
     grip.jaw = clamp_around({held.low - held.center(), held.high - held.center()},
                             kClampClearance * setting.spacing);
 
@@ -197,6 +199,36 @@ void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) 
     machine.blade_motion.push_back(std::move(motion));
 }
 
+void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
+              const LoadSpec& spec) {
+    Box box;
+    if (spec.box) {
+        const Vec3 slack = Vec3::Constant(kGripSlack * setting.frame.size.norm());
+        box = {evaluate((*spec.box)[0], setting.known) - slack,
+               evaluate((*spec.box)[1], setting.known) + slack};
+    }
+    Load load;
+    load.name = spec.name;
+    load.point = region_points(matter, setting.frame.world_from_work, setting.point, spec.on,
+                               spec.box ? &box : nullptr);
+    if (load.point.empty()) {
+        refuse(setting, fmt::format("load {} acts on nothing: no part of the work-piece's surface "
+                                    "looks that way and lies in its box",
+                                    spec.name));
+    }
+    load.closed = is_closed(matter, load.point);
+    if (spec.force) {
+        const Vec3 force = setting.frame.world_from_work.turn(evaluate(*spec.force, setting.known));
+        double area = 0;
+        for (int p : load.point) area += matter.surface.area[p];
+        for (int p : load.point) load.force.push_back(matter.surface.area[p] / area * force);
+    } else {
+        load.pressure = evaluate(spec.pressure, setting.known);
+    }
+    machine.apparatus.load.push_back(std::move(load));
+    machine.load_strength.emplace_back(spec.strength, setting.known);
+}
+
 std::vector<Pose> placed(const Pose& world_from_work, const std::vector<Pose>& work_from_part,
                          const std::vector<Motion>& motion, double t) {
     std::vector<Pose> world_from_part;
@@ -233,6 +265,10 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
     std::vector<int> grip_of_point(setting.point.size(), -1);
     for (const GripSpec& grip : spec.grip) add_grip(machine, setting, grip, grip_of_point);
     for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
+    for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
+    if (!spec.gravity_strength.empty()) {
+        machine.gravity_strength.emplace(spec.gravity_strength, setting.known);
+    }
     for (const CheckSpec& check : spec.check) {
         if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
     }
@@ -243,11 +279,14 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
 
 Drive drive_at(const Machine& machine, double t, double duration) {
     const Pose& world_from_work = machine.frame.world_from_work;
+    std::vector<double> strength;
+    for (const Timed& load : machine.load_strength) strength.push_back(load.at(t));
     return {t * duration,
             placed(world_from_work, machine.work_from_tool, machine.tool_motion, t),
             placed(world_from_work, machine.work_from_grip, machine.grip_motion, t),
             placed(world_from_work, machine.work_from_blade, machine.blade_motion, t),
-            {}};
+            std::move(strength),
+            machine.gravity_strength ? machine.gravity_strength->at(t) : 1};
 }
 
 }  // namespace swage

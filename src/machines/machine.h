@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,11 +41,13 @@ struct Machine {
     // In the order of the apparatus.
     std::vector<Pose> work_from_tool, work_from_grip, work_from_blade;  // before they move
     std::vector<Motion> tool_motion, grip_motion, blade_motion;
+    std::vector<Timed> load_strength;
+    std::optional<Timed> gravity_strength;  // none: full from the start
 };
 
 // `given`: parameters by name, SI; the rest take their defaults. Throws Error(scene) naming machine
 // and parameter, tool, grip or blade: unknown or out of range; a tool that can never touch; a grip
-// that holds nothing, a point that two hold, or one that does not start at rest.
+// that holds nothing, a point that two hold, or one that does not start at rest; a load on nothing.
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
                       const WorkFrame& frame, const Aggregate& matter);
 

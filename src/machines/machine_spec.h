@@ -4,8 +4,8 @@
 // Expressions (base/expression.h) see the machine's parameters, and of the work-piece: length,
 // height, width (its box along the work frame's x, y, z), spacing (of the lattice) and
 // material_friction; tools also the placed centres of the tools before them, as NAME_x, NAME_y,
-// NAME_z in the work frame, and motions, grips, blades and checks those of all tools. Motions also
-// see t, 0 at the start of the stage and 1 at its end.
+// NAME_z in the work frame, and motions, grips, blades, loads and checks those of all tools.
+// Motions and strengths of loads also see t, 0 at the start of the stage and 1 at its end.
 //
 // The work frame stands at the centre of the work-piece's box: x along its length, y the way the
 // machine calls up, z across.
@@ -59,10 +59,12 @@ struct ToolSpec {
     MotionSpec motion;
 };
 
-// Surface points whose position in the work frame lies in the box [from, to] are held.
+// Surface points whose position in the work frame lies in the box [from, to] are held, along those
+// axes of it that are named: all three clamp, one is a smooth plane.
 struct GripSpec {
     std::string name;
     Expression3 from, to;
+    std::array<bool, 3> along = {true, true, true};  // x, y, z
     MotionSpec motion;
 };
 
@@ -71,6 +73,21 @@ struct BladeSpec {
     std::vector<Expression3> edge;         // in the work frame at the start
     Expression thickness = "0.02*height";  // of the drawn body
     MotionSpec motion;
+};
+
+// The way that a part of the surface looks, in the work frame: more than to any other side.
+enum class Side { all, left, right, bottom, top, back, front };
+
+// Pushes on the surface that looks to a side and lies in the box [from, to] of the work frame: a
+// force in all, spread evenly by area, that keeps its size and direction; or a pressure, always
+// along the inward normal of the surface as it deforms. `strength` times that; it sees t.
+struct LoadSpec {
+    std::string name;
+    Side on = Side::all;
+    std::optional<std::array<Expression3, 2>> box;  // none: wherever it looks that way
+    std::optional<Expression3> force;               // [N], in the work frame; none: a pressure
+    Expression pressure = "0";                      // [Pa]
+    Expression strength = "ramp(t, 0, 1)";
 };
 
 // What had better hold before the machine starts; where it does not, the user is told.
@@ -87,6 +104,8 @@ struct MachineSpec {
     std::vector<ToolSpec> tool;
     std::vector<GripSpec> grip;
     std::vector<BladeSpec> blade;
+    std::vector<LoadSpec> load;   // a scene adds its own
+    Expression gravity_strength;  // a scene's; sees t; empty: 1
     std::vector<CheckSpec> check;
 };
 

@@ -37,7 +37,7 @@ Vec3 evaluate(const Expression3& text, const Variables& variables) {
             evaluate(text[2], variables)};
 }
 
-Motion::Term::Term(const Expression& text, const Variables& known)
+Timed::Timed(const Expression& text, const Variables& known)
     : formula_(quoting(text, [&] { return Formula(text, names_and_t(known)); })) {
     for (const auto& [name, value] : known) value_.push_back(value);
     value_.push_back(0);
@@ -46,7 +46,7 @@ Motion::Term::Term(const Expression& text, const Variables& known)
     if (!varies_) constant_ = quoting(text, [&] { return formula_.evaluate(value_); });
 }
 
-double Motion::Term::at(double t) const {
+double Timed::at(double t) const {
     if (!varies_) return constant_;
     std::vector<double> value = value_;
     value.back() = t;

@@ -18,6 +18,21 @@ using Variables = std::map<std::string, double>;
 double evaluate(const Expression& text, const Variables& variables);
 Vec3 evaluate(const Expression3& text, const Variables& variables);
 
+// The value of an expression that may depend on t.
+class Timed {
+  public:
+    // Compiles the expression, which sees `known` and t. Throws TextError.
+    Timed(const Expression& text, const Variables& known);
+    // Safe to call from any thread. Throws TextError when there is no finite value.
+    double at(double t) const;
+
+  private:
+    Formula formula_;
+    std::vector<double> value_;  // of the formula's variables; the last is t
+    bool varies_;
+    double constant_ = 0;
+};
+
 // Where a thing goes, as time goes from 0 to 1.
 class Motion {
   public:
@@ -29,20 +44,7 @@ class Motion {
     Pose at(double t) const;
 
   private:
-    // The value of an expression that may depend on t.
-    class Term {
-      public:
-        Term(const Expression& text, const Variables& known);
-        double at(double t) const;
-
-      private:
-        Formula formula_;
-        std::vector<double> value_;  // of the formula's variables; the last is t
-        bool varies_;
-        double constant_ = 0;
-    };
-
-    std::vector<Term> move_, pivot_, turn_;  // 3, 3, 1
+    std::vector<Timed> move_, pivot_, turn_;  // 3, 3, 1
     Vec3 axis_;
 };
 

@@ -36,6 +36,40 @@ Vec3 Aggregate::surface_position(std::size_t point) const {
     return x;
 }
 
+Vec3 Aggregate::surface_velocity(std::size_t point) const {
+    Vec3 v = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) {
+        v += double(surface.weight[point][c]) * particle_velocity.at(surface.corner[point][c]);
+    }
+    return v;
+}
+
+Mat3 Aggregate::surface_gradient(std::size_t point) const {
+    const auto& corner = surface.corner[point];
+    const auto& weight = surface.weight[point];
+    // The weights are trilinear in the place within the cell, so they tell it.
+    Vec3 at = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (c >> axis & 1) at[axis] += double(weight[c]);
+        }
+    }
+    std::array<Vec3, 8> x;
+    for (int c = 0; c < 8; ++c) x[c] = particle_position.at(corner[c]);
+    Mat3 gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        Vec3 slope = Vec3::Zero();
+        for (int q = 0; q < 4; ++q) {
+            const int low = (q & 1) << u | (q >> 1) << v;
+            const double share = (q & 1 ? at[u] : 1 - at[u]) * (q & 2 ? at[v] : 1 - at[v]);
+            slope += share * (x[low | 1 << axis] - x[low]);
+        }
+        gradient.col(axis) = slope / lattice.spacing;
+    }
+    return gradient;
+}
+
 namespace {
 template <typename T>
 std::size_t bytes_of(const std::vector<T>& values) {

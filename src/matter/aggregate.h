@@ -158,6 +158,9 @@ struct Aggregate {
     double volume() const;                 // of the material at molding [m3]
     double mass() const;                   // [kg]
     Vec3 surface_position(std::size_t point) const;
+    Vec3 surface_velocity(std::size_t point) const;  // [m/s]
+    // Deformation gradient of the carrying cell's trilinear map at the point.
+    Mat3 surface_gradient(std::size_t point) const;
     std::size_t bytes() const;  // of all arrays
 };
 

@@ -23,7 +23,9 @@ Drive drive_between(const Drive& from, const Drive& to, double s) {
     return {(1 - s) * from.time + s * to.time,
             poses_between(from.world_from_tool, to.world_from_tool, s),
             poses_between(from.world_from_grip, to.world_from_grip, s),
-            poses_between(from.world_from_blade, to.world_from_blade, s), std::move(strength)};
+            poses_between(from.world_from_blade, to.world_from_blade, s),
+            std::move(strength),
+            (1 - s) * from.gravity_strength + s * to.gravity_strength};
 }
 
 }  // namespace swage

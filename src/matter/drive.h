@@ -19,13 +19,15 @@ struct Tool {
     Vec3 color = {0.35, 0.38, 0.42};
 };
 
-// A grip holds points of the work-piece's true surface to its frame, by stiff springs.
+// A grip holds points of the work-piece's true surface to its frame, by stiff springs; along some
+// of the frame's axes only, where it is a smooth guide (one axis: a smooth plane).
 struct Grip {
     std::string name;
     std::vector<int> point;    // into Aggregate::surface
     std::vector<Vec3> anchor;  // where it holds each, in the grip's frame
     TriMesh jaw;               // for drawing, in the grip's frame; may be empty
     Vec3 color = {0.42, 0.36, 0.30};
+    Vec3 hold = Vec3::Ones();  // along each axis of the frame: 1 held, 0 free
 };
 
 // A blade severs the connections that its edge sweeps through.
@@ -36,11 +38,14 @@ struct Blade {
     Vec3 color = {0.75, 0.76, 0.78};
 };
 
-// Dead forces on points of the work-piece's true surface.
+// A push on points of the work-piece's true surface: dead forces, which keep their size and
+// direction, or a pressure, which follows the surface (laws/pressure.h).
 struct Load {
     std::string name;
     std::vector<int> point;   // into Aggregate::surface
-    std::vector<Vec3> force;  // on each at full strength, in the world [N]
+    std::vector<Vec3> force;  // on each at full strength, in the world [N]; empty: a pressure
+    double pressure = 0;      // at full strength [Pa]; less than zero sucks
+    bool closed = false;      // the points make up whole closed surfaces
 };
 
 struct Apparatus {
@@ -58,6 +63,7 @@ struct Drive {
     std::vector<Pose> world_from_grip;
     std::vector<Pose> world_from_blade;
     std::vector<double> load_strength;  // 1: full
+    double gravity_strength = 1;        // share of SimSettings::gravity
 };
 
 // The drive a share `s` of the way between two.

@@ -27,8 +27,9 @@ struct Material {
     double yield_stress = std::numeric_limits<double>::infinity();  // [Pa], > 0; inf: never yields
     double hardening =
         0;  // [Pa] of stress per plastic strain, >= 0; 1 to 5 yield stresses for metals
-    double damping_ratio = 0.05;  // of the highest lattice mode, 0 to 1; explicit steps only
-    double friction = 0.3;        // Coulomb, against tools that do not say otherwise, >= 0
+    double damping_ratio =
+        0.05;               // of every swing, 0 to 0.3: half its loss factor; explicit steps only
+    double friction = 0.3;  // Coulomb, against tools that do not say otherwise, >= 0
 };
 
 }  // namespace swage

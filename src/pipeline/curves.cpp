@@ -33,13 +33,12 @@ void begin_row(LoadCurve& load, const Pose& pose) {
 
 }  // namespace
 
-StageCurves::StageCurves(std::string stage, int first_frame,
-                         const std::vector<std::string>& load_name, const std::vector<Pose>& start)
-    : stage_(std::move(stage)), frame_{first_frame}, report_(1), turn_axis_(load_name.size()) {
-    for (std::size_t n = 0; n < load_name.size(); ++n) {
+StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start)
+    : stage_(std::move(stage)), frame_{first_frame}, report_(1), turn_axis_(start.size()) {
+    for (std::size_t n = 0; n < start.size(); ++n) {
         load_.emplace_back();
-        load_.back().name = load_name[n];
-        begin_row(load_.back(), start[n]);
+        load_.back().name = start[n].name;
+        begin_row(load_.back(), start[n].pose);
         turn_axis_[n] = Vec3::Zero();
     }
 }
@@ -81,7 +80,7 @@ std::string csv_text(const StageCurves& curves) {
     }
     text +=
         ",kinetic energy [J],elastic energy [J],plastic work [J],damped work [J],"
-        "machine work [J],severed energy [J],severed "
+        "machine work [J],load work [J],gravity work [J],severed energy [J],remainder [J],severed "
         "connections,pieces,iterations,increments,halvings,steps,"
         "residual\n";
     for (std::size_t row = 0; row < curves.rows(); ++row) {
@@ -97,8 +96,9 @@ std::string csv_text(const StageCurves& curves) {
             cells.push_back(number(load.penetration[row]));
             cells.push_back(std::to_string(load.contacts[row]));
         }
-        for (double energy : {report.kinetic, report.elastic, report.plastic, report.damped,
-                              report.work, report.severed_energy}) {
+        for (double energy :
+             {report.kinetic, report.elastic, report.plastic, report.damped, report.work,
+              report.load_work, report.gravity_work, report.severed_energy, report.remainder}) {
             cells.push_back(number(energy));
         }
         for (long count : {long(report.severed), long(report.pieces), long(report.iterations),

@@ -10,7 +10,7 @@
 
 namespace swage {
 
-// One tool, grip or blade over the stage, one entry a row.
+// One tool, grip, blade or load over the stage, one entry a row.
 struct LoadCurve {
     std::string name;
     std::vector<Pose> pose;
@@ -25,9 +25,8 @@ struct LoadCurve {
 
 class StageCurves {
   public:
-    // The first row is the start of the stage, where nothing is felt yet.
-    StageCurves(std::string stage, int first_frame, const std::vector<std::string>& load_name,
-                const std::vector<Pose>& start);
+    // The first row is the start of the stage, where nothing is felt yet: names and poses.
+    StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start);
     void add(int frame, const FrameReport& report);
 
     const std::string& stage() const { return stage_; }

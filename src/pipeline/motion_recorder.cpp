@@ -3,14 +3,6 @@
 
 namespace swage {
 
-std::vector<std::string> body_names(const Apparatus& apparatus) {
-    std::vector<std::string> names;
-    for (const Tool& tool : apparatus.tool) names.push_back(tool.name);
-    for (const Grip& grip : apparatus.grip) names.push_back(grip.name);
-    for (const Blade& blade : apparatus.blade) names.push_back(blade.name);
-    return names;
-}
-
 std::vector<Pose> body_poses(const Drive& drive) {
     std::vector<Pose> poses = drive.world_from_tool;
     poses.insert(poses.end(), drive.world_from_grip.begin(), drive.world_from_grip.end());

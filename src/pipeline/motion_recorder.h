@@ -9,8 +9,7 @@
 
 namespace swage {
 
-// Names and poses of what a machine is made of: tools, then grips, then blades.
-std::vector<std::string> body_names(const Apparatus& apparatus);
+// Poses of what a machine is made of: tools, then grips, then blades.
 std::vector<Pose> body_poses(const Drive& drive);
 
 class MotionRecorder {

@@ -82,9 +82,15 @@ Json parameters_json(const Machine& machine) {
 }
 
 Json energies_json(const FrameReport& last) {
-    return {{"machine_work", last.work}, {"kinetic", last.kinetic},
-            {"elastic", last.elastic},   {"plastic", last.plastic},
-            {"damped", last.damped},     {"severed", last.severed_energy}};
+    return {{"machine_work", last.work},
+            {"load_work", last.load_work},
+            {"gravity_work", last.gravity_work},
+            {"kinetic", last.kinetic},
+            {"elastic", last.elastic},
+            {"plastic", last.plastic},
+            {"damped", last.damped},
+            {"severed", last.severed_energy},
+            {"remainder", last.remainder}};
 }
 
 void write_curves(const StageCurves& curves, const StageContext& context) {
@@ -150,8 +156,8 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
         last_frame = 1;
     }
     const int first_frame = last_frame + 1;
-    StageCurves curves(stage.name, last_frame, body_names(machine.apparatus), body_poses(start));
     Simulation simulation(piece.matter, machine.apparatus, stage.sim);
+    StageCurves curves(stage.name, last_frame, simulation.bodies(start));
     WarningBook warnings;
     Totals totals;
     const fs::path meshes = context.root / "meshes";

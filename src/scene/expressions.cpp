@@ -5,6 +5,12 @@
 
 namespace swage {
 
+const std::vector<std::string>& work_piece_names() {
+    static const std::vector<std::string> names = {"length", "height", "width", "spacing",
+                                                   "material_friction"};
+    return names;
+}
+
 void ExpressionReader::add_names(const std::vector<std::string>& names) {
     known_.insert(known_.end(), names.begin(), names.end());
 }
@@ -58,6 +64,40 @@ void ExpressionReader::read_item(TableReader& table, const std::string& key, con
         return;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) read_one(table, key, item.item[axis], into[axis]);
+}
+
+void ExpressionReader::expect_unit(TableReader& table, const std::string& key, const Node& node,
+                                   Quantity quantity) {
+    if (node.kind != Node::Kind::text) return;
+    try {
+        const auto number = leading_number(node.text);
+        if (!number) return;
+        std::size_t at = number->size;
+        while (at < node.text.size() && node.text[at] == ' ') ++at;
+        const auto unit = leading_unit(std::string_view(node.text).substr(at));
+        if (!unit || at + unit->size != node.text.size()) return;
+    } catch (const TextError&) {
+        return;  // reported when it was read
+    }
+    try {
+        parse_quantity(node.text, quantity);
+    } catch (const TextError& error) {
+        table.reading().mistakes.add(place_inside(node, error.at()), key + ": " + error.what());
+    }
+}
+
+bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity quantity,
+                            Expression& into) {
+    if (!read(table, key, into)) return false;
+    expect_unit(table, key, *table.find(key), quantity);
+    return true;
+}
+
+bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity quantity,
+                            Expression3& into) {
+    if (!read(table, key, into)) return false;
+    for (const Node& item : table.find(key)->item) expect_unit(table, key, item, quantity);
+    return true;
 }
 
 void ExpressionReader::expect_positive(TableReader& table, const std::string& key,

@@ -14,6 +14,9 @@
 
 namespace swage {
 
+// What every expression sees of the work-piece: length, height, width, ...
+const std::vector<std::string>& work_piece_names();
+
 class ExpressionReader {
   public:
     // The names that expressions see from now on, beside those of before.
@@ -25,6 +28,10 @@ class ExpressionReader {
     bool read(TableReader& table, const std::string& key, Expression& into);
     bool read(TableReader& table, const std::string& key, Expression3& into);
     void read_item(TableReader& table, const std::string& key, const Node& item, Expression3& into);
+    // The same for one that has to be of a quantity; what is no more than a number and a unit is
+    // refused when its unit is another's.
+    bool read(TableReader& table, const std::string& key, Quantity quantity, Expression& into);
+    bool read(TableReader& table, const std::string& key, Quantity quantity, Expression3& into);
 
     // Reports unless the expression, when its value is already certain, is more than 0.
     void expect_positive(TableReader& table, const std::string& key, const Expression& text);
@@ -38,6 +45,8 @@ class ExpressionReader {
 
   private:
     void read_one(TableReader& table, const std::string& key, const Node& node, Expression& into);
+    void expect_unit(TableReader& table, const std::string& key, const Node& node,
+                     Quantity quantity);
 
     std::vector<std::string> known_;
     std::set<std::string> used_;

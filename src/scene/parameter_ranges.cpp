@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include "scene/expressions.h"
+
 namespace swage {
 
 ParameterRanges::ParameterRanges(const MachineSpec& machine)
-    : name_{"length", "height", "width", "spacing", "material_friction"},
-      first_parameter_(name_.size()) {
+    : name_(work_piece_names()), first_parameter_(name_.size()) {
     for (const ParameterSpec& parameter : machine.parameter) {
         default_.push_back(bound(parameter.default_value));
         low_.push_back(bound(parameter.low));

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "scene/expressions.h"
 #include "scene/file_text.h"
+#include "scene/read_load.h"
 #include "scene/stage_keys.h"
 
 namespace swage {
@@ -15,23 +16,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kBoxNames = {"length", "height", "width", "spacing",
-                                            "material_friction"};
-
-bool is_name(const std::string& text) {
-    const auto letter = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    };
-    return !text.empty() && letter(text[0]) && text.size() <= 64 &&
-           std::all_of(text.begin(), text.end(),
-                       [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+bool is_work_piece_name(const std::string& name) {
+    const std::vector<std::string>& names = work_piece_names();
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 class MachineReader {
   public:
     MachineReader(const fs::path& folder, MistakeList& mistakes)
         : folder_(folder), mistakes_(mistakes), reading_(mistakes) {
-        expression_.add_names(kBoxNames);
+        expression_.add_names(work_piece_names());
     }
 
     void read(const Document& document, MachineSpec& machine) {
@@ -48,10 +42,11 @@ class MachineReader {
         }
         for (const Node* node : root.tables("grip", "[[grip]]")) read_grip(*node, machine);
         for (const Node* node : root.tables("blade", "[[blade]]")) read_blade(*node, machine);
+        for (const Node* node : root.tables("load", "[[load]]")) read_load(*node, machine);
         for (const Node* node : root.tables("check", "[[check]]")) read_check(*node, machine);
         root.finish();
         if (machine.tool.empty() && machine.grip.empty() && machine.blade.empty() &&
-            reading_.is_complete) {
+            machine.load.empty() && reading_.is_complete) {
             mistakes_.add({document.source, 0, 0},
                           "this machine has no [[tool]], no [[grip]] and no [[blade]]");
         }
@@ -96,11 +91,11 @@ class MachineReader {
 
     bool check_parameter_name(const Entry& entry) {
         std::string reason;
-        if (!is_name(entry.key)) {
+        if (!is_part_name(entry.key)) {
             reason = "has to be letters, digits and _, beginning with a letter";
         } else if (entry.key == "t") {
             reason = "is the time";
-        } else if (std::find(kBoxNames.begin(), kBoxNames.end(), entry.key) != kBoxNames.end()) {
+        } else if (is_work_piece_name(entry.key)) {
             reason = "is that of the work-piece";
         } else if (is_reserved_name(entry.key)) {
             reason = "is a function, a constant or a unit";
@@ -136,24 +131,10 @@ class MachineReader {
         }
     }
 
-    std::string read_part_name(TableReader& table) {
-        std::string name;
-        if (!table.text("name", name)) {
-            table.missing("name", "letters, digits and _");
-        } else if (!is_name(name)) {
-            table.mistake("name", fmt::format("\"{}\" has to be letters, digits and _, beginning "
-                                              "with a letter",
-                                              name));
-        } else if (!part_names_.insert(name).second) {
-            table.mistake("name", fmt::format("two parts are called \"{}\"", name));
-        }
-        return name;
-    }
-
     void read_tool(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[tool]]", reading_);
         ToolSpec tool;
-        tool.name = read_part_name(table);
+        tool.name = read_part_name(table, part_names_);
         const std::vector<std::pair<std::string, std::string>> shapes = {
             {"cylinder", "cylinder"}, {"box", "box"}, {"sphere", "sphere"}, {"mesh", "mesh"}};
         if (!table.choice("shape", shapes, tool.shape)) {
@@ -235,18 +216,45 @@ class MachineReader {
     void read_grip(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[grip]]", reading_);
         GripSpec grip;
-        grip.name = read_part_name(table);
+        grip.name = read_part_name(table, part_names_);
         if (!expression_.read(table, "from", grip.from)) table.missing("from", "a corner of a box");
         if (!expression_.read(table, "to", grip.to)) table.missing("to", "the opposite corner");
+        read_along(table, grip.along);
         read_motion(table, "[grip.motion]", grip.motion);
         table.finish();
         machine.grip.push_back(std::move(grip));
     }
 
+    void read_along(TableReader& table, std::array<bool, 3>& along) {
+        std::string axes;
+        if (!table.text("along", axes)) return;
+        along = {false, false, false};
+        for (char c : axes) {
+            const std::size_t axis = std::string_view("xyz").find(c);
+            if (axis == std::string_view::npos || along[axis]) axes.clear();
+            if (axes.empty()) break;
+            along[axis] = true;
+        }
+        if (axes.empty()) {
+            table.mistake("along",
+                          "along has to name axes of the work frame, each once: \"xyz\" clamps, "
+                          "\"y\" is a smooth plane across y");
+        }
+    }
+
+    void read_load(const Node& node, MachineSpec& machine) {
+        TableReader table(node, "[[load]]", reading_);
+        LoadSpec load;
+        load.name = read_part_name(table, part_names_);
+        read_load_keys(table, expression_, load);
+        table.finish();
+        machine.load.push_back(std::move(load));
+    }
+
     void read_blade(const Node& node, MachineSpec& machine) {
         TableReader table(node, "[[blade]]", reading_);
         BladeSpec blade;
-        blade.name = read_part_name(table);
+        blade.name = read_part_name(table, part_names_);
         const Node* edge = table.find("edge");
         if (edge == nullptr) {
             table.missing("edge", "two points or more, such as [[0, 0, -1], [0, 0, 1]]");

@@ -5,6 +5,7 @@
 
 #include "base/suggest.h"
 #include "base/text.h"
+#include "laws/internal_damping.h"
 
 namespace swage {
 
@@ -38,10 +39,8 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
         table.quantity("yield_stress", Quantity::stress, above(0), material.yield_stress);
     }
     table.quantity("hardening", Quantity::stress, at_least(0), material.hardening);
-    if (table.quantity("damping_ratio", Quantity::number, at_least(0), material.damping_ratio) &&
-        material.damping_ratio > 1) {
-        table.warn("damping_ratio", "damping_ratio is more than 1: nothing swings any more");
-    }
+    table.quantity("damping_ratio", Quantity::number, between(0, kMostDampingRatio),
+                   material.damping_ratio);
     if (table.quantity("friction", Quantity::number, at_least(0), material.friction) &&
         material.friction > kMuchFriction) {
         table.warn("friction",

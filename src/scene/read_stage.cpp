@@ -6,7 +6,9 @@
 
 #include "base/suggest.h"
 #include "base/text.h"
+#include "scene/expressions.h"
 #include "scene/file_text.h"
+#include "scene/read_load.h"
 #include "scene/read_machine.h"
 #include "scene/stage_keys.h"
 
@@ -28,6 +30,16 @@ const std::vector<std::string> kStageKeys = {"machine",
                                              "remold",
                                              "solver",
                                              "gravity",
+                                             "gravity_strength",
+                                             "load",
+                                             "gravity_strength",
+                                             "medium_density",
+                                             "gravity_strength",
+                                             "drag_coefficient",
+                                             "gravity_strength",
+                                             "directional_drag",
+                                             "gravity_strength",
+                                             "directional_drag_along",
                                              "tolerance",
                                              "iteration_limit",
                                              "halving_limit",
@@ -151,6 +163,44 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
     }
 }
 
+// The machine's own expressions see the same names.
+void StageReader::read_loads(TableReader& table, StageSpec& stage) {
+    ExpressionReader expression;
+    expression.add_names(work_piece_names());
+    std::set<std::string> parts = {"gravity"};
+    for (const ParameterSpec& parameter : stage.machine.parameter) {
+        expression.add_name(parameter.name);
+    }
+    for (const ToolSpec& tool : stage.machine.tool) {
+        for (const char* axis : {"_x", "_y", "_z"}) expression.add_name(tool.name + axis);
+        parts.insert(tool.name);
+    }
+    for (const GripSpec& grip : stage.machine.grip) parts.insert(grip.name);
+    for (const BladeSpec& blade : stage.machine.blade) parts.insert(blade.name);
+    for (const LoadSpec& load : stage.machine.load) parts.insert(load.name);
+    int number = 0;
+    for (const Node* node : table.tables("load", "[[stage.load]]")) {
+        TableReader one(*node, "[[stage.load]]", reading_);
+        LoadSpec load;
+        load.name = fmt::format("load_{}", ++number);
+        if (one.find("name") != nullptr) {
+            load.name = read_part_name(one, parts);
+        } else if (!parts.insert(load.name).second) {
+            one.mistake("name", fmt::format("two parts are called \"{}\"; give this load a name",
+                                            load.name));
+        }
+        read_load_keys(one, expression, load);
+        one.finish();
+        stage.machine.load.push_back(std::move(load));
+    }
+    ExpressionReader timed = expression;
+    timed.add_name("t");
+    if (timed.read(table, "gravity_strength", Quantity::number, stage.machine.gravity_strength) &&
+        stage.sim.gravity == Vec3::Zero()) {
+        table.warn("gravity_strength", "gravity_strength has no effect without gravity");
+    }
+}
+
 void StageReader::read_solver(TableReader& table, SimSettings& sim) {
     table.choice<Solver>(
         "solver", {{"quasistatic", Solver::quasistatic}, {"explicit", Solver::explicit_steps}},
@@ -174,6 +224,27 @@ void StageReader::read_solver(TableReader& table, SimSettings& sim) {
              table.quantity("step_safety", Quantity::number,
                             {.low = 0, .high = 1, .low_open = true}, sim.step_safety),
              !relaxes);
+    only_for("medium_density",
+             table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
+             !relaxes);
+    only_for(
+        "drag_coefficient",
+        table.quantity("drag_coefficient", Quantity::number, at_least(0), sim.drag_coefficient),
+        !relaxes);
+    only_for("directional_drag",
+             table.quantity("directional_drag", Quantity::drag, at_least(0), sim.directional_drag),
+             !relaxes);
+    only_for("directional_drag_along",
+             table.choice<DragAlong>("directional_drag_along",
+                                     {{"motion", DragAlong::motion}, {"normal", DragAlong::normal}},
+                                     sim.directional_drag_along),
+             !relaxes);
+    const auto idle = [&](const char* key, const char* without, double of) {
+        if (relaxes || of > 0 || table.find(key) == nullptr) return;
+        table.warn(key, fmt::format("{} has no effect without {}", key, without));
+    };
+    idle("drag_coefficient", "medium_density", sim.medium_density);
+    idle("directional_drag_along", "directional_drag", sim.directional_drag);
     const Node* gravity = table.find("gravity");
     if (gravity != nullptr && gravity->kind != Node::Kind::array) {
         double down = 0;  // a single number points down
@@ -236,7 +307,9 @@ StageSpec StageReader::read(const Node& node) {
         stage.machine = *loaded->machine;
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
         read_parameters(table, *loaded, stage);
+        read_loads(table, stage);
     } else {
+        for (const char* key : {"load", "gravity_strength"}) table.find(key);
         table.leave_unknown();
     }
     table.finish();

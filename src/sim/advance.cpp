@@ -45,8 +45,14 @@ struct Simulation::Rooms {
     std::variant<QuasistaticSolver, ExplicitSolver> solver;
     int pieces = 1;
     double plastic = 0, damped = 0, severed_energy = 0;
-    std::vector<double> work;
+    std::vector<double> work, push_work;
+    double stored_at_start = 0;                  // kinetic and elastic [J]
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
+
+    const LoadSet& pushes() const {
+        return std::visit([](const auto& solver) -> const LoadSet& { return solver.pushes(); },
+                          solver);
+    }
 
     double elastic() const {
         return std::visit([](const auto& solver) { return solver.elastic_energy(); }, solver);
@@ -74,15 +80,23 @@ struct Simulation::Rooms {
 };
 
 Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)
-    : rooms_(new Rooms{matter, apparatus, Rooms::choose(matter, apparatus, settings),
-                       find_pieces(matter).count, 0, 0, 0,
-                       std::vector<double>(apparatus.tool.size() + apparatus.grip.size(), 0.0)}) {
+    : rooms_(new Rooms{matter,
+                       apparatus,
+                       Rooms::choose(matter, apparatus, settings),
+                       find_pieces(matter).count,
+                       0,
+                       0,
+                       0,
+                       std::vector<double>(apparatus.tool.size() + apparatus.grip.size(), 0.0),
+                       {}}) {
     if (settings.solver == Solver::quasistatic) {
         // Equilibria have no speed; whatever an explicit stage left behind is gone.
         for (std::size_t p = 0; p < matter.particle_count(); ++p) {
             matter.particle_velocity.set(p, Vec3::Zero());
         }
     }
+    rooms_->push_work.assign(rooms_->pushes().count(), 0.0);
+    rooms_->stored_at_start = kinetic_energy(matter) + rooms_->elastic();
 }
 
 Simulation::~Simulation() = default;
@@ -106,6 +120,32 @@ void Simulation::plan_cuts(const std::vector<Drive>& drives) {
         std::erase_if(events,
                       [&](const SeverEvent& e) { return crumb[e.lower] || crumb[e.upper]; });
     }
+}
+
+std::vector<ToolLoad> Simulation::bodies(const Drive& now) const {
+    std::vector<ToolLoad> bodies;
+    const auto add = [&](const auto& parts, const std::vector<Pose>& pose) {
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            bodies.emplace_back();
+            bodies.back().name = parts[n].name;
+            bodies.back().pose = pose[n];
+        }
+    };
+    const Apparatus& apparatus = rooms_->apparatus;
+    add(apparatus.tool, now.world_from_tool);
+    add(apparatus.grip, now.world_from_grip);
+    add(apparatus.blade, now.world_from_blade);
+    std::vector<Pose> middle;
+    for (const PushSum& push : rooms_->pushes().sums(rooms_->matter, now)) {
+        middle.push_back({Quat::Identity(), push.centre});
+    }
+    add(apparatus.load, middle);
+    if (rooms_->pushes().has_gravity()) {
+        bodies.emplace_back();
+        bodies.back().name = "gravity";
+        bodies.back().pose = middle.back();
+    }
+    return bodies;
 }
 
 FrameReport Simulation::advance(const Drive& from, const Drive& to) {
@@ -158,6 +198,11 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         report.warning.push_back(
             fmt::format("the work-piece slipped away from {} although no tool drew back", names));
     }
+    if (outcome.drag_held) {
+        report.warning.push_back(
+            "the drag is so strong that it stops some of the surface within a few steps; there it "
+            "is held to what a step can follow");
+    }
     if (outcome.buckled) {
         report.warning.push_back(
             "the work-piece buckled: it left its shape for one that bears less");
@@ -169,20 +214,30 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.severed_energy = r.severed_energy;
     report.elastic = r.elastic();
     report.kinetic = kinetic_energy(r.matter);
-    const std::size_t tools = r.apparatus.tool.size();
+    report.load = bodies(to);
     for (std::size_t n = 0; n < outcome.load.size(); ++n) {
         r.work[n] += outcome.work[n];
         report.work += r.work[n];
         const LoadSum& sum = outcome.load[n];
-        const bool tool = n < tools;
-        report.load.push_back({tool ? r.apparatus.tool[n].name : r.apparatus.grip[n - tools].name,
-                               tool ? to.world_from_tool[n] : to.world_from_grip[n - tools],
-                               sum.force, sum.torque, r.work[n], sum.penetration, sum.contacts});
+        ToolLoad& load = report.load[n];
+        load = {load.name, load.pose,       sum.force,   sum.torque,
+                r.work[n], sum.penetration, sum.contacts};
     }
-    for (std::size_t b = 0; b < r.apparatus.blade.size(); ++b) {
-        report.load.push_back({r.apparatus.blade[b].name, to.world_from_blade[b], Vec3::Zero(),
-                               Vec3::Zero(), 0, 0, 0});
+    const std::vector<PushSum> pushes = r.pushes().sums(r.matter, to);
+    const std::size_t first = report.load.size() - pushes.size();
+    for (std::size_t n = 0; n < pushes.size(); ++n) {
+        r.push_work[n] += outcome.push_work[n];
+        const bool gravity = n == r.apparatus.load.size();
+        (gravity ? report.gravity_work : report.load_work) += r.push_work[n];
+        ToolLoad& load = report.load[first + n];
+        load.force = pushes[n].force;
+        load.torque = pushes[n].torque;
+        load.work = r.push_work[n];
+        if (!gravity) load.contacts = static_cast<int>(r.apparatus.load[n].point.size());
     }
+    report.remainder = report.work + report.load_work + report.gravity_work -
+                       (report.kinetic + report.elastic - r.stored_at_start) - report.plastic -
+                       report.damped - report.severed_energy;
     return report;
 }
 

@@ -12,10 +12,12 @@
 
 namespace swage {
 
+// What a tool, grip, blade or load does to the matter. The pose of a load, and of gravity, is the
+// middle of what it acts on.
 struct ToolLoad {
     std::string name;
     Pose pose;
-    Vec3 force = Vec3::Zero();   // that the tool exerts on the matter [N]
+    Vec3 force = Vec3::Zero();   // that it exerts on the matter [N]
     Vec3 torque = Vec3::Zero();  // about the pose's origin [N m]
     double work = 0;             // done by it since the stage began [J]
     double penetration = 0;      // of the deepest point [m]
@@ -28,9 +30,13 @@ struct FrameReport {
     long steps = 0;                            // explicit steps taken
     double residual = 0;                       // over the largest push; quasi-static only
     double kinetic = 0, elastic = 0;           // now [J]
-    double plastic = 0, damped = 0, work = 0;  // since the stage began [J]
-    double severed_energy = 0;   // elastic energy lost with severed connections, likewise [J]
-    std::vector<ToolLoad> load;  // tools, then grips, then blades
+    double plastic = 0, damped = 0, work = 0;  // since the stage began [J]; work of tools, grips
+    double load_work = 0, gravity_work = 0;    // likewise [J]
+    double severed_energy = 0;  // elastic energy lost with severed connections, likewise [J]
+    // Of all work since the stage began, what none of the others accounts for [J]: friction's, and
+    // what relaxation lets go where something snaps or is put on at once.
+    double remainder = 0;
+    std::vector<ToolLoad> load;  // tools, then grips, then blades, then loads, then gravity
     int severed = 0;             // connections, in this frame
     int pieces = 1;
     std::vector<std::string> warning;
@@ -49,6 +55,10 @@ class Simulation {
     // halves that spring apart under the blade are severed where it first aimed, so that a skin
     // that was cut along the same path opens cleanly. Frames beyond the plan sever what they meet.
     void plan_cuts(const std::vector<Drive>& drives);
+
+    // Everything that may act on the matter, in the order of FrameReport::load, without what it
+    // does.
+    std::vector<ToolLoad> bodies(const Drive& now) const;
 
     // Moves the matter on while the apparatus goes from one drive to another. What the blades
     // sweep in this frame is severed first. Throws Error(stopped) with a sentence that names what

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "laws/contact.h"
 #include "sim/move_outcome.h"
+#include "sim/surface_forces.h"
 
 namespace swage {
 
@@ -52,12 +53,7 @@ double ContactSet::point_stiffness(const Aggregate& matter, int point, double fa
 void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
     stiffness_limit_.resize(matter.surface.size());
     for (std::size_t p = 0; p < stiffness_limit_.size(); ++p) {
-        double lightest = std::numeric_limits<double>::infinity();
-        for (int c = 0; c < 8; ++c) {
-            if (matter.surface.weight[p][c] <= 0.05f) continue;
-            lightest = std::min(lightest, matter.particle_mass[matter.surface.corner[p][c]]);
-        }
-        stiffness_limit_[p] = 0.25 * lightest / (step * step);
+        stiffness_limit_[p] = 0.25 * lightest_carrier(matter, p) / (step * step);
     }
 }
 
@@ -144,13 +140,26 @@ std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Dr
             const Mat3 across = d.normal * d.normal.transpose();
             held.push_back({pair_[n].point, k * (contact.slips ? across : Mat3(Mat3::Identity()))});
         });
-    for (const Grip& grip : apparatus_->grip) {
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        const Grip& grip = apparatus_->grip[g];
+        const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
+        const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
         for (int point : grip.point) {
-            held.push_back({point, point_stiffness(matter, point, settings_.grip_stiffness) *
-                                       Mat3::Identity()});
+            held.push_back(
+                {point, point_stiffness(matter, point, settings_.grip_stiffness) * hold});
         }
     }
     return held;
+}
+
+Vec3 ContactSet::grip_force(const Aggregate& matter, const Drive& now, std::size_t g,
+                            std::size_t n) const {
+    const Grip& grip = apparatus_->grip[g];
+    const Pose& pose = now.world_from_grip[g];
+    const double k = point_stiffness(matter, grip.point[n], settings_.grip_stiffness);
+    const Vec3 x = matter.surface_position(grip.point[n]);
+    if (grip.hold == Vec3::Ones()) return k * (pose * grip.anchor[n] - x);
+    return pose.turn(k * grip.hold.cwiseProduct(grip.anchor[n] - pose.inverse() * x));
 }
 
 Vec3 ContactSet::anchor_of(const Pair& pair) const {
@@ -174,28 +183,14 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
 }
 
 void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
-    const SurfacePoints& surface = matter.surface;
-    const auto spread = [&](int point, const Vec3& f) {
-        for (int c = 0; c < 8; ++c) {
-            force.add(surface.corner[point][c], double(surface.weight[point][c]) * f);
-        }
-    };
+    const auto push = [&](int point, const Vec3& f) { spread(matter.surface, point, f, force); };
     for_each_touch(matter, now,
                    [&](std::size_t n, const Vec3&, const Distance&, double,
-                       const ContactForce& contact) { spread(pair_[n].point, contact.force); });
+                       const ContactForce& contact) { push(pair_[n].point, contact.force); });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         const Grip& grip = apparatus_->grip[g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const int point = grip.point[n];
-            const Vec3 reach =
-                now.world_from_grip[g] * grip.anchor[n] - matter.surface_position(point);
-            spread(point, point_stiffness(matter, point, settings_.grip_stiffness) * reach);
-        }
-    }
-    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
-        const Load& load = apparatus_->load[l];
-        for (std::size_t n = 0; n < load.point.size(); ++n) {
-            spread(load.point[n], now.load_strength[l] * load.force[n]);
+            push(grip.point[n], grip_force(matter, now, g, n));
         }
     }
 }
@@ -219,8 +214,7 @@ std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now
         LoadSum& sum = sums[apparatus_->tool.size() + g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             const Vec3 x = matter.surface_position(grip.point[n]);
-            const Vec3 f = point_stiffness(matter, grip.point[n], settings_.grip_stiffness) *
-                           (now.world_from_grip[g] * grip.anchor[n] - x);
+            const Vec3 f = grip_force(matter, now, g, n);
             sum.force += f;
             sum.torque += (x - now.world_from_grip[g].translation).cross(f);
             sum.size += f.norm();

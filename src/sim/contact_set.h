@@ -69,6 +69,8 @@ class ContactSet {
         Vec3 anchor;  // in the tool's frame
     };
     double point_stiffness(const Aggregate& matter, int point, double factor) const;  // [N/m]
+    // That grip g exerts on its point n [N].
+    Vec3 grip_force(const Aggregate& matter, const Drive& now, std::size_t g, std::size_t n) const;
     Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame
     // Calls act(pair, position, distance, stiffness, contact) for each point inside a tool.
     template <typename Act>

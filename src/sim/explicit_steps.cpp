@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "laws/spring_damper.h"
+#include "sim/lattice_sweep.h"
 
 namespace swage {
 
 namespace {
 
-double highest_frequency(const Aggregate& matter, const LatticeForces& lattice) {
-    const std::vector<double> bound = lattice.stiffness_bound(matter);
+double fastest(const Aggregate& matter, const std::vector<double>& bound) {
     double highest = 0;
     for (std::size_t p = 0; p < bound.size(); ++p) {
         highest = std::max(highest, bound[p] / matter.particle_mass[p]);
@@ -20,9 +19,21 @@ double highest_frequency(const Aggregate& matter, const LatticeForces& lattice) 
     return std::sqrt(highest);
 }
 
-double stable_step(const Aggregate& matter, const SimSettings& settings, double frequency) {
+double highest_frequency(const Aggregate& matter, const LatticeForces& lattice) {
+    return fastest(matter, lattice.stiffness_bound(matter));
+}
+
+double stable_step(const Aggregate& matter, const SimSettings& settings,
+                   const LatticeForces& lattice, const DampingBranches& branches) {
+    std::vector<double> bound = lattice.stiffness_bound(matter);
+    if (branches.count > 0) {
+        const std::vector<double> more = stiffness_bound(matter, lattice_law(matter));
+        for (std::size_t p = 0; p < bound.size(); ++p) {
+            bound[p] += (fast_stiffness(branches) - 1) * more[p];
+        }
+    }
     const double zeta = matter.material.damping_ratio;
-    return settings.step_safety * 2 / frequency * (std::sqrt(1 + zeta * zeta) - zeta);
+    return settings.step_safety * 2 / fastest(matter, bound) * (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
 bool finite(const Vec3Array& a) {
@@ -34,7 +45,11 @@ bool finite(const Vec3Array& a) {
 }  // namespace
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
-    return stable_step(matter, settings, highest_frequency(matter, LatticeForces(matter)));
+    const LatticeForces lattice(matter);
+    const DampingBranches branches =
+        damping_branches(matter.material.damping_ratio, slowest_frequency(matter),
+                         highest_frequency(matter, lattice));
+    return stable_step(matter, settings, lattice, branches);
 }
 
 ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
@@ -43,13 +58,12 @@ ExplicitSolver::ExplicitSolver(Aggregate& matter, const Apparatus& apparatus,
       apparatus_(apparatus),
       settings_(settings),
       lattice_(matter),
+      damping_(matter, highest_frequency(matter, lattice_)),
       contacts_(matter, apparatus, settings),
+      pushes_(apparatus, settings),
+      step_(stable_step(matter, settings, lattice_, damping_.branches())),
+      drag_(matter, settings, step_),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
-    // A dashpot of b damps a mode of frequency w with zeta = b w / 2 k.
-    const double w = highest_frequency(matter, lattice_);
-    step_ = stable_step(matter, settings, w);
-    damping_ = 2 * matter.material.damping_ratio *
-               lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing) / w;
     contacts_.limit_stiffness(matter, step_);
 }
 
@@ -69,15 +83,17 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
         const Drive now = n == count ? to : drive_between(from, to, double(n) / double(count));
         contacts_.begin_move(matter_, before);
         lattice_.find(matter_, Flow::trial, force_);
-        if (damping_ > 0)
-            outcome.damped_work += dt * lattice_.add_dashpots(matter_, damping_, force_);
+        if (damping_.acts()) outcome.damped_work += damping_.add_forces(matter_, dt, force_);
+        if (drag_.acts()) outcome.damped_work += dt * drag_.add_forces(matter_, force_);
         contacts_.add_forces(matter_, now, force_);
+        pushes_.add_forces(matter_, now, force_);
+        const Vec3 g = pushes_.gravity(now);
         double farthest = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {
             const double push = dt / matter_.particle_mass[p];
-            v.x[p] += push * force_.x[p] + dt * settings_.gravity.x();
-            v.y[p] += push * force_.y[p] + dt * settings_.gravity.y();
-            v.z[p] += push * force_.z[p] + dt * settings_.gravity.z();
+            v.x[p] += push * force_.x[p] + dt * g.x();
+            v.y[p] += push * force_.y[p] + dt * g.y();
+            v.z[p] += push * force_.z[p] + dt * g.z();
             x.x[p] += dt * v.x[p];
             x.y[p] += dt * v.y[p];
             x.z[p] += dt * v.z[p];
@@ -89,6 +105,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
         contacts_.commit(matter_, now);
         std::vector<LoadSum> load = contacts_.loads(matter_, now);
         add_work(before, now, load_, load, outcome.work);
+        pushes_.commit(matter_, now, outcome.push_work);
         load_ = std::move(load);
         const double tool_way = contacts_.travel(matter_, before, now) * double(n);
         if (farthest + tool_way > 0.45 * matter_.lattice.spacing) {
@@ -110,9 +127,13 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     const auto start_modes = matter_.cell_plastic_modes;
     const auto start_hardening = matter_.cell_hardening;
     const ContactSet start_contacts = contacts_;
+    pushes_.start(matter_, from);
+    const LoadSet start_pushes = pushes_;
+    const InternalDamping start_damping = damping_;
     double dt = step_;
     for (;; dt *= 0.5, ++outcome.halvings) {
         outcome.work.assign(load_.size(), 0.0);
+        outcome.push_work.assign(pushes_.count(), 0.0);
         outcome.plastic_work = outcome.damped_work = 0;
         if (steps(from, to, dt, outcome)) break;
         matter_.particle_position = start_x;
@@ -123,6 +144,8 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         matter_.cell_plastic_modes = start_modes;
         matter_.cell_hardening = start_hardening;
         contacts_ = start_contacts;
+        pushes_ = start_pushes;
+        damping_ = start_damping;
         if (outcome.halvings == settings_.halving_limit) {
             fail(ExitCode::stopped,
                  "{}: the motion is not finite at {:.4g} s even with steps of {:.3g} s; move the "
@@ -131,6 +154,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         }
     }
     outcome.load = load_;
+    outcome.drag_held = drag_.is_held();
     return outcome;
 }
 

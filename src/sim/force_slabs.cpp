@@ -45,6 +45,33 @@ void sum_slabs(const ForceSlabs& slabs, std::size_t particles, Vec3Array& force)
     });
 }
 
+std::vector<SpanSlab> span_slabs(const Aggregate& matter, ForceSlabs& part) {
+    constexpr std::size_t kSlabParticles = 8192, kMost = 64;
+    const std::vector<Span>& spans = matter.lattice.span;
+    const std::size_t particles = matter.particle_count();
+    const std::size_t slabs = std::clamp<std::size_t>(particles / kSlabParticles, 1, kMost);
+    std::vector<SpanSlab> slab;
+    part.clear();
+    std::size_t s = 0;
+    for (std::size_t n = 0; n < slabs; ++n) {
+        const std::size_t begin = s, stop = particles * (n + 1) / slabs;
+        ForceSlab force;
+        force.begin = s < spans.size() ? spans[s].lower : static_cast<ParticleId>(particles);
+        force.reach = force.begin;
+        while (s < spans.size() &&
+               (n + 1 == slabs || static_cast<std::size_t>(spans[s].lower) < stop)) {
+            force.begin = std::min(force.begin, spans[s].lower);
+            force.reach = std::max(force.reach, spans[s].upper + spans[s].count);
+            ++s;
+        }
+        if (s == begin) continue;
+        force.part.resize(static_cast<std::size_t>(force.reach - force.begin));
+        slab.push_back({begin, s});
+        part.push_back(std::move(force));
+    }
+    return slab;
+}
+
 std::vector<CellSlab> cell_slabs(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const auto same_row = [](const CellRun& a, const CellRun& b) {

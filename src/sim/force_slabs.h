@@ -21,6 +21,13 @@ using ForceSlabs = std::vector<ForceSlab>;
 // force = sum of the slabs' parts.
 void sum_slabs(const ForceSlabs& slabs, std::size_t particles, Vec3Array& force);
 
+// Spans of connections, cut by the lattice's size alone; part: for the particles that each may
+// push.
+struct SpanSlab {
+    std::size_t begin, end;
+};
+std::vector<SpanSlab> span_slabs(const Aggregate& matter, ForceSlabs& part);
+
 // Rows of cells that add their forces in place: to the particles begin ... end - 1 of the result,
 // which no other slab writes. What they give to particles behind waits in the seam.
 struct CellSlab {

@@ -86,12 +86,6 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force) {
     return add_guard_forces(matter, force);
 }
 
-double LatticeForces::add_dashpots(const Aggregate& matter, double damping, Vec3Array& force) {
-    const double power = spring_sweep_.forces(matter, {0, damping}, nullptr, extra_);
-    for (std::size_t p = 0; p < force.size(); ++p) force.add(p, extra_.at(p));
-    return power;
-}
-
 double LatticeForces::commit(Aggregate& matter) {
     if (cells_) return cells_->commit(matter);
     return spring_flow_ ? spring_flow_->commit(matter) : 0;

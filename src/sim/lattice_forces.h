@@ -26,10 +26,6 @@ class LatticeForces {
     // says, by add_guard_stiffness().
     int find(const Aggregate& matter, Flow flow, Vec3Array& force);
 
-    // Adds the forces of dashpots along all connections, `damping` [N s/m] of a full one; returns
-    // the power that they take [W].
-    double add_dashpots(const Aggregate& matter, double damping, Vec3Array& force);
-
     // Remembers the flow of a converged state; returns the work that it took [J].
     double commit(Aggregate& matter);
 
@@ -59,7 +55,6 @@ class LatticeForces {
     std::unique_ptr<CellSweep> cells_;       // null: springs
     bool guarded_;
     std::vector<LooseSpring> loose_;  // of cells that are not whole
-    Vec3Array extra_;
 };
 
 }  // namespace swage

@@ -12,7 +12,6 @@ namespace swage {
 namespace {
 
 constexpr int kBlock = 128;  // connections at a time, so that forces stay in the nearest cache
-constexpr std::size_t kSlabParticles = 8192;
 
 struct SpanArrays {
     const double *x, *y, *z;     // positions of the lower ends
@@ -79,41 +78,20 @@ LatticeLaw lattice_law(const Aggregate& matter) {
     return {lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing), 0};
 }
 
-LatticeSweep::LatticeSweep(const Aggregate& matter) {
-    const std::vector<Span>& spans = matter.lattice.span;
-    const std::size_t particles = matter.particle_count();
-    const std::size_t slabs = std::clamp<std::size_t>(particles / kSlabParticles, 1, 64);
-    std::size_t s = 0;
-    for (std::size_t n = 0; n < slabs; ++n) {
-        Slab slab{s, s, 0};
-        ForceSlab part;
-        part.begin = s < spans.size() ? spans[s].lower : static_cast<ParticleId>(particles);
-        part.reach = part.begin;
-        const std::size_t stop = particles * (n + 1) / slabs;
-        while (s < spans.size() &&
-               (n + 1 == slabs || static_cast<std::size_t>(spans[s].lower) < stop)) {
-            part.begin = std::min(part.begin, spans[s].lower);
-            part.reach = std::max(part.reach, spans[s].upper + spans[s].count);
-            ++s;
-        }
-        slab.span_end = s;
-        if (slab.span_end == slab.span_begin) continue;
-        part.part.resize(static_cast<std::size_t>(part.reach - part.begin));
-        slab_.push_back(slab);
-        part_.push_back(std::move(part));
-    }
+LatticeSweep::LatticeSweep(const Aggregate& matter) : slab_(span_slabs(matter, part_)) {
+    damping_power_.resize(slab_.size());
 }
 
 double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
                             Vec3Array& force) {
     const std::size_t particles = matter.particle_count();
     parallel_for(slab_.size(), [&](std::size_t index) {
-        Slab& slab = slab_[index];
+        const SpanSlab& slab = slab_[index];
         ForceSlab& sum = part_[index];
         sum.clear();
         alignas(64) double fx[kBlock], fy[kBlock], fz[kBlock], power[kBlock];
-        slab.damping_power = 0;
-        for (std::size_t n = slab.span_begin; n < slab.span_end; ++n) {
+        double damping_power = 0;
+        for (std::size_t n = slab.begin; n < slab.end; ++n) {
             const Span& span = matter.lattice.span[n];
             const ConnectionArrays& history = matter.connection[span.direction];
             const double reference = reference_length(matter.lattice, span.direction);
@@ -129,7 +107,7 @@ double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, cons
                 if (law.damping > 0) {
                     const SpanArrays v = arrays_at(matter.particle_velocity, lower, upper);
                     dashpot_block(s, v, law.damping, count, fx, fy, fz, power);
-                    for (int c = 0; c < count; ++c) slab.damping_power += power[c];
+                    for (int c = 0; c < count; ++c) damping_power += power[c];
                 }
                 const std::size_t l = lower - sum.begin, u = upper - sum.begin;
                 add_block(fx, count, sum.part.x.data() + l);
@@ -140,10 +118,11 @@ double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, cons
                 subtract_block(fz, count, sum.part.z.data() + u);
             }
         }
+        damping_power_[index] = damping_power;
     });
     sum_slabs(part_, particles, force);
     double power = 0;
-    for (const Slab& slab : slab_) power += slab.damping_power;
+    for (double one : damping_power_) power += one;
     return power;
 }
 

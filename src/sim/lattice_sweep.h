@@ -32,12 +32,9 @@ class LatticeSweep {
                   Vec3Array& force);
 
   private:
-    struct Slab {
-        std::size_t span_begin, span_end;
-        double damping_power;  // [W]
-    };
-    std::vector<Slab> slab_;
     ForceSlabs part_;
+    std::vector<SpanSlab> slab_;
+    std::vector<double> damping_power_;  // a slab [W]
 };
 
 // Elastic energy stored in the connections [J].

@@ -17,7 +17,9 @@ struct MoveOutcome {
     double residual = 0;            // of the last increment, over its reference force
     double plastic_work = 0;        // [J]
     double damped_work = 0;         // [J]; explicit steps only
+    bool drag_held = false;         // was more than a step can follow; explicit steps only
     std::vector<double> work;       // by tool, then grip [J]
+    std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
     bool buckled = false;           // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from

@@ -46,6 +46,14 @@ double largest_extent(const Aggregate& matter) {
     return matter.lattice.spacing * matter.lattice.cell_count.maxCoeff();
 }
 
+// NOTE: the tangent knows nothing of how a pressure turns with the surface. Without it a free body
+// under pressure seems to gain by turning over.
+bool floats_under_pressure(const Apparatus& apparatus) {
+    return apparatus.grip.empty() &&
+           std::any_of(apparatus.load.begin(), apparatus.load.end(),
+                       [](const Load& load) { return load.force.empty() && load.pressure != 0; });
+}
+
 }  // namespace
 
 QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparatus,
@@ -56,6 +64,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       lattice_(matter),
       coarse_(matter),
       contacts_(matter, apparatus, settings),
+      pushes_(apparatus, settings),
       body_size_(largest_extent(matter)),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       most_load_(load_.size(), 0.0),
@@ -99,7 +108,8 @@ void QuasistaticSolver::find_masses() {
 void QuasistaticSolver::evaluate(const Drive& to) {
     mirrored_ = lattice_.find(matter_, Flow::trial, force_);
     contacts_.add_forces(matter_, to, force_);
-    const Vec3 g = settings_.gravity;
+    pushes_.add_forces(matter_, to, force_);
+    const Vec3 g = pushes_.gravity(to);
     const Vec3Array& x = matter_.particle_position;
     parallel_for(vector_chunks(x.size()), [&](std::size_t chunk) {
         const std::size_t end = std::min(x.size(), (chunk + 1) * kVectorChunk);
@@ -112,21 +122,16 @@ void QuasistaticSolver::evaluate(const Drive& to) {
     });
 }
 
-// The largest force that any tool or grip carries now, or a load or gravity asks for: the measure
-// of the residual. A force not yet carried through the body shows in the residual itself.
+// The measure of the residual. Where tools or grips have moved, it is the largest force that any of
+// them carries or has carried, or a load or gravity asks for. Where loads alone have driven the
+// body it is what they ask for: a slender body's grips carry far more, against each other.
 double QuasistaticSolver::push_limit(const Drive& to) const {
+    const double asked = pushes_.size(matter_, to);
+    if (!moved_ && asked > 0) return asked;
     const double a = matter_.lattice.spacing;
-    double push = kLeastPush * matter_.material.young_modulus * a * a;
+    double push = std::max(largest_push_, kLeastPush * matter_.material.young_modulus * a * a);
     for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
-    for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
-        double sum = 0;
-        for (const Vec3& force : apparatus_.load[l].force) sum += force.norm();
-        push = std::max(push, std::abs(to.load_strength[l]) * sum);
-    }
-    if (settings_.gravity != Vec3::Zero()) {
-        push = std::max(push, matter_.mass() * settings_.gravity.norm());
-    }
-    return push;
+    return std::max(push, asked);
 }
 
 double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) const {
@@ -134,7 +139,7 @@ double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) c
     const double sum = chunked_sum(f.size(), [&](std::size_t p) {
         return std::sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
     });
-    return sum / std::max(largest_push_, push_limit(to));
+    return sum / push_limit(to);
 }
 
 NewtonProblem QuasistaticSolver::problem_of(const Drive& to) {
@@ -267,7 +272,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = start_;
     contacts_.find_candidates(matter_, to);
-    bool smooth = newton_ && !contacts_.tools_near();
+    bool smooth = newton_ && !contacts_.tools_near() && !floats_under_pressure(apparatus_);
     for (hold_ = smooth ? kSmoothHold : 1;; hold_ *= kLetGo) {
         Relaxation round;
         if (smooth) {
@@ -287,7 +292,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         const double dragged = hold_ * chunked_sum(x.size(), [&](std::size_t p) {
                                    return drag_[p] * (x.at(p) - held_.at(p)).norm();
                                });
-        if (dragged <= settings_.tolerance * std::max(largest_push_, push_limit(to))) return result;
+        if (dragged <= settings_.tolerance * push_limit(to)) return result;
         held_ = x;
     }
 }
@@ -298,6 +303,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
                                                               MoveOutcome& outcome) {
     Relaxation result = relax(to);
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged; ++turn) {
+        if (floats_under_pressure(apparatus_)) break;
         NewtonProblem problem = problem_of(to);
         // Whether the matter itself gives way is asked: what slides now would stick if turned back.
         for (HeldPoint& h : problem.held) {
@@ -327,7 +333,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     return result;
 }
 
-// How the drive moves, as one vector: translations, and turns times the size of the body.
+// How the drive moves, as one vector: translations; turns and strengths times the body's size.
 std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive& to) const {
     std::vector<double> motion;
     const auto add = [&](const std::vector<Pose>& a, const std::vector<Pose>& b) {
@@ -339,6 +345,10 @@ std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive&
     };
     add(from.world_from_tool, to.world_from_tool);
     add(from.world_from_grip, to.world_from_grip);
+    for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
+        motion.push_back(body_size_ * (to.load_strength[l] - from.load_strength[l]));
+    }
+    motion.push_back(body_size_ * (to.gravity_strength - from.gravity_strength));
     return motion;
 }
 
@@ -364,8 +374,10 @@ void QuasistaticSolver::predict(const std::vector<double>& motion) {
     extrapolate(x.z, previous_.z);
 }
 
-// Whether any tool moves otherwise than it did when it last pressed.
-bool QuasistaticSolver::draws_back(const std::vector<double>& motion) const {
+// Whether any tool moves otherwise than it did when it last pressed, or a load is taken off.
+bool QuasistaticSolver::draws_back(const Drive& from, const Drive& to,
+                                   const std::vector<double>& motion) const {
+    if (pushes_.eases(from, to)) return true;
     for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
         double along = 0, now = 0, then = 0;
         for (std::size_t n = 6 * t; n < 6 * t + 6; ++n) {
@@ -393,7 +405,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     start_ = matter_.particle_position;
     contacts_.begin_move(matter_, from);
     std::vector<double> motion = motion_of(from, to);
-    const bool released = draws_back(motion);
+    const bool released = draws_back(from, to, motion);
     predict(motion);
 
     const bool had_buckled = std::exchange(outcome.buckled, false);
@@ -447,6 +459,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     load_ = std::move(load);
     previous_ = start_;
     previous_motion_ = std::move(motion);
+    pushes_.commit(matter_, to, outcome.push_work);
     if (buckled) previous_motion_.clear();  // a jump does not go on
     ++outcome.increments;
 }
@@ -454,7 +467,10 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
 MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     outcome.work.assign(load_.size(), 0.0);
+    outcome.push_work.assign(pushes_.count(), 0.0);
+    pushes_.start(matter_, from);
     const double travel = contacts_.travel(matter_, from, to);
+    moved_ = moved_ || travel > 0;
     const int count = std::max(1, static_cast<int>(std::ceil(travel / matter_.lattice.spacing)));
     Drive before = from;
     for (int n = 1; n <= count; ++n) {

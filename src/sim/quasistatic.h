@@ -21,6 +21,7 @@
 #include "sim/coarse_modes.h"
 #include "sim/contact_set.h"
 #include "sim/lattice_forces.h"
+#include "sim/load_set.h"
 #include "sim/move_outcome.h"
 #include "sim/newton.h"
 #include "sim/settings.h"
@@ -38,6 +39,7 @@ class QuasistaticSolver {
     // The connections have changed (severed): masses are found anew.
     void connections_changed();
     double elastic_energy() const { return lattice_.elastic_energy(matter_); }  // [J]
+    const LoadSet& pushes() const { return pushes_; }
 
   private:
     struct Relaxation {
@@ -57,7 +59,7 @@ class QuasistaticSolver {
     double push_limit(const Drive& to) const;
     std::vector<double> motion_of(const Drive& from, const Drive& to) const;
     void predict(const std::vector<double>& motion);
-    bool draws_back(const std::vector<double>& motion) const;
+    bool draws_back(const Drive& from, const Drive& to, const std::vector<double>& motion) const;
     void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome);
 
     Aggregate& matter_;
@@ -68,6 +70,7 @@ class QuasistaticSolver {
     CoarseModes coarse_;
     Vec3Array probed_;  // positions at which its stiffness was found
     ContactSet contacts_;
+    LoadSet pushes_;
     double body_size_;  // [m]
     std::vector<double> lattice_bound_;
     std::vector<double> mass_, inverse_mass_, drag_;
@@ -78,6 +81,7 @@ class QuasistaticSolver {
     Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
                                            // the candidates were found
     std::vector<double> previous_motion_;  // empty: nothing to extrapolate from
+    bool moved_ = false;                   // any tool or grip, ever
     double largest_push_ = 0;              // of any tool so far [N]
     std::vector<LoadSum> load_;            // at the end of the last increment, by tool, then grip
     std::vector<double> most_load_;        // that each has carried so far [N]

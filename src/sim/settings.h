@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/math.h"
+#include "laws/directional_drag.h"
 
 namespace swage {
 
@@ -24,7 +25,14 @@ struct SimSettings {
     // Explicit steps.
     double step_safety = 0.8;  // share of the stable step, 0 to 1
 
-    Vec3 gravity = Vec3::Zero();  // [m/s2]
+    // What the medium around does to the surface (laws/ambient_drag.h, laws/directional_drag.h);
+    // explicit steps only.
+    double medium_density = 0;    // [kg/m3], >= 0; 0: none; air 1.2, water 1000
+    double drag_coefficient = 1;  // >= 0; ball 0.5, cube 1, thin plate 1.2
+    double directional_drag = 0;  // [Pa s/m], >= 0; 0: none; what stops at v: weight over area v
+    DragAlong directional_drag_along = DragAlong::motion;
+
+    Vec3 gravity = Vec3::Zero();  // in the world [m/s2]
 };
 
 }  // namespace swage

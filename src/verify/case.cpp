@@ -58,6 +58,7 @@ bool order_missed(const Case& verification, const Series& series) {
 std::vector<Case> verification_cases() {
     std::vector<Case> cases;
     add_solid_cases(cases);
+    add_plate_cases(cases);
     add_beam_cases(cases);
     add_large_bending_cases(cases);
     add_oblique_cases(cases);

@@ -74,6 +74,7 @@ Result run_case(const Case& verification, bool brief);
 
 // One family a file.
 void add_solid_cases(std::vector<Case>& cases);
+void add_plate_cases(std::vector<Case>& cases);
 void add_beam_cases(std::vector<Case>& cases);
 void add_large_bending_cases(std::vector<Case>& cases);
 void add_oblique_cases(std::vector<Case>& cases);

@@ -52,21 +52,11 @@ void hollow_ball(bool, Values& values) {
         Stand stand(unit_mold(mesh, across, unit_material(kNu)), 1e-5);
         std::vector<int> inner, outer;
         const SurfacePoints& surface = stand.matter.surface;
-        Vec3 sum = Vec3::Zero();
-        Load pressure;
-        pressure.name = "pressure";
         for (std::size_t p = 0; p < surface.size(); ++p) {
             const bool inside = surface.reference_position[p].norm() < 0.5 * (kInner + kOuter);
             (inside ? inner : outer).push_back(static_cast<int>(p));
-            if (!inside) continue;
-            pressure.point.push_back(static_cast<int>(p));
-            pressure.force.push_back(-kPressure * surface.area[p] * surface.reference_normal[p]);
-            sum += pressure.force.back();
         }
-        // Rounding of areas and normals must not push the free ball as a whole.
-        for (Vec3& force : pressure.force) force -= sum / pressure.force.size();
-        stand.apparatus.load.push_back(pressure);
-        stand.drive.load_strength.push_back(1);
+        stand.press(inner, kPressure, true);
         stand.settle();
         const auto move_outward = [&](const std::vector<int>& points) {
             double way = 0;

@@ -102,10 +102,11 @@ Stand::Stand(Aggregate body, double tolerance, const Vec3& gravity) : matter(std
     settings_.gravity = gravity;
 }
 
-int Stand::grip(const std::vector<int>& points) {
+int Stand::grip(const std::vector<int>& points, const Vec3& hold) {
     Grip grip;
     grip.name = "grip " + std::to_string(apparatus.grip.size() + 1);
     grip.point = points;
+    grip.hold = hold;
     const Pose pose{Quat::Identity(), mean_position(matter, points)};
     for (int p : points) grip.anchor.push_back(matter.surface_position(p) - pose.translation);
     apparatus.grip.push_back(std::move(grip));
@@ -119,6 +120,17 @@ int Stand::load(const std::vector<int>& points, const Vec3& force) {
     load.point = points;
     const double area = area_of(matter, points);
     for (int p : points) load.force.push_back(matter.surface.area[p] / area * force);
+    apparatus.load.push_back(std::move(load));
+    drive.load_strength.push_back(1);
+    return static_cast<int>(apparatus.load.size()) - 1;
+}
+
+int Stand::press(const std::vector<int>& points, double pressure, bool closed) {
+    Load load;
+    load.name = "load " + std::to_string(apparatus.load.size() + 1);
+    load.point = points;
+    load.pressure = pressure;
+    load.closed = closed;
     apparatus.load.push_back(std::move(load));
     drive.load_strength.push_back(1);
     return static_cast<int>(apparatus.load.size()) - 1;

@@ -36,10 +36,13 @@ class Stand {
     Apparatus apparatus;
     Drive drive;  // now
 
-    // Holds points by a frame at their middle, with the world's axes; returns its number.
-    int grip(const std::vector<int>& points);
+    // Holds points by a frame at their middle, along those of the world's axes that are 1; returns
+    // its number.
+    int grip(const std::vector<int>& points, const Vec3& hold = Vec3::Ones());
     // Dead forces, an even share by area of this one in all; returns the load's number.
     int load(const std::vector<int>& points, const Vec3& force);
+    // A pressure that follows the surface; `closed`: all of a closed one.
+    int press(const std::vector<int>& points, double pressure, bool closed = false);
 
     // Puts the particles where a coarser body of the same shape has its matter: a first guess.
     void start_from(const Aggregate& coarse);

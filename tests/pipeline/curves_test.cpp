@@ -13,7 +13,7 @@ namespace {
 Pose turned(double angle) { return {Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())), Vec3::Zero()}; }
 
 StageCurves turning_grip(int frames, double total) {
-    StageCurves curves("1-twist", 1, {"holder", "turner, left"}, {Pose{}, Pose{}});
+    StageCurves curves("1-twist", 1, {{"holder", Pose{}}, {"turner, left", Pose{}}});
     for (int f = 1; f <= frames; ++f) {
         FrameReport report;
         report.time = 0.1 * f;
@@ -44,7 +44,7 @@ TEST_CASE("a turn is followed past half a turn and past a whole one") {
 }
 
 TEST_CASE("a turn there and back ends at nothing") {
-    StageCurves curves("s", 1, {"turner"}, {Pose{}});
+    StageCurves curves("s", 1, {{"turner", Pose{}}});
     for (double angle : {0.5, 1.0, 0.5, 0.0}) {
         FrameReport report;
         report.load.resize(1);
@@ -76,7 +76,7 @@ TEST_CASE("loads are plotted against what moves most") {
     CHECK(turn.value.back() == Approx(2.0 * 180 / kPi));
     CHECK(plot_axis(turning_grip(10, 0.0)).label == "time [s]");
 
-    StageCurves press("2-press", 1, {"ram"}, {Pose{}});
+    StageCurves press("2-press", 1, {{"ram", Pose{}}});
     FrameReport report;
     report.load.resize(1);
     report.load[0].pose.translation = {0, -0.02, 0};

@@ -13,7 +13,7 @@ using namespace swage;
 namespace {
 
 StageCurves squeeze(const std::string& name) {
-    StageCurves curves(name, 1, {"ram's head", "idle_roller"}, {Pose{}, Pose{}});
+    StageCurves curves(name, 1, {{"ram's head", Pose{}}, {"idle_roller", Pose{}}});
     for (int f = 1; f <= 5; ++f) {
         FrameReport report;
         report.load.resize(2);
@@ -43,7 +43,7 @@ TEST_CASE("gnuplot draws every plot, an empty one too") {
     const Scratch scratch;
     const std::filesystem::path svg = scratch.path() / "it's a plot.svg";
     for (const StageCurves& curves :
-         {squeeze("1-squeeze"), StageCurves("2-rest", 6, {"ram"}, {Pose{}})}) {
+         {squeeze("1-squeeze"), StageCurves("2-rest", 6, {{"ram", Pose{}}})}) {
         REQUIRE(draw_plot(curves, svg));
         std::ifstream in(svg);
         std::stringstream text;

@@ -206,8 +206,10 @@ TEST_CASE("values out of range are refused with the range") {
         {"without effect",
          material("poisson_ratio = 0.3\nmechanics = \"springs\""),
          {"5:17: warning: poisson_ratio = 0.3 has no effect: a lattice of springs has 0.25"}},
-        {"overdamped", material("damping_ratio = 1.5"), {"5:17: warning: damping_ratio is more"}},
-        {"negative damping", material("damping_ratio = -0.1"), {"has to be at least 0\n"}},
+        {"overdamped",
+         material("damping_ratio = 1.5"),
+         {"5:17: damping_ratio = 1.5 is out of range: it has to be 0 to 0.3"}},
+        {"negative damping", material("damping_ratio = -0.1"), {"has to be 0 to 0.3\n"}},
         {"negative friction", material("friction = -1"), {"5:12: friction = -1 is out of range"}},
         {"wild friction", material("friction = 1e9"), {"5:12: warning: friction = 1e+09 is more"}},
         {"no cell",
@@ -277,6 +279,49 @@ TEST_CASE("values out of range are refused with the range") {
     });
     CHECK(mistakes_in(stage("gravity = -0.0\nangle = \"-0 deg\"").text()) == "");
     CHECK(mistakes_in(stage("angle = \"180 deg\"").text()) == "");  // the end itself is allowed
+}
+
+TEST_CASE("mistakes in loads are found at their place") {
+    const auto load = [](const std::string& lines) { return stage("[[stage.load]]\n" + lines); };
+    check_all({
+        {"nothing", load("on = \"top\""), {"9:1: [[stage.load]] needs \"force\""}},
+        {"both",
+         load("pressure = 1\nforce = [0, 1, 0]"),
+         {"10:12: a load is a force or a pressure"}},
+        {"unit", load("pressure = \"3 N\""), {"10:15: pressure: \"3 N\" is a force; a stress"}},
+        {"unit of one", load("force = [0, \"2 mm\", 0]"), {"10:16: force: \"2 mm\" is a length"}},
+        {"one number", load("force = 3"), {"10:9: force has to be three numbers"}},
+        {"a stranger", load("force = [0, \"2*weight\", 0]"), {"10:16: force: "}},
+        {"time", load("pressure = \"t\""), {"10:13: pressure: "}},
+        {"side", load("pressure = 1\non = \"tpo\""), {"11:6: on = \"tpo\" is not one of"}},
+        {"one corner",
+         load("pressure = 1\nfrom = [0, 0, 0]"),
+         {"11:8: from and to are opposite corners"}},
+        {"name", load("pressure = 1\nname = \"2\""), {"11:8: \"2\" has to be letters"}},
+        {"name of a tool",
+         load("pressure = 1\nname = \"support\""),
+         {"11:8: two parts are called \"support\""}},
+        {"misspelt",
+         load("presure = 1"),
+         {"9:1: [[stage.load]] needs \"force\"", "10:1: unknown key \"presure\""}},
+        {"idle gravity",
+         stage("gravity_strength = \"t\""),
+         {"9:20: warning: gravity_strength has no effect without gravity"}},
+        {"drag without motion",
+         stage("medium_density = 1.2\ndirectional_drag = \"3 Pa s/m\""),
+         {"9:18: warning: medium_density has no effect with solver = \"quasistatic\"",
+          "10:20: warning: directional_drag has no effect with solver = \"quasistatic\""}},
+        {"drag of nothing",
+         stage("solver = \"explicit\"\ndrag_coefficient = 2"),
+         {"10:20: warning: drag_coefficient has no effect without medium_density"}},
+        {"thrust",
+         stage("solver = \"explicit\"\nmedium_density = -1"),
+         {"10:18: medium_density = -1 kg/m3 is out of range: it has to be at least 0"}},
+        {"unit of drag",
+         stage("solver = \"explicit\"\ndirectional_drag = \"3 Pa\""),
+         {"10:23: directional_drag: \"3 Pa\" is a stress; a drag is wanted"}},
+        {"single brackets", stage("[stage.load]\npressure = 1"), {"double brackets"}},
+    });
 }
 
 TEST_CASE("a huge picture is refused for resources, a missing mesh as a mesh") {

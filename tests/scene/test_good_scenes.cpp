@@ -105,11 +105,25 @@ halving_limit = 2
 contact_stiffness = 3
 grip_stiffness = 30
 gravity = "9.81 m/s2"
+gravity_strength = "0.5 + t/2"
 angle = "-0.5 turn"
+[[stage.load]]
+name = "books"
+force = [0, "-20 N", "0.1*length"]
+on = "top"
+from = ["-length/4", "-height", "-3 cm"]
+to = ["length/4", "height", "3 cm"]
+strength = "angle < 0 ? t : 0"
+[[stage.load]]
+pressure = "-2 kPa"
 [[stage]]
 machine = "bend"
 solver = "explicit"
 step_safety = 0.5
+medium_density = "1.2 kg/m3"
+drag_coefficient = 0.47
+directional_drag = "2 kPa s/m"
+directional_drag_along = "normal"
 gravity = [0, 0, "-1 m/s2"]
 [render]
 size = [1, 16384]
@@ -158,9 +172,30 @@ meshes_per_frame = true
     CHECK(stage.sim.grip_stiffness == 30);
     CHECK(stage.sim.gravity == Vec3(0, -9.81, 0));
     CHECK(stage.parameter.at("angle") == Approx(-kPi));
+    CHECK(stage.machine.gravity_strength == "0.5 + t/2");
+    REQUIRE(stage.machine.load.size() == 2);
+    const LoadSpec& books = stage.machine.load[0];
+    CHECK(books.name == "books");
+    CHECK(books.force.value() == Expression3{"0", "-20 N", "0.1*length"});
+    CHECK(books.on == Side::top);
+    CHECK(books.box.value()[0] == Expression3{"-length/4", "-height", "-3 cm"});
+    CHECK(books.box.value()[1] == Expression3{"length/4", "height", "3 cm"});
+    CHECK(books.strength == "angle < 0 ? t : 0");
+    const LoadSpec& suction = stage.machine.load[1];
+    CHECK(suction.name == "load_2");
+    CHECK_FALSE(suction.force);
+    CHECK(suction.pressure == "-2 kPa");
+    CHECK(suction.on == Side::all);
+    CHECK_FALSE(suction.box);
+    CHECK(suction.strength == "ramp(t, 0, 1)");
+    CHECK(scene.stage.at(1).machine.load.empty());
     CHECK(scene.stage.at(1).name == "2-bend");
     CHECK(scene.stage.at(1).sim.solver == Solver::explicit_steps);
     CHECK(scene.stage.at(1).sim.step_safety == 0.5);
+    CHECK(scene.stage.at(1).sim.medium_density == 1.2);
+    CHECK(scene.stage.at(1).sim.drag_coefficient == 0.47);
+    CHECK(scene.stage.at(1).sim.directional_drag == 2000);
+    CHECK(scene.stage.at(1).sim.directional_drag_along == DragAlong::normal);
     CHECK(scene.stage.at(1).sim.gravity == Vec3(0, 0, -1));
     CHECK(scene.render.width == 1);
     CHECK(scene.render.height == 16384);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/region.h"
+
+#include <algorithm>
+#include <map>
+
+#include "laws/pressure.h"
+
+namespace swage {
+
+namespace {
+
+// Patches of a smooth surface lie at most about this far apart, in spacings; those of two sides of
+// a thin wall may lie nearer, but look apart.
+constexpr double kNeighbour = 0.9;
+constexpr double kLooksApart = -0.5;
+
+Side side_of(const Vec3& normal) {
+    constexpr Side kSides[] = {Side::left, Side::right, Side::bottom,
+                               Side::top,  Side::back,  Side::front};
+    int axis;
+    normal.cwiseAbs().maxCoeff(&axis);
+    return kSides[2 * axis + (normal[axis] > 0)];
+}
+
+}  // namespace
+
+std::vector<int> region_points(const Aggregate& matter, const Pose& world_from_work,
+                               const std::vector<Vec3>& in_work, Side side, const Box* box) {
+    const Quat work_from_world = world_from_work.rotation.conjugate();
+    std::vector<int> points;
+    for (std::size_t p = 0; p < in_work.size(); ++p) {
+        if (box != nullptr && ((in_work[p].array() < box->low.array()).any() ||
+                               (in_work[p].array() > box->high.array()).any())) {
+            continue;
+        }
+        if (side != Side::all) {
+            const Vec3 normal = present_area<double>(matter.surface_gradient(p),
+                                                     matter.surface.reference_normal[p]);
+            if (side_of(work_from_world * normal) != side) continue;
+        }
+        points.push_back(static_cast<int>(p));
+    }
+    return points;
+}
+
+bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
+    const SurfacePoints& surface = matter.surface;
+    if (points.size() == surface.size()) return true;
+    const double a = matter.lattice.spacing;
+    using Bin = std::array<int, 3>;
+    const auto bin_of = [&](std::size_t p) -> Bin {
+        const Vec3 at = (surface.reference_position[p] - matter.lattice.origin) / a;
+        return {int(std::floor(at.x())), int(std::floor(at.y())), int(std::floor(at.z()))};
+    };
+    std::map<Bin, std::vector<int>> chosen;
+    std::vector<char> is_chosen(surface.size(), 0);
+    for (int p : points) {
+        chosen[bin_of(p)].push_back(p);
+        is_chosen[p] = 1;
+    }
+    for (std::size_t p = 0; p < surface.size(); ++p) {
+        if (is_chosen[p]) continue;
+        const Bin home = bin_of(p);
+        for (int n = 0; n < 27; ++n) {
+            const auto at =
+                chosen.find({home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1});
+            if (at == chosen.end()) continue;
+            for (int q : at->second) {
+                const double way =
+                    (surface.reference_position[p] - surface.reference_position[q]).norm();
+                if (way < kNeighbour * a &&
+                    surface.reference_normal[p].dot(surface.reference_normal[q]) > kLooksApart) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace swage

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_load.h"
+
+#include <algorithm>
+
+namespace swage {
+
+bool is_part_name(const std::string& text) {
+    const auto letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    };
+    return !text.empty() && letter(text[0]) && text.size() <= 64 &&
+           std::all_of(text.begin(), text.end(),
+                       [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+
+std::string read_part_name(TableReader& table, std::set<std::string>& names) {
+    std::string name;
+    if (!table.text("name", name)) {
+        table.missing("name", "letters, digits and _");
+    } else if (!is_part_name(name)) {
+        table.mistake("name", fmt::format("\"{}\" has to be letters, digits and _, beginning "
+                                          "with a letter",
+                                          name));
+    } else if (!names.insert(name).second) {
+        table.mistake("name", fmt::format("two parts are called \"{}\"", name));
+    }
+    return name;
+}
+
+void read_load_keys(TableReader& table, ExpressionReader& expression, LoadSpec& load) {
+    Expression3 force = {"0", "0", "0"};
+    const bool has_force = expression.read(table, "force", Quantity::force, force);
+    const bool has_pressure = expression.read(table, "pressure", Quantity::stress, load.pressure);
+    if (has_force) load.force = force;
+    if (has_force && has_pressure) {
+        table.mistake("pressure", "a load is a force or a pressure: give one of them");
+    } else if (!has_force && !has_pressure) {
+        table.missing("force",
+                      "three forces, such as [0, \"-50 N\", 0]; or pressure, such as \"2 kPa\"");
+    }
+    table.choice<Side>("on",
+                       {{"all", Side::all},
+                        {"left", Side::left},
+                        {"right", Side::right},
+                        {"bottom", Side::bottom},
+                        {"top", Side::top},
+                        {"back", Side::back},
+                        {"front", Side::front}},
+                       load.on);
+    std::array<Expression3, 2> box;
+    const bool has_from = expression.read(table, "from", Quantity::length, box[0]);
+    const bool has_to = expression.read(table, "to", Quantity::length, box[1]);
+    if (has_from != has_to) {
+        table.mistake(has_from ? "from" : "to",
+                      "from and to are opposite corners of one box: give both");
+    }
+    if (has_from && has_to) load.box = box;
+    ExpressionReader timed = expression;
+    timed.add_name("t");
+    timed.read(table, "strength", Quantity::number, load.strength);
+    expression.take_used(timed);
+}
+
+}  // namespace swage

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/load_set.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "sim/surface_forces.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 1024;
+
+Vec3 centre_of(const Aggregate& matter, const std::vector<int>& points,
+               const std::vector<Vec3>& position) {
+    Vec3 sum = Vec3::Zero();
+    double area = 0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        sum += matter.surface.area[points[n]] * position[n];
+        area += matter.surface.area[points[n]];
+    }
+    return area > 0 ? Vec3(sum / area) : sum;
+}
+
+std::vector<Vec3> positions_of(const Aggregate& matter, const std::vector<int>& points) {
+    std::vector<Vec3> position;
+    position.reserve(points.size());
+    for (int p : points) position.push_back(matter.surface_position(p));
+    return position;
+}
+
+PushSum sum_of(const Aggregate& matter, const std::vector<int>& points,
+               const std::vector<Vec3>& position, const std::vector<Vec3>& force) {
+    PushSum sum;
+    sum.centre = centre_of(matter, points, position);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        sum.force += force[n];
+        sum.torque += (position[n] - sum.centre).cross(force[n]);
+    }
+    return sum;
+}
+
+// NOTE: the points sample a closed surface, and their area vectors sum to nothing only nearly. What
+// is left would drive a free body for ever, so it is taken off: evenly by area, and by a turn.
+void balance(const Aggregate& matter, const std::vector<int>& points, std::vector<Vec3>& force) {
+    const std::vector<Vec3> position = positions_of(matter, points);
+    const PushSum sum = sum_of(matter, points, position, force);
+    double area = 0;
+    Mat3 inertia = Mat3::Zero();
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const Vec3 r = position[n] - sum.centre;
+        const double a = matter.surface.area[points[n]];
+        area += a;
+        inertia += a * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    }
+    const Vec3 push = sum.force / area, turn = inertia.ldlt().solve(sum.torque);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        force[n] -= matter.surface.area[points[n]] * (push + turn.cross(position[n] - sum.centre));
+    }
+}
+
+Vec3 mass_moment(const Aggregate& matter) {
+    Vec3 sum = Vec3::Zero();
+    const Vec3Array& x = matter.particle_position;
+    for (std::size_t p = 0; p < x.size(); ++p) {
+        const double m = matter.particle_mass[p];
+        sum += Vec3(m * x.x[p], m * x.y[p], m * x.z[p]);
+    }
+    return sum;
+}
+
+}  // namespace
+
+LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings)
+    : apparatus_(&apparatus), gravity_(settings.gravity) {}
+
+std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
+                                     const Aggregate& matter) const {
+    std::vector<Vec3> force(load.point.size());
+    if (!load.force.empty()) {
+        for (std::size_t n = 0; n < force.size(); ++n) force[n] = strength * load.force[n];
+        return force;
+    }
+    const double pressure = strength * load.pressure;
+    if (pressure == 0) {
+        std::fill(force.begin(), force.end(), Vec3::Zero());
+        return force;
+    }
+    parallel_for((force.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(force.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < end; ++n) {
+            force[n] = pressure_force(pressure, surface_area_vector(matter, load.point[n]));
+        }
+    });
+    if (load.closed) balance(matter, load.point, force);
+    return force;
+}
+
+void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
+    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        const Load& load = apparatus_->load[l];
+        if (now.load_strength[l] == 0) continue;
+        const std::vector<Vec3> push = forces_of(load, now.load_strength[l], matter);
+        for (std::size_t n = 0; n < push.size(); ++n) {
+            spread(matter.surface, load.point[n], push[n], force);
+        }
+    }
+}
+
+double LoadSet::size(const Aggregate& matter, const Drive& now) const {
+    double largest = has_gravity() ? matter.mass() * gravity(now).norm() : 0;
+    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        const Load& load = apparatus_->load[l];
+        double sum = 0;
+        for (const Vec3& force : load.force) sum += force.norm();
+        if (load.force.empty()) {
+            for (int p : load.point) sum += std::abs(load.pressure) * matter.surface.area[p];
+        }
+        largest = std::max(largest, std::abs(now.load_strength[l]) * sum);
+    }
+    return largest;
+}
+
+bool LoadSet::eases(const Drive& from, const Drive& to) const {
+    bool eases = has_gravity() && gravity(to).norm() < gravity(from).norm();
+    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        eases = eases || std::abs(to.load_strength[l]) < std::abs(from.load_strength[l]);
+    }
+    return eases;
+}
+
+LoadSet::Settled LoadSet::settled(const Aggregate& matter, const Drive& now) const {
+    Settled state;
+    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        const Load& load = apparatus_->load[l];
+        state.position.push_back(positions_of(matter, load.point));
+        state.force.push_back(forces_of(load, now.load_strength[l], matter));
+    }
+    if (has_gravity()) {
+        state.moment = mass_moment(matter);
+        state.gravity = gravity(now);
+    }
+    return state;
+}
+
+void LoadSet::start(const Aggregate& matter, const Drive& now) {
+    if (started_ || count() == 0) return;
+    last_ = settled(matter, now);
+    started_ = true;
+}
+
+void LoadSet::commit(const Aggregate& matter, const Drive& now, std::vector<double>& work) {
+    if (count() == 0) return;
+    Settled state = settled(matter, now);
+    for (std::size_t l = 0; l < state.force.size(); ++l) {
+        for (std::size_t n = 0; n < state.force[l].size(); ++n) {
+            work[l] += 0.5 * (last_.force[l][n] + state.force[l][n])
+                                 .dot(state.position[l][n] - last_.position[l][n]);
+        }
+    }
+    if (has_gravity()) {
+        work.back() += 0.5 * (last_.gravity + state.gravity).dot(state.moment - last_.moment);
+    }
+    last_ = std::move(state);
+}
+
+std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) const {
+    std::vector<PushSum> sums;
+    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        const Load& load = apparatus_->load[l];
+        sums.push_back(sum_of(matter, load.point, positions_of(matter, load.point),
+                              forces_of(load, now.load_strength[l], matter)));
+    }
+    if (has_gravity()) {
+        const double mass = matter.mass();
+        sums.push_back({mass_moment(matter) / mass, mass * gravity(now), Vec3::Zero()});
+    }
+    return sums;
+}
+
+}  // namespace swage

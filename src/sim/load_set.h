@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What pushes the work-piece without being a body: the apparatus' loads, and gravity; and the work
+// that they do. Forces on the surface keep their direction; a pressure follows the surface.
+#pragma once
+
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+#include "sim/settings.h"
+
+namespace swage {
+
+struct PushSum {
+    Vec3 centre = Vec3::Zero();  // of the loaded area, or of mass [m]
+    Vec3 force = Vec3::Zero();   // [N]
+    Vec3 torque = Vec3::Zero();  // about the centre [N m]
+};
+
+class LoadSet {
+  public:
+    LoadSet(const Apparatus& apparatus, const SimSettings& settings);
+
+    bool has_gravity() const { return gravity_ != Vec3::Zero(); }
+    Vec3 gravity(const Drive& now) const { return now.gravity_strength * gravity_; }  // [m/s2]
+
+    // Adds the loads' forces; gravity acts on mass and is left to whoever sums over particles.
+    void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;
+
+    // The largest sum of force sizes that any one load, or gravity, asks for [N].
+    double size(const Aggregate& matter, const Drive& now) const;
+
+    // Whether any of them grows less.
+    bool eases(const Drive& from, const Drive& to) const;
+
+    // The stage begins here; only the first call counts.
+    void start(const Aggregate& matter, const Drive& now);
+    // The state is settled. Adds to `work` [J], by load and then gravity, what each did on the way
+    // from the state settled before: the mean of the forces at both ends, times the way.
+    void commit(const Aggregate& matter, const Drive& now, std::vector<double>& work);
+
+    // By load, then gravity where there is any.
+    std::vector<PushSum> sums(const Aggregate& matter, const Drive& now) const;
+    std::size_t count() const { return apparatus_->load.size() + has_gravity(); }
+
+  private:
+    // On each point of a load [N].
+    std::vector<Vec3> forces_of(const Load& load, double strength, const Aggregate& matter) const;
+
+    const Apparatus* apparatus_;
+    Vec3 gravity_;
+    // When settled last: by load, then point; and for gravity.
+    struct Settled {
+        std::vector<std::vector<Vec3>> position, force;
+        Vec3 moment = Vec3::Zero();  // sum of mass times position [kg m]
+        Vec3 gravity = Vec3::Zero();
+    };
+    Settled settled(const Aggregate& matter, const Drive& now) const;
+
+    bool started_ = false;
+    Settled last_;
+};
+
+}  // namespace swage

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces on points of the true surface.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "laws/pressure.h"
+#include "matter/aggregate.h"
+
+namespace swage {
+
+// Outward area vector of the point's patch as it is now [m2].
+inline Vec3 surface_area_vector(const Aggregate& matter, int point) {
+    const SurfacePoints& surface = matter.surface;
+    return present_area<double>(matter.surface_gradient(point),
+                                surface.area[point] * surface.reference_normal[point]);
+}
+
+// Mass of the lightest particle that carries a good share of the point [kg].
+inline double lightest_carrier(const Aggregate& matter, std::size_t point) {
+    double lightest = std::numeric_limits<double>::infinity();
+    for (int c = 0; c < 8; ++c) {
+        if (matter.surface.weight[point][c] <= 0.05f) continue;
+        lightest = std::min(lightest, matter.particle_mass[matter.surface.corner[point][c]]);
+    }
+    return lightest;
+}
+
+// Adds a force on the point to the particles that carry it; force and moment are kept exactly.
+inline void spread(const SurfacePoints& surface, int point, const Vec3& f, Vec3Array& force) {
+    for (int c = 0; c < 8; ++c) {
+        force.add(surface.corner[point][c], double(surface.weight[point][c]) * f);
+    }
+}
+
+}  // namespace swage

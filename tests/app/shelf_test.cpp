@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The shipped shelf against the beam of Euler and Bernoulli.
+#include <cmath>
+#include <sstream>
+
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+namespace {
+
+// Of assets/scenes/shelf.toml and its board, SI.
+constexpr double kYoung = 1e9, kDensity = 955, kWidth = 0.08, kHeight = 0.01, kLength = 0.4;
+constexpr double kLoaded = 0.2;  // of the books, in the middle
+// Between the rows of surface points that touch the rests: each a quarter of a cell inside its
+// line.
+constexpr double kSpan = 0.36 - 0.5 * 0.005;
+
+// How far the middle `kLoaded` of the beam sags below its rests, in the mean: its curvature M / E I
+// integrated twice from the middle, where it is level.
+double mean_sag(double weight, double books) {
+    constexpr int kSteps = 20000;
+    const double inertia = kWidth * std::pow(kHeight, 3) / 12, step = 0.5 * kSpan / kSteps;
+    const double q = weight / kLength, p = books / kLoaded;
+    double slope = 0, height = 0, sum = 0;
+    int counted = 0;
+    for (int n = 0; n < kSteps; ++n) {
+        const double x = (n + 0.5) * step, out = std::max(0.0, 0.5 * kLoaded - x);
+        const double moment = 0.5 * (weight + books) * (0.5 * kSpan - x) -
+                              0.5 * q * std::pow(0.5 * kLength - x, 2) - 0.5 * p * out * out;
+        slope += step * moment / (kYoung * inertia);
+        height += step * slope;
+        if (out > 0) sum += height, ++counted;
+    }
+    return height - sum / counted;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    return cells;
+}
+
+}  // namespace
+
+TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
+    const Scratch scratch;
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome =
+        run_swage({"run", "assets/scenes/shelf.toml", "--out", run.string(), "--no-render", "--set",
+                   "stage.1.frames=10", "--set", "stage.1.friction=0", "--quiet"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    std::istringstream table(bytes_of(run / "curves/1-shelf.csv"));
+    std::string line;
+    std::getline(table, line);
+    const std::vector<std::string> head = cells_of(line);
+    std::vector<std::map<std::string, double>> row;
+    while (std::getline(table, line)) {
+        row.emplace_back();
+        const std::vector<std::string> cells = cells_of(line);
+        REQUIRE(cells.size() == head.size());
+        for (std::size_t n = 0; n < head.size(); ++n) row.back()[head[n]] = std::stod(cells[n]);
+    }
+    REQUIRE(row.size() == 11);
+    const auto sunk = [&](int frame) {
+        return row[0].at("books y [m]") - row[frame].at("books y [m]");
+    };
+    const double weight = kDensity * kWidth * kHeight * kLength * 9.81;
+    // What is left is its two cells of a thickness, and how far the rests' contact rolls.
+    CHECK(sunk(3) == Approx(mean_sag(weight, 0)).epsilon(0.07));
+    CHECK(sunk(10) == Approx(mean_sag(weight, 147.15)).epsilon(0.03));
+    CHECK(row[10].at("left force y [N]") == Approx(0.5 * (weight + 147.15)).epsilon(0.02));
+    CHECK(row[10].at("gravity force y [N]") == Approx(-weight).epsilon(0.001));
+    const Json energy = Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
+    const double work =
+        energy.at("load_work").get<double>() + energy.at("gravity_work").get<double>();
+    CHECK(energy.at("elastic").get<double>() == Approx(work).epsilon(0.05));
+    CHECK(std::abs(energy.at("remainder").get<double>()) < 0.05 * work);
+}

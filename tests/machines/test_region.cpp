@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loads on parts of the surface.
+#include "base/error.h"
+#include "machines/machine.h"
+#include "machines/region.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+// Its longest side along y, so the work frame's x is y, and its y is z.
+Aggregate upright() { return make_block(3, 8, 4, 0.1, Material{}); }
+
+Machine with(const Aggregate& matter, const LoadSpec& load) {
+    MachineSpec spec;
+    spec.name = "none";
+    spec.load = {load};
+    return build_machine(spec, {}, place_work_frame(matter, "auto", "auto"), matter);
+}
+
+LoadSpec push(Side side) {
+    LoadSpec load;
+    load.name = "push";
+    load.on = side;
+    load.force = {"3*length", "-2", "0"};
+    return load;
+}
+
+}  // namespace
+
+TEST_CASE("the six sides share out the surface, and each looks where its name says") {
+    const Aggregate matter = upright();
+    const std::vector<std::pair<Side, Vec3>> sides = {
+        {Side::left, -Vec3::UnitY()}, {Side::right, Vec3::UnitY()}, {Side::bottom, -Vec3::UnitZ()},
+        {Side::top, Vec3::UnitZ()},   {Side::back, -Vec3::UnitX()}, {Side::front, Vec3::UnitX()}};
+    std::size_t points = 0;
+    for (const auto& [side, normal] : sides) {
+        const Machine machine = with(matter, push(side));
+        const Load& load = machine.apparatus.load.at(0);
+        for (int p : load.point) CHECK(matter.surface.reference_normal[p] == normal);
+        CHECK_FALSE(load.closed);
+        points += load.point.size();
+    }
+    CHECK(points == matter.surface.size());
+}
+
+TEST_CASE(
+    "a force is shared evenly by area, in the work frame, over the part that its box leaves") {
+    const Aggregate matter = upright();
+    LoadSpec spec = push(Side::top);
+    spec.box = {{{"0", "-height", "-width"}, {"length/4", "height", "width"}}};
+    spec.strength = "t*t";
+    const Machine machine = with(matter, spec);
+    const Load& load = machine.apparatus.load.at(0);
+    CHECK(load.point.size() == 2 * 3 * 4);
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t n = 0; n < load.point.size(); ++n) {
+        const double y = matter.surface.reference_position[load.point[n]].y();
+        CHECK((y > 0 && y < 0.2));
+        CHECK((load.force[n] - load.force[0]).norm() < 1e-15);
+        sum += load.force[n];
+    }
+    CHECK((sum - Vec3(0, 2.4, -2)).norm() < 1e-6);
+    CHECK(drive_at(machine, 0.5, 1).load_strength.at(0) == 0.25);
+    CHECK(drive_at(machine, 0.5, 1).gravity_strength == 1);
+}
+
+TEST_CASE("a load that acts on nothing is refused by name") {
+    LoadSpec spec = push(Side::top);
+    spec.box = {{{"length", "0", "0"}, {"2*length", "0", "0"}}};
+    try {
+        with(upright(), spec);
+        FAIL("it should be refused");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::scene);
+        CHECK(std::string(error.what()).find("load push acts on nothing") != std::string::npos);
+    }
+}
+
+TEST_CASE("a cavity is a closed surface, a part of one is not") {
+    const Aggregate hollow =
+        make_shape([](const Vec3& x) { return std::max(x.norm() - 0.75, 0.35 - x.norm()); },
+                   Vec3::Constant(-0.8), Vec3i(16, 16, 16), 0.1);
+    const auto inner = points_where(hollow, [](const Vec3& x) { return x.norm() < 0.5; });
+    const auto outer = points_where(hollow, [](const Vec3& x) { return x.norm() > 0.5; });
+    const auto half =
+        points_where(hollow, [](const Vec3& x) { return x.norm() < 0.5 && x.x() > 0; });
+    REQUIRE(half.size() > 20);
+    CHECK(is_closed(hollow, inner));
+    CHECK(is_closed(hollow, outer));
+    CHECK_FALSE(is_closed(hollow, half));
+}

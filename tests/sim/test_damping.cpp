@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies that lose speed in explicit steps: to their own matter, and to what is around them.
+#include <array>
+#include <functional>
+
+#include "sim/advance.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+Material springy(double damping_ratio) {
+    return {.young_modulus = 1e6,
+            .poisson_ratio = 0.25,
+            .density = 1000,
+            .damping_ratio = damping_ratio};
+}
+
+SimSettings explicit_settings() {
+    SimSettings s;
+    s.solver = Solver::explicit_steps;
+    return s;
+}
+
+Drive at(double time) {
+    Drive d;
+    d.time = time;
+    return d;
+}
+
+Vec3 mean_velocity(const Aggregate& m) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        sum += m.particle_mass[p] * m.particle_velocity.at(p);
+    }
+    return sum / m.mass();
+}
+
+// Free vibration from a first mode's velocities: the ratio that its energy's decay tells, over
+// `periods` of a sine whose zeros are those of `swing`.
+double decay_ratio(Aggregate& m, const std::function<double(const Aggregate&)>& swing,
+                   double about_period, int periods) {
+    const Apparatus nothing;
+    SimSettings settings = explicit_settings();
+    settings.step_safety = 0.3;
+    Simulation simulation(m, nothing, settings);
+    const double dt = about_period / 40;
+    double time = 0, last = swing(m), first_zero = 0, zero = 0, first_energy = 0, energy = 0;
+    int zeros = 0;
+    while (zeros < 2 * periods + 1) {
+        const FrameReport r = simulation.advance(at(time), at(time + dt));
+        const double now = swing(m);
+        if (time > 0 && (now > 0) != (last > 0)) {
+            zero = time + dt * last / (last - now);
+            energy = r.kinetic + r.elastic;
+            if (zeros++ == 0) first_zero = zero, first_energy = energy;
+        }
+        last = now;
+        time += dt;
+        REQUIRE(time < 4 * about_period * (periods + 2));
+    }
+    const double frequency = 2 * kPi * periods / (zero - first_zero);
+    return std::log(first_energy / energy) / (2 * frequency * (zero - first_zero));
+}
+
+}  // namespace
+
+TEST_CASE("a free bar's first modes decay by the damping ratio, in stretch and in bending") {
+    for (const double ratio : {0.02, 0.1}) {
+        Aggregate bar = make_block(24, 4, 4, 0.025, springy(ratio));
+        const double length = 0.6, speed = std::sqrt(1e3);
+        for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+            bar.particle_velocity.set(
+                p, {0.01 * std::sin(kPi * bar.particle_reference.x[p] / length), 0, 0});
+        }
+        const auto end = [](const Aggregate& m, int axis) {
+            double sum = 0;
+            for (std::size_t p = 0; p < m.particle_count(); ++p) {
+                const double x = m.particle_reference.x[p];
+                if (std::abs(x) < 0.29) continue;
+                const double way =
+                    m.particle_position.at(p)[axis] - m.particle_reference.at(p)[axis];
+                sum += axis == 0 ? std::copysign(way, way * x) : way;
+            }
+            return sum;
+        };
+        CHECK(decay_ratio(
+                  bar, [&](const Aggregate& m) { return end(m, 0); }, 2 * length / speed, 2) ==
+              Approx(ratio).epsilon(0.15));
+
+        // The first bending mode of a free beam, beta L = 4.73004.
+        bar = make_block(24, 4, 4, 0.025, springy(ratio));
+        const double beta = 4.730041 / length, sigma = 0.982502;
+        for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+            const double s = beta * (bar.particle_reference.x[p] + 0.5 * length);
+            bar.particle_velocity.set(
+                p,
+                {0, 0, 0.01 * (std::cosh(s) + std::cos(s) - sigma * (std::sinh(s) + std::sin(s)))});
+        }
+        const double frequency = beta * beta * speed * 0.1 / std::sqrt(12.0);
+        CHECK(decay_ratio(
+                  bar, [&](const Aggregate& m) { return end(m, 2); }, 2 * kPi / frequency, 2) ==
+              Approx(ratio).epsilon(0.2));
+    }
+}
+
+TEST_CASE("internal damping neither slows nor turns a body that flies and spins") {
+    Aggregate m = make_block(5, 3, 2, 0.1, springy(0.1));
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_velocity.set(
+            p, Vec3(3, -1, 2) + Vec3(0.1, 0.2, -0.3).cross(m.particle_reference.at(p)));
+    }
+    const auto momenta = [&] {
+        Vec3 turn = Vec3::Zero();
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            turn += m.particle_mass[p] * m.particle_position.at(p).cross(m.particle_velocity.at(p));
+        }
+        return std::pair(Vec3(m.mass() * mean_velocity(m)), turn);
+    };
+    const auto before = momenta();
+    const Apparatus nothing;
+    Simulation simulation(m, nothing, explicit_settings());
+    simulation.advance(at(0), at(0.3));
+    const auto after = momenta();
+    CHECK((after.first - before.first).norm() < 1e-11 * before.first.norm());
+    CHECK((after.second - before.second).norm() < 1e-10 * before.first.norm());
+}
+
+TEST_CASE("a body falling through air follows the tanh of quadratic drag") {
+    // Terminal speed 10 m/s: m g = 1/2 c rho (A / 4) v^2.
+    Aggregate m = make_block(3, 3, 3, 0.1, springy(0.1));
+    double area = 0;
+    for (double a : m.surface.area) area += a;
+    SimSettings settings = explicit_settings();
+    settings.gravity = {0, -9.81, 0};
+    settings.step_safety = 0.2;
+    settings.drag_coefficient = 0.8;
+    settings.medium_density = m.mass() * 9.81 / (0.5 * 0.8 * 0.25 * area * 100);
+    const Apparatus nothing;
+    const double start = m.particle_position.at(0).y();
+    Simulation simulation(m, nothing, settings);
+    FrameReport r;
+    double time = 0;
+    for (const auto& [t, v, fall] :
+         {std::array{0.1, .977865, .0489715}, std::array{0.5, 4.54613, 1.18002},
+          std::array{1.0, 7.53498, 4.27510}, std::array{2.0, 9.61242, 13.1338}}) {
+        r = simulation.advance(at(time), at(t));
+        time = t;
+        CHECK(-mean_velocity(m).y() == Approx(v).epsilon(0.005));
+        CHECK(start - m.particle_position.at(0).y() == Approx(fall).epsilon(0.01));
+    }
+    CHECK(r.damped == Approx(r.gravity_work - r.kinetic).epsilon(0.01));
+    CHECK(std::abs(r.remainder) < 0.01 * r.gravity_work);
+}
+
+namespace {
+
+// A thin plate, its normal tilted from the vertical by an angle about z.
+Aggregate plate(double tilt) {
+    Aggregate m = make_block(8, 1, 8, 0.05, springy(0.1));
+    const Quat turn(Eigen::AngleAxisd(tilt, Vec3::UnitZ()));
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_position.set(p, turn * m.particle_reference.at(p));
+    }
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("a plate sinks flat as fast as its weight over drag and area, and slower than on edge") {
+    constexpr double kDrag = 5000, kSide = 0.4, kHeight = 0.05;
+    for (const bool on_edge : {false, true}) {
+        Aggregate m = plate(on_edge ? 0.5 * kPi : 0);
+        SimSettings settings = explicit_settings();
+        settings.gravity = {0, -9.81, 0};
+        settings.directional_drag = kDrag;
+        const Apparatus nothing;
+        Simulation simulation(m, nothing, settings);
+        const double area = kSide * (on_edge ? kHeight : kSide);
+        const double terminal = m.mass() * 9.81 / (kDrag * area), rate = 9.81 / terminal;
+        const FrameReport r = simulation.advance(at(0), at(0.05));
+        CHECK(-mean_velocity(m).y() ==
+              Approx(terminal * (1 - std::exp(-0.05 * rate))).epsilon(0.02));
+        CHECK(r.damped == Approx(r.gravity_work - r.kinetic - r.elastic).epsilon(0.03));
+    }
+}
+
+TEST_CASE(
+    "a tilted plate falls straight under drag against its motion, aside under drag along its "
+    "normal") {
+    constexpr double kTilt = 0.4;
+    for (const DragAlong along : {DragAlong::motion, DragAlong::normal}) {
+        Aggregate m = plate(kTilt);
+        SimSettings settings = explicit_settings();
+        settings.gravity = {0, -9.81, 0};
+        settings.directional_drag = 5000;
+        settings.directional_drag_along = along;
+        const Apparatus nothing;
+        Simulation simulation(m, nothing, settings);
+        simulation.advance(at(0), at(0.02));
+        const Vec3 v = mean_velocity(m);
+        CHECK(v.y() < -0.05);
+        if (along == DragAlong::motion) {
+            CHECK(std::abs(v.x()) < 0.02 * std::abs(v.y()));
+        } else {
+            // The lower side's normal (sin, -cos) is pushed back: up, and down the slope.
+            CHECK(v.x() < -0.05 * std::abs(v.y()));
+        }
+    }
+}

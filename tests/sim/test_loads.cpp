@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/advance.h"
+#include "sim/load_set.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+const Material kSoft{
+    .young_modulus = 1e6, .poisson_ratio = 0.3, .density = 1000, .damping_ratio = 0.2};
+
+Load pressure_on(const Aggregate& matter, double pressure) {
+    Load load;
+    load.name = "pressure";
+    load.point = points_where(matter, [](const Vec3&) { return true; });
+    load.pressure = pressure;
+    load.closed = true;
+    return load;
+}
+
+Load force_on(const Aggregate& matter, std::vector<int> points, const Vec3& force) {
+    Load load;
+    load.name = "push";
+    double area = 0;
+    for (int p : points) area += matter.surface.area[p];
+    for (int p : points) load.force.push_back(matter.surface.area[p] / area * force);
+    load.point = std::move(points);
+    return load;
+}
+
+Grip hold(const Aggregate& matter, std::vector<int> points, const Vec3& axes = Vec3::Ones()) {
+    Grip grip;
+    grip.name = "hold";
+    for (int p : points) grip.anchor.push_back(matter.surface_position(p));
+    grip.point = std::move(points);
+    grip.hold = axes;
+    return grip;
+}
+
+Drive drive_of(const Apparatus& apparatus, double time, double strength) {
+    Drive d;
+    d.time = time;
+    d.world_from_grip.assign(apparatus.grip.size(), Pose{});
+    d.load_strength.assign(apparatus.load.size(), strength);
+    d.gravity_strength = strength;
+    return d;
+}
+
+// Goes from nothing to full strength in so many frames.
+FrameReport put_on(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
+                   int frames) {
+    Simulation simulation(matter, apparatus, settings);
+    FrameReport report;
+    for (int f = 1; f <= frames; ++f) {
+        report = simulation.advance(drive_of(apparatus, f - 1, double(f - 1) / frames),
+                                    drive_of(apparatus, f, double(f) / frames));
+    }
+    return report;
+}
+
+const Vec3 kBent(0.3, -0.2, 0.1);
+Vec3 crooked(const Vec3& x) {
+    return Eigen::AngleAxisd(x.x() + 0.4, kBent.normalized()) * Vec3(1.2 * x.x(), x.y(), x.z()) +
+           x.squaredNorm() * kBent;
+}
+
+}  // namespace
+
+TEST_CASE("pressure all round a body neither pushes nor turns it, however it is bent") {
+    const auto ball = make_shape([](const Vec3& x) { return x.norm() - 0.31; },
+                                 Vec3::Constant(-0.4), Vec3i(8, 8, 8), 0.1);
+    for (Aggregate matter : {make_block(5, 3, 4, 0.1, kSoft), ball}) {
+        deform(matter, crooked);
+        Apparatus apparatus;
+        apparatus.load.push_back(pressure_on(matter, 1e5));
+        const LoadSet loads(apparatus, {});
+        const Drive now = drive_of(apparatus, 1, 1);
+        const double size = loads.size(matter, now);
+        const PushSum sum = loads.sums(matter, now).at(0);
+        CHECK(sum.force.norm() < 1e-14 * size);
+        CHECK(sum.torque.norm() < 1e-14 * size);
+        Vec3Array force;
+        force.resize(matter.particle_count());
+        loads.add_forces(matter, now, force);
+        Vec3 push = Vec3::Zero(), turn = Vec3::Zero();
+        for (std::size_t p = 0; p < force.size(); ++p) {
+            push += force.at(p);
+            turn += matter.particle_position.at(p).cross(force.at(p));
+        }
+        // Weights that are floats sum to one as exactly as whoever made them saw to.
+        const double exact = matter.surface.size() == ball.surface.size() ? 1e-8 : 1e-13;
+        CHECK(push.norm() < exact * size);
+        CHECK(turn.norm() < exact * size);
+        // What had to be taken off for that is little.
+        apparatus.load[0].closed = false;
+        CHECK(LoadSet(apparatus, {}).sums(matter, now).at(0).force.norm() < 0.02 * size);
+    }
+}
+
+TEST_CASE("pressure follows the surface as the body turns") {
+    Aggregate matter = make_block(3, 3, 3, 0.1, kSoft);
+    Apparatus apparatus;
+    apparatus.load.push_back(pressure_on(matter, 1e5));
+    apparatus.load[0].point = points_where(matter, [](const Vec3& x) { return x.z() > 0.149; });
+    apparatus.load[0].closed = false;
+    const LoadSet loads(apparatus, {});
+    const Eigen::AngleAxisd turn(2, Vec3(1, 2, 3).normalized());
+    deform(matter, [&](const Vec3& x) { return Vec3(turn * Vec3(2 * x.x(), x.y(), x.z())); });
+    const PushSum sum = loads.sums(matter, drive_of(apparatus, 1, 0.5)).at(0);
+    CHECK((sum.force - turn * Vec3(0, 0, -0.5 * 1e5 * 0.18)).norm() < 1e-6);
+}
+
+TEST_CASE("a body under pressure shrinks by p / K, and the pressure's work is p dV") {
+    constexpr double kPressure = 2e3;
+    Aggregate matter = make_block(4, 4, 4, 0.1, kSoft);
+    Apparatus apparatus;
+    apparatus.load.push_back(pressure_on(matter, kPressure));
+    SimSettings settings;
+    settings.tolerance = 1e-4;
+    const FrameReport report = put_on(matter, apparatus, settings, 8);
+    const double bulk = kSoft.young_modulus / (3 * (1 - 2 * kSoft.poisson_ratio));
+    const double volume = 0.064, shrunk = volume * kPressure / bulk;
+    CHECK(report.load_work == Approx(0.5 * kPressure * shrunk).epsilon(5e-3));
+    CHECK(report.elastic == Approx(report.load_work).epsilon(5e-3));
+    CHECK(std::abs(report.remainder) < 5e-3 * report.load_work);
+}
+
+TEST_CASE("loads put on slowly leave the books of a resting body closed, and at once do not") {
+    Aggregate start = make_block(16, 4, 4, 0.025, kSoft);
+    Apparatus apparatus;
+    apparatus.grip.push_back(
+        hold(start, points_where(start, [](const Vec3& x) { return x.x() < -0.199; })));
+    apparatus.load.push_back(force_on(
+        start, points_where(start, [](const Vec3& x) { return x.x() > 0.199; }), {0.5, 0, -0.3}));
+    SimSettings settings;
+    settings.tolerance = 1e-4;
+    settings.grip_stiffness = 100;
+    settings.gravity = {0, 0, -3};
+    for (int frames : {8, 1}) {
+        Aggregate matter = start;
+        const FrameReport r = put_on(matter, apparatus, settings, frames);
+        CHECK(r.load_work > 0);
+        CHECK(r.gravity_work > 0);
+        const double work = r.load_work + r.gravity_work;
+        CHECK(r.elastic == Approx(work).epsilon(0.02));
+        CHECK(std::abs(r.remainder) < 0.02 * work);
+        REQUIRE(r.load.size() == 3);
+        CHECK(r.load[1].work == r.load_work);
+        CHECK(r.load[2].name == "gravity");
+        // What the vice holds is what is asked for.
+        CHECK((r.load[0].force + r.load[1].force + r.load[2].force).norm() <
+              1e-3 * r.load[2].force.norm());
+    }
+    Aggregate matter = start;
+    Simulation simulation(matter, apparatus, settings);
+    const FrameReport r = simulation.advance(drive_of(apparatus, 0, 1), drive_of(apparatus, 1, 1));
+    CHECK(r.remainder == Approx(0.5 * (r.load_work + r.gravity_work)).epsilon(0.05));
+}
+
+TEST_CASE("in explicit steps the work of loads and gravity is what moves and strains the body") {
+    Material material = kSoft;
+    material.damping_ratio = 0;
+    Aggregate matter = make_block(8, 3, 3, 0.05, material);
+    Apparatus apparatus;
+    apparatus.load.push_back(force_on(
+        matter, points_where(matter, [](const Vec3& x) { return x.x() > 0.199; }), {20, 0, 5}));
+    apparatus.load.push_back(pressure_on(matter, 3e3));
+    SimSettings settings;
+    settings.solver = Solver::explicit_steps;
+    settings.step_safety = 0.2;
+    settings.gravity = {0, -9.81, 0};
+    Simulation simulation(matter, apparatus, settings);
+    FrameReport r;
+    for (int f = 0; f < 4; ++f) {
+        r = simulation.advance(drive_of(apparatus, 0.05 * f, 0.25 * f),
+                               drive_of(apparatus, 0.05 * (f + 1), 0.25 * (f + 1)));
+    }
+    CHECK(r.load_work > 0.05 * r.gravity_work);
+    CHECK(r.kinetic + r.elastic == Approx(r.load_work + r.gravity_work).epsilon(0.01));
+    CHECK(std::abs(r.remainder) < 0.01 * r.kinetic);
+    // Pressure all round does not drive it, so the rest is Newton's.
+    Vec3 momentum = Vec3::Zero();
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        momentum += matter.particle_mass[p] * matter.particle_velocity.at(p);
+    }
+    const Vec3 pushed = 0.1 * (Vec3(20, 0, 5) + matter.mass() * Vec3(0, -9.81, 0));
+    CHECK((momentum - pushed).norm() < 0.01 * pushed.norm());
+}
+
+TEST_CASE("a grip along one axis holds that one and leaves the others free") {
+    Aggregate matter = make_block(6, 4, 4, 0.05, kSoft);
+    const auto at = [&](int axis) {
+        return points_where(matter, [&](const Vec3& x) {
+            return x[axis] < -0.5 * 0.05 * (axis == 0 ? 6 : 4) + 1e-6;
+        });
+    };
+    Apparatus apparatus;
+    for (int axis = 0; axis < 3; ++axis) {
+        apparatus.grip.push_back(hold(matter, at(axis), Vec3::Unit(axis)));
+    }
+    const double stress = 1e3;
+    const auto end = points_where(matter, [](const Vec3& x) { return x.x() > 0.149; });
+    apparatus.load.push_back(force_on(matter, end, {stress * 0.04, 0, 0}));
+    SimSettings settings;
+    settings.tolerance = 1e-5;
+    settings.grip_stiffness = 100;
+    put_on(matter, apparatus, settings, 1);
+    // Three smooth planes keep nothing from Hooke's strain.
+    const double strain = stress / kSoft.young_modulus;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3Array &x = matter.particle_position, &from = matter.particle_reference;
+        const double expected = axis == 0 ? strain : -kSoft.poisson_ratio * strain;
+        double stretched = 0, length = 0;
+        for (std::size_t p = 0; p < x.size(); ++p) {
+            const double far = from.at(p)[axis];
+            if (std::abs(far) < 0.099) continue;
+            stretched += far > 0 ? x.at(p)[axis] - far : far - x.at(p)[axis];
+            length += std::abs(far);
+        }
+        CHECK(stretched / length == Approx(expected).epsilon(0.01));
+    }
+}
