@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
@@ -73,10 +74,10 @@ SWAGE_INLINE CellHistory<V> load_history(const SlabTask& task, CellId cell) {
 // Whether any cell of a batch of eight has flowed.
 SWAGE_INLINE bool has_flowed(const SlabTask& task, CellId cell) {
     if (task.alpha == nullptr) return false;
-    const int count = std::min(kLanes, task.cells - cell);
-    float sum = 0;
-    for (int l = 0; l < count; ++l) sum += task.alpha[cell + l];
-    return sum > 0;
+    std::int64_t bits[kLanes / 2] = {};
+    const std::size_t count = std::min(kLanes, task.cells - cell);
+    std::memcpy(bits, task.alpha + cell, count == kLanes ? sizeof bits : count * sizeof(float));
+    return ((bits[0] | bits[1]) | (bits[2] | bits[3])) != 0;
 }
 
 template <int kWidth, CellKind kKind>
