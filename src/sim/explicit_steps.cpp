@@ -109,6 +109,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     const auto start_strain = matter_.cell_plastic_strain;
     const auto start_modes = matter_.cell_plastic_modes;
     const auto start_hardening = matter_.cell_hardening;
+    const auto start_mixed = matter_.mixed_cell;
     const ContactSet start_contacts = contacts_;
     double dt = step_;
     for (;; dt *= 0.5, ++outcome.halvings) {
@@ -122,6 +123,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         matter_.cell_plastic_strain = start_strain;
         matter_.cell_plastic_modes = start_modes;
         matter_.cell_hardening = start_hardening;
+        matter_.mixed_cell = start_mixed;
         contacts_ = start_contacts;
         if (outcome.halvings == settings_.halving_limit) {
             fail(ExitCode::stopped,

@@ -74,9 +74,9 @@ void QuasistaticSolver::connections_changed() {
     const double a = matter_.lattice.spacing;
     const double full_mass = matter_.material.density * a * a * a;
     drag_.resize(matter_.particle_count());
+    const double modulus = matter_.mean_modulus();
     for (std::size_t p = 0; p < drag_.size(); ++p) {
-        drag_[p] =
-            kDrag * matter_.material.young_modulus * a * matter_.particle_mass[p] / full_mass;
+        drag_[p] = kDrag * modulus * a * matter_.particle_mass[p] / full_mass;
     }
     previous_motion_.clear();
 }
@@ -116,7 +116,7 @@ void QuasistaticSolver::evaluate(const Drive& to) {
 // of the residual. A force not yet carried through the body shows in the residual itself.
 double QuasistaticSolver::push_limit(const Drive& to) const {
     const double a = matter_.lattice.spacing;
-    double push = kLeastPush * matter_.material.young_modulus * a * a;
+    double push = kLeastPush * matter_.mean_modulus() * a * a;
     for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
     for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
         double sum = 0;
