@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cell that the plane boundary of two materials crosses. Each obeys its own law (laws/cell.h) with
-// its own share of the cell, seen from its own centroid; across the boundary the gradient may jump
-// along the normal n, by as much as lets the traction pass:
+// A cell that the plane boundary of two materials crosses. Each obeys its own law (laws/cell.h)
+// with its own share of the cell, seen from its own centroid; across the boundary the gradient may
+// jump along the normal n, by as much as lets the traction pass:
 //
 //     F_1 = F(c_1) + (f_2 / f) a n^T        F_2 = F(c_2) - (f_1 / f) a n^T       f = f_1 + f_2
 //     W = sum of f_m V w_m(F_m) + f_m^3 W_q,m(F(c_m)^T Q)                         [J]
@@ -11,9 +11,13 @@
 // forces are the gradient of W with a held. Plastic flow couples strain and modes within each
 // material as in laws/cell.h.
 //
+// NOTE: where either material can yield there is no jump (a = 0): with flow in it the minimum was
+// not found in one cell of twenty, which kept whole bodies from coming to rest. In series such
+// cells are too stiff, by f_soft a / L of the strain over a soft length L at most.
+//
 // Source of the jump: rank-one laminates, e.g. G. Milton, "The theory of composites", 2002, ch. 9.
-// a is found by Broyden's method from the laminate of small strains (C. Broyden, "A class of methods
-// for solving nonlinear simultaneous equations", Math. Comp. 19, 1965).
+// a is found by Broyden's method from the laminate of small strains (C. Broyden, "A class of
+// methods for solving nonlinear simultaneous equations", Math. Comp. 19, 1965).
 #pragma once
 
 #include "laws/cell_forces.h"
@@ -31,11 +35,11 @@ struct Phase {
 
 template <typename N>
 struct PhaseState {
-    Columns<N> gradient;      // F(c_m)
-    CellModes<N> modes;       // F(c_m)^T Q
-    Columns<N> stress;        // P_m [Pa]
+    Columns<N> gradient;       // F(c_m)
+    CellModes<N> modes;        // F(c_m)^T Q
+    Columns<N> stress;         // P_m [Pa]
     CellModes<N> mode_stress;  // dW_q/dq of a whole cell
-    CellFlowed<N> flowed;     // of what yields
+    CellFlowed<N> flowed;      // of what yields
 };
 
 // Stress at gradient f.
@@ -94,8 +98,8 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
     }
     const N all = m[0].fill + m[1].fill;
     const N share[2] = {m[1].fill / all, -1.0 * m[0].fill / all};
-    // Inverse of the acoustic tensor of small strains, sum of mu (1 + v v^T) with v along the normal
-    // as the cell has turned it.
+    // Inverse of the acoustic tensor of small strains, sum of mu (1 + v v^T) with v along the
+    // normal as the cell has turned it.
     N shear{}, along{};
     for (int p = 0; p < 2; ++p) {
         const double mu = m[p].law->shear, rise = m[p].law->bulk + mu / 3;
@@ -112,8 +116,9 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
     inverse.y.y = inverse.y.y + one;
     inverse.z.z = inverse.z.z + one;
 
-    const double noise = kNoise * larger(m[0].law->shear + m[0].law->bulk,
-                                         m[1].law->shear + m[1].law->bulk);
+    const double noise =
+        kNoise * larger(m[0].law->shear + m[0].law->bulk, m[1].law->shear + m[1].law->bulk);
+    const bool flows = m[0].kind == CellKind::yielding || m[1].kind == CellKind::yielding;
     r.jump = {N{}, N{}, N{}};
     Triple<N> step{}, last{};
     for (r.rounds = 0;; ++r.rounds) {
@@ -127,8 +132,9 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         }
         const Triple<N> left = pull[0] - pull[1];
         const N size = dot(pull[0], pull[0]) + dot(pull[1], pull[1]);
-        const N wrong = dot(left, left), right = kTractionLeft * kTractionLeft * size + noise * noise;
-        if (r.rounds == kMostRounds || all_less(wrong, right)) return;
+        const N wrong = dot(left, left),
+                right = kTractionLeft * kTractionLeft * size + noise * noise;
+        if (flows || r.rounds == kMostRounds || all_less(wrong, right)) return;
         if (r.rounds > 0) {
             // The step was meant to bring the difference to nothing; what it did corrects.
             const Triple<N> gone = inverse * (left - last);
@@ -161,18 +167,16 @@ SWAGE_INLINE CornerSums<N> laminate_forces(const CornerSums<N>& c, const Phase<N
         const Triple<N>& at = m[p].at;
         const N scale = volume * m[p].fill;
         const Triple<N> centre{};
-        CornerSums<N> f =
-            sum_forces(c, s.gradient,
-                       Columns<N>{scale * s.stress.x, scale * s.stress.y, scale * s.stress.z},
-                       mode_fill(m[p].fill) * s.mode_stress, centre, spacing);
+        CornerSums<N> f = sum_forces(
+            c, s.gradient, Columns<N>{scale * s.stress.x, scale * s.stress.y, scale * s.stress.z},
+            mode_fill(m[p].fill) * s.mode_stress, centre, spacing);
         f.xy = f.xy + at.y * f.x + at.x * f.y;
         f.yz = f.yz + at.z * f.y + at.y * f.z;
         f.zx = f.zx + at.z * f.x + at.x * f.z;
         return f;
     };
     const CornerSums<N> a = of(0), b = of(1);
-    return {a.x + b.x,   a.y + b.y,   a.z + b.z,    a.xy + b.xy,
-            a.yz + b.yz, a.zx + b.zx, a.xyz + b.xyz};
+    return {a.x + b.x, a.y + b.y, a.z + b.z, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx, a.xyz + b.xyz};
 }
 
 }  // namespace swage

@@ -130,10 +130,10 @@ struct SurfacePoints {
 struct MixedCell {
     static constexpr int kHistory = 19;  // as of a cell: plastic strain, modes, hardening
     CellId cell;
-    std::array<std::uint8_t, 2> material;       // as cell_material
-    std::array<float, 2> fill;                  // shares of the cell's volume
-    std::array<Eigen::Vector3f, 2> centroid;    // of these, in the cell, each -0.5 to 0.5
-    Eigen::Vector3f normal;                     // of the boundary between them, unit
+    std::array<std::uint8_t, 2> material;                 // as cell_material
+    std::array<float, 2> fill;                            // shares of the cell's volume
+    std::array<Eigen::Vector3f, 2> centroid;              // of these, in the cell, each -0.5 to 0.5
+    Eigen::Vector3f normal;                               // of the boundary between them, unit
     std::array<std::array<float, kHistory>, 2> flowed{};  // committed
 };
 
@@ -179,7 +179,7 @@ struct Aggregate {
     const Material& material_of(CellId cell) const {
         return cell_material.empty() ? material : material_at(cell_material[cell]);
     }
-    double mean_modulus() const;  // Young's, by volume [Pa]
+    double mean_modulus() const;           // Young's, by volume [Pa]
     std::size_t connection_count() const;  // unsevered ones
     double volume() const;                 // of the material at molding [m3]
     double mass() const;                   // [kg]

@@ -90,9 +90,8 @@ void place_particles(const MoldFrame& frame, Aggregate& matter) {
 
 // Mean of what a cell of a body of several materials holds.
 double density_of(const Aggregate& matter, CellId cell) {
-    const auto mixed = std::lower_bound(
-        matter.mixed_cell.begin(), matter.mixed_cell.end(), cell,
-        [](const MixedCell& m, CellId c) { return m.cell < c; });
+    const auto mixed = std::lower_bound(matter.mixed_cell.begin(), matter.mixed_cell.end(), cell,
+                                        [](const MixedCell& m, CellId c) { return m.cell < c; });
     if (mixed == matter.mixed_cell.end() || mixed->cell != cell) {
         return matter.material_of(cell).density;
     }

@@ -41,7 +41,7 @@ struct SlabTask {
     double* force[3];
     double* seam[3] = {};
     ParticleId zeroed = 0, end = 0, reach = 0;  // the slab's forces are zero up to `zeroed`
-    const float* strain[kStrains] = {};  // committed
+    const float* strain[kStrains] = {};         // committed
     const float* modes[kModes] = {};
     const float* alpha = nullptr;  // null: nothing has flowed
     std::vector<const CellRun*>* crushed_run = nullptr;
@@ -247,9 +247,8 @@ void for_each_cell(const Aggregate& matter, std::size_t begin, std::size_t end, 
 
 CellSweep::CellSweep(const Aggregate& matter)
     : law_(material_laws(matter)), slab_(cell_slabs(matter)), crushed_(slab_.size()) {
-    yields_ = std::any_of(law_.begin(), law_.end(), [](const MaterialLaw& law) {
-        return law.kind == CellKind::yielding;
-    });
+    yields_ = std::any_of(law_.begin(), law_.end(),
+                          [](const MaterialLaw& law) { return law.kind == CellKind::yielding; });
     for (const CellSlab& slab : slab_) {
         slab_run_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
         for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
@@ -265,10 +264,10 @@ void CellSweep::cells_changed(const Aggregate& matter) {
     const std::vector<CellRun>& runs = this->runs(matter);
     for_each_cell(matter, 0, matter.lattice.cell_run.size(),
                   [&](const CellRun& run, int n, CellId cell) {
-        std::array<ParticleId, 4> row = run.row;
-        for (ParticleId& p : row) p += n;
-        if (!cell_is_whole(matter, row)) fill_[cell] = 0;
-    });
+                      std::array<ParticleId, 4> row = run.row;
+                      for (ParticleId& p : row) p += n;
+                      if (!cell_is_whole(matter, row)) fill_[cell] = 0;
+                  });
     mixed_.cells_changed(matter, fill_);
     swept_.clear();
     if (!matter.mixed_cell.empty()) swept_ = fill_;
@@ -345,8 +344,7 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
         task.run_end = runs.data() + slab_run_[index];
         while (task.run_end != end) {
             task.run = task.run_end;
-            const std::size_t material =
-                piece_.empty() ? 0 : matter.cell_material[task.run->first];
+            const std::size_t material = piece_.empty() ? 0 : matter.cell_material[task.run->first];
             do {
                 ++task.run_end;
             } while (task.run_end != end &&
@@ -407,21 +405,21 @@ double CellSweep::elastic_energy(const Aggregate& matter) const {
     const double volume = std::pow(matter.lattice.spacing, 3);
     const double swept = ordered_sum(slab_.size(), [&](std::size_t s) {
         double sum = 0;
-        for_each_cell(matter, slab_[s].run_begin, slab_[s].run_end,
-                      [&](const CellRun& run, int n, CellId cell) {
-                          const double fill = this->swept()[cell];
-                          if (fill <= 0) return;
-                          const auto& [law, kind] = law_of(matter, cell);
-                          const OneCell c = one_cell(matter, run, n);
-                          const CellHistory<double> history = history_of(matter, cell);
-                          const CellModes<double> q = c.modes - history.modes;
-                          const double modes =
-                              0.5 * mode_fill(fill) * product(mode_stress(law, q), q);
-                          const double mean =
-                              kind == CellKind::rubber ? rubber_energy(law, c.gradient)
-                                      : strain_energy(law, cell_strain(c.gradient).log, history);
-                          sum += volume * fill * mean + modes;
-                      });
+        for_each_cell(
+            matter, slab_[s].run_begin, slab_[s].run_end,
+            [&](const CellRun& run, int n, CellId cell) {
+                const double fill = this->swept()[cell];
+                if (fill <= 0) return;
+                const auto& [law, kind] = law_of(matter, cell);
+                const OneCell c = one_cell(matter, run, n);
+                const CellHistory<double> history = history_of(matter, cell);
+                const CellModes<double> q = c.modes - history.modes;
+                const double modes = 0.5 * mode_fill(fill) * product(mode_stress(law, q), q);
+                const double mean = kind == CellKind::rubber
+                                        ? rubber_energy(law, c.gradient)
+                                        : strain_energy(law, cell_strain(c.gradient).log, history);
+                sum += volume * fill * mean + modes;
+            });
         return sum;
     });
     return swept + mixed_.elastic_energy(matter, law_);
@@ -461,29 +459,28 @@ void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>
         return Bound{of(alone), of(among)};
     };
     auto mixed = matter.mixed_cell.begin();
-    for_each_cell(matter, 0, matter.lattice.cell_run.size(),
-                  [&](const CellRun& run, int n, CellId cell) {
-                      const bool is_mixed =
-                          mixed != matter.mixed_cell.end() && mixed->cell == cell;
-                      const MixedCell* two = is_mixed ? &*mixed++ : nullptr;
-                      if (fill_[cell] <= 0) return;
-                      Bound own;
-                      if (two == nullptr) {
-                          own = bound_of(law_of(matter, cell).moduli, fill_[cell],
-                                         matter.cell_centroid[cell]);
-                      }
-                      for (int m = 0; m < 2 && two != nullptr; ++m) {
-                          const Bound part = bound_of(law_[two->material[m]].moduli, two->fill[m],
-                                                      two->centroid[m]);
-                          own.most += part.most, own.less += part.less;
-                      }
-                      for (int c = 0; c < 8; ++c) {
-                          const ParticleId p = run.row[c >> 1] + n + (c & 1);
-                          bound[p] += own.most;
-                          held_back[p] += own.most - own.less;
-                          ++cells[p];
-                      }
-                  });
+    for_each_cell(
+        matter, 0, matter.lattice.cell_run.size(), [&](const CellRun& run, int n, CellId cell) {
+            const bool is_mixed = mixed != matter.mixed_cell.end() && mixed->cell == cell;
+            const MixedCell* two = is_mixed ? &*mixed++ : nullptr;
+            if (fill_[cell] <= 0) return;
+            Bound own;
+            if (two == nullptr) {
+                own =
+                    bound_of(law_of(matter, cell).moduli, fill_[cell], matter.cell_centroid[cell]);
+            }
+            for (int m = 0; m < 2 && two != nullptr; ++m) {
+                const Bound part =
+                    bound_of(law_[two->material[m]].moduli, two->fill[m], two->centroid[m]);
+                own.most += part.most, own.less += part.less;
+            }
+            for (int c = 0; c < 8; ++c) {
+                const ParticleId p = run.row[c >> 1] + n + (c & 1);
+                bound[p] += own.most;
+                held_back[p] += own.most - own.less;
+                ++cells[p];
+            }
+        });
     for (std::size_t p = 0; p < bound.size(); ++p) bound[p] -= cells[p] / 8.0 * held_back[p];
 }
 

@@ -96,8 +96,9 @@ int resist(const Aggregate& matter, const std::vector<SmallCell>& crushed, Vec3A
         const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
         Mat3 cofactor;
         cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
-        const Mat3 stress = material_volume(matter, cell) *
-                            guard_slope(matter.material_of(id_of(cell)).young_modulus, cell.volume) * cofactor;
+        const Mat3 stress =
+            material_volume(matter, cell) *
+            guard_slope(matter.material_of(id_of(cell)).young_modulus, cell.volume) * cofactor;
         for (int c = 0; c < 8; ++c) {
             Vec3 slope;  // of the gradient's columns with the corner's position
             for (int axis = 0; axis < 3; ++axis) {

@@ -48,15 +48,15 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             const CellId cell = run.first + n;
-            double stiffness = lattice_stiffness(matter.material_of(cell).young_modulus,
-                                                 matter.lattice.spacing) *
-                               matter.cell_fill[cell];
+            double stiffness =
+                lattice_stiffness(matter.material_of(cell).young_modulus, matter.lattice.spacing) *
+                matter.cell_fill[cell];
             if (mixed != matter.mixed_cell.end() && mixed->cell == cell) {
                 stiffness = 0;
                 for (int m : {0, 1}) {
                     const Material& material = matter.material_at(mixed->material[m]);
-                    stiffness += mixed->fill[m] * lattice_stiffness(material.young_modulus,
-                                                                    matter.lattice.spacing);
+                    stiffness += mixed->fill[m] *
+                                 lattice_stiffness(material.young_modulus, matter.lattice.spacing);
                 }
                 ++mixed;
             }

@@ -32,8 +32,8 @@ SWAGE_INLINE void set_lane(double& v, int, double to) { v = to; }
 // Lane of a batch, or all there is of a number.
 template <typename N>
 SWAGE_INLINE void read_cell(const Vec3Array& x, const MixedCell& cell,
-                            const std::array<ParticleId, 8>& corner, int lane,
-                            N (&at)[3][8], Phase<N> (&phase)[2], Triple<N>& normal) {
+                            const std::array<ParticleId, 8>& corner, int lane, N (&at)[3][8],
+                            Phase<N> (&phase)[2], Triple<N>& normal) {
     for (int c = 0; c < 8; ++c) {
         set_lane(at[0][c], lane, x.x[corner[c]]);
         set_lane(at[1][c], lane, x.y[corner[c]]);
@@ -51,8 +51,9 @@ SWAGE_INLINE void read_cell(const Vec3Array& x, const MixedCell& cell,
         Symmetric<N>& e = m.history.strain;
         CellModes<N>& q = m.history.modes;
         N* const slot[MixedCell::kHistory] = {
-            &e.xx,   &e.yy,   &e.zz,   &e.xy,   &e.yz,   &e.zx,    &q.xy.x,  &q.xy.y,  &q.xy.z, &q.yz.x,
-            &q.yz.y, &q.yz.z, &q.zx.x, &q.zx.y, &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &m.history.alpha};
+            &e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,           &e.zx,   &q.xy.x,
+            &q.xy.y, &q.xy.z,  &q.yz.x,  &q.yz.y,  &q.yz.z,         &q.zx.x, &q.zx.y,
+            &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &m.history.alpha};
         for (int n = 0; n < MixedCell::kHistory; ++n) set_lane(*slot[n], lane, cell.flowed[p][n]);
     }
 }
@@ -74,7 +75,8 @@ SWAGE_INLINE void batch_forces(const MixedBatch& b) {
         V at[3][8]{};
         Phase<V> phase[2]{};
         Triple<V> normal{};
-        for (int p = 0; p < 2; ++p) phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
+        for (int p = 0; p < 2; ++p)
+            phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
         for (int l = 0; l < kWidth; ++l) {
             // Lanes that are left over repeat the last cell.
             const int n = std::min(begin + l, b.count - 1);
@@ -138,8 +140,8 @@ void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>
     for (std::size_t n = 0; n < matter.mixed_cell.size(); ++n) {
         const MixedCell& cell = matter.mixed_cell[n];
         if (carried[cell.cell] <= 0) continue;
-        const bool same = !cell_.empty() &&
-                          matter.mixed_cell[cell_.back()].material == cell.material;
+        const bool same =
+            !cell_.empty() && matter.mixed_cell[cell_.back()].material == cell.material;
         const int at = static_cast<int>(cell_.size());
         if (!same || at - batch_.back() == kLanes) batch_.push_back(at);
         cell_.push_back(static_cast<int>(n));
@@ -187,13 +189,13 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
             if (one.phase[p].kind != CellKind::yielding || !(r.d_alpha > 0)) continue;
             const CellModuli& law = *one.phase[p].law;
             auto& flowed = cell.flowed[p];
-            lost += volume * one.phase[p].fill * r.d_alpha *
-                    (law.yield_stress +
-                     law.hardening * (one.phase[p].history.alpha + 0.5 * r.d_alpha));
+            lost +=
+                volume * one.phase[p].fill * r.d_alpha *
+                (law.yield_stress + law.hardening * (one.phase[p].history.alpha + 0.5 * r.d_alpha));
             const Symmetric<double>& e = r.distortion;
             const CellModes<double>& q = r.modes;
-            const double grown[] = {e.xx,   e.yy,   e.zz,   e.xy,   e.yz,   e.zx,
-                                    q.xy.x, q.xy.y, q.xy.z, q.yz.x, q.yz.y, q.yz.z,
+            const double grown[] = {e.xx,   e.yy,   e.zz,   e.xy,    e.yz,    e.zx,
+                                    q.xy.x, q.xy.y, q.xy.z, q.yz.x,  q.yz.y,  q.yz.z,
                                     q.zx.x, q.zx.y, q.zx.z, q.xyz.x, q.xyz.y, q.xyz.z};
             for (int s = 0; s + 1 < MixedCell::kHistory; ++s) {
                 flowed[s] += static_cast<float>((1 - r.kept) * grown[s]);

@@ -69,8 +69,8 @@ void layers_along(bool brief, Values& values) {
                         // The patch is half a cell high.
                         const double soft = std::clamp((y - at) / (0.5 * a) + 0.5, 0.0, 1.0);
                         const double modulus = soft + kStiff * (1 - soft);
-                        const double pull = stand.matter.surface.area[p] * modulus * kStrain *
-                                            (bends ? at : 1.0);
+                        const double pull =
+                            stand.matter.surface.area[p] * modulus * kStrain * (bends ? at : 1.0);
                         load.force.push_back(side * pull * Vec3::UnitX());
                         force += pull, moment += pull * at;
                     }
@@ -83,8 +83,8 @@ void layers_along(bool brief, Values& values) {
                 const double strain = (bent * force - coupled * moment) / det;
                 const double bend = (stretched * moment - coupled * force) / det;
                 if (bends) {
-                    const double rate = -turn_rate(stand.matter, Vec3::UnitX(), 1, 0.25 * a,
-                                                   Vec3::UnitZ());
+                    const double rate =
+                        -turn_rate(stand.matter, Vec3::UnitX(), 1, 0.25 * a, Vec3::UnitZ());
                     values.add(relative(at_fraction("bending", fraction), across, bend, rate,
                                         across == 8 ? 0.01 : 0.02));
                 } else {

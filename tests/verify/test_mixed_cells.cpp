@@ -19,8 +19,8 @@ constexpr double kSpacing = 0.25;
 Aggregate bar_with_ball(const Material& outside, const Material& inside) {
     MoldSettings settings;
     settings.spacing = kSpacing;
-    TriMesh bar = make_shape("bar", {{"length", 2}, {"height", 1}, {"width", 1}, {"rounding", 0}})
-                      .mesh;
+    TriMesh bar =
+        make_shape("bar", {{"length", 2}, {"height", 1}, {"width", 1}, {"rounding", 0}}).mesh;
     TriMesh ball = make_shape("sphere", {{"diameter", 0.8}, {"division", 24}}).mesh;
     const Box a = box_of(bar.position), b = box_of(ball.position);
     for (Vec3& p : ball.position) p += a.center() - b.center() + Vec3(0.07, 0.03, -0.04);
