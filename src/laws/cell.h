@@ -217,15 +217,22 @@ SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const Symmetri
         evaluate(e, CayleySeries<N>{k1 - e.i1 * k2 + e.i2 * k3, k2 - e.i1 * k3, k3});
     return sandwich(Symmetric<N>{y.xx - 1.0, y.yy - 1.0, y.zz - 1.0, y.xy, y.yz, y.zx}, s);
 }
-// The same of a dW/dE that is a function of Y.
+// The same of a dW/dE that is a function of Y: (I - Y)^2 (I + Y^2 + Y^4) t. The powers are written
+// out, which is longer than multiplying by Y again and again, but none waits for another.
 template <typename N>
 SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const CayleySeries<N>& t) {
-    // (I - Y)^2 (I + Y^2 + Y^4) t
-    CayleySeries<N> s = t + times_cayley(e, times_cayley(e, t));
-    s = t + times_cayley(e, times_cayley(e, s));
-    s = s - times_cayley(e, s);
-    s = s - times_cayley(e, s);
-    return evaluate(e, s);
+    const N p = e.i1 * e.i1 - e.i2, q = e.i1 * e.i3;
+    const CayleySeries<N> y3 = {e.i3, -1.0 * e.i2, e.i1};
+    const CayleySeries<N> y4 = {q, e.i3 - e.i1 * e.i2, p};
+    const CayleySeries<N> y5 = {e.i3 * p, q - e.i2 * p, e.i1 * (p - e.i2) + e.i3};
+    const CayleySeries<N> y6 = times_cayley(e, y5), odd = y4 - y3 - y5;
+    const CayleySeries<N> m = {1.0 + 2.0 * odd.a + y6.a, 2.0 * odd.b + y6.b - 2.0,
+                               2.0 + 2.0 * odd.c + y6.c};
+    const N m3 = m.b * t.c + m.c * t.b, m4 = m.c * t.c;
+    return evaluate(e, CayleySeries<N>{
+                           m.a * t.a + (m3 * y3.a + m4 * y4.a),
+                           (m.a * t.b + m.b * t.a) + (m3 * y3.b + m4 * y4.b),
+                           (m.a * t.c + m.b * t.b + m.c * t.a) + (m3 * y3.c + m4 * y4.c)});
 }
 
 // f^2, which alone leaves nothing to hold a sliver's corners; and f times that.

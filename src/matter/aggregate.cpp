@@ -21,6 +21,24 @@ double Aggregate::volume() const {
     return cells * lattice.spacing * lattice.spacing * lattice.spacing;
 }
 
+double Aggregate::mean_modulus() const {
+    if (inset.empty()) return material.young_modulus;
+    double sum = 0, cells = 0;
+    auto mixed = mixed_cell.begin();
+    for (std::size_t c = 0; c < cell_fill.size(); ++c) {
+        cells += cell_fill[c];
+        if (mixed != mixed_cell.end() && mixed->cell == static_cast<CellId>(c)) {
+            for (int m : {0, 1}) {
+                sum += mixed->fill[m] * material_at(mixed->material[m]).young_modulus;
+            }
+            ++mixed;
+        } else {
+            sum += cell_fill[c] * material_of(static_cast<CellId>(c)).young_modulus;
+        }
+    }
+    return sum / cells;
+}
+
 double Aggregate::mass() const {
     double sum = 0;
     for (double m : particle_mass) sum += m;
@@ -83,8 +101,9 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_reference) + bytes_of(particle_position) +
                       bytes_of(particle_velocity) + bytes_of(particle_mass) + bytes_of(cell_fill) +
-                      bytes_of(cell_centroid) + bytes_of(cell_hardening) +
-                      bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
+                      bytes_of(cell_centroid) + bytes_of(cell_hardening) + bytes_of(inset) +
+                      bytes_of(cell_material) + bytes_of(mixed_cell) + bytes_of(surface.corner) +
+                      bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& v : cell_plastic_strain) sum += bytes_of(v);
@@ -156,6 +175,9 @@ std::uint64_t state_hash(const Aggregate& matter) {
         hasher.add(std::span<const float>(v));
     }
     hasher.add(std::span<const float>(matter.cell_hardening));
+    for (const MixedCell& cell : matter.mixed_cell) {
+        for (const auto& part : cell.flowed) hasher.add(std::span<const float>(part));
+    }
     return hasher.value();
 }
 

@@ -126,8 +126,19 @@ struct SurfacePoints {
     std::size_t size() const { return area.size(); }
 };
 
+// A cell through which the boundary of two materials runs.
+struct MixedCell {
+    static constexpr int kHistory = 19;  // as of a cell: plastic strain, modes, hardening
+    CellId cell;
+    std::array<std::uint8_t, 2> material;                 // as cell_material
+    std::array<float, 2> fill;                            // shares of the cell's volume
+    std::array<Eigen::Vector3f, 2> centroid;              // of these, in the cell, each -0.5 to 0.5
+    Eigen::Vector3f normal;                               // of the boundary between them, unit
+    std::array<std::array<float, kHistory>, 2> flowed{};  // committed
+};
+
 struct Aggregate {
-    Material material;
+    Material material;  // its mechanics, friction and damping are the whole body's
     Lattice lattice;
 
     Vec3Array particle_reference;       // position at molding [m]
@@ -140,6 +151,13 @@ struct Aggregate {
     std::vector<float> cell_fill;  // share of the cell's volume inside the mesh, > 0; slivers of a
                                    // neighbour can bring it slightly above 1
     std::vector<Eigen::Vector3f> cell_centroid;  // of that share, in the cell, each -0.5 to 0.5
+
+    // Of a body of several materials: the others; for each cell which it is, 0 being `material` and
+    // m inset[m - 1]; and the cells, in their order, that hold two, whose cell_material is the one
+    // with more of it. All empty where there is one material.
+    std::vector<Material> inset;
+    std::vector<std::uint8_t> cell_material;
+    std::vector<MixedCell> mixed_cell;
 
     // History of the cells, committed; all empty while nothing has ever yielded.
     std::vector<float> cell_hardening;  // accumulated plastic strain
@@ -154,6 +172,14 @@ struct Aggregate {
     SurfacePoints surface;
 
     std::size_t particle_count() const { return particle_mass.size(); }
+    std::size_t material_count() const { return 1 + inset.size(); }
+    const Material& material_at(std::size_t number) const {
+        return number == 0 ? material : inset[number - 1];
+    }
+    const Material& material_of(CellId cell) const {
+        return cell_material.empty() ? material : material_at(cell_material[cell]);
+    }
+    double mean_modulus() const;           // Young's, by volume [Pa]
     std::size_t connection_count() const;  // unsevered ones
     double volume() const;                 // of the material at molding [m3]
     double mass() const;                   // [kg]

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "mold/caps.h"
+#include "mold/insets.h"
 #include "mold/prepare.h"
 #include "mold/shares.h"
 #include "mold/surface.h"
@@ -87,11 +88,27 @@ void place_particles(const MoldFrame& frame, Aggregate& matter) {
     }
 }
 
+// Mean of what a cell of a body of several materials holds.
+double density_of(const Aggregate& matter, CellId cell) {
+    const auto mixed = std::lower_bound(matter.mixed_cell.begin(), matter.mixed_cell.end(), cell,
+                                        [](const MixedCell& m, CellId c) { return m.cell < c; });
+    if (mixed == matter.mixed_cell.end() || mixed->cell != cell) {
+        return matter.material_of(cell).density;
+    }
+    double sum = 0, fill = 0;
+    for (int m : {0, 1}) {
+        sum += mixed->fill[m] * matter.material_at(mixed->material[m]).density;
+        fill += mixed->fill[m];
+    }
+    return sum / fill;
+}
+
 // Each cell shares out its mass and its part of the connections along its edges and faces.
 // NOTE: mass goes to the corners in equal parts. Parts by the material's own place would keep its
 // centre of mass, but leave corners of nearly empty cells so light that no step is small enough.
 void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
-    const double corner_mass = matter.material.density * frame.cell_volume() / 8;
+    const double corner_volume = frame.cell_volume() / 8;
+    const double corner_mass = matter.material.density * corner_volume;
     auto layer = layers.begin();
     std::size_t in_layer = 0;
     for (const CellRun& run : matter.lattice.cell_run) {
@@ -99,7 +116,10 @@ void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Agg
             while (in_layer == layer->share.size()) ++layer, in_layer = 0;
             const double fill = layer->share[in_layer].fill;
             const auto corner = [&](int c) { return run.row[c >> 1] + n + (c & 1); };
-            for (int c = 0; c < 8; ++c) matter.particle_mass[corner(c)] += corner_mass * fill;
+            const double own = matter.inset.empty()
+                                   ? corner_mass * fill
+                                   : corner_volume * fill * density_of(matter, run.first + n);
+            for (int c = 0; c < 8; ++c) matter.particle_mass[corner(c)] += own;
             for (const auto& [direction, lower] : kCellConnection) {
                 const float share = direction < kEdgeCount ? 0.25f : 0.5f;
                 matter.connection[direction].weight[corner(lower)] +=
@@ -167,7 +187,8 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
          thickness, spacing, thickness);
 }
 
-Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spacing) {
+Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spacing,
+                       const std::vector<Inset>& insets) {
     const double volume = signed_volume(mesh);
     const double area = surface_area(mesh);
     if (!(std::abs(volume) > 1e-9 * area * std::sqrt(area))) {
@@ -190,6 +211,7 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     fill_cells(layers, frame, matter);
     if (matter.cell_fill.empty()) refuse_thin(2 * volume / area, spacing);
     place_particles(frame, matter);
+    place_insets(insets, layers, frame, matter);
     share_out(layers, frame, matter);
     matter.surface = carry_patches(layers, frame, matter.lattice, matter.cell_fill);
     tell_findings(mesh, frame, volume, layers, lost, matter);
@@ -198,20 +220,21 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
 
 }  // namespace
 
-Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings) {
+Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,
+               const std::vector<Inset>& insets) {
     const double spacing = spacing_for(mesh, settings);
     refuse_too_many_cells(mesh, settings);
     if (settings.kind == MoldKind::block) {
-        return mold_surface(block_around(mesh, spacing), material, spacing);
+        return mold_surface(block_around(mesh, spacing), material, spacing, insets);
     }
     const Caps caps = caps_over_holes(mesh);
-    if (caps.apex.empty()) return mold_surface(mesh, material, spacing);
+    if (caps.apex.empty()) return mold_surface(mesh, material, spacing, insets);
     const TriMesh closed = with_caps(mesh, caps);
     log_warning(
         "mold: the surface is open: {} closed by flat cones of {:.3g} % of its area",
         caps.apex.size() == 1 ? "one hole was" : fmt::format("{} holes were", caps.apex.size()),
         100 * (surface_area(closed) / surface_area(mesh) - 1));
-    return mold_surface(closed, material, spacing);
+    return mold_surface(closed, material, spacing, insets);
 }
 
 }  // namespace swage

@@ -31,8 +31,16 @@ struct MoldEstimate {
 double spacing_for(const TriMesh& mesh, const MoldSettings& settings);
 MoldEstimate estimate_mold(const TriMesh& mesh, const MoldSettings& settings);
 
+// Where the body is of another material: inside a closed surface, as far as that lies in the body.
+// Of insets that overlap the last counts.
+struct Inset {
+    TriMesh solid;
+    Material material;
+};
+
 // Volume and mass equal the mesh's to 1e-6 at any spacing. Throws Error(mesh) when the mesh
 // encloses nothing, Error(resources) above the limit.
-Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings);
+Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,
+               const std::vector<Inset>& insets = {});
 
 }  // namespace swage

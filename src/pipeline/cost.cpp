@@ -117,7 +117,8 @@ RunCost estimate_cost(const SceneSpec& scene, const InputMesh& input, const RunO
 RunCost count_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options) {
     RunCost cost = estimate_cost(scene, input, options);
     if (cost.mold.active_cells > kCountedCells || scene.stage.empty()) return cost;
-    const Aggregate matter = mold(input.to_mold(), scene.material, scene.mold);
+    const Aggregate matter =
+        mold(input.to_mold(), scene.material, scene.mold, insets_for(input, scene));
     cost.counted = true;
     cost.mold.active_cells = static_cast<double>(matter.cell_fill.size());
     cost.mold.particles = static_cast<double>(matter.particle_count());

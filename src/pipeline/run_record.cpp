@@ -60,6 +60,12 @@ RunIdentity identity_of(const SceneSpec& scene, const InputMesh& input, const Ru
             }
         }
     }
+    for (const InsetSpec& inset : scene.inset) {
+        if (inset.file.empty()) continue;
+        if (std::find(files.begin(), files.end(), inset.file) == files.end()) {
+            files.push_back(inset.file);
+        }
+    }
     for (const fs::path& file : files) add_file(identity, file == scene.file ? "scene" : "", file);
     add_file(identity, "mesh", scene.mesh.file);
     identity.input.push_back(

@@ -2,6 +2,7 @@
 #include "pipeline/work_piece.h"
 
 #include "base/log.h"
+#include "geometry/make_shape.h"
 #include "geometry/mesh_read.h"
 #include "geometry/mesh_repair.h"
 #include "mold/mold.h"
@@ -69,9 +70,40 @@ TriMesh WorkPiece::deformed() const {
     return mesh;
 }
 
+std::vector<Inset> insets_for(const InputMesh& input, const SceneSpec& scene) {
+    std::vector<Inset> insets;
+    const Box box = box_of(input.to_mold().position);
+    for (const InsetSpec& spec : scene.inset) {
+        TriMesh solid;
+        if (spec.file.empty()) {
+            const Vec3 low = box.low + spec.from.cwiseProduct(box.size());
+            const Vec3 high = box.low + spec.to.cwiseProduct(box.size());
+            solid =
+                make_shape(
+                    "bar",
+                    {{"length", 1}, {"height", 1}, {"width", 1}, {"rounding", 0}, {"division", 1}})
+                    .mesh;
+            const Box unit = box_of(solid.position);
+            for (Vec3& p : solid.position) {
+                p = low + (p - unit.low).cwiseQuotient(unit.size()).cwiseProduct(high - low);
+            }
+        } else {
+            InputMesh read = read_mesh_as_it_is(spec.file, std::nullopt);
+            for (Vec3& p : read.mesh.position) p *= input.scale;
+            if (!read.report.bounds_a_volume()) {
+                read.report = check_mesh(read.mesh);
+                make_solid(read, MoldKind::shape);
+            }
+            solid = read.to_mold();
+        }
+        insets.push_back({std::move(solid), spec.material});
+    }
+    return insets;
+}
+
 WorkPiece make_work_piece(const InputMesh& input, const SceneSpec& scene) {
     WorkPiece piece;
-    piece.matter = mold(input.to_mold(), scene.material, scene.mold);
+    piece.matter = mold(input.to_mold(), scene.material, scene.mold, insets_for(input, scene));
     if (scene.skin.kind == SkinKind::boundary) {
         follow_matter(piece, scene.skin.kind);
         return piece;

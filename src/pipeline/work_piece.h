@@ -11,6 +11,7 @@
 #include "geometry/mesh_check.h"
 #include "geometry/trimesh.h"
 #include "matter/aggregate.h"
+#include "mold/mold.h"
 #include "scene/spec.h"
 #include "skin/mount.h"
 
@@ -33,6 +34,9 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
 // The same, and makes sure that it can be molded. Logs one line always, and the account of a
 // repair.
 InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind);
+
+// The scene's insets where this mesh is. Throws Error(mesh).
+std::vector<Inset> insets_for(const InputMesh& input, const SceneSpec& scene);
 
 struct WorkPiece {
     Aggregate matter;

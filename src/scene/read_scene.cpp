@@ -8,6 +8,7 @@
 #include "scene/document.h"
 #include "scene/file_text.h"
 #include "scene/overrides.h"
+#include "scene/read_inset.h"
 #include "scene/read_material.h"
 #include "scene/read_render.h"
 #include "scene/read_stage.h"
@@ -81,8 +82,8 @@ void read_skin(TableReader& table, SkinSettings& skin) {
 
 // Sections and keys at the top that nothing is known of.
 void report_unknown_sections(const Document& document, Reading& reading) {
-    const std::vector<std::string> sections = {"mesh",  "material", "mold",  "skin",
-                                               "stage", "render",   "output"};
+    const std::vector<std::string> sections = {"mesh", "material", "inset",  "mold",
+                                               "skin", "stage",    "render", "output"};
     for (const Entry& entry : document.root.entry) {
         if (std::find(sections.begin(), sections.end(), entry.key) != sections.end()) continue;
         const Node::Kind kind = entry.value.kind;
@@ -117,6 +118,10 @@ void read_document_into(const Document& document, const AssetPaths& assets, Read
                 skin = section("skin"), render = section("render"), output = section("output");
     read_mesh_section(mesh, folder, scene.mesh);
     read_material(material, assets, folder, scene.material, scene.inputs);
+    for (const Node* node : root.tables("inset", "[[inset]]")) {
+        TableReader inset(*node, "[[inset]]", reading);
+        scene.inset.push_back(read_inset(inset, assets, folder, scene.inputs));
+    }
     read_mold(mold, scene.mold);
     read_skin(skin, scene.skin);
     StageReader stages(reading, assets, folder);
@@ -124,6 +129,7 @@ void read_document_into(const Document& document, const AssetPaths& assets, Read
         scene.stage.push_back(stages.read(*node));
     }
     scene.inputs.insert(scene.inputs.end(), stages.inputs().begin(), stages.inputs().end());
+    refuse_with_insets(root, scene);
     if (root.find("stage") == nullptr && reading.is_complete) {
         reading.mistakes.add(absent.place,
                              "nothing to do: the scene has no [[stage]], such as\n"

@@ -22,6 +22,14 @@ struct MeshSpec {
     std::optional<double> length;  // [m] of the longest side of the box; none: file's own
 };
 
+// Where the work-piece is of another material: inside a mesh, placed and scaled as the work-piece's
+// file is, or a box.
+struct InsetSpec {
+    std::filesystem::path file;                   // absolute; empty: the box
+    Vec3 from = Vec3::Zero(), to = Vec3::Ones();  // in shares of the work-piece's own box
+    Material material;
+};
+
 struct StageSpec {
     std::string name;  // "1-bend": number and machine, or the user's own; a file name
     MachineSpec machine;
@@ -43,6 +51,7 @@ struct SceneSpec {
     std::string name;            // stem of the file
     MeshSpec mesh;
     Material material;
+    std::vector<InsetSpec> inset;
     MoldSettings mold;
     SkinSettings skin;
     std::vector<StageSpec> stage;

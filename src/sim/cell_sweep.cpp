@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
@@ -30,7 +31,7 @@ int batches_of(const CellRun& run) { return (run.count + kLanes - 1) / kLanes; }
 
 // What a kernel is given of a slab.
 struct SlabTask {
-    CellConstants constants;
+    const CellConstants* constants = nullptr;
     double crushed;  // det D below which a run is reported
     const CellRun *run = nullptr, *run_end = nullptr;
     const std::int32_t* batch = nullptr;  // of the first run: kWhole, or where its shares begin
@@ -39,11 +40,16 @@ struct SlabTask {
     const double* position[3];
     double* force[3];
     double* seam[3] = {};
-    ParticleId begin = 0, end = 0, reach = 0;
-    const float* strain[kStrains] = {};  // committed
+    ParticleId zeroed = 0, end = 0, reach = 0;  // the slab's forces are zero up to `zeroed`
+    const float* strain[kStrains] = {};         // committed
     const float* modes[kModes] = {};
     const float* alpha = nullptr;  // null: nothing has flowed
     std::vector<const CellRun*>* crushed_run = nullptr;
+
+    void zero_up_to(ParticleId stop) {
+        for (double* component : force) std::fill(component + zeroed, component + stop, 0.0);
+        zeroed = stop;
+    }
 };
 
 template <typename V>
@@ -73,27 +79,23 @@ SWAGE_INLINE CellHistory<V> load_history(const SlabTask& task, CellId cell) {
 // Whether any cell of a batch of eight has flowed.
 SWAGE_INLINE bool has_flowed(const SlabTask& task, CellId cell) {
     if (task.alpha == nullptr) return false;
-    const int count = std::min(kLanes, task.cells - cell);
-    float sum = 0;
-    for (int l = 0; l < count; ++l) sum += task.alpha[cell + l];
-    return sum > 0;
+    std::int64_t bits[kLanes / 2] = {};
+    const std::size_t count = std::min(kLanes, task.cells - cell);
+    std::memcpy(bits, task.alpha + cell, count == kLanes ? sizeof bits : count * sizeof(float));
+    return ((bits[0] | bits[1]) | (bits[2] | bits[3])) != 0;
 }
 
 template <int kWidth, CellKind kKind>
-SWAGE_INLINE void slab_forces(const SlabTask& task) {
+SWAGE_INLINE void slab_forces(SlabTask& task) {
     typedef LanesOf<kWidth> V;
     typename LaneBatch<kWidth>::Indices lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
     const std::int32_t* batch = task.batch;
-    ParticleId zeroed = task.begin;
-    const auto zero_up_to = [&](ParticleId reach) {
-        if (reach <= zeroed) return;
-        for (double* component : task.force) std::fill(component + zeroed, component + reach, 0.0);
-        zeroed = reach;
-    };
     for (const CellRun* run = task.run; run != task.run_end; ++run) {
         const ParticleId reach = std::min(task.end, run->row[3] + run->count + 1);
-        if (reach > zeroed) zero_up_to(std::min(task.end, std::max(reach, zeroed + kZeroAhead)));
+        if (reach > task.zeroed) {
+            task.zero_up_to(std::min(task.end, std::max(reach, task.zeroed + kZeroAhead)));
+        }
         CornerRows<const double> x;
         CornerRows<double> force;
         int room[4];
@@ -124,10 +126,10 @@ SWAGE_INLINE void slab_forces(const SlabTask& task) {
             if (shares == kWhole) {
                 const CellShare<V> whole{};
                 if (flowed) {
-                    r = cell_forces<kKind, false, true>(task.constants, c, whole,
+                    r = cell_forces<kKind, false, true>(*task.constants, c, whole,
                                                         load_history<V>(task, cell));
                 } else {
-                    r = cell_forces<kKind, false, false>(task.constants, c, whole,
+                    r = cell_forces<kKind, false, false>(*task.constants, c, whole,
                                                          CellHistory<V>{});
                 }
             } else {
@@ -136,10 +138,10 @@ SWAGE_INLINE void slab_forces(const SlabTask& task) {
                                         {load<V>(from + kLanes), load<V>(from + 2 * kLanes),
                                          load<V>(from + 3 * kLanes)}};
                 if (flowed) {
-                    r = cell_forces<kKind, true, true>(task.constants, c, part,
+                    r = cell_forces<kKind, true, true>(*task.constants, c, part,
                                                        load_history<V>(task, cell));
                 } else {
-                    r = cell_forces<kKind, true, false>(task.constants, c, part, CellHistory<V>{});
+                    r = cell_forces<kKind, true, false>(*task.constants, c, part, CellHistory<V>{});
                 }
             }
             add_forces(r, force, room, begin, count, carry);
@@ -150,27 +152,46 @@ SWAGE_INLINE void slab_forces(const SlabTask& task) {
         if (crushed) task.crushed_run->push_back(run);
         batch += batches_of(*run);
     }
-    zero_up_to(task.end);
+    task.batch = batch;
 }
 
 template <CellKind kKind>
-SWAGE_WIDE_VECTORS void wide_slab(const SlabTask& task) {
+SWAGE_WIDE_VECTORS void wide_slab(SlabTask& task) {
     slab_forces<8, kKind>(task);
 }
 template <CellKind kKind>
-SWAGE_MIDDLE_VECTORS void middle_slab(const SlabTask& task) {
+SWAGE_MIDDLE_VECTORS void middle_slab(SlabTask& task) {
     slab_forces<4, kKind>(task);
 }
 template <CellKind kKind>
-void narrow_slab(const SlabTask& task) {
+void narrow_slab(SlabTask& task) {
     slab_forces<2, kKind>(task);
 }
 template <CellKind kKind>
-void sweep_slab(const SlabTask& task) {
+void slab_of(SlabTask& task) {
     const int width = vector_width();
     width == 8   ? wide_slab<kKind>(task)
     : width == 4 ? middle_slab<kKind>(task)
                  : narrow_slab<kKind>(task);
+}
+void sweep_slab(CellKind kind, SlabTask& task) {
+    kind == CellKind::rubber     ? slab_of<CellKind::rubber>(task)
+    : kind == CellKind::yielding ? slab_of<CellKind::yielding>(task)
+                                 : slab_of<CellKind::elastic>(task);
+}
+
+// A run, in pieces of one material.
+void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces) {
+    for (int n = 0; n < run.count; ++n) {
+        const CellId cell = run.first + n;
+        if (n == 0 || matter.cell_material[cell] != matter.cell_material[cell - 1]) {
+            CellRun piece = run;
+            piece.i += n, piece.first = cell, piece.count = 0;
+            for (ParticleId& row : piece.row) row += n;
+            pieces.push_back(piece);
+        }
+        ++pieces.back().count;
+    }
 }
 
 // One cell as plain numbers, for what is done once a frame.
@@ -225,38 +246,44 @@ void for_each_cell(const Aggregate& matter, std::size_t begin, std::size_t end, 
 }  // namespace
 
 CellSweep::CellSweep(const Aggregate& matter)
-    : law_(cell_moduli(matter.material.young_modulus, matter.material.poisson_ratio,
-                       matter.lattice.spacing)),
-      yields_(std::isfinite(matter.material.yield_stress)),
-      rubber_(matter.material.elasticity == Elasticity::neo_hookean),
-      slab_(cell_slabs(matter)),
-      crushed_(slab_.size()) {
-    if (yields_) {
-        law_.yield_stress = matter.material.yield_stress;
-        law_.hardening = matter.material.hardening;
+    : law_(material_laws(matter)), slab_(cell_slabs(matter)), crushed_(slab_.size()) {
+    yields_ = std::any_of(law_.begin(), law_.end(),
+                          [](const MaterialLaw& law) { return law.kind == CellKind::yielding; });
+    for (const CellSlab& slab : slab_) {
+        slab_run_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
+        for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
+            add_pieces(matter, matter.lattice.cell_run[r], piece_);
+        }
     }
+    slab_run_.push_back(runs(matter).size());
     cells_changed(matter);
 }
 
 void CellSweep::cells_changed(const Aggregate& matter) {
     fill_ = matter.cell_fill;
-    const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
-        std::array<ParticleId, 4> row = run.row;
-        for (ParticleId& p : row) p += n;
-        if (!cell_is_whole(matter, row)) fill_[cell] = 0;
-    });
+    const std::vector<CellRun>& runs = this->runs(matter);
+    for_each_cell(matter, 0, matter.lattice.cell_run.size(),
+                  [&](const CellRun& run, int n, CellId cell) {
+                      std::array<ParticleId, 4> row = run.row;
+                      for (ParticleId& p : row) p += n;
+                      if (!cell_is_whole(matter, row)) fill_[cell] = 0;
+                  });
+    mixed_.cells_changed(matter, fill_);
+    swept_.clear();
+    if (!matter.mixed_cell.empty()) swept_ = fill_;
+    for (const MixedCell& mixed : matter.mixed_cell) swept_[mixed.cell] = 0;
+    const std::vector<float>& fill = swept();
     batch_.clear();
     share_.clear();
     slab_batch_.clear();
-    for (const CellSlab& slab : slab_) {
+    for (std::size_t slab = 0; slab < slab_.size(); ++slab) {
         slab_batch_.push_back(batch_.size());
-        for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
+        for (std::size_t r = slab_run_[slab]; r < slab_run_[slab + 1]; ++r) {
             for (int begin = 0; begin < runs[r].count; begin += kLanes) {
                 const int count = std::min(kLanes, runs[r].count - begin);
                 bool whole = true;
                 for (CellId c = runs[r].first + begin; c < runs[r].first + begin + count; ++c) {
-                    whole = whole && fill_[c] == 1 && matter.cell_centroid[c].isZero(0);
+                    whole = whole && fill[c] == 1 && matter.cell_centroid[c].isZero(0);
                 }
                 batch_.push_back(whole ? kWhole : static_cast<std::int32_t>(share_.size()));
                 if (whole) continue;
@@ -264,7 +291,7 @@ void CellSweep::cells_changed(const Aggregate& matter) {
                 share_.resize(at + kShares * kLanes, 0.0f);
                 for (int n = 0; n < count; ++n) {
                     const CellId c = runs[r].first + begin + n;
-                    share_[at + n] = fill_[c];
+                    share_[at + n] = fill[c];
                     for (int i = 0; i < 3; ++i) {
                         share_[at + (i + 1) * kLanes + n] = 2 * matter.cell_centroid[c][i];
                     }
@@ -275,17 +302,22 @@ void CellSweep::cells_changed(const Aggregate& matter) {
 }
 
 void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
-    CellModuli law = law_;
-    if (flow == Flow::none) law.yield_stress = kNeverYields;
-    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    std::vector<MaterialLaw> laws = law_;
+    std::vector<CellConstants> constants;
+    for (MaterialLaw& law : laws) {
+        if (flow == Flow::none) {
+            law.moduli.yield_stress = kNeverYields;
+            if (law.kind == CellKind::yielding && matter.cell_hardening.empty() &&
+                matter.mixed_cell.empty()) {
+                law.kind = CellKind::elastic;
+            }
+        }
+        constants.emplace_back(law.moduli);
+    }
+    const std::vector<CellRun>& runs = this->runs(matter);
     const Vec3Array& x = matter.particle_position;
     force.resize(x.size());
-    const CellKind kind = rubber_ ? CellKind::rubber
-                          : yields_ && (flow == Flow::trial || !matter.cell_hardening.empty())
-                              ? CellKind::yielding
-                              : CellKind::elastic;
-    SlabTask whole{.constants = CellConstants(law),
-                   .crushed = kMaybeCrushed * 64 * std::pow(law.spacing, 3),
+    SlabTask whole{.crushed = kMaybeCrushed * 64 * std::pow(matter.lattice.spacing, 3),
                    .share = share_.data(),
                    .particles = static_cast<int>(x.size()),
                    .cells = static_cast<int>(matter.cell_fill.size()),
@@ -299,10 +331,8 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     parallel_for(slab_.size(), [&](std::size_t index) {
         CellSlab& slab = slab_[index];
         SlabTask task = whole;
-        task.run = runs.data() + slab.run_begin;
-        task.run_end = runs.data() + slab.run_end;
         task.batch = batch_.data() + slab_batch_[index];
-        task.begin = slab.begin, task.end = slab.end, task.reach = slab.reach;
+        task.zeroed = slab.begin, task.end = slab.end, task.reach = slab.reach;
         double** seam = task.seam;
         for (std::vector<double>* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
             std::fill(component->begin(), component->end(), 0.0);
@@ -310,25 +340,37 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
         }
         crushed_[index].clear();
         task.crushed_run = &crushed_[index];
-        const auto sweep = kind == CellKind::rubber     ? sweep_slab<CellKind::rubber>
-                           : kind == CellKind::yielding ? sweep_slab<CellKind::yielding>
-                                                        : sweep_slab<CellKind::elastic>;
-        sweep(task);
+        const CellRun* const end = runs.data() + slab_run_[index + 1];
+        task.run_end = runs.data() + slab_run_[index];
+        while (task.run_end != end) {
+            task.run = task.run_end;
+            const std::size_t material = piece_.empty() ? 0 : matter.cell_material[task.run->first];
+            do {
+                ++task.run_end;
+            } while (task.run_end != end &&
+                     (piece_.empty() || matter.cell_material[task.run_end->first] == material));
+            task.constants = &constants[material];
+            sweep_slab(laws[material].kind, task);
+        }
+        task.zero_up_to(slab.end);
     });
     add_seams(slab_, force);
+    mixed_.add_forces(matter, laws, force);
 }
 
 double CellSweep::commit(Aggregate& matter) const {
     if (!yields_) return 0;
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     bool fresh = matter.cell_plastic_strain[0].empty();
-    const double volume = law_.spacing * law_.spacing * law_.spacing;
+    const double volume = std::pow(matter.lattice.spacing, 3);
     double lost = 0;
     for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
-        if (fill_[cell] <= 0) return;
+        const MaterialLaw& material = law_of(matter, cell);
+        if (swept()[cell] <= 0 || material.kind != CellKind::yielding) return;
+        const CellModuli& law = material.moduli;
         const OneCell c = one_cell(matter, run, n);
         const CellFlowed<double> r =
-            flow_cell(law_, history_of(matter, cell), cell_strain(c.gradient).log, c.modes,
+            flow_cell(law, history_of(matter, cell), cell_strain(c.gradient).log, c.modes,
                       double(fill_[cell]));
         if (!(r.d_alpha > 0)) return;
         if (fresh) {
@@ -341,7 +383,7 @@ double CellSweep::commit(Aggregate& matter) const {
         // stores: linear hardening is booked as lost.
         const double alpha = matter.cell_hardening[cell];
         lost += volume * fill_[cell] * r.d_alpha *
-                (law_.yield_stress + law_.hardening * (alpha + 0.5 * r.d_alpha));
+                (law.yield_stress + law.hardening * (alpha + 0.5 * r.d_alpha));
         const double flows = 1 - r.kept;
         const double e[kStrains] = {r.distortion.xx, r.distortion.yy, r.distortion.zz,
                                     r.distortion.xy, r.distortion.yz, r.distortion.zx};
@@ -356,70 +398,89 @@ double CellSweep::commit(Aggregate& matter) const {
         }
         matter.cell_hardening[cell] += static_cast<float>(r.d_alpha);
     });
-    return lost;
+    return lost + mixed_.commit(matter, law_);
 }
 
 double CellSweep::elastic_energy(const Aggregate& matter) const {
-    const double volume = law_.spacing * law_.spacing * law_.spacing;
-    return ordered_sum(slab_.size(), [&](std::size_t s) {
+    const double volume = std::pow(matter.lattice.spacing, 3);
+    const double swept = ordered_sum(slab_.size(), [&](std::size_t s) {
         double sum = 0;
-        for_each_cell(matter, slab_[s].run_begin, slab_[s].run_end,
-                      [&](const CellRun& run, int n, CellId cell) {
-                          const double fill = fill_[cell];
-                          if (fill <= 0) return;
-                          const OneCell c = one_cell(matter, run, n);
-                          const CellHistory<double> history = history_of(matter, cell);
-                          const CellModes<double> q = c.modes - history.modes;
-                          const double modes =
-                              0.5 * mode_fill(fill) * product(mode_stress(law_, q), q);
-                          const double mean =
-                              rubber_ ? rubber_energy(law_, c.gradient)
-                                      : strain_energy(law_, cell_strain(c.gradient).log, history);
-                          sum += volume * fill * mean + modes;
-                      });
+        for_each_cell(
+            matter, slab_[s].run_begin, slab_[s].run_end,
+            [&](const CellRun& run, int n, CellId cell) {
+                const double fill = this->swept()[cell];
+                if (fill <= 0) return;
+                const auto& [law, kind] = law_of(matter, cell);
+                const OneCell c = one_cell(matter, run, n);
+                const CellHistory<double> history = history_of(matter, cell);
+                const CellModes<double> q = c.modes - history.modes;
+                const double modes = 0.5 * mode_fill(fill) * product(mode_stress(law, q), q);
+                const double mean = kind == CellKind::rubber
+                                        ? rubber_energy(law, c.gradient)
+                                        : strain_energy(law, cell_strain(c.gradient).log, history);
+                sum += volume * fill * mean + modes;
+            });
         return sum;
     });
+    return swept + mixed_.elastic_energy(matter, law_);
 }
 
 // Of one cell: the mean strain's share is bounded by the largest eigenvalue of Hooke's law times
 // that of the gradient's Gram matrix, which grows as the centroid leaves the middle; the modes' by
 // the largest of the blocks in laws/cell.h. The fewer cells a particle has, the less they hold each
-// other back.
+// other back. Of two materials in a cell the bounds add up: the jump between them only softens.
 void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const {
-    const double a = law_.spacing;
-    const double alone = std::max(2 * law_.shear, 3 * law_.bulk);
-    const double among = kAssembledShear * 2 * law_.shear + kAssembledBulk * 3 * law_.bulk;
-    const double modes = 8 * std::max(law_.edge + 2 * law_.diagonal, 4 * law_.diagonal);
+    const double a = matter.lattice.spacing;
     std::vector<double> held_back(bound.size(), 0.0);
     std::vector<char> cells(bound.size(), 0);
-    for_each_cell(matter, 0, matter.lattice.cell_run.size(),
-                  [&](const CellRun& run, int n, CellId cell) {
-                      const double fill = fill_[cell];
-                      if (fill <= 0) return;
-                      const Vec3 at = 2 * matter.cell_centroid[cell].cast<double>();
-                      const bool centred = at == Vec3::Zero();
-                      double gram = 1;  // times 1 / (2 a^2)
-                      if (!centred) {
-                          Mat3 g;
-                          for (int i = 0; i < 3; ++i) {
-                              const int j = (i + 1) % 3, k = (i + 2) % 3;
-                              g(i, i) = (1 + at[j] * at[j]) * (1 + at[k] * at[k]);
-                              g(i, j) = g(j, i) = at[i] * at[j] * (1 + at[k] * at[k]);
-                          }
-                          gram = g.cwiseAbs().rowwise().sum().maxCoeff();
-                      }
-                      const double mean = 0.5 * fill * a * gram, own = mode_fill(fill) * modes;
-                      const auto of = [&](double hooke) {
-                          return centred ? std::max(mean * hooke, own) : mean * hooke + own;
-                      };
-                      const double most = of(alone), less = of(among);
-                      for (int c = 0; c < 8; ++c) {
-                          const ParticleId p = run.row[c >> 1] + n + (c & 1);
-                          bound[p] += most;
-                          held_back[p] += most - less;
-                          ++cells[p];
-                      }
-                  });
+    struct Bound {
+        double most = 0, less = 0;
+    };
+    const auto bound_of = [&](const CellModuli& law, double fill, const Eigen::Vector3f& centroid) {
+        const double alone = std::max(2 * law.shear, 3 * law.bulk);
+        const double among = kAssembledShear * 2 * law.shear + kAssembledBulk * 3 * law.bulk;
+        const double modes = 8 * std::max(law.edge + 2 * law.diagonal, 4 * law.diagonal);
+        const Vec3 at = 2 * centroid.cast<double>();
+        const bool centred = at == Vec3::Zero();
+        double gram = 1;  // times 1 / (2 a^2)
+        if (!centred) {
+            Mat3 g;
+            for (int i = 0; i < 3; ++i) {
+                const int j = (i + 1) % 3, k = (i + 2) % 3;
+                g(i, i) = (1 + at[j] * at[j]) * (1 + at[k] * at[k]);
+                g(i, j) = g(j, i) = at[i] * at[j] * (1 + at[k] * at[k]);
+            }
+            gram = g.cwiseAbs().rowwise().sum().maxCoeff();
+        }
+        const double mean = 0.5 * fill * a * gram, own = mode_fill(fill) * modes;
+        const auto of = [&](double hooke) {
+            return centred ? std::max(mean * hooke, own) : mean * hooke + own;
+        };
+        return Bound{of(alone), of(among)};
+    };
+    auto mixed = matter.mixed_cell.begin();
+    for_each_cell(
+        matter, 0, matter.lattice.cell_run.size(), [&](const CellRun& run, int n, CellId cell) {
+            const bool is_mixed = mixed != matter.mixed_cell.end() && mixed->cell == cell;
+            const MixedCell* two = is_mixed ? &*mixed++ : nullptr;
+            if (fill_[cell] <= 0) return;
+            Bound own;
+            if (two == nullptr) {
+                own =
+                    bound_of(law_of(matter, cell).moduli, fill_[cell], matter.cell_centroid[cell]);
+            }
+            for (int m = 0; m < 2 && two != nullptr; ++m) {
+                const Bound part =
+                    bound_of(law_[two->material[m]].moduli, two->fill[m], two->centroid[m]);
+                own.most += part.most, own.less += part.less;
+            }
+            for (int c = 0; c < 8; ++c) {
+                const ParticleId p = run.row[c >> 1] + n + (c & 1);
+                bound[p] += own.most;
+                held_back[p] += own.most - own.less;
+                ++cells[p];
+            }
+        });
     for (std::size_t p = 0; p < bound.size(); ++p) bound[p] -= cells[p] / 8.0 * held_back[p];
 }
 

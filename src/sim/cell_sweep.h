@@ -8,6 +8,7 @@
 #include "laws/cell_moduli.h"
 #include "matter/aggregate.h"
 #include "sim/force_slabs.h"
+#include "sim/mixed_cells.h"
 
 namespace swage {
 
@@ -23,6 +24,7 @@ class CellSweep {
     // Cells that are not whole any more carry nothing from now on.
     void cells_changed(const Aggregate& matter);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole
+    bool one_material() const { return law_.size() == 1; }
 
     // force = sum of the cells' forces on each particle [N].
     void forces(const Aggregate& matter, Flow flow, Vec3Array& force);
@@ -36,23 +38,34 @@ class CellSweep {
     // these on their own masses.
     void add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const;
 
-    bool yields() const { return yields_; }
-
     // Runs of the last sweep in which a cell may have lost half of its volume (sim/cell_volume.h),
     // slab by slab.
     const std::vector<std::vector<const CellRun*>>& crushed_runs() const { return crushed_; }
 
   private:
-    CellModuli law_;
-    bool yields_, rubber_;
-    std::vector<float> fill_;
-    std::vector<CellSlab> slab_;
+    // The lattice's runs, or their pieces of one material each where there are several.
+    const std::vector<CellRun>& runs(const Aggregate& matter) const {
+        return piece_.empty() ? matter.lattice.cell_run : piece_;
+    }
+    const MaterialLaw& law_of(const Aggregate& matter, CellId cell) const {
+        return matter.cell_material.empty() ? law_[0] : law_[matter.cell_material[cell]];
+    }
+
+    std::vector<MaterialLaw> law_;  // by material
+    bool yields_;                   // any
+    // What the sweep itself carries: cells of two materials are beside it.
+    const std::vector<float>& swept() const { return swept_.empty() ? fill_ : swept_; }
+    std::vector<float> fill_, swept_;
+    std::vector<CellSlab> slab_;  // of the lattice's runs
+    std::vector<CellRun> piece_;
+    std::vector<std::size_t> slab_run_;  // first of runs() in each slab; the end
     // By batches of eight cells of a run: whether all are full and whole, or where their fills and
     // centroids, -1 to 1 in the cell, begin in share_.
     std::vector<std::int32_t> batch_;
     std::vector<float> share_;
     std::vector<std::size_t> slab_batch_;  // first batch of each slab
     std::vector<std::vector<const CellRun*>> crushed_;
+    MixedCells mixed_;
 };
 
 }  // namespace swage

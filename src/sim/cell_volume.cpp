@@ -74,6 +74,14 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
     return found;
 }
 
+CellId id_of(const SmallCell& cell) { return cell.run->first + cell.n; }
+
+// Rubber beside a material that has the guard looks after itself.
+bool is_guarded(const Aggregate& matter, const SmallCell& cell) {
+    return matter.inset.empty() ||
+           matter.material_of(id_of(cell)).elasticity != Elasticity::neo_hookean;
+}
+
 double material_volume(const Aggregate& matter, const SmallCell& cell) {
     const double a = matter.lattice.spacing;
     return matter.cell_fill[cell.run->first + cell.n] * a * a * a;
@@ -83,12 +91,14 @@ double material_volume(const Aggregate& matter, const SmallCell& cell) {
 int resist(const Aggregate& matter, const std::vector<SmallCell>& crushed, Vec3Array& force) {
     int mirrored = 0;
     for (const SmallCell& cell : crushed) {
+        if (!is_guarded(matter, cell)) continue;
         mirrored += cell.volume < 0;
         const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
         Mat3 cofactor;
         cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
-        const Mat3 stress = material_volume(matter, cell) *
-                            guard_slope(matter.material.young_modulus, cell.volume) * cofactor;
+        const Mat3 stress =
+            material_volume(matter, cell) *
+            guard_slope(matter.material_of(id_of(cell)).young_modulus, cell.volume) * cofactor;
         for (int c = 0; c < 8; ++c) {
             Vec3 slope;  // of the gradient's columns with the corner's position
             for (int axis = 0; axis < 3; ++axis) {
@@ -138,12 +148,13 @@ int add_guard_forces(const Aggregate& matter,
 
 void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness) {
     for (const SmallCell& cell : cells_below(matter, 0)) {
+        if (!is_guarded(matter, cell)) continue;
         const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
         const double cofactor = f.col(1).cross(f.col(2)).squaredNorm() +
                                 f.col(2).cross(f.col(0)).squaredNorm() +
                                 f.col(0).cross(f.col(1)).squaredNorm();
         const double own = material_volume(matter, cell) * (1 + kMirroredStiffness) *
-                           matter.material.young_modulus * cofactor /
+                           matter.material_of(id_of(cell)).young_modulus * cofactor /
                            (2 * matter.lattice.spacing * matter.lattice.spacing);
         for (int c = 0; c < 8; ++c) stiffness[cell.run->row[c >> 1] + cell.n + (c & 1)] += own;
     }
@@ -152,8 +163,9 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
 double guard_energy_of(const Aggregate& matter) {
     double sum = 0;
     for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
+        if (!is_guarded(matter, cell)) continue;
         sum += material_volume(matter, cell) *
-               guard_energy(matter.material.young_modulus, cell.volume);
+               guard_energy(matter.material_of(id_of(cell)).young_modulus, cell.volume);
     }
     return sum;
 }

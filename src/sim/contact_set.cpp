@@ -43,10 +43,21 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
     : apparatus_(&apparatus),
       settings_(settings),
       spacing_(matter.lattice.spacing),
-      young_modulus_(matter.material.young_modulus) {}
+      young_modulus_(matter.material.young_modulus) {
+    if (matter.inset.empty()) return;
+    // A point is as stiff as the cell that carries it.
+    std::vector<CellId> cell(matter.particle_count(), -1);  // by its lowest corner
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) cell[run.row[0] + n] = run.first + n;
+    }
+    for (const auto& corner : matter.surface.corner) {
+        point_modulus_.push_back(matter.material_of(cell[corner[0]]).young_modulus);
+    }
+}
 
 double ContactSet::point_stiffness(const Aggregate& matter, int point, double factor) const {
-    const double k = factor * young_modulus_ * matter.surface.area[point] / spacing_;
+    const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[point];
+    const double k = factor * modulus * matter.surface.area[point] / spacing_;
     return stiffness_limit_.empty() ? k : std::min(k, stiffness_limit_[point]);
 }
 

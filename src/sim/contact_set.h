@@ -79,6 +79,7 @@ class ContactSet {
     const Apparatus* apparatus_;
     SimSettings settings_;
     double spacing_, young_modulus_;
+    std::vector<double> point_modulus_;    // of bodies of several materials [Pa]
     std::vector<double> stiffness_limit_;  // one a point [N/m]; empty: none
     std::vector<Pair> pair_;               // sorted by tool, then point
     std::vector<Vec3> start_position_;     // of every surface point when the move began

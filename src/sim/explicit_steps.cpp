@@ -126,6 +126,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     const auto start_strain = matter_.cell_plastic_strain;
     const auto start_modes = matter_.cell_plastic_modes;
     const auto start_hardening = matter_.cell_hardening;
+    const auto start_mixed = matter_.mixed_cell;
     const ContactSet start_contacts = contacts_;
     pushes_.start(matter_, from);
     const LoadSet start_pushes = pushes_;
@@ -143,6 +144,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         matter_.cell_plastic_strain = start_strain;
         matter_.cell_plastic_modes = start_modes;
         matter_.cell_hardening = start_hardening;
+        matter_.mixed_cell = start_mixed;
         contacts_ = start_contacts;
         pushes_ = start_pushes;
         damping_ = start_damping;

@@ -32,7 +32,10 @@ LatticeForces::LatticeForces(const Aggregate& matter)
     if (springs && std::isfinite(matter.material.yield_stress)) {
         spring_flow_ = std::make_unique<CellFlow>(matter);
     }
-    guarded_ = springs || matter.material.elasticity != Elasticity::neo_hookean;
+    guarded_ = springs;
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        guarded_ = guarded_ || matter.material_at(m).elasticity != Elasticity::neo_hookean;
+    }
     connections_changed(matter);
 }
 
@@ -41,9 +44,22 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
     cells_->cells_changed(matter);
     loose_.clear();
     // Each cell that is not whole gives its share of what its connections have left.
+    auto mixed = matter.mixed_cell.begin();
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             const CellId cell = run.first + n;
+            double stiffness =
+                lattice_stiffness(matter.material_of(cell).young_modulus, matter.lattice.spacing) *
+                matter.cell_fill[cell];
+            if (mixed != matter.mixed_cell.end() && mixed->cell == cell) {
+                stiffness = 0;
+                for (int m : {0, 1}) {
+                    const Material& material = matter.material_at(mixed->material[m]);
+                    stiffness += mixed->fill[m] *
+                                 lattice_stiffness(material.young_modulus, matter.lattice.spacing);
+                }
+                ++mixed;
+            }
             if (cells_->carried_fill()[cell] > 0) continue;
             for (const CellConnection& c : kCellConnection) {
                 const ParticleId lower = run.row[c.corner >> 1] + n + (c.corner & 1);
@@ -51,9 +67,8 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
                 const auto& f = kForward[c.direction];
                 const int high = c.corner + f[0] + 2 * f[1] + 4 * f[2];
                 const ParticleId upper = run.row[high >> 1] + n + (high & 1);
-                const double share =
-                    (c.direction < kEdgeCount ? 0.25 : 0.5) * matter.cell_fill[cell];
-                loose_.push_back({lower, upper, spring_law_.stiffness * share,
+                const double share = c.direction < kEdgeCount ? 0.25 : 0.5;
+                loose_.push_back({lower, upper, stiffness * share,
                                   reference_length(matter.lattice, c.direction) *
                                       rest_ratio(matter, cell, c.direction)});
             }

@@ -31,9 +31,9 @@ class LatticeForces {
 
     double elastic_energy(const Aggregate& matter) const;  // [J]
 
-    // What the cells carry, where forces are theirs alone; null: some connection acts by itself.
+    // What the cells carry, where forces are theirs alone and of one material; else null.
     const std::vector<float>* cells_alone() const {
-        return cells_ && loose_.empty() ? &cells_->carried_fill() : nullptr;
+        return cells_ && loose_.empty() && cells_->one_material() ? &cells_->carried_fill() : nullptr;
     }
 
     // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the

@@ -83,9 +83,9 @@ void QuasistaticSolver::connections_changed() {
     const double a = matter_.lattice.spacing;
     const double full_mass = matter_.material.density * a * a * a;
     drag_.resize(matter_.particle_count());
+    const double modulus = matter_.mean_modulus();
     for (std::size_t p = 0; p < drag_.size(); ++p) {
-        drag_[p] =
-            kDrag * matter_.material.young_modulus * a * matter_.particle_mass[p] / full_mass;
+        drag_[p] = kDrag * modulus * a * matter_.particle_mass[p] / full_mass;
     }
     previous_motion_.clear();
 }
@@ -129,7 +129,7 @@ double QuasistaticSolver::push_limit(const Drive& to) const {
     const double asked = pushes_.size(matter_, to);
     if (!moved_ && asked > 0) return asked;
     const double a = matter_.lattice.spacing;
-    double push = std::max(largest_push_, kLeastPush * matter_.material.young_modulus * a * a);
+    double push = std::max(largest_push_, kLeastPush * matter_.mean_modulus() * a * a);
     for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
     return std::max(push, asked);
 }

@@ -63,6 +63,7 @@ std::vector<Case> verification_cases() {
     add_large_bending_cases(cases);
     add_oblique_cases(cases);
     add_invariance_cases(cases);
+    add_two_material_cases(cases);
     add_plastic_cases(cases);
     return cases;
 }

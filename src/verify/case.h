@@ -79,6 +79,7 @@ void add_beam_cases(std::vector<Case>& cases);
 void add_large_bending_cases(std::vector<Case>& cases);
 void add_oblique_cases(std::vector<Case>& cases);
 void add_invariance_cases(std::vector<Case>& cases);
+void add_two_material_cases(std::vector<Case>& cases);
 void add_plastic_cases(std::vector<Case>& cases);
 
 }  // namespace swage

@@ -92,7 +92,7 @@ void kernels(double cells) {
         Aggregate soft = elastic, flows = elastic;
         soft.material = rubber();
         flows.material = flowing();
-        for (int width : {8, 4, 2}) {
+        for (int width : {8, 4}) {
             limit_vector_width(width);
             if (vector_width() != width) continue;
             fmt::print("{:<8}{:>9} cells, vectors of {}{:>10.1f}{:>10.1f}{:>10.1f}\n", shape,

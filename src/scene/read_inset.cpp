@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_inset.h"
+
+#include "scene/file_text.h"
+#include "scene/read_material.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::path& scene_folder,
+                     std::vector<fs::path>& inputs) {
+    InsetSpec inset;
+    std::string file;
+    const bool has_file = table.text("file", file);
+    if (has_file && file.empty()) {
+        table.mistake("file", "the inset's file name is empty");
+    } else if (has_file) {
+        inset.file = (scene_folder / file).lexically_normal();
+        if (const auto reason = why_unreadable(inset.file)) {
+            table.mistake(
+                "file", fmt::format("the mesh \"{}\" {} ({})", file, *reason, inset.file.string()),
+                ExitCode::mesh);
+        }
+    }
+    const bool has_from = table.vector("from", Quantity::number, inset.from);
+    const bool has_to = table.vector("to", Quantity::number, inset.to);
+    if (has_file && (has_from || has_to)) {
+        table.mistake(has_from ? "from" : "to",
+                      "an inset is a mesh (file) or a box (from, to), not both");
+    } else if (!has_file && !has_from && !has_to) {
+        table.missing("file",
+                      "the mesh of the inset; or a box by from = [0, 0, 0.5] and to = [1, 1, 1], "
+                      "in shares of the work-piece's box");
+    }
+    for (const char* key : {"from", "to"}) {
+        const Vec3& at = key[0] == 'f' ? inset.from : inset.to;
+        if ((at.array() < 0).any() || (at.array() > 1).any()) {
+            table.mistake(key, fmt::format("{} = [{:g}, {:g}, {:g}]: each is a share of the "
+                                           "work-piece's box, 0 to 1",
+                                           key, at.x(), at.y(), at.z()));
+        }
+    }
+    if ((inset.from.array() >= inset.to.array()).any()) {
+        table.mistake(has_to ? "to" : "from", "the box is empty: from must be less than to");
+    }
+    for (const char* key : {"mechanics", "friction", "damping_ratio"}) {
+        if (table.find(key) == nullptr) continue;
+        table.mistake(key, fmt::format("{} is the whole body's: say it in [material]", key));
+    }
+    read_material(table, assets, scene_folder, inset.material, inputs);
+    return inset;
+}
+
+void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
+    if (scene.inset.empty()) return;
+    if (scene.material.mechanics == Mechanics::springs) {
+        root.mistake("inset", "springs know one material: use mechanics = \"cells\" in [material]");
+    }
+    for (const StageSpec& stage : scene.stage) {
+        if (stage.remold) {
+            root.mistake("inset", fmt::format("stage \"{}\" molds the work-piece anew, which "
+                                              "would lose the inset: leave remold out",
+                                              stage.name));
+        }
+        if (stage.sim.solver == Solver::explicit_steps) {
+            root.mistake("inset", fmt::format("stage \"{}\" takes explicit steps, whose damping "
+                                              "knows one material: use solver = \"quasistatic\"",
+                                              stage.name));
+        }
+    }
+}
+
+}  // namespace swage

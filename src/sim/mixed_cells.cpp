@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/mixed_cells.h"
+
+#include <cmath>
+
+#include "base/parallel.h"
+#include "laws/laminate.h"
+#include "sim/vector_clones.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kBatchesPerChunk = 8;
+
+// What a batch of cells is read from, and where its forces on the corners go: component, corner.
+struct MixedBatch {
+    const Aggregate* matter;
+    const MixedCell* cell[kLanes];
+    const std::array<ParticleId, 8>* corner[kLanes];
+    const MaterialLaw* law[2];
+    std::array<double, 24>* push;
+    int count;
+};
+
+template <typename N>
+SWAGE_INLINE void set_lane(N& v, int lane, double to) {
+    v[lane] = to;
+}
+SWAGE_INLINE void set_lane(double& v, int, double to) { v = to; }
+
+// Lane of a batch, or all there is of a number.
+template <typename N>
+SWAGE_INLINE void read_cell(const Vec3Array& x, const MixedCell& cell,
+                            const std::array<ParticleId, 8>& corner, int lane, N (&at)[3][8],
+                            Phase<N> (&phase)[2], Triple<N>& normal) {
+    for (int c = 0; c < 8; ++c) {
+        set_lane(at[0][c], lane, x.x[corner[c]]);
+        set_lane(at[1][c], lane, x.y[corner[c]]);
+        set_lane(at[2][c], lane, x.z[corner[c]]);
+    }
+    set_lane(normal.x, lane, cell.normal.x());
+    set_lane(normal.y, lane, cell.normal.y());
+    set_lane(normal.z, lane, cell.normal.z());
+    for (int p = 0; p < 2; ++p) {
+        Phase<N>& m = phase[p];
+        set_lane(m.fill, lane, cell.fill[p]);
+        set_lane(m.at.x, lane, 2 * cell.centroid[p].x());
+        set_lane(m.at.y, lane, 2 * cell.centroid[p].y());
+        set_lane(m.at.z, lane, 2 * cell.centroid[p].z());
+        Symmetric<N>& e = m.history.strain;
+        CellModes<N>& q = m.history.modes;
+        N* const slot[MixedCell::kHistory] = {
+            &e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,           &e.zx,   &q.xy.x,
+            &q.xy.y, &q.xy.z,  &q.yz.x,  &q.yz.y,  &q.yz.z,         &q.zx.x, &q.zx.y,
+            &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &m.history.alpha};
+        for (int n = 0; n < MixedCell::kHistory; ++n) set_lane(*slot[n], lane, cell.flowed[p][n]);
+    }
+}
+
+template <typename N>
+SWAGE_INLINE CornerSums<N> sums_of(const N (&at)[3][8]) {
+    CornerSums<N> c;
+    sum_corners(at[0], c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
+    sum_corners(at[1], c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
+    sum_corners(at[2], c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
+    return c;
+}
+
+// Eight cells, as so many batches of the machine's own width.
+template <int kWidth>
+SWAGE_INLINE void batch_forces(const MixedBatch& b) {
+    typedef LanesOf<kWidth> V;
+    for (int begin = 0; begin < b.count; begin += kWidth) {
+        V at[3][8]{};
+        Phase<V> phase[2]{};
+        Triple<V> normal{};
+        for (int p = 0; p < 2; ++p)
+            phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
+        for (int l = 0; l < kWidth; ++l) {
+            // Lanes that are left over repeat the last cell.
+            const int n = std::min(begin + l, b.count - 1);
+            read_cell(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
+        }
+        const double spacing = b.matter->lattice.spacing;
+        const CornerSums<V> c = sums_of(at);
+        Laminate<V> found;
+        laminate(c, phase, normal, spacing, found);
+        const CornerSums<V> r = laminate_forces(c, phase, found, spacing);
+        spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, at[0]);
+        spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, at[1]);
+        spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, at[2]);
+        for (int l = 0; l < kWidth && begin + l < b.count; ++l) {
+            for (int n = 0; n < 24; ++n) b.push[begin + l][n] = at[n / 8][n % 8][l];
+        }
+    }
+}
+
+SWAGE_WIDE_VECTORS void wide_batch(const MixedBatch& b) { batch_forces<8>(b); }
+SWAGE_MIDDLE_VECTORS void middle_batch(const MixedBatch& b) { batch_forces<4>(b); }
+void narrow_batch(const MixedBatch& b) { batch_forces<2>(b); }
+
+// One cell as plain numbers.
+struct OneMixed {
+    Phase<double> phase[2]{};
+    Laminate<double> found;
+};
+OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                   const MixedCell& cell, const std::array<ParticleId, 8>& corner) {
+    OneMixed one;
+    double at[3][8];
+    Triple<double> normal;
+    for (int p = 0; p < 2; ++p) {
+        one.phase[p].law = &laws[cell.material[p]].moduli;
+        one.phase[p].kind = laws[cell.material[p]].kind;
+    }
+    read_cell(matter.particle_position, cell, corner, 0, at, one.phase, normal);
+    laminate(sums_of(at), one.phase, normal, matter.lattice.spacing, one.found);
+    return one;
+}
+
+}  // namespace
+
+std::vector<MaterialLaw> material_laws(const Aggregate& matter) {
+    std::vector<MaterialLaw> laws;
+    for (std::size_t n = 0; n < matter.material_count(); ++n) {
+        const Material& m = matter.material_at(n);
+        const bool yields = std::isfinite(m.yield_stress);
+        laws.push_back({cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
+                                    yields ? m.yield_stress : 0, yields ? m.hardening : 0),
+                        m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
+                        : yields                                ? CellKind::yielding
+                                                                : CellKind::elastic});
+    }
+    return laws;
+}
+
+void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>& carried) {
+    cell_.clear(), corner_.clear(), batch_.clear();
+    for (std::size_t n = 0; n < matter.mixed_cell.size(); ++n) {
+        const MixedCell& cell = matter.mixed_cell[n];
+        if (carried[cell.cell] <= 0) continue;
+        const bool same =
+            !cell_.empty() && matter.mixed_cell[cell_.back()].material == cell.material;
+        const int at = static_cast<int>(cell_.size());
+        if (!same || at - batch_.back() == kLanes) batch_.push_back(at);
+        cell_.push_back(static_cast<int>(n));
+        corner_.push_back(matter.lattice.cell_corners(cell.cell));
+    }
+    batch_.push_back(static_cast<int>(cell_.size()));
+    push_.resize(cell_.size());
+}
+
+void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                            Vec3Array& force) {
+    if (cell_.empty()) return;
+    const std::size_t batches = batch_.size() - 1;
+    const int width = vector_width();
+    parallel_for((batches + kBatchesPerChunk - 1) / kBatchesPerChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(batches, (chunk + 1) * kBatchesPerChunk);
+        for (std::size_t b = chunk * kBatchesPerChunk; b < end; ++b) {
+            MixedBatch batch{};
+            batch.matter = &matter;
+            batch.count = batch_[b + 1] - batch_[b];
+            for (int n = 0; n < batch.count; ++n) {
+                batch.cell[n] = &matter.mixed_cell[cell_[batch_[b] + n]];
+                batch.corner[n] = &corner_[batch_[b] + n];
+            }
+            for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
+            batch.push = &push_[batch_[b]];
+            (width == 8 ? wide_batch : width == 4 ? middle_batch : narrow_batch)(batch);
+        }
+    });
+    for (std::size_t n = 0; n < cell_.size(); ++n) {
+        for (int c = 0; c < 8; ++c) {
+            force.add(corner_[n][c], {push_[n][c], push_[n][8 + c], push_[n][16 + c]});
+        }
+    }
+}
+
+double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws) const {
+    const double volume = std::pow(matter.lattice.spacing, 3);
+    double lost = 0;
+    for (std::size_t n = 0; n < cell_.size(); ++n) {
+        MixedCell& cell = matter.mixed_cell[cell_[n]];
+        const OneMixed one = one_mixed(matter, laws, cell, corner_[n]);
+        for (int p = 0; p < 2; ++p) {
+            const CellFlowed<double>& r = one.found.phase[p].flowed;
+            if (one.phase[p].kind != CellKind::yielding || !(r.d_alpha > 0)) continue;
+            const CellModuli& law = *one.phase[p].law;
+            auto& flowed = cell.flowed[p];
+            lost +=
+                volume * one.phase[p].fill * r.d_alpha *
+                (law.yield_stress + law.hardening * (one.phase[p].history.alpha + 0.5 * r.d_alpha));
+            const Symmetric<double>& e = r.distortion;
+            const CellModes<double>& q = r.modes;
+            const double grown[] = {e.xx,   e.yy,   e.zz,   e.xy,    e.yz,    e.zx,
+                                    q.xy.x, q.xy.y, q.xy.z, q.yz.x,  q.yz.y,  q.yz.z,
+                                    q.zx.x, q.zx.y, q.zx.z, q.xyz.x, q.xyz.y, q.xyz.z};
+            for (int s = 0; s + 1 < MixedCell::kHistory; ++s) {
+                flowed[s] += static_cast<float>((1 - r.kept) * grown[s]);
+            }
+            flowed[MixedCell::kHistory - 1] += static_cast<float>(r.d_alpha);
+        }
+    }
+    return lost;
+}
+
+double MixedCells::elastic_energy(const Aggregate& matter,
+                                  const std::vector<MaterialLaw>& laws) const {
+    const double volume = std::pow(matter.lattice.spacing, 3);
+    double sum = 0;
+    for (std::size_t n = 0; n < cell_.size(); ++n) {
+        const MixedCell& cell = matter.mixed_cell[cell_[n]];
+        const OneMixed one = one_mixed(matter, laws, cell, corner_[n]);
+        const Triple<double> normal = {cell.normal.x(), cell.normal.y(), cell.normal.z()};
+        const double all = one.phase[0].fill + one.phase[1].fill;
+        for (int p = 0; p < 2; ++p) {
+            const Phase<double>& m = one.phase[p];
+            const PhaseState<double>& s = one.found.phase[p];
+            const double share = p == 0 ? one.phase[1].fill / all : -one.phase[0].fill / all;
+            const Triple<double> by = share * one.found.jump;
+            const Columns<double> f = {s.gradient.x + normal.x * by, s.gradient.y + normal.y * by,
+                                       s.gradient.z + normal.z * by};
+            const double mean = m.kind == CellKind::rubber
+                                    ? rubber_energy(*m.law, f)
+                                    : strain_energy(*m.law, cell_strain(f).log, m.history);
+            const CellModes<double> q = s.modes - m.history.modes;
+            sum += volume * m.fill * mean +
+                   0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, q), q);
+        }
+    }
+    return sum;
+}
+
+}  // namespace swage

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cells of a lattice that hold two materials (laws/laminate.h), beside the sweep over the rest.
+#pragma once
+
+#include <vector>
+
+#include "laws/cell_forces.h"
+#include "matter/aggregate.h"
+
+namespace swage {
+
+// One of a body's materials as the laws take it.
+struct MaterialLaw {
+    CellModuli moduli;
+    CellKind kind;
+};
+std::vector<MaterialLaw> material_laws(const Aggregate& matter);
+
+class MixedCells {
+  public:
+    // Cells with `carried` 0 are left out.
+    void cells_changed(const Aggregate& matter, const std::vector<float>& carried);
+    bool any() const { return !cell_.empty(); }
+
+    // Adds their forces on the particles [N]. Laws: by material, as they are to hold now.
+    void add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                    Vec3Array& force);
+    // Remembers the flow of a converged state; returns the work that it took [J].
+    double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
+    double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
+
+  private:
+    std::vector<int> cell_;  // into mixed_cell
+    std::vector<std::array<ParticleId, 8>> corner_;
+    std::vector<int> batch_;  // first of each batch of cells with the same two materials; the end
+    std::vector<std::array<double, 24>> push_;
+};
+
+}  // namespace swage

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bars of two materials, one a hundred times as stiff, whose boundary runs through cells.
+#include <cmath>
+
+#include "geometry/make_shape.h"
+#include "mold/mold.h"
+#include "verify/case.h"
+#include "verify/stand.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kStiff = 100;
+constexpr double kFractions[] = {0.25, 0.5, 0.75, 0.9};  // of the cell that the boundary crosses
+
+TriMesh box_mesh(const Vec3& low, const Vec3& high) {
+    const Vec3 size = high - low;
+    TriMesh mesh = make_shape("bar", {{"length", size.x()},
+                                      {"height", size.y()},
+                                      {"width", size.z()},
+                                      {"rounding", 0},
+                                      {"division", 1}})
+                       .mesh;
+    Box box;
+    for (const Vec3& p : mesh.position) box.grow(p);
+    for (Vec3& p : mesh.position) p += 0.5 * (low + high) - box.center();
+    return mesh;
+}
+
+Aggregate layered(const Vec3& size, int across, const Vec3& low, const Vec3& high, double nu) {
+    Material stiff = unit_material(nu);
+    stiff.young_modulus = kStiff;
+    MoldSettings settings;
+    settings.spacing = 1.0 / across;
+    return mold(box_mesh(-0.5 * size, 0.5 * size), unit_material(nu), settings,
+                {{box_mesh(low, high), stiff}});
+}
+
+std::string at_fraction(const char* what, double fraction) {
+    return std::string(what) + " (boundary at " + std::to_string(fraction).substr(0, 4) +
+           " of a cell)";
+}
+
+// Layers along the bar, the stiff one above y. The end faces are pulled with the stress of a
+// uniform strain or bend, patch by patch; what the middle does is compared with what the forces
+// that were really applied ask of plane sections.
+void layers_along(bool brief, Values& values) {
+    constexpr double kLength = 6, kStrain = 1e-4;
+    for (int across : brief ? std::vector{4} : std::vector{4, 8}) {
+        const double a = 1.0 / across;
+        for (double fraction : kFractions) {
+            const double y = -0.5 + (across / 2 + fraction) * a;
+            const double low = y + 0.5, high = 0.5 - y;
+            const double stretched = low + kStiff * high;
+            const double coupled = 0.5 * ((y * y - 0.25) + kStiff * (0.25 - y * y));
+            const double bent = (y * y * y + 0.125 + kStiff * (0.125 - y * y * y)) / 3;
+            for (bool bends : {false, true}) {
+                Stand stand(layered({kLength, 1, 1}, across, {-0.5 * kLength, y, -0.5},
+                                    {0.5 * kLength, 0.5, 0.5}, 0.25));
+                double force = 0, moment = 0;
+                for (double side : {-1.0, 1.0}) {
+                    Load load;
+                    load.name = side < 0 ? "left" : "right";
+                    load.point = end_face(stand.matter, side * Vec3::UnitX());
+                    force = moment = 0;
+                    for (int p : load.point) {
+                        const double at = stand.matter.surface.reference_position[p].y();
+                        // The patch is half a cell high.
+                        const double soft = std::clamp((y - at) / (0.5 * a) + 0.5, 0.0, 1.0);
+                        const double modulus = soft + kStiff * (1 - soft);
+                        const double pull =
+                            stand.matter.surface.area[p] * modulus * kStrain * (bends ? at : 1.0);
+                        load.force.push_back(side * pull * Vec3::UnitX());
+                        force += pull, moment += pull * at;
+                    }
+                    stand.apparatus.load.push_back(load);
+                    stand.drive.load_strength.push_back(1);
+                }
+                stand.settle();
+                // force = A e + B k, moment = B e + D k
+                const double det = stretched * bent - coupled * coupled;
+                const double strain = (bent * force - coupled * moment) / det;
+                const double bend = (stretched * moment - coupled * force) / det;
+                if (bends) {
+                    const double rate =
+                        -turn_rate(stand.matter, Vec3::UnitX(), 1, 0.25 * a, Vec3::UnitZ());
+                    values.add(relative(at_fraction("bending", fraction), across, bend, rate,
+                                        across == 8 ? 0.01 : 0.02));
+                } else {
+                    const Mat3 f = mean_gradient(stand.matter, Vec3::UnitX(), 0, 1);
+                    values.add(relative(at_fraction("stretch", fraction), across, strain,
+                                        f(0, 0) - 1, across == 8 ? 0.01 : 0.02));
+                }
+            }
+        }
+    }
+}
+
+// Layers across the bar: a stiff one in the middle, of four cells less what the boundaries leave.
+void layers_across(bool brief, Values& values) {
+    constexpr double kLength = 4, kPull = 1e-4;
+    for (int across : brief ? std::vector{4} : std::vector{4, 8}) {
+        const double a = 1.0 / across;
+        for (double fraction : kFractions) {
+            const double left = -0.5 - fraction * a, right = 0.5 + (1 - fraction) * a;
+            Stand stand(layered({kLength, 1, 1}, across, {left, -0.5, -0.5}, {right, 0.5, 0.5}, 0));
+            for (double side : {-1.0, 1.0}) {
+                stand.load(end_face(stand.matter, side * Vec3::UnitX()),
+                           side * kPull * Vec3::UnitX());
+            }
+            stand.settle();
+            const double longer =
+                mean_move(stand.matter, end_face(stand.matter, Vec3::UnitX())).x() -
+                mean_move(stand.matter, end_face(stand.matter, -Vec3::UnitX())).x();
+            const double stiff = right - left;
+            values.add(relative(at_fraction("in series", fraction), across,
+                                kPull * (kLength - stiff + stiff / kStiff), longer, 0.01));
+        }
+    }
+}
+
+}  // namespace
+
+void add_two_material_cases(std::vector<Case>& cases) {
+    cases.push_back({"layers-along", "two materials, 1 : 100, side by side: stretched and bent",
+                     "plane sections", 0, false, layers_along});
+    cases.push_back({"layers-across", "two materials, 1 : 100, in series: stretched", "Hooke", 0,
+                     true, layers_across});
+}
+
+}  // namespace swage

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <numbers>
+#include <random>
+
+#include "base/parallel.h"
+#include "geometry/make_shape.h"
+#include "mold/mold.h"
+#include "sim/lattice_forces.h"
+#include "sim/vector_clones.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+constexpr double kSpacing = 0.25;
+
+// A bar with an oblique ball of another material inside, half in, half out of many cells.
+Aggregate bar_with_ball(const Material& outside, const Material& inside) {
+    MoldSettings settings;
+    settings.spacing = kSpacing;
+    TriMesh bar =
+        make_shape("bar", {{"length", 2}, {"height", 1}, {"width", 1}, {"rounding", 0}}).mesh;
+    TriMesh ball = make_shape("sphere", {{"diameter", 0.8}, {"division", 24}}).mesh;
+    const Box a = box_of(bar.position), b = box_of(ball.position);
+    for (Vec3& p : ball.position) p += a.center() - b.center() + Vec3(0.07, 0.03, -0.04);
+    return mold(bar, outside, settings, {{ball, inside}});
+}
+
+void shake(Aggregate& m, double by, int seed = 3) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (auto* x : {&m.particle_position.x, &m.particle_position.y, &m.particle_position.z}) {
+        for (double& v : *x) v += by * kSpacing * draw(engine);
+    }
+}
+
+Material soft() { return {.young_modulus = 1e5, .poisson_ratio = 0.3}; }
+Material stiff() { return {.young_modulus = 1e7, .poisson_ratio = 0.2}; }
+Material rubber() {
+    Material m = soft();
+    m.elasticity = Elasticity::neo_hookean;
+    m.poisson_ratio = 0.45;
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("cells of two materials push by minus the gradient of their energy") {
+    for (const Material& outside : {soft(), rubber()}) {
+        Aggregate m = bar_with_ball(outside, stiff());
+        REQUIRE(m.mixed_cell.size() > 20);
+        shake(m, 0.05);
+        LatticeForces forces(m);
+        Vec3Array f;
+        forces.find(m, Flow::trial, f);
+        double largest = 0;
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t p = 0; p < f.size(); ++p) {
+            largest = std::max(largest, f.at(p).norm());
+            sum += f.at(p);
+        }
+        CHECK(sum.norm() < 1e-10 * largest);
+        const double h = 1e-4 * kSpacing;
+        for (std::size_t p = 0; p < m.particle_count(); p += 7) {
+            const auto at = [&](double by) {
+                Aggregate moved = m;
+                moved.particle_position.y[p] += by;
+                return forces.elastic_energy(moved);
+            };
+            const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+            CHECK(std::abs(f.y[p] + slope) < 1e-7 * largest);
+        }
+    }
+}
+
+TEST_CASE("an inset of the same material changes nothing but by what shares leave of the modes") {
+    Aggregate one = bar_with_ball(soft(), soft());
+    Aggregate plain = one;
+    plain.inset.clear(), plain.cell_material.clear(), plain.mixed_cell.clear();
+    // Uniform strain has no modes.
+    for (Aggregate* m : {&one, &plain}) {
+        for (std::size_t p = 0; p < m->particle_count(); ++p) {
+            const Vec3 x = m->particle_reference.at(p);
+            m->particle_position.set(p, Vec3(1.01 * x.x() + 0.01 * x.y(), 0.98 * x.y(), x.z()));
+        }
+    }
+    Vec3Array a, b;
+    LatticeForces(one).find(one, Flow::trial, a);
+    LatticeForces(plain).find(plain, Flow::trial, b);
+    double largest = 0;
+    for (std::size_t p = 0; p < a.size(); ++p) largest = std::max(largest, b.at(p).norm());
+    for (std::size_t p = 0; p < a.size(); ++p) {
+        CHECK((a.at(p) - b.at(p)).norm() < 1e-6 * largest);
+    }
+}
+
+TEST_CASE("a body of two materials has its mass, its volume, and the same bits in every way") {
+    Material light = soft(), heavy = stiff();
+    light.density = 1000, heavy.density = 8000;
+    heavy.yield_stress = 3e4, heavy.hardening = 1e5;
+    Aggregate m = bar_with_ball(light, heavy);
+    const double ball = 0.8 * 0.8 * 0.8 * std::numbers::pi / 6;
+    CHECK(m.volume() == Approx(2).epsilon(1e-6));
+    CHECK(m.mass() == Approx(2 * 1000 + 7000 * ball).epsilon(0.01));
+    shake(m, 0.05);
+    LatticeForces forces(m);
+    CHECK(forces.commit(m) > 0);
+    shake(m, 0.02, 5);
+    Vec3Array expected;
+    forces.find(m, Flow::trial, expected);
+    for (int threads : {1, 3}) {
+        set_thread_count(threads);
+        for (int width : {8, 4, 2}) {
+            limit_vector_width(width);
+            Vec3Array f;
+            forces.find(m, Flow::trial, f);
+            CHECK(f.x == expected.x);
+            CHECK(f.y == expected.y);
+        }
+    }
+    limit_vector_width(0);
+    set_thread_count(0);
+}
