@@ -49,14 +49,16 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_reference) + bytes_of(particle_position) +
                       bytes_of(particle_velocity) + bytes_of(particle_mass) + bytes_of(cell_fill) +
-                      bytes_of(cell_centroid) + bytes_of(cell_hardening) +
+                      bytes_of(cell_centroid) + bytes_of(cell_cracked) +
+                      bytes_of(cell_hardening) +
                       bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& v : cell_plastic_strain) sum += bytes_of(v);
     for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);
     for (const ConnectionArrays& direction : connection) {
-        sum += bytes_of(direction.weight) + bytes_of(direction.plastic);
+        sum += bytes_of(direction.weight) + bytes_of(direction.plastic) +
+               bytes_of(direction.damage);
     }
     return sum;
 }
@@ -68,6 +70,11 @@ bool cell_is_whole(const Aggregate& matter, const std::array<ParticleId, 4>& row
         }
     }
     return true;
+}
+
+bool cell_is_sound(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row) {
+    const bool cracked = !matter.cell_cracked.empty() && matter.cell_cracked[cell] != 0;
+    return !cracked && cell_is_whole(matter, row);
 }
 
 Pieces find_pieces(const Aggregate& matter) {
@@ -111,6 +118,7 @@ std::uint64_t state_hash(const Aggregate& matter) {
     for (const ConnectionArrays& direction : matter.connection) {
         hasher.add(std::span<const float>(direction.weight));
         hasher.add(std::span<const float>(direction.plastic));
+        hasher.add(std::span<const float>(direction.damage));
     }
     for (const std::vector<float>& slot : matter.cell_plastic) {
         hasher.add(std::span<const float>(slot));
@@ -122,6 +130,7 @@ std::uint64_t state_hash(const Aggregate& matter) {
         hasher.add(std::span<const float>(v));
     }
     hasher.add(std::span<const float>(matter.cell_hardening));
+    hasher.add(std::span<const char>(matter.cell_cracked));
     return hasher.value();
 }
 

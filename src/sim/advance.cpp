@@ -44,12 +44,13 @@ struct Simulation::Rooms {
     const Apparatus& apparatus;
     std::variant<QuasistaticSolver, ExplicitSolver> solver;
     int pieces = 1;
-    double plastic = 0, damped = 0, severed_energy = 0;
+    std::ptrdiff_t crumbs = 0;  // particles
+    double plastic = 0, damped = 0, severed_energy = 0, fracture = 0, set_free = 0;
     std::vector<double> work;
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
 
-    double elastic() const {
-        return std::visit([](const auto& solver) { return solver.elastic_energy(); }, solver);
+    double elastic() {
+        return std::visit([](auto& solver) { return solver.elastic_energy(); }, solver);
     }
 
     std::vector<SeverEvent> crossed(const Aggregate& body, const Drive& from,
@@ -75,7 +76,7 @@ struct Simulation::Rooms {
 
 Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)
     : rooms_(new Rooms{matter, apparatus, Rooms::choose(matter, apparatus, settings),
-                       find_pieces(matter).count, 0, 0, 0,
+                       find_pieces(matter).count, 0, 0, 0, 0, 0, 0,
                        std::vector<double>(apparatus.tool.size() + apparatus.grip.size(), 0.0)}) {
     if (settings.solver == Solver::quasistatic) {
         // Equilibria have no speed; whatever an explicit stage left behind is gone.
@@ -128,22 +129,27 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         std::visit([](auto& solver) { solver.connections_changed(); }, r.solver);
         r.severed_energy += before - r.elastic();
     }
-    if (report.severed > 0) {
+    const auto count_pieces = [&](const char* who) {
         const std::vector<char> crumb = crumbs_of(r.matter);
         const auto loose = std::count(crumb.begin(), crumb.end(), 1);
-        if (loose > 0) {
+        if (loose > r.crumbs) {
             report.warning.push_back(fmt::format(
-                "the blade left crumbs of less than one cell, {} particles in all", loose));
+                "{} left crumbs of less than one cell, {} particles in all", who, loose));
         }
+        r.crumbs = loose;
         r.pieces = find_pieces(r.matter).count;
-    }
-    report.pieces = r.pieces;
+    };
+    if (report.severed > 0) count_pieces("the blade");
 
     // Move.
     const MoveOutcome outcome =
         std::visit([&](auto& solver) { return solver.advance(from, to); }, r.solver);
 
+    report.broken = outcome.broken;
+    if (report.broken > 0) count_pieces("fracture");
+
     // Report.
+    report.pieces = r.pieces;
     report.iterations = outcome.iterations;
     report.increments = outcome.increments;
     report.halvings = outcome.halvings;
@@ -167,6 +173,10 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.plastic = r.plastic;
     report.damped = r.damped;
     report.severed_energy = r.severed_energy;
+    r.fracture += outcome.fracture_work;
+    r.set_free += outcome.set_free;
+    report.fracture = r.fracture;
+    report.set_free = r.set_free;
     report.elastic = r.elastic();
     report.kinetic = kinetic_energy(r.matter);
     const std::size_t tools = r.apparatus.tool.size();

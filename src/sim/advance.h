@@ -30,8 +30,11 @@ struct FrameReport {
     double kinetic = 0, elastic = 0;           // now [J]
     double plastic = 0, damped = 0, work = 0;  // since the stage began [J]
     double severed_energy = 0;   // elastic energy lost with severed connections, likewise [J]
+    double fracture = 0;         // energy that breaking took, likewise [J]
+    double set_free = 0;         // by cracks that ran on while the drive stood, likewise [J]; what an
+                                 // equilibrium loses of a snap. Quasi-static only
     std::vector<ToolLoad> load;  // tools, then grips, then blades
-    int severed = 0;             // connections, in this frame
+    int severed = 0, broken = 0;  // connections, in this frame: by blades, by load
     int pieces = 1;
     std::vector<std::string> warning;
 };

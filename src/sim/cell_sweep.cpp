@@ -244,7 +244,7 @@ void CellSweep::cells_changed(const Aggregate& matter) {
     for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
         std::array<ParticleId, 4> row = run.row;
         for (ParticleId& p : row) p += n;
-        if (!cell_is_whole(matter, row)) fill_[cell] = 0;
+        if (!cell_is_sound(matter, cell, row)) fill_[cell] = 0;
     });
     batch_.clear();
     share_.clear();

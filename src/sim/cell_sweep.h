@@ -8,13 +8,9 @@
 #include "laws/cell_moduli.h"
 #include "matter/aggregate.h"
 #include "sim/force_slabs.h"
+#include "sim/loose_springs.h"
 
 namespace swage {
-
-enum class Flow {
-    trial,  // what yields flows on from the committed history
-    none,   // nothing flows further
-};
 
 class CellSweep {
   public:

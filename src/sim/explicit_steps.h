@@ -28,7 +28,7 @@ class ExplicitSolver {
     // then as it was before the move.
     MoveOutcome advance(const Drive& from, const Drive& to);
     void connections_changed();
-    double elastic_energy() const { return lattice_.elastic_energy(matter_); }  // [J]
+    double elastic_energy() { return lattice_.elastic_energy(matter_); }  // [J]
 
   private:
     bool steps(const Drive& from, const Drive& to, double dt, MoveOutcome& outcome);
