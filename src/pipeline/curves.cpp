@@ -81,8 +81,8 @@ std::string csv_text(const StageCurves& curves) {
     }
     text +=
         ",kinetic energy [J],elastic energy [J],plastic work [J],damped work [J],"
-        "machine work [J],severed energy [J],severed "
-        "connections,pieces,iterations,increments,halvings,steps,"
+        "machine work [J],severed energy [J],fracture energy [J],set free [J],severed "
+        "connections,broken connections,pieces,iterations,increments,halvings,steps,"
         "residual\n";
     for (std::size_t row = 0; row < curves.rows(); ++row) {
         const FrameReport& report = curves.report()[row];
@@ -97,12 +97,14 @@ std::string csv_text(const StageCurves& curves) {
             cells.push_back(number(load.penetration[row]));
             cells.push_back(std::to_string(load.contacts[row]));
         }
-        for (double energy : {report.kinetic, report.elastic, report.plastic, report.damped,
-                              report.work, report.severed_energy}) {
+        for (double energy :
+             {report.kinetic, report.elastic, report.plastic, report.damped, report.work,
+              report.severed_energy, report.fracture, report.set_free}) {
             cells.push_back(number(energy));
         }
-        for (long count : {long(report.severed), long(report.pieces), long(report.iterations),
-                           long(report.increments), long(report.halvings), report.steps}) {
+        for (long count : {long(report.severed), long(report.broken), long(report.pieces),
+                           long(report.iterations), long(report.increments), long(report.halvings),
+                           report.steps}) {
             cells.push_back(std::to_string(count));
         }
         cells.push_back(number(report.residual));

@@ -16,8 +16,8 @@ constexpr std::size_t kRunsPerChunk = 64;
 // Cells whose strain is within this share of the largest go together: symmetric places do, and a
 // fast crack needs fewer rounds.
 constexpr double kTogether = 0.98;
-// Particles of emptier cells lie too far outside the body to tell its strain.
-constexpr float kTellingFill = 0.5f;
+// Particles far from the material of their cell do not tell its strain.
+constexpr float kOffCentre = 0.15f;  // of the cell
 
 struct Strained {
     CellId cell;
@@ -84,7 +84,7 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
                 const bool flowed =
                     !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
                 double strain = springs ? 0 : mean_strain(matter, run, n, law.onset);
-                if (!flowed && matter.cell_fill[cell] >= kTellingFill) {
+                if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
                 if (strain >= law.onset && cell_is_sound(matter, cell, row)) {
