@@ -63,6 +63,7 @@ std::vector<Case> verification_cases() {
     add_oblique_cases(cases);
     add_invariance_cases(cases);
     add_plastic_cases(cases);
+    add_fracture_cases(cases);
     return cases;
 }
 

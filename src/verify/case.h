@@ -79,5 +79,6 @@ void add_large_bending_cases(std::vector<Case>& cases);
 void add_oblique_cases(std::vector<Case>& cases);
 void add_invariance_cases(std::vector<Case>& cases);
 void add_plastic_cases(std::vector<Case>& cases);
+void add_fracture_cases(std::vector<Case>& cases);
 
 }  // namespace swage
