@@ -49,6 +49,9 @@ std::string cost_text(const SceneSpec& scene, const InputMesh& input, const RunC
     } else {
         line("accuracy", "springs: stretch alone is right; bending and torsion are too stiff");
     }
+    const std::string strength =
+        strength_warning(scene.material, cost.mold.spacing, cost.mold.cell_count.minCoeff());
+    if (!strength.empty()) line("strength", strength);
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));
     line("steps", "about " + count_text(cost.steps));
@@ -81,6 +84,12 @@ int check(const CheckArguments& given) {
             json["accuracy"] = {{"bending", accuracy.bending},
                                 {"torsion", accuracy.torsion},
                                 {"across_for_percent", accuracy.cells_for_percent}};
+        }
+        const Resolved strength = resolved_strength(reading.scene->material, cost.mold.spacing,
+                                                    cost.mold.cell_count.minCoeff());
+        if (!strength.whole()) {
+            json["strength"] = {{"resolved_Pa", strength.strength},
+                                {"across_for_whole", strength.cells_for_whole}};
         }
         if (!given.json) put_out(cost_text(*reading.scene, input, cost));
         refuse_excess(cost, options);

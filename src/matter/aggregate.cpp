@@ -101,7 +101,7 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_reference) + bytes_of(particle_position) +
                       bytes_of(particle_velocity) + bytes_of(particle_mass) + bytes_of(cell_fill) +
-                      bytes_of(cell_centroid) + bytes_of(cell_hardening) + bytes_of(inset) +
+                      bytes_of(cell_centroid) + bytes_of(cell_cracked) + bytes_of(cell_hardening) + bytes_of(inset) +
                       bytes_of(cell_material) + bytes_of(mixed_cell) + bytes_of(surface.corner) +
                       bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
@@ -109,7 +109,8 @@ std::size_t Aggregate::bytes() const {
     for (const std::vector<float>& v : cell_plastic_strain) sum += bytes_of(v);
     for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);
     for (const ConnectionArrays& direction : connection) {
-        sum += bytes_of(direction.weight) + bytes_of(direction.plastic);
+        sum += bytes_of(direction.weight) + bytes_of(direction.plastic) +
+               bytes_of(direction.damage);
     }
     return sum;
 }
@@ -121,6 +122,11 @@ bool cell_is_whole(const Aggregate& matter, const std::array<ParticleId, 4>& row
         }
     }
     return true;
+}
+
+bool cell_is_sound(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row) {
+    const bool cracked = !matter.cell_cracked.empty() && matter.cell_cracked[cell] != 0;
+    return !cracked && cell_is_whole(matter, row);
 }
 
 Pieces find_pieces(const Aggregate& matter) {
@@ -164,6 +170,7 @@ std::uint64_t state_hash(const Aggregate& matter) {
     for (const ConnectionArrays& direction : matter.connection) {
         hasher.add(std::span<const float>(direction.weight));
         hasher.add(std::span<const float>(direction.plastic));
+        hasher.add(std::span<const float>(direction.damage));
     }
     for (const std::vector<float>& slot : matter.cell_plastic) {
         hasher.add(std::span<const float>(slot));
@@ -178,6 +185,7 @@ std::uint64_t state_hash(const Aggregate& matter) {
     for (const MixedCell& cell : matter.mixed_cell) {
         for (const auto& part : cell.flowed) hasher.add(std::span<const float>(part));
     }
+    hasher.add(std::span<const char>(matter.cell_cracked));
     return hasher.value();
 }
 

@@ -113,6 +113,9 @@ struct Lattice {
 struct ConnectionArrays {
     std::vector<float> weight;   // share of the full connection's section, 0: none (or no longer)
     std::vector<float> plastic;  // rest_length / reference_length - 1
+    // Share of its stiffness that is lost for being pulled (laws/fracture.h); 1: broken by load, its
+    // weight is then 0 too. Empty while nothing is damaged.
+    std::vector<float> damage;
 };
 
 // A point of the body's true surface, carried by a cell: x = sum N_c x_c. What touches and is
@@ -158,6 +161,7 @@ struct Aggregate {
     std::vector<Material> inset;
     std::vector<std::uint8_t> cell_material;
     std::vector<MixedCell> mixed_cell;
+    std::vector<char> cell_cracked;  // 1: has reached its strength; empty while none has
 
     // History of the cells, committed; all empty while nothing has ever yielded.
     std::vector<float> cell_hardening;  // accumulated plastic strain
@@ -202,6 +206,9 @@ Lattice make_lattice(const Vec3& origin, double spacing, const Vec3i& cell_count
 // Whether all 24 connections of the cell with these low row ends still hold. A cell that a blade
 // has crossed is no longer a cell: its corners belong to different sides.
 bool cell_is_whole(const Aggregate& matter, const std::array<ParticleId, 4>& row);
+
+// Whether it is whole and has never reached its strength.
+bool cell_is_sound(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row);
 
 // Pieces connected through unsevered connections: piece[p] for each particle, numbered in order
 // of their lowest particle.

@@ -18,6 +18,8 @@ enum class Elasticity {
 };
 
 struct Material {
+    bool breaks() const { return strength < std::numeric_limits<double>::infinity(); }
+
     std::string name = "custom";
     Mechanics mechanics = Mechanics::cells;
     Elasticity elasticity = Elasticity::hencky;
@@ -27,6 +29,10 @@ struct Material {
     double yield_stress = std::numeric_limits<double>::infinity();  // [Pa], > 0; inf: never yields
     double hardening =
         0;  // [Pa] of stress per plastic strain, >= 0; 1 to 5 yield stresses for metals
+    // Both or neither. Stress at which a bar that is pulled breaks [Pa], > 0 and below a tenth of
+    // young_modulus; inf: never. Energy of a new crack, both its faces together [J/m2], > 0.
+    double strength = std::numeric_limits<double>::infinity();
+    double toughness = std::numeric_limits<double>::infinity();
     double damping_ratio =
         0.05;               // of every swing, 0 to 0.3: half its loss factor; explicit steps only
     double friction = 0.3;  // Coulomb, against tools that do not say otherwise, >= 0

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/accuracy.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "base/units.h"
+#include "laws/fracture.h"
 
 namespace swage {
 
 namespace {
 
-// `swage verify oblique-bar oblique-rod`: bending 5.62 % at 4 cells and 1.35 % at 8 (the rod), torsion
-// 6.82 % and 1.93 % (the bar); both fall with the square.
+// `swage verify oblique-bar oblique-rod`: bending 5.62 % at 4 cells and 1.35 % at 8 (the rod),
+// torsion 6.82 % and 1.93 % (the bar); both fall with the square.
 constexpr double kBending = 0.9, kTorsion = 1.24;
 
 }  // namespace
@@ -18,6 +23,26 @@ Accuracy accuracy_at(double cells) {
     const double square = cells * cells;
     return {kBending / square, kTorsion / square,
             static_cast<int>(std::ceil(std::sqrt(std::max(kBending, kTorsion) / 0.01)))};
+}
+
+Resolved resolved_strength(const Material& material, double spacing, double cells) {
+    if (!material.breaks()) return {material.strength, 0};
+    const double e = material.young_modulus, strength = material.strength;
+    const double needed = fracture_reach(e, strength, material.toughness) / kLeastReach;
+    if (spacing <= needed * (1 + 1e-9)) return {strength, 0};
+    return {strength_at(e, strength, material.toughness, spacing),
+            static_cast<int>(std::ceil(cells * spacing / needed))};
+}
+
+std::string strength_warning(const Material& material, double spacing, double cells) {
+    const Resolved resolved = resolved_strength(material, spacing, cells);
+    if (resolved.whole()) return "";
+    return fmt::format(
+        "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
+        "breaks at {} instead of {}; [mold] across = {} would do",
+        quantity_text(spacing, Quantity::length), material.name,
+        quantity_text(resolved.strength, Quantity::stress),
+        quantity_text(material.strength, Quantity::stress), resolved.cells_for_whole);
 }
 
 }  // namespace swage

@@ -2,12 +2,14 @@
 // What a resolution is worth, from what `swage verify` measures.
 #pragma once
 
+#include <string>
+
 #include "matter/material.h"
 
 namespace swage {
 
-// Relative errors of stiffness to expect of a part that is `cells` thick, in the worst of the directions
-// tried: the round rod and the square bar that stand oblique to the lattice.
+// Relative errors of stiffness to expect of a part that is `cells` thick, in the worst of the
+// directions tried: the round rod and the square bar that stand oblique to the lattice.
 struct Accuracy {
     double bending, torsion;
     int cells_for_percent;  // thickness at which both are within 1 %
@@ -15,5 +17,15 @@ struct Accuracy {
 
 // Mechanics of cells only.
 Accuracy accuracy_at(double cells);
+
+// What a lattice of this spacing makes of a material's strength, `cells` over the thinnest side.
+struct Resolved {
+    double strength;      // [Pa] at which a smooth body breaks
+    int cells_for_whole;  // over the thinnest side, at which that is the material's own; 0: it is
+    bool whole() const { return cells_for_whole == 0; }
+};
+Resolved resolved_strength(const Material& material, double spacing, double cells);
+// Empty where it is resolved, or nothing breaks.
+std::string strength_warning(const Material& material, double spacing, double cells);
 
 }  // namespace swage

@@ -80,8 +80,9 @@ std::string csv_text(const StageCurves& curves) {
     }
     text +=
         ",kinetic energy [J],elastic energy [J],plastic work [J],damped work [J],"
-        "machine work [J],load work [J],gravity work [J],severed energy [J],remainder [J],severed "
-        "connections,pieces,iterations,increments,halvings,steps,"
+        "machine work [J],load work [J],gravity work [J],severed energy [J],fracture energy [J],set "
+        "free [J],remainder [J],severed connections,broken connections,pieces,iterations,increments,"
+        "halvings,steps,"
         "residual\n";
     for (std::size_t row = 0; row < curves.rows(); ++row) {
         const FrameReport& report = curves.report()[row];
@@ -98,11 +99,13 @@ std::string csv_text(const StageCurves& curves) {
         }
         for (double energy :
              {report.kinetic, report.elastic, report.plastic, report.damped, report.work,
-              report.load_work, report.gravity_work, report.severed_energy, report.remainder}) {
+              report.load_work, report.gravity_work, report.severed_energy, report.fracture,
+              report.set_free, report.remainder}) {
             cells.push_back(number(energy));
         }
-        for (long count : {long(report.severed), long(report.pieces), long(report.iterations),
-                           long(report.increments), long(report.halvings), report.steps}) {
+        for (long count : {long(report.severed), long(report.broken), long(report.pieces),
+                           long(report.iterations), long(report.increments), long(report.halvings),
+                           report.steps}) {
             cells.push_back(std::to_string(count));
         }
         cells.push_back(number(report.residual));

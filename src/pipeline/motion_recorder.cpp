@@ -23,7 +23,8 @@ void MotionRecorder::set_machine(const Apparatus& apparatus) {
 }
 
 void MotionRecorder::add_frame(const WorkPiece& piece, const Drive& drive) {
-    // A skin that is made anew in every frame changes only where matter was severed. Its smoothing,
+    // A skin that is made anew in every frame changes only where matter was severed or
+    // broke. Its smoothing,
     // told from angles, changes as it bends, and is kept as it first was.
     const bool same = skin_id_ >= 0 && skin_.triangle == piece.skin.triangle &&
                       skin_.position.size() == piece.skin.position.size();

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "pipeline/accuracy.h"
 #include "pipeline/cost.h"
 #include "pipeline/draw.h"
 #include "pipeline/frame_store.h"
@@ -62,6 +63,12 @@ std::optional<Error> simulate(const SceneSpec& scene, const InputMesh& input,
     MotionRecorder recorder(directory.store());
     Progress progress("simulate", frame_count(scene) - 1);
     std::vector<std::string> warnings = input.finding;
+    const std::string strength = strength_warning(scene.material, piece.matter.lattice.spacing,
+                                                  piece.matter.lattice.cell_count.minCoeff());
+    if (!strength.empty()) {
+        log_warning("{}", strength);
+        warnings.push_back(strength);
+    }
     std::optional<Error> stopped;
     long steps = 0;
     for (const StageSpec& stage : scene.stage) {

@@ -49,7 +49,7 @@ class WarningBook {
 };
 
 struct Totals {
-    long iterations = 0, increments = 0, halvings = 0, steps = 0, severed = 0;
+    long iterations = 0, increments = 0, halvings = 0, steps = 0, severed = 0, broken = 0;
     double residual = 0, penetration = 0;
     long tool_contacts = 0;
 
@@ -59,6 +59,7 @@ struct Totals {
         halvings += report.halvings;
         steps += report.steps;
         severed += report.severed;
+        broken += report.broken;
         residual = std::max(residual, report.residual);
         for (std::size_t n = 0; n < report.load.size(); ++n) {
             penetration = std::max(penetration, report.load[n].penetration);
@@ -90,6 +91,8 @@ Json energies_json(const FrameReport& last) {
             {"plastic", last.plastic},
             {"damped", last.damped},
             {"severed", last.severed_energy},
+            {"fracture", last.fracture},
+            {"set_free", last.set_free},
             {"remainder", last.remainder}};
 }
 
@@ -187,6 +190,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
         {
             const auto lap = context.watch.lap("skin");
             follow_matter(piece, skin);
+            if (last.broken > 0 && skin != SkinKind::boundary) tears = true;
             if (tears) remove_torn_triangles(piece.skin, piece.mount, piece.matter);
         }
         const auto lap = context.watch.lap("write");
@@ -220,6 +224,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
         {"connections_before", connections_before},
         {"connections_after", piece.matter.connection_count()},
         {"severed", totals.severed},
+        {"broken", totals.broken},
         {"pieces", last.pieces},
         {"iterations", totals.iterations},
         {"increments", totals.increments},

@@ -57,6 +57,13 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
     if (scene.material.mechanics == Mechanics::springs) {
         root.mistake("inset", "springs know one material: use mechanics = \"cells\" in [material]");
     }
+    bool breaks = scene.material.breaks();
+    for (const InsetSpec& inset : scene.inset) breaks = breaks || inset.material.breaks();
+    if (breaks) {
+        root.mistake("inset",
+                     "bodies of two materials do not break yet: leave strength and toughness out "
+                     "(strength = \"inf\" over a named material's)");
+    }
     for (const StageSpec& stage : scene.stage) {
         if (stage.remold) {
             root.mistake("inset", fmt::format("stage \"{}\" molds the work-piece anew, which "

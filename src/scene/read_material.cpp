@@ -5,6 +5,7 @@
 
 #include "base/suggest.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "laws/internal_damping.h"
 
 namespace swage {
@@ -14,12 +15,53 @@ namespace {
 constexpr double kLatticePoisson = 0.25;  // of central springs, whatever is asked
 constexpr double kPoissonSlack = 0.005;
 constexpr double kMuchFriction = 2;
+constexpr double kMostStrength = 0.1;  // of young_modulus
 
 // Materials that never yield say so by leaving yield_stress out; a scene turns a yielding one into
 // such by `yield_stress = inf`.
 bool is_infinite(const Node* node) {
     return node != nullptr && node->kind == Node::Kind::real && std::isinf(node->number) &&
            node->number > 0;
+}
+
+// Strength and toughness make sense together only; `strength = inf` takes both away.
+void read_fracture(TableReader& table, Material& material) {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    const bool never = is_infinite(table.find("strength"));
+    bool asks = false;
+    if (never) {
+        material.strength = kInfinite;
+    } else {
+        asks = table.quantity("strength", Quantity::stress, above(0), material.strength);
+    }
+    const bool has_toughness =
+        table.quantity("toughness", Quantity::toughness, above(0), material.toughness);
+    if (!material.breaks()) {
+        if (has_toughness && !asks) {
+            table.warn("toughness", "toughness has no effect without strength");
+        }
+        material.toughness = kInfinite;
+        return;
+    }
+    if (asks && !has_toughness && std::isinf(material.toughness)) {
+        table.mistake("strength",
+                      "strength needs toughness beside it: the energy of a new crack, such as "
+                      "\"10 J/m2\"");
+        return;
+    }
+    if (!(material.strength < kMostStrength * material.young_modulus)) {
+        table.mistake(
+            asks ? "strength" : "young_modulus",
+            fmt::format("a strength of {} is too much for a young_modulus of {}: matter "
+                        "that breaks does so at a strain of less than {:g} here",
+                        quantity_text(material.strength, Quantity::stress),
+                        quantity_text(material.young_modulus, Quantity::stress), kMostStrength));
+    }
+    if (material.elasticity == Elasticity::neo_hookean) {
+        table.mistake("strength",
+                      "neo-hookean matter does not break: leave strength out (or inf), or use "
+                      "elasticity = \"hencky\"");
+    }
 }
 
 }  // namespace
@@ -39,6 +81,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
         table.quantity("yield_stress", Quantity::stress, above(0), material.yield_stress);
     }
     table.quantity("hardening", Quantity::stress, at_least(0), material.hardening);
+    read_fracture(table, material);
     table.quantity("damping_ratio", Quantity::number, between(0, kMostDampingRatio),
                    material.damping_ratio);
     if (table.quantity("friction", Quantity::number, at_least(0), material.friction) &&

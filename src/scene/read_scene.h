@@ -3,8 +3,8 @@
 //
 //     [mesh]      file, length
 //     [material]  name; mechanics ("cells", "springs"), elasticity ("hencky", "neo-hookean"),
-//                 young_modulus, poisson_ratio, density, yield_stress, hardening, damping_ratio,
-//                 friction
+//                 young_modulus, poisson_ratio, density, yield_stress, hardening, strength,
+//                 toughness, damping_ratio, friction
 //     [mold]      across or spacing, kind ("shape", "block"), cell_limit
 //     [skin]      kind ("mount", "frame4", "boundary")
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",

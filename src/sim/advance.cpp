@@ -44,7 +44,8 @@ struct Simulation::Rooms {
     const Apparatus& apparatus;
     std::variant<QuasistaticSolver, ExplicitSolver> solver;
     int pieces = 1;
-    double plastic = 0, damped = 0, severed_energy = 0;
+    std::ptrdiff_t crumbs = 0;  // particles
+    double plastic = 0, damped = 0, severed_energy = 0, fracture = 0, set_free = 0;
     std::vector<double> work, push_work;
     double stored_at_start = 0;                  // kinetic and elastic [J]
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
@@ -54,8 +55,8 @@ struct Simulation::Rooms {
                           solver);
     }
 
-    double elastic() const {
-        return std::visit([](const auto& solver) { return solver.elastic_energy(); }, solver);
+    double elastic() {
+        return std::visit([](auto& solver) { return solver.elastic_energy(); }, solver);
     }
 
     std::vector<SeverEvent> crossed(const Aggregate& body, const Drive& from,
@@ -84,6 +85,9 @@ Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimS
                        apparatus,
                        Rooms::choose(matter, apparatus, settings),
                        find_pieces(matter).count,
+                       0,
+                       0,
+                       0,
                        0,
                        0,
                        0,
@@ -168,22 +172,27 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         std::visit([](auto& solver) { solver.connections_changed(); }, r.solver);
         r.severed_energy += before - r.elastic();
     }
-    if (report.severed > 0) {
+    const auto count_pieces = [&](const char* who) {
         const std::vector<char> crumb = crumbs_of(r.matter);
         const auto loose = std::count(crumb.begin(), crumb.end(), 1);
-        if (loose > 0) {
+        if (loose > r.crumbs) {
             report.warning.push_back(fmt::format(
-                "the blade left crumbs of less than one cell, {} particles in all", loose));
+                "{} left crumbs of less than one cell, {} particles in all", who, loose));
         }
+        r.crumbs = loose;
         r.pieces = find_pieces(r.matter).count;
-    }
-    report.pieces = r.pieces;
+    };
+    if (report.severed > 0) count_pieces("the blade");
 
     // Move.
     const MoveOutcome outcome =
         std::visit([&](auto& solver) { return solver.advance(from, to); }, r.solver);
 
+    report.broken = outcome.broken;
+    if (report.broken > 0) count_pieces("fracture");
+
     // Report.
+    report.pieces = r.pieces;
     report.iterations = outcome.iterations;
     report.increments = outcome.increments;
     report.halvings = outcome.halvings;
@@ -212,6 +221,10 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.plastic = r.plastic;
     report.damped = r.damped;
     report.severed_energy = r.severed_energy;
+    r.fracture += outcome.fracture_work;
+    r.set_free += outcome.set_free;
+    report.fracture = r.fracture;
+    report.set_free = r.set_free;
     report.elastic = r.elastic();
     report.kinetic = kinetic_energy(r.matter);
     report.load = bodies(to);
@@ -237,7 +250,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     }
     report.remainder = report.work + report.load_work + report.gravity_work -
                        (report.kinetic + report.elastic - r.stored_at_start) - report.plastic -
-                       report.damped - report.severed_energy;
+                       report.damped - report.severed_energy - report.fracture - report.set_free;
     return report;
 }
 

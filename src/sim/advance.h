@@ -33,11 +33,15 @@ struct FrameReport {
     double plastic = 0, damped = 0, work = 0;  // since the stage began [J]; work of tools, grips
     double load_work = 0, gravity_work = 0;    // likewise [J]
     double severed_energy = 0;  // elastic energy lost with severed connections, likewise [J]
+    double fracture = 0;        // energy that breaking took, likewise [J]
+    // By cracks that ran on while the drive stood, likewise [J]: what an equilibrium loses of a
+    // snap. Quasi-static only.
+    double set_free = 0;
     // Of all work since the stage began, what none of the others accounts for [J]: friction's, and
     // what relaxation lets go where something snaps or is put on at once.
     double remainder = 0;
     std::vector<ToolLoad> load;  // tools, then grips, then blades, then loads, then gravity
-    int severed = 0;             // connections, in this frame
+    int severed = 0, broken = 0;  // connections, in this frame: by blades, by load
     int pieces = 1;
     std::vector<std::string> warning;
 };

@@ -114,7 +114,7 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                     FlowingCell cell{id, run.row, theta[n], flow_share(distortion[n], d_alpha),
                                      d_alpha};
                     for (ParticleId& p : cell.row) p += at + n;
-                    if (!cell_is_whole(matter, cell.row)) continue;  // has no size any more
+                    if (!cell_is_sound(matter, id, cell.row)) continue;  // has no size any more
                     part[chunk].push_back(cell);
                 }
             }

@@ -266,7 +266,7 @@ void CellSweep::cells_changed(const Aggregate& matter) {
                   [&](const CellRun& run, int n, CellId cell) {
                       std::array<ParticleId, 4> row = run.row;
                       for (ParticleId& p : row) p += n;
-                      if (!cell_is_whole(matter, row)) fill_[cell] = 0;
+                      if (!cell_is_sound(matter, cell, row)) fill_[cell] = 0;
                   });
     mixed_.cells_changed(matter, fill_);
     swept_.clear();

@@ -8,14 +8,10 @@
 #include "laws/cell_moduli.h"
 #include "matter/aggregate.h"
 #include "sim/force_slabs.h"
+#include "sim/loose_springs.h"
 #include "sim/mixed_cells.h"
 
 namespace swage {
-
-enum class Flow {
-    trial,  // what yields flows on from the committed history
-    none,   // nothing flows further
-};
 
 class CellSweep {
   public:

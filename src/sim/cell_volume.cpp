@@ -42,7 +42,7 @@ struct SmallCell {
     double volume;
 };
 
-// Of a run: whole cells below a volume ratio, in their order.
+// Of a run: sound cells below a volume ratio, in their order.
 void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
                      std::vector<SmallCell>& found) {
     double volume[kCellBlock];
@@ -53,7 +53,7 @@ void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
             if (!(volume[n] < limit)) continue;
             std::array<ParticleId, 4> row = run.row;
             for (ParticleId& p : row) p += at + n;
-            if (!cell_is_whole(matter, row)) continue;
+            if (!cell_is_sound(matter, run.first + at + n, row)) continue;
             found.push_back({&run, at + n, volume[n]});
         }
     }

@@ -17,7 +17,7 @@ Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n);
 
 // Adds the forces by which crushed cells resist (laws/volume_guard.h), in the order of the cells;
 // returns how many of them are inside out.
-// Cells that a blade has crossed have no volume of their own and resist nothing.
+// Cells that a blade or a crack has crossed have no volume of their own and resist nothing.
 int add_guard_forces(const Aggregate& matter, Vec3Array& force);
 // The same when these runs are all that have such cells (CellSweep::crushed_runs).
 int add_guard_forces(const Aggregate& matter,

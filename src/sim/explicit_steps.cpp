@@ -101,7 +101,11 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
                                  std::abs(x.y[p] - listed.y[p]), std::abs(x.z[p] - listed.z[p])});
         }
         if (!finite(x)) return false;
-        outcome.plastic_work += lattice_.commit(matter_);
+        const Committed lost = lattice_.commit(matter_);
+        outcome.plastic_work += lost.plastic;
+        outcome.fracture_work += lost.fracture;
+        outcome.broken += lost.broken;
+        outcome.fracture_work += lattice_.crack(matter_).lost;
         contacts_.commit(matter_, now);
         std::vector<LoadSum> load = contacts_.loads(matter_, now);
         add_work(before, now, load_, load, outcome.work);
@@ -123,6 +127,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     const Vec3Array start_x = matter_.particle_position, start_v = matter_.particle_velocity;
     const auto start_connections = matter_.connection;
     const auto start_plastic = matter_.cell_plastic;
+    const auto start_cracked = matter_.cell_cracked;
     const auto start_strain = matter_.cell_plastic_strain;
     const auto start_modes = matter_.cell_plastic_modes;
     const auto start_hardening = matter_.cell_hardening;
@@ -135,12 +140,14 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     for (;; dt *= 0.5, ++outcome.halvings) {
         outcome.work.assign(load_.size(), 0.0);
         outcome.push_work.assign(pushes_.count(), 0.0);
-        outcome.plastic_work = outcome.damped_work = 0;
+        outcome.plastic_work = outcome.damped_work = outcome.fracture_work = 0;
+        outcome.broken = 0;
         if (steps(from, to, dt, outcome)) break;
         matter_.particle_position = start_x;
         matter_.particle_velocity = start_v;
         matter_.connection = start_connections;
         matter_.cell_plastic = start_plastic;
+        matter_.cell_cracked = start_cracked;
         matter_.cell_plastic_strain = start_strain;
         matter_.cell_plastic_modes = start_modes;
         matter_.cell_hardening = start_hardening;
@@ -148,6 +155,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         contacts_ = start_contacts;
         pushes_ = start_pushes;
         damping_ = start_damping;
+        lattice_.connections_changed(matter_);
         if (outcome.halvings == settings_.halving_limit) {
             fail(ExitCode::stopped,
                  "{}: the motion is not finite at {:.4g} s even with steps of {:.3g} s; move the "

@@ -33,7 +33,7 @@ class ExplicitSolver {
     MoveOutcome advance(const Drive& from, const Drive& to);
     void connections_changed();
     // In the lattice and in the branches of its damping [J].
-    double elastic_energy() const {
+    double elastic_energy() {
         return lattice_.elastic_energy(matter_) +
                (damping_.acts() ? damping_.stored_energy(matter_) : 0);
     }

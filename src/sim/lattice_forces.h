@@ -10,15 +10,28 @@
 #include "sim/cell_flow.h"
 #include "sim/cell_sweep.h"
 #include "sim/lattice_sweep.h"
+#include "sim/loose_springs.h"
 
 namespace swage {
+
+// What a converged state took for good.
+struct Committed {
+    double plastic = 0;   // [J]
+    double fracture = 0;  // [J]
+    int broken = 0;       // connections
+};
+
+struct Cracked {
+    int cells = 0;
+    double lost = 0;  // energy that turning into springs took [J]
+};
 
 class LatticeForces {
   public:
     explicit LatticeForces(const Aggregate& matter);
 
-    // Connections have been severed. A cell that has lost one is no cell any more; what it has left
-    // acts as plain springs, with the plastic strain it had.
+    // Connections have been severed or broken, or cells cracked. Such a cell is no cell any more;
+    // what it has left acts as plain springs, with the plastic strain it had.
     void connections_changed(const Aggregate& matter);
 
     // Forces on every particle at the present positions [N].
@@ -26,10 +39,14 @@ class LatticeForces {
     // says, by add_guard_stiffness().
     int find(const Aggregate& matter, Flow flow, Vec3Array& force);
 
-    // Remembers the flow of a converged state; returns the work that it took [J].
-    double commit(Aggregate& matter);
+    // Remembers the flow and softening of a converged state.
+    Committed commit(Aggregate& matter);
 
-    double elastic_energy(const Aggregate& matter) const;  // [J]
+    // Cells of a converged and committed state that have reached their strength act as springs from
+    // now on; the most strained go first. The state has to be brought to rest again.
+    Cracked crack(Aggregate& matter);
+
+    double elastic_energy(const Aggregate& matter);  // [J]
 
     // What the cells carry, where forces are theirs alone and of one material; else null.
     const std::vector<float>* cells_alone() const {
@@ -42,19 +59,12 @@ class LatticeForces {
     std::vector<double> stiffness_bound(const Aggregate& matter) const;
 
   private:
-    void add_loose(const Aggregate& matter, Vec3Array& force) const;
-
-    struct LooseSpring {
-        ParticleId lower, upper;
-        double stiffness;    // [N/m]
-        double rest_length;  // [m]
-    };
     LatticeLaw spring_law_;
     LatticeSweep spring_sweep_;
     std::unique_ptr<CellFlow> spring_flow_;  // springs that yield
     std::unique_ptr<CellSweep> cells_;       // null: springs
     bool guarded_;
-    std::vector<LooseSpring> loose_;  // of cells that are not whole
+    LooseSprings loose_;  // of cells that are not sound
 };
 
 }  // namespace swage

@@ -16,6 +16,10 @@ struct MoveOutcome {
     long steps = 0;                 // explicit steps only
     double residual = 0;            // of the last increment, over its reference force
     double plastic_work = 0;        // [J]
+    double fracture_work = 0;       // [J]
+    double set_free = 0;            // elastic energy that cracks let go of at a standing drive [J];
+                                    // quasi-static only
+    int broken = 0;                 // connections
     double damped_work = 0;         // [J]; explicit steps only
     bool drag_held = false;         // was more than a step can follow; explicit steps only
     std::vector<double> work;       // by tool, then grip [J]

@@ -436,14 +436,14 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         return;
     }
 
-    outcome.plastic_work += lattice_.commit(matter_);
+    const bool breaks = commit(outcome);
     contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
     for (std::size_t n = 0; n < load.size(); ++n) {
         largest_push_ = std::max(largest_push_, load[n].size);
         most_load_[n] = std::max(most_load_[n], load[n].size);
     }
-    if (released) {
+    if (released || breaks) {
         std::fill(carries_.begin(), carries_.end(), false);
     } else {
         check_slip(load, outcome);
@@ -460,7 +460,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     previous_ = start_;
     previous_motion_ = std::move(motion);
     pushes_.commit(matter_, to, outcome.push_work);
-    if (buckled) previous_motion_.clear();  // a jump does not go on
+    if (buckled || breaks) previous_motion_.clear();  // neither goes on as it did
     ++outcome.increments;
 }
 
@@ -476,6 +476,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     for (int n = 1; n <= count; ++n) {
         const Drive after = n == count ? to : drive_between(from, to, double(n) / count);
         increment(before, after, 0, outcome);
+        let_crack(after, outcome);
         before = after;
     }
     outcome.load = load_;

@@ -38,7 +38,7 @@ class QuasistaticSolver {
 
     // The connections have changed (severed): masses are found anew.
     void connections_changed();
-    double elastic_energy() const { return lattice_.elastic_energy(matter_); }  // [J]
+    double elastic_energy() { return lattice_.elastic_energy(matter_); }  // [J]
     const LoadSet& pushes() const { return pushes_; }
 
   private:
@@ -61,6 +61,8 @@ class QuasistaticSolver {
     void predict(const std::vector<double>& motion);
     bool draws_back(const Drive& from, const Drive& to, const std::vector<double>& motion) const;
     void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome);
+    void let_crack(const Drive& to, MoveOutcome& outcome);
+    bool commit(MoveOutcome& outcome);
 
     Aggregate& matter_;
     const Apparatus& apparatus_;

@@ -65,6 +65,7 @@ std::vector<Case> verification_cases() {
     add_invariance_cases(cases);
     add_two_material_cases(cases);
     add_plastic_cases(cases);
+    add_fracture_cases(cases);
     return cases;
 }
 

@@ -81,5 +81,6 @@ void add_oblique_cases(std::vector<Case>& cases);
 void add_invariance_cases(std::vector<Case>& cases);
 void add_two_material_cases(std::vector<Case>& cases);
 void add_plastic_cases(std::vector<Case>& cases);
+void add_fracture_cases(std::vector<Case>& cases);
 
 }  // namespace swage

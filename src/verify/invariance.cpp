@@ -103,7 +103,7 @@ void energy_slope(bool, Values& values) {
             return Vec3(x + 0.08 * a * Vec3(scatter(n), scatter(n + 1), scatter(n + 2)));
         });
         const Vec3Array force = forces_of(bar);
-        const LatticeForces lattice(bar);
+        LatticeForces lattice(bar);
         const auto energy_at = [&](std::size_t p, int axis, double way) {
             Aggregate other = bar;
             Vec3 x = bar.particle_position.at(p);

@@ -82,6 +82,8 @@ poisson_ratio = 0.25
 density = "1.2 g/cm3"
 yield_stress = "3 MPa"
 hardening = "1 MPa"
+strength = "4 MPa"
+toughness = "2 kJ/m^2"
 damping_ratio = 0.1
 friction = 0.4
 [mold]
@@ -150,6 +152,8 @@ meshes_per_frame = true
     CHECK(scene.material.density == Approx(1200));
     CHECK(scene.material.yield_stress == 3e6);
     CHECK(scene.material.hardening == 1e6);
+    CHECK(scene.material.strength == 4e6);
+    CHECK(scene.material.toughness == 2e3);
     CHECK(scene.material.damping_ratio == 0.1);
     CHECK(scene.material.friction == 0.4);
     CHECK(scene.mold.spacing.value() == Approx(0.005));
@@ -364,6 +368,12 @@ TEST_CASE("the shipped materials are many and within sense") {
         CHECK((std::isinf(one.yield_stress) || one.yield_stress < 0.1 * one.young_modulus));
         CHECK((one.hardening == 0 || std::isfinite(one.yield_stress)));
         CHECK(one.hardening <= 0.05 * one.young_modulus);
+        CHECK(one.breaks() == std::isfinite(one.toughness));
+        if (one.breaks()) {
+            CHECK(one.strength < 0.1 * one.young_modulus);
+            CHECK(one.toughness >= 0.5);
+            CHECK(one.toughness <= 1e5);
+        }
         CHECK(one.friction > 0);
         CHECK(one.friction <= 1);
         CHECK(one.damping_ratio > 0);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cracking.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "sim/cell_volume.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kRunsPerChunk = 64;
+// Cells whose strain is within this share of the largest go together: symmetric places do, and a
+// fast crack needs fewer rounds.
+constexpr double kTogether = 0.98;
+// Particles far from the material of their cell do not tell its strain.
+constexpr float kOffCentre = 0.15f;  // of the cell
+
+struct Strained {
+    CellId cell;
+    double strain;
+};
+
+// Largest principal strain of the cell's mean, less what has flowed.
+double mean_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
+    const Mat3 f = cell_gradient(matter, run, n);
+    Mat3 c = f.transpose() * f;
+    const auto& flowed = matter.cell_plastic_strain;
+    if (flowed[0].empty()) {
+        // No eigenvalue is farther from 1 than the whole of C - I is from 0.
+        if ((c - Mat3::Identity()).norm() < 2 * least) return 0;
+        const double largest =
+            Eigen::SelfAdjointEigenSolver<Mat3>(c, Eigen::EigenvaluesOnly).eigenvalues()[2];
+        return std::sqrt(largest) - 1;
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> stretch(c);
+    Mat3 log = stretch.eigenvectors() *
+               (0.5 * stretch.eigenvalues().cwiseMax(1e-12).array().log()).matrix().asDiagonal() *
+               stretch.eigenvectors().transpose();
+    const CellId cell = run.first + n;
+    constexpr int kAt[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
+    for (int s = 0; s < 6; ++s) {
+        log(kAt[s][0], kAt[s][1]) -= flowed[s][cell];
+        if (s >= 3) log(kAt[s][1], kAt[s][0]) -= flowed[s][cell];
+    }
+    return std::expm1(
+        Eigen::SelfAdjointEigenSolver<Mat3>(log, Eigen::EigenvaluesOnly).eigenvalues()[2]);
+}
+
+double largest_connection_strain(const Aggregate& matter, const std::array<ParticleId, 4>& row) {
+    const Vec3Array& x = matter.particle_position;
+    double largest = 0;
+    for (const CellConnection& c : kCellConnection) {
+        const ParticleId lower = row[c.corner >> 1] + (c.corner & 1);
+        const auto& f = kForward[c.direction];
+        const int high = c.corner + f[0] + 2 * f[1] + 4 * f[2];
+        const ParticleId upper = row[high >> 1] + (high & 1);
+        const double rest = reference_length(matter.lattice, c.direction) *
+                            (1 + double(matter.connection[c.direction].plastic[lower]));
+        largest = std::max(largest, (x.at(upper) - x.at(lower)).squaredNorm() / (rest * rest));
+    }
+    return std::sqrt(largest) - 1;
+}
+
+}  // namespace
+
+std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law) {
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
+    const bool springs = matter.material.mechanics == Mechanics::springs;
+    std::vector<std::vector<Strained>> part(chunks);
+    parallel_for(chunks, [&](std::size_t chunk) {
+        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
+        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
+            const CellRun& run = runs[r];
+            for (int n = 0; n < run.count; ++n) {
+                const CellId cell = run.first + n;
+                std::array<ParticleId, 4> row = run.row;
+                for (ParticleId& p : row) p += n;
+                // Where a cell has flowed its connections do not tell its elastic strain.
+                const bool flowed =
+                    !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
+                double strain = springs ? 0 : mean_strain(matter, run, n, law.onset);
+                if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
+                    strain = std::max(strain, largest_connection_strain(matter, row));
+                }
+                if (strain >= law.onset && cell_is_sound(matter, cell, row)) {
+                    part[chunk].push_back({cell, strain});
+                }
+            }
+        }
+    });
+    double largest = 0;
+    for (const auto& p : part) {
+        for (const Strained& s : p) largest = std::max(largest, s.strain);
+    }
+    std::vector<CellId> cells;
+    for (const auto& p : part) {
+        for (const Strained& s : p) {
+            if (s.strain >= kTogether * largest) cells.push_back(s.cell);
+        }
+    }
+    return cells;
+}
+
+}  // namespace swage

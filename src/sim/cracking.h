@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which cells have reached the strength of their material (laws/fracture.h).
+#pragma once
+
+#include <vector>
+
+#include "laws/fracture.h"
+#include "matter/aggregate.h"
+
+namespace swage {
+
+// Sound cells whose largest elastic strain, of their mean or of one of their connections, is beyond
+// onset and near the largest of all: those that are next, in the order of the cells. What is
+// committed counts; the state should have converged.
+std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law);
+
+}  // namespace swage

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/loose_springs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "laws/spring_damper.h"
+
+namespace swage {
+
+namespace {
+
+// A broken edge that is pressed stands for the diagonals around it too: with 0.4 E a / (E a) of a
+// plane's stiffness in its edges, a closed crack presses back as sound matter does.
+constexpr double kClosedStiffness = 2.5;
+
+// Ratio of the lengths that a connection of this direction has after the cell's plastic strain.
+double rest_ratio(const Aggregate& matter, CellId cell, int direction) {
+    const auto& e = matter.cell_plastic_strain;
+    if (e[0].empty()) return 1;
+    const auto& f = kForward[direction];
+    const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
+    const double strain =
+        n.x() * n.x() * e[0][cell] + n.y() * n.y() * e[1][cell] + n.z() * n.z() * e[2][cell] +
+        2 * (n.x() * n.y() * e[3][cell] + n.y() * n.z() * e[4][cell] + n.z() * n.x() * e[5][cell]);
+    return std::exp(strain);
+}
+
+// The slot of the other diagonal in the face of each; -1: an edge.
+constexpr std::array<int, kCellConnectionCount> kPartner = [] {
+    std::array<int, kCellConnectionCount> partner{};
+    partner.fill(-1);
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        for (int other = 0; other < kCellConnectionCount; ++other) {
+            const auto &a = kCellConnection[slot], &b = kCellConnection[other];
+            if (a.direction < kEdgeCount || b.direction < kEdgeCount || slot == other) continue;
+            // Both run through the middle of their face.
+            bool same = true;
+            for (int axis = 0; axis < 3; ++axis) {
+                same = same && 2 * (a.corner >> axis & 1) + kForward[a.direction][axis] ==
+                                   2 * (b.corner >> axis & 1) + kForward[b.direction][axis];
+            }
+            if (same) partner[slot] = other;
+        }
+    }
+    return partner;
+}();
+
+}  // namespace
+
+LooseSprings::LooseSprings(const Aggregate& matter)
+    : beside_sweep_(matter.material.mechanics == Mechanics::springs),
+      stiffness_(lattice_law(matter).stiffness) {
+    const Material& m = matter.material;
+    if (m.breaks()) {
+        law_ = fracture_law(m.young_modulus, m.strength, m.toughness, matter.lattice.spacing);
+    }
+    for (int d = 0; d < kForwardCount; ++d) reference_[d] = reference_length(matter.lattice, d);
+}
+
+void LooseSprings::connections_changed(const Aggregate& matter) {
+    spring_.clear();
+    const bool breaks = law_.onset > 0;
+    if (beside_sweep_ && !breaks) return;
+    // Each cell that is not sound gives its share of what its connections have left.
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            const CellId cell = run.first + n;
+            std::array<ParticleId, 4> row = run.row;
+            for (ParticleId& p : row) p += n;
+            if (cell_is_sound(matter, cell, row)) continue;
+            std::array<int, kCellConnectionCount> number;
+            number.fill(-1);
+            for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+                const CellConnection& c = kCellConnection[slot];
+                const ParticleId lower = row[c.corner >> 1] + (c.corner & 1);
+                const ConnectionArrays& all = matter.connection[c.direction];
+                const double damage = all.damage.empty() ? 0.0 : double(all.damage[lower]);
+                const bool holds = all.weight[lower] > 0;
+                // Nothing presses on what a blade has severed.
+                if (!holds && (damage < 1 || c.direction >= kEdgeCount)) continue;
+                const auto& f = kForward[c.direction];
+                const int high = c.corner + f[0] + 2 * f[1] + 4 * f[2];
+                const ParticleId upper = row[high >> 1] + (high & 1);
+                const double share =
+                    (c.direction < kEdgeCount ? 0.25 : 0.5) * matter.cell_fill[cell];
+                const Kind kind = !holds ? Kind::closing : breaks ? Kind::softening : Kind::elastic;
+                number[slot] = static_cast<int>(spring_.size());
+                spring_.push_back({lower, upper, static_cast<char>(c.direction), kind,
+                                   stiffness_ * share * (holds ? 1 : kClosedStiffness),
+                                   reference_[c.direction] * rest_ratio(matter, cell, c.direction),
+                                   breaks ? worst_strain(law_, damage) : 0.0, number[slot]});
+            }
+            for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+                const int other = kPartner[slot];
+                if (number[slot] < 0 || other < 0 || number[other] < 0) continue;
+                spring_[number[slot]].partner = number[other];
+            }
+        }
+    }
+}
+
+void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest) {
+    const Vec3Array& x = matter.particle_position;
+    now_.resize(spring_.size());
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        const Spring& s = spring_[n];
+        Stretch& now = now_[n];
+        now.reach = x.at(s.upper) - x.at(s.lower);
+        now.distance = now.reach.norm();
+        now.length = s.rest_length;
+        if (beside_sweep_) {
+            const std::size_t d = static_cast<std::size_t>(s.direction);
+            const auto& strain = rest ? (*rest)[d] : matter.connection[d].plastic;
+            now.length = reference_[d] * (1 + double(strain[s.lower]));
+        }
+        now.strain = now.distance / now.length - 1;
+    }
+}
+
+double LooseSprings::now_worst(std::size_t n) const {
+    const Spring& s = spring_[n];
+    const bool single = s.partner == static_cast<int>(n);
+    return std::max(s.worst, single ? now_[n].strain
+                                    : face_strain(now_[n].strain, now_[s.partner].strain));
+}
+
+// What softening on from the committed history takes. A diagonal softens by the strain of its face
+// and loses by its own.
+double LooseSprings::loss_of(std::size_t n) const {
+    const Spring& s = spring_[n];
+    if (s.kind != Kind::softening) return 0;
+    const double worst = now_worst(n);
+    if (!(worst > s.worst)) return 0;
+    const double share = now_[n].strain / worst;
+    return s.stiffness * now_[n].length * now_[n].length * share * share *
+           (fracture_loss(law_, worst) - fracture_loss(law_, s.worst));
+}
+
+void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest,
+                              Vec3Array& force) {
+    find_strains(matter, rest);
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        const Spring& s = spring_[n];
+        const Stretch& now = now_[n];
+        double tension =
+            spring_tension(SpringDamper{s.stiffness, 0, now.length}, now.distance, 0.0);
+        if (s.kind == Kind::closing && tension > 0) continue;
+        if (s.kind == Kind::softening) {
+            const double sound = tension;
+            if (tension > 0 || s.direction >= kEdgeCount) {
+                tension *= kept_share(law_, flow == Flow::trial ? now_worst(n) : s.worst);
+            }
+            if (beside_sweep_) tension -= sound;
+        }
+        const Vec3 pull = tension / (now.distance + 1e-300) * now.reach;
+        force.add(s.lower, pull);
+        force.add(s.upper, -pull);
+    }
+}
+
+Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
+    Broken result;
+    if (law_.onset <= 0) return result;
+    find_strains(matter, rest);
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        Spring& s = spring_[n];
+        const double worst = now_worst(n);
+        if (s.kind != Kind::softening || !(worst > s.worst)) continue;
+        ConnectionArrays& all = matter.connection[static_cast<std::size_t>(s.direction)];
+        if (all.damage.empty()) {
+            for (auto& c : matter.connection) c.damage.assign(c.weight.size(), 0.0f);
+        }
+        const float damage = static_cast<float>(1 - kept_share(law_, worst));
+        result.lost += loss_of(n);
+        all.damage[s.lower] = std::max(all.damage[s.lower], damage);
+        if (damage >= 1 && all.weight[s.lower] > 0) {
+            all.weight[s.lower] = 0;
+            ++result.count;
+        }
+    }
+    for (Spring& s : spring_) {
+        const auto& damage = matter.connection[static_cast<std::size_t>(s.direction)].damage;
+        if (!damage.empty()) s.worst = std::max(s.worst, worst_strain(law_, damage[s.lower]));
+    }
+    return result;
+}
+
+double LooseSprings::elastic_energy(const Aggregate& matter) {
+    find_strains(matter, nullptr);
+    double sum = 0;
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        const Spring& s = spring_[n];
+        const Stretch& now = now_[n];
+        if (s.kind == Kind::closing && now.strain > 0) continue;
+        double share = 1;
+        if (s.kind == Kind::softening) {
+            if (now.strain > 0 || s.direction >= kEdgeCount) share = kept_share(law_, now_worst(n));
+            if (beside_sweep_) share -= 1;
+        }
+        sum += share * spring_energy(SpringDamper{s.stiffness, 0, now.length}, now.distance);
+    }
+    return sum;
+}
+
+double LooseSprings::trial_loss(const Aggregate& matter) {
+    find_strains(matter, nullptr);
+    double sum = 0;
+    for (std::size_t n = 0; n < spring_.size(); ++n) sum += loss_of(n);
+    return sum;
+}
+
+void LooseSprings::add_stiffness_bound(std::vector<double>& bound) const {
+    for (const Spring& s : spring_) {
+        if (beside_sweep_ && s.kind == Kind::softening) continue;  // the sweep's
+        bound[s.lower] += 2 * s.stiffness;
+        bound[s.upper] += 2 * s.stiffness;
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The connections of cells that are not sound: what a blade has severed, and what has reached its
+// strength, acts as plain springs, which soften and break (laws/fracture.h) when the material does.
+#pragma once
+
+#include <vector>
+
+#include "laws/fracture.h"
+#include "matter/aggregate.h"
+#include "sim/lattice_sweep.h"
+
+namespace swage {
+
+enum class Flow {
+    trial,  // what yields or softens goes on from the committed history
+    none,   // nothing flows or softens further
+};
+
+struct Broken {
+    double lost = 0;  // energy that softening took [J]
+    int count = 0;    // connections that broke
+};
+
+class LooseSprings {
+  public:
+    explicit LooseSprings(const Aggregate& matter);
+
+    const Fracture& law() const { return law_; }
+    bool empty() const { return spring_.empty(); }
+
+    // Connections were severed or broken, or cells cracked.
+    void connections_changed(const Aggregate& matter);
+
+    // Adds the springs' forces. `rest`: as for LatticeSweep; read with mechanics "springs" only,
+    // whose sweep carries every connection as if sound: what it carries too much is taken off.
+    void add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest,
+                    Vec3Array& force);
+
+    // Remembers the softening of a converged state. Connections that it breaks have no weight from
+    // then on: connections_changed() must follow when there are any.
+    Broken commit(Aggregate& matter, const RestStrains* rest);
+
+    // [J], softened as far as the present positions ask; with mechanics "springs" beside that of the
+    // sweep.
+    double elastic_energy(const Aggregate& matter);
+    // Energy that softening on to the present positions would take [J].
+    double trial_loss(const Aggregate& matter);
+
+    void add_stiffness_bound(std::vector<double>& bound) const;
+
+  private:
+    enum class Kind : char {
+        elastic,    // for ever
+        softening,  // when pulled
+        closing,    // a broken edge: only resists being pressed
+    };
+    struct Spring {
+        ParticleId lower, upper;
+        char direction;
+        Kind kind;
+        double stiffness;    // [N/m]
+        double rest_length;  // [m]; mechanics of cells only
+        double worst;        // largest strain so far, committed; of a diagonal: of its face
+        int partner;         // the other diagonal, or itself
+    };
+    void find_strains(const Aggregate& matter, const RestStrains* rest);
+    double now_worst(std::size_t n) const;
+    double loss_of(std::size_t n) const;
+
+    Fracture law_;
+    bool beside_sweep_;
+    double stiffness_;
+    std::array<double, kForwardCount> reference_;  // [m]
+    std::vector<Spring> spring_;
+    struct Stretch {
+        Vec3 reach;                       // from lower to upper [m]
+        double distance, length, strain;  // length: at rest [m]
+    };
+    std::vector<Stretch> now_;  // of each spring, when last looked at
+};
+
+}  // namespace swage

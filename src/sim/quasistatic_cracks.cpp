@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the quasi-static solver does when matter breaks.
+#include <algorithm>
+
+#include "sim/quasistatic.h"
+
+namespace swage {
+
+bool QuasistaticSolver::commit(MoveOutcome& outcome) {
+    const Committed lost = lattice_.commit(matter_);
+    outcome.plastic_work += lost.plastic;
+    outcome.fracture_work += lost.fracture;
+    outcome.broken += lost.broken;
+    if (lost.broken > 0) connections_changed();
+    return lost.fracture > 0;
+}
+
+// Cracks run on, round by round, until everything stands at this drive: in each the cells that are
+// most strained beyond their strength turn into springs, and all come to rest again.
+void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
+    if (!matter_.material.breaks()) return;
+    // What the matter holds and took, less what loads have put in.
+    const auto booked = [&] {
+        double pushed = 0;
+        for (double work : outcome.push_work) pushed += work;
+        return elastic_energy() + outcome.fracture_work + outcome.plastic_work - pushed;
+    };
+    for (;;) {
+        const double before = booked();
+        const Cracked cracked = lattice_.crack(matter_);
+        if (cracked.cells == 0) return;
+        connections_changed();
+        std::fill(carries_.begin(), carries_.end(), false);
+        outcome.fracture_work += cracked.lost;
+        increment(to, to, settings_.halving_limit, outcome);
+        outcome.set_free += before - booked();
+    }
+}
+
+}  // namespace swage

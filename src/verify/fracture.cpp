@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cracks. All but the closed one run through slices one cell thick, free on both sides (plane
+// stress), with a spacing of 1.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/make_shape.h"
+#include "mold/mold.h"
+#include "sim/sever.h"
+#include "verify/case.h"
+#include "verify/stand.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kNu = 0.25, kStrength = 1e-3;  // over E
+constexpr double kTolerance = 1e-3;
+constexpr double kStep = 0.02;  // by which the energy release rate grows from frame to frame
+
+// l_c = reach.
+Material breaking(double reach) {
+    Material material = unit_material(kNu);
+    material.strength = kStrength;
+    material.toughness = reach * kStrength * kStrength;
+    return material;
+}
+
+Aggregate slice(double length, double height, double angle, const Material& material) {
+    const TriMesh mesh = make_shape("bar", {{"length", length},
+                                            {"height", height},
+                                            {"width", 1},
+                                            {"rounding", 0},
+                                            {"division", 1}})
+                             .mesh;
+    MoldSettings settings;
+    settings.spacing = 1;
+    return mold(turned(mesh, Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ()))), material, settings);
+}
+
+// Severs what crosses the line from far left to `end`, a little above the middle so that it meets
+// no particle.
+void notch(Aggregate& matter, const Vec3& along, const Vec3& across, double end) {
+    const auto at = [&](double x, double z) {
+        return Vec3(1e-4 * across + x * along + z * Vec3::UnitZ());
+    };
+    const double far = -1e3;
+    sever(matter, {{at(far, -9), at(end, -9), at(end, 9)}, {at(far, -9), at(end, 9), at(far, 9)}});
+}
+
+struct Tip {
+    double ahead = -1e3;  // of the middle
+    double off = 0;       // largest distance of a broken edge from the line
+};
+Tip tip_of(const Aggregate& m, const Vec3& along, const Vec3& across) {
+    Tip tip;
+    for (const Span& span : m.lattice.span) {
+        const std::vector<float>& damage = m.connection[span.direction].damage;
+        if (damage.empty() || span.direction >= kEdgeCount) continue;
+        for (int n = 0; n < span.count; ++n) {
+            if (damage[span.lower + n] < 1) continue;
+            const Vec3 middle = 0.5 * (m.particle_reference.at(span.lower + n) +
+                                       m.particle_reference.at(span.upper + n));
+            tip.ahead = std::max(tip.ahead, along.dot(middle));
+            tip.off = std::max(tip.off, std::abs(across.dot(middle)));
+        }
+    }
+    return tip;
+}
+
+// Moves both grips apart until the tip has passed `goal`; returns the opening half a step before.
+double open_until(Stand& stand, const Vec3& along, const Vec3& across, double goal,
+                  const std::function<double(double)>& opening_at, double share, Tip& tip) {
+    constexpr double kGiveUp = 4;
+    const Drive rest = stand.drive;
+    for (; share < kGiveUp; share += kStep) {
+        Drive to = stand.drive;
+        for (int side : {-1, 1}) {
+            to.world_from_grip[side > 0].translation = rest.world_from_grip[side > 0].translation +
+                                                       0.5 * side * opening_at(share) * across;
+        }
+        stand.move(to);
+        tip = tip_of(stand.matter, along, across);
+        if (tip.ahead > goal) return share - 0.5 * kStep;
+    }
+    return share;
+}
+
+// A strip whose clamped edges part: far ahead of the crack the energy in each length is known, and
+// far behind there is none, whatever the crack is like.
+void strip(bool brief, Values& values) {
+    constexpr double kHeld = 3;  // spacings that a clamp holds of each side
+    struct Level {
+        double reach, half;  // half of the free height
+        double straight;     // bound along the axis
+    };
+    for (const auto& [reach, half, straight] : {Level{8, 16, 0.15}, Level{16, 26, 0.05}}) {
+        if (brief && reach > 8) break;
+        for (double degrees : {0.0, 22.5, 45.0}) {
+            if (brief && degrees > 0) break;
+            const double angle = degrees * kPi / 180;
+            const Vec3 along(std::cos(angle), std::sin(angle), 0);
+            const Vec3 across(-along.y(), along.x(), 0);
+            const Material material = breaking(reach);
+            Stand stand(slice(5 * half, 2 * (half + kHeld), angle, material), kTolerance);
+            const double end = -0.8 * half;
+            notch(stand.matter, along, across, end);
+            for (int side : {-1, 1}) {
+                std::vector<int> points;
+                for (std::size_t p = 0; p < stand.matter.surface.size(); ++p) {
+                    const Vec3& x = stand.matter.surface.reference_position[p];
+                    if (side * across.dot(x) > half) points.push_back(static_cast<int>(p));
+                }
+                stand.grip(points);
+            }
+            // E / (1 - nu^2) opening^2 / (4 half) = share G_c
+            const auto opening = [&](double share) {
+                return 2 * std::sqrt(share * material.toughness * (1 - kNu * kNu) * half);
+            };
+            Tip tip;
+            const double asked =
+                open_until(stand, along, across, end + 0.7 * half, opening, 0.8, tip);
+            const std::string at = fmt::format(", {:g} deg, l / a = {:g}", degrees, reach);
+            Value toughness = absolute("G / G_c" + at, 0, 1, asked, degrees > 0 ? 0.15 : straight);
+            // Across the axes a crack may ask less.
+            if (degrees > 0) toughness.error = std::max(0.0, asked - 1);
+            values.add(toughness);
+            values.add(absolute("off its line / a" + at, 0, 0, tip.off, 1));
+        }
+    }
+}
+
+// Two arms with grooves between them, drawn apart at their ends.
+void cantilevers(bool, Values& values) {
+    constexpr double kGroove = 0.15;  // of the thickness that is left
+    constexpr double kCrack = 3;      // arms long
+    std::vector<std::pair<int, double>> opened;
+    for (int halves : {9, 17, 33}) {
+        const double arm = 0.5 * halves;
+        // One material: l_c is 0.7 arms.
+        const Material material = breaking(0.7 * arm);
+        const double length = 8 * arm, end = -0.5 * length + kCrack * arm;
+        Stand stand(slice(length, halves, 0, material), kTolerance);
+        Aggregate& m = stand.matter;
+        for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+            if (m.lattice.cell_site(static_cast<CellId>(c)).y() == halves / 2) {
+                m.cell_fill[c] = kGroove;
+            }
+        }
+        notch(m, Vec3::UnitX(), Vec3::UnitY(), end);
+        for (int side : {-1, 1}) {
+            // One row of points, so that the end may turn.
+            std::vector<int> points = end_face(m, side * Vec3::UnitY());
+            double first = 0;
+            for (int p : points) first = std::min(first, m.surface.reference_position[p].x());
+            std::erase_if(points,
+                          [&](int p) { return m.surface.reference_position[p].x() > first + 0.1; });
+            stand.grip(points);
+        }
+        // Slender beams: G = 3 E h^3 opening^2 / (16 a^4).
+        const double toughness = kGroove * material.toughness, crack = kCrack * arm;
+        const double slender =
+            std::sqrt(16 * toughness * std::pow(crack, 4) / (3 * arm * arm * arm));
+        Tip tip;
+        const double share = open_until(
+            stand, Vec3::UnitX(), Vec3::UnitY(), end + 0.5 * arm,
+            [&](double s) { return slender * s; }, 1.3, tip);
+        opened.emplace_back(halves / 2, share);
+        values.add(absolute("off its line / a", halves / 2, 0, tip.off, 1));
+    }
+    for (const auto& [across, share] : opened) {
+        values.add(relative("opening / finest", across, 1, share / opened.back().second, 0.12));
+    }
+    // Two thirds of an arm is how much longer it seems for turning at its root.
+    values.add(told("opening / slender beams'", opened.back().first,
+                    std::pow((kCrack + 0.5 + 0.67) / kCrack, 2), opened.back().second));
+}
+
+// Breaks every connection across x = 0.
+void break_through(Aggregate& m) {
+    for (ConnectionArrays& all : m.connection) all.damage.assign(all.weight.size(), 0.0f);
+    for (const Span& span : m.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            const double low = m.particle_reference.x[span.lower + n];
+            const double high = m.particle_reference.x[span.upper + n];
+            if ((low < 1e-3) == (high < 1e-3)) continue;
+            m.connection[span.direction].weight[span.lower + n] = 0;
+            m.connection[span.direction].damage[span.lower + n] = 1;
+        }
+    }
+}
+
+void closed_crack(bool, Values& values) {
+    constexpr int kAcross = 4;
+    constexpr double kPress = 1e-5, kSlide = 1e-5;
+    double force[2][2];
+    for (int broken : {0, 1}) {
+        Stand stand(unit_bar(2, kAcross, breaking(8.0 / kAcross)), 1e-6);
+        if (broken) break_through(stand.matter);
+        for (int side : {-1, 1}) stand.grip(end_face(stand.matter, side * Vec3::UnitX()));
+        Drive to = stand.drive;
+        to.world_from_grip[1].translation.x() -= kPress;
+        force[broken][0] = stand.move(to).load[1].force.x();
+        to.world_from_grip[1].translation.y() += kSlide;
+        force[broken][1] = stand.move(to).load[1].force.y();
+    }
+    values.add(absolute("pressed / whole", kAcross, 1, force[1][0] / force[0][0], 0.2));
+    values.add(absolute("slid / whole", kAcross, 0, force[1][1] / force[0][1], 0.01));
+}
+
+}  // namespace
+
+void add_fracture_cases(std::vector<Case>& cases) {
+    cases.push_back({"crack", "a crack runs through a strip with clamped edges",
+                     "energy balance (Rice 1968)", 0, false, strip});
+    cases.push_back({"double-cantilever", "a crack between two arms drawn apart", "beams", 0, false,
+                     cantilevers});
+    cases.push_back(
+        {"closed-crack", "a broken bar, pressed and slid", "contact", 0, true, closed_crack});
+}
+
+}  // namespace swage

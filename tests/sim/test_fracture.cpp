@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/parallel.h"
+#include "sim/advance.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kModulus = 1e9, kStrength = 1e6, kToughness = 20;  // l_c = 2 cm
+constexpr double kSide = 0.008, kLength = 0.024;
+
+Material brittle(Mechanics mechanics) {
+    return {.mechanics = mechanics,
+            .young_modulus = kModulus,
+            .strength = kStrength,
+            .toughness = kToughness};
+}
+
+// A bar along x between two grips, thinner by a tenth in the cells beyond its middle.
+struct Bar {
+    Aggregate matter;
+    Apparatus apparatus;
+    SimSettings settings;
+    double section;  // of the thin cells
+    std::unique_ptr<Simulation> simulation;
+    Drive drive;
+
+    Bar(const Material& material, int across, double tolerance = 1e-4)
+        : matter(make_block(int(std::lround(kLength / kSide * across)), across, across,
+                            kSide / across, material)),
+          section(0.9 * kSide * kSide) {
+        for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+            if (matter.lattice.cell_site(int(c)).x() == matter.lattice.cell_count.x() / 2) {
+                matter.cell_fill[c] = 0.9f;
+                const auto corner = matter.lattice.cell_corners(int(c));
+                for (const CellConnection& slot : kCellConnection) {
+                    const bool edge = slot.direction < kEdgeCount;
+                    matter.connection[slot.direction].weight[corner[slot.corner]] -=
+                        edge ? 0.025f : 0.05f;
+                }
+            }
+        }
+        apparatus.name = "pull";
+        for (int side : {-1, 1}) {
+            Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
+            grip.point = points_where(
+                matter, [&](const Vec3& x) { return side * x.x() > 0.4999 * kLength; });
+            for (int p : grip.point) grip.anchor.push_back(matter.surface_position(p));
+            apparatus.grip.push_back(grip);
+        }
+        drive.world_from_grip = {Pose{}, Pose{}};
+        settings.tolerance = tolerance;
+        settings.grip_stiffness = 100;
+        simulation = std::make_unique<Simulation>(matter, apparatus, settings);
+    }
+    FrameReport pull_to(double way) {
+        Drive to = drive;
+        to.time += 1;
+        to.world_from_grip[1].translation.x() = way;
+        const FrameReport r = simulation->advance(drive, to);
+        drive = to;
+        return r;
+    }
+};
+
+double pull(const FrameReport& r) { return r.load[1].force.x(); }
+constexpr double kOpening = 2.3 * kToughness / kStrength;  // by which the bar has parted
+
+}  // namespace
+
+TEST_CASE("a bar pulled past its strength parts in two, and its curve's area is the toughness") {
+    for (Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
+        std::vector<double> area;
+        for (int across : {2, 4}) {
+            Bar bar(brittle(mechanics), across);
+            constexpr int kFrames = 40;
+            double largest = 0;
+            FrameReport r;
+            int broken = 0;
+            for (int n = 1; n <= kFrames; ++n) {
+                r = bar.pull_to(kOpening * n / kFrames);
+                largest = std::max(largest, pull(r));
+                broken += r.broken;
+                CHECK(r.elastic + r.fracture + r.set_free ==
+                      Approx(r.work).margin(0.02 * kToughness * bar.section));
+            }
+            INFO(across << " cells, springs: " << (mechanics == Mechanics::springs));
+            CHECK(largest / bar.section == Approx(kStrength).epsilon(0.06));
+            CHECK(r.pieces == 2);
+            CHECK(broken > 0);
+            CHECK(std::abs(pull(r)) < 1e-3 * largest);
+            area.push_back(r.work / bar.section);
+            CHECK(area.back() == Approx(kToughness).epsilon(across == 2 ? 0.06 : 0.03));
+        }
+        CHECK(area[0] == Approx(area[1]).epsilon(0.04));
+    }
+}
+
+TEST_CASE("a bar half torn unloads to the origin, and goes on from where it was") {
+    Bar bar(brittle(Mechanics::cells), 2);
+    double torn = 0;
+    const double half = 0.65 * kOpening;
+    for (int n = 1; n <= 20; ++n) torn = pull(bar.pull_to(half * n / 20));
+    REQUIRE(torn < 0.8 * kStrength * bar.section);
+    const double fracture = bar.pull_to(half).fracture;
+    CHECK(pull(bar.pull_to(0.6 * half)) == Approx(0.6 * torn).epsilon(0.01));
+    CHECK(pull(bar.pull_to(0.2 * half)) == Approx(0.2 * torn).epsilon(0.02));
+    CHECK(std::abs(pull(bar.pull_to(0))) < 0.01 * torn);
+    const FrameReport r = bar.pull_to(half);
+    CHECK(pull(r) == Approx(torn).epsilon(0.01));
+    CHECK(r.fracture == Approx(fracture).epsilon(1e-3));
+}
+
+TEST_CASE("a broken bar carries again when it is pressed, and slides without resistance") {
+    for (Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
+        Bar sound(brittle(mechanics), 2, 1e-6), bar(brittle(mechanics), 2, 1e-6);
+        const double press = -0.05 * kStrength / kModulus * kLength;
+        const double whole = pull(sound.pull_to(press));
+        for (int n = 1; n <= 20; ++n) bar.pull_to(kOpening * n / 20);
+        bar.pull_to(0);
+        CHECK(std::abs(pull(bar.pull_to(0))) < 1e-3 * std::abs(whole));
+        const double pressed = pull(bar.pull_to(press));
+        CHECK(pressed / whole == Approx(1).epsilon(0.05));
+        const auto slide = [&](Bar& one) {
+            Drive to = one.drive;
+            to.world_from_grip[1].translation.y() = -0.5 * press;
+            return one.simulation->advance(one.drive, to).load[1].force.y();
+        };
+        CHECK(std::abs(slide(bar)) < 0.01 * slide(sound));
+    }
+}
+
+TEST_CASE("matter under its strength is as if it had none, and nothing breaks when pressed hard") {
+    Material unbreakable = brittle(Mechanics::cells);
+    unbreakable.strength = unbreakable.toughness = std::numeric_limits<double>::infinity();
+    Bar plain(unbreakable, 2), bar(brittle(Mechanics::cells), 2);
+    const double way = 0.8 * kStrength / kModulus * kLength;
+    CHECK(pull(bar.pull_to(way)) == pull(plain.pull_to(way)));
+    CHECK(state_hash(bar.matter) == state_hash(plain.matter));
+    const FrameReport r = bar.pull_to(-2 * way);
+    CHECK(r.broken == 0);
+    CHECK(r.fracture == 0);
+}
+
+TEST_CASE("a break leaves the same bytes at any number of threads") {
+    std::vector<std::uint64_t> hash;
+    for (int threads : {1, 2, 3}) {
+        set_thread_count(threads);
+        Bar bar(brittle(Mechanics::cells), 4, 1e-3);
+        for (int n = 1; n <= 6; ++n) bar.pull_to(kOpening * n / 6);
+        hash.push_back(state_hash(bar.matter));
+    }
+    set_thread_count(0);
+    CHECK(hash[0] == hash[1]);
+    CHECK(hash[0] == hash[2]);
+}
+
+TEST_CASE("explicit steps break a bar too, and keep the books") {
+    Material material = brittle(Mechanics::cells);
+    material.damping_ratio = 0.1;
+    Bar bar(material, 2);
+    bar.settings.solver = Solver::explicit_steps;
+    bar.simulation = std::make_unique<Simulation>(bar.matter, bar.apparatus, bar.settings);
+    double largest = 0;
+    FrameReport r;
+    for (int n = 1; n <= 40; ++n) {
+        Drive to = bar.drive;
+        to.time += 2e-4;
+        to.world_from_grip[1].translation.x() = kOpening * n / 40;
+        r = bar.simulation->advance(bar.drive, to);
+        bar.drive = to;
+        largest = std::max(largest, pull(r));
+    }
+    CHECK(largest / bar.section == Approx(kStrength).epsilon(0.1));
+    CHECK(r.pieces == 2);
+    CHECK(std::abs(pull(r)) < 0.05 * largest);
+    CHECK(r.kinetic + r.elastic + r.damped + r.fracture ==
+          Approx(r.work).margin(0.05 * kToughness * bar.section));
+}
