@@ -50,7 +50,8 @@ class LatticeForces {
 
     // What the cells carry, where forces are theirs alone and of one material; else null.
     const std::vector<float>* cells_alone() const {
-        return cells_ && loose_.empty() && cells_->one_material() ? &cells_->carried_fill() : nullptr;
+        const bool alone = cells_ && loose_.empty() && cells_->one_material();
+        return alone ? &cells_->carried_fill() : nullptr;
     }
 
     // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the
