@@ -38,15 +38,31 @@ struct CellShare {
     Triple<N> at;  // centroid of the material, -1 to 1
 };
 
+// The last step: from the stress p of D and g of the modes to the forces on the sums.
+template <bool kPart, typename N>
+SWAGE_INLINE CornerSums<N> spread_stress(const CornerSums<N>& c, const Columns<N>& d,
+                                         const CellShare<N>& share, Columns<N> p,
+                                         const CellModes<N>& g) {
+    p = {p.x + pulled_by(g.xy.x, g.yz.x, g.zx.x, g.xyz.x, c),
+         p.y + pulled_by(g.xy.y, g.yz.y, g.zx.y, g.xyz.y, c),
+         p.z + pulled_by(g.xy.z, g.yz.z, g.zx.z, g.xyz.z, c)};
+    CornerSums<N> r{p.x, p.y, p.z, d * g.xy, d * g.yz, d * g.zx, d * g.xyz};
+    if constexpr (kPart) add_levers(p, share.at, r);
+    return r;
+}
+
 // Forces on the sums of the corners. kPart: the cell is partly filled; kFlowed: it has a history.
-// What does not apply is not looked at.
+// What does not apply is not looked at. Numbers with a slope: of what turning does to the stress's
+// force, their slope gets the share `turning`.
 template <CellKind kKind, bool kPart, bool kFlowed, typename N>
 SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<N>& c,
-                                       const CellShare<N>& share, const CellHistory<N>& history) {
+                                       const CellShare<N>& share, const CellHistory<N>& history,
+                                       double turning = 1) {
     const Columns<N> d = kPart ? centroid_sums(c, share.at) : Columns<N>{c.x, c.y, c.z};
     const CellModes<N> modes = pulled_back(d, c);  // F^T Q / s
     CellModes<N> g;                                // stress of the modes
     Columns<N> p;                                  // of D
+    Symmetric<N> stress;
     if constexpr (kKind == CellKind::rubber) {
         const Columns<N> cofactor = {cross(d.y, d.z), cross(d.z, d.x), cross(d.x, d.y)};
         N shear = k.folded.shear + N{};
@@ -67,7 +83,6 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
         const N size = 3.0 * e.series.a + e.i1 * e.series.b + trace(e.square) * e.series.c;
         N shear = (2 * k.folded.shear) + N{};
         N pressure = k.folded.bulk * size;
-        Symmetric<N> stress;
         if constexpr (kPart) {
             shear = share.fill * shear;
             pressure = share.fill * pressure;
@@ -97,14 +112,15 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             stress = material_stress(e, CayleySeries<N>{shear * (e.series.a - third) + pressure,
                                                         shear * e.series.b, shear * e.series.c});
         }
-        p = d * stress;
     }
-    p = {p.x + pulled_by(g.xy.x, g.yz.x, g.zx.x, g.xyz.x, c),
-         p.y + pulled_by(g.xy.y, g.yz.y, g.zx.y, g.xyz.y, c),
-         p.z + pulled_by(g.xy.z, g.yz.z, g.zx.z, g.xyz.z, c)};
-    CornerSums<N> r{p.x, p.y, p.z, d * g.xy, d * g.yz, d * g.zx, d * g.xyz};
-    if constexpr (kPart) add_levers(p, share.at, r);
-    return r;
+    if constexpr (requires { c.x.x.slope; }) {
+        const Columns<N> e = slope_scaled(d, turning);
+        if constexpr (kKind != CellKind::rubber) p = e * stress;
+        return spread_stress<kPart>(slope_scaled(c, turning), e, share, p, g);
+    } else {
+        if constexpr (kKind != CellKind::rubber) p = d * stress;
+        return spread_stress<kPart>(c, d, share, p, g);
+    }
 }
 
 }  // namespace swage

@@ -3,6 +3,7 @@
 // with these, gives the product of its Hessian with that direction.
 #pragma once
 
+#include "laws/cell.h"
 #include "laws/lane_tensor.h"
 
 namespace swage {
@@ -77,6 +78,26 @@ SWAGE_INLINE Dual<V> larger(const Dual<V>& a, const Dual<V>& b) {
 template <typename N>
 SWAGE_INLINE Dual<N> larger(const Dual<N>& a, double b) {
     return larger(a, Dual<N>{b + 0.0 * a.value, 0.0 * a.value});
+}
+
+// The same with its slope times s.
+template <typename N>
+SWAGE_INLINE Dual<N> slope_scaled(const Dual<N>& a, double s) {
+    return {a.value, s * a.slope};
+}
+template <typename N>
+SWAGE_INLINE Triple<Dual<N>> slope_scaled(const Triple<Dual<N>>& a, double s) {
+    return {slope_scaled(a.x, s), slope_scaled(a.y, s), slope_scaled(a.z, s)};
+}
+template <typename N>
+SWAGE_INLINE Columns<Dual<N>> slope_scaled(const Columns<Dual<N>>& a, double s) {
+    return {slope_scaled(a.x, s), slope_scaled(a.y, s), slope_scaled(a.z, s)};
+}
+template <typename N>
+SWAGE_INLINE CornerSums<Dual<N>> slope_scaled(const CornerSums<Dual<N>>& a, double s) {
+    return {slope_scaled(a.x, s),  slope_scaled(a.y, s),  slope_scaled(a.z, s),
+            slope_scaled(a.xy, s), slope_scaled(a.yz, s), slope_scaled(a.zx, s),
+            slope_scaled(a.xyz, s)};
 }
 
 }  // namespace swage

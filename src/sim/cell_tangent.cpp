@@ -3,187 +3,128 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "base/parallel.h"
-#include "laws/cell.h"
+#include "laws/cell_forces.h"
 #include "laws/dual.h"
+#include "sim/cell_batch.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
 
-using Number = Dual<Lanes>;
-
-constexpr std::size_t kSlabCells = 4096;
 constexpr int kStrains = 6, kModes = 12;
 
-// Where the arrays of a run begin; null history: nothing has flowed.
+// Where the arrays of a run begin.
 struct RunView {
-    const double* x[3][4];
-    const float* fill;
+    CornerRows<const double> x;
+    int room;           // particles from the run's last row on
+    int count, cells;   // of the run; from its first on
+    const char* whole;  // of each batch of kLanes cells
+    const float* fill;  // these go on behind the last cell
     const float* at[3];
     const float* strain[kStrains];
     const float* modes[kModes];
-    const float* alpha;
-    int count;
+    const float* alpha;  // null: nothing has flowed
 };
 
-SWAGE_INLINE Lanes load(const double* from, int count) {
-    Lanes v{};
-    if (count >= kLanes) {
-        std::memcpy(&v, from, sizeof v);
-    } else {
-        for (int l = 0; l < count; ++l) v[l] = from[l];
-    }
-    return v;
+template <typename V>
+SWAGE_INLINE Dual<V> constant(const V& v) {
+    return {v, V{}};
 }
-SWAGE_INLINE Lanes load(const float* from, int count) {
-    Lanes v{};
-    if (from == nullptr) return v;
-    for (int l = 0; l < kLanes && l < count; ++l) v[l] = from[l];
-    return v;
-}
-SWAGE_INLINE Number constant(const Lanes& v) { return {v, Lanes{}}; }
-
-// Corners' sums of one vector field.
-SWAGE_INLINE void gather(const double* const (&row)[3][4], int at, int count,
-                         CornerSums<Lanes>& c) {
-    Lanes v[8];
-    const auto of = [&](int i) __attribute__((always_inline)) {
-        for (int q = 0; q < 4; ++q) {
-            v[2 * q] = load(row[i][q] + at, count);
-            v[2 * q + 1] = load(row[i][q] + at + 1, count);
-        }
-    };
-    of(0);
-    sum_corners(v, c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-    of(1);
-    sum_corners(v, c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-    of(2);
-    sum_corners(v, c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-}
-
-SWAGE_INLINE Triple<Number> pair(const Triple<Lanes>& v, const Triple<Lanes>& s) {
+template <typename V>
+SWAGE_INLINE Triple<Dual<V>> pair(const Triple<V>& v, const Triple<V>& s) {
     return {{v.x, s.x}, {v.y, s.y}, {v.z, s.z}};
 }
-SWAGE_INLINE CornerSums<Number> pair(const CornerSums<Lanes>& v, const CornerSums<Lanes>& s) {
-    return {pair(v.x, s.x),   pair(v.y, s.y),   pair(v.z, s.z),    pair(v.xy, s.xy),
-            pair(v.yz, s.yz), pair(v.zx, s.zx), pair(v.xyz, s.xyz)};
-}
-SWAGE_INLINE Triple<Lanes> slope(const Triple<Number>& a) {
-    return {a.x.slope, a.y.slope, a.z.slope};
-}
-SWAGE_INLINE Triple<Number> scale_slope(const Triple<Number>& a, double s) {
-    return {{a.x.value, s * a.x.slope}, {a.y.value, s * a.y.slope}, {a.z.value, s * a.z.slope}};
+template <typename V>
+SWAGE_INLINE Triple<V> minus_slope(const Triple<Dual<V>>& a) {
+    return {-a.x.slope, -a.y.slope, -a.z.slope};
 }
 
-// Minus the change of the cell's forces on its corners' sums.
-template <bool kYields, bool kRubber>
-SWAGE_INLINE CornerSums<Lanes> tangent_forces(const CellModuli& law, const RunView& run, int done,
-                                              double geometric, const CornerSums<Lanes>& position,
-                                              const CornerSums<Lanes>& direction) {
-    const int left = run.count - done;
-    const Lanes fill_value = load(run.fill + done, left);
-    const Number fill = constant(fill_value);
-    const Triple<Number> at = {constant(load(run.at[0] + done, left)),
-                               constant(load(run.at[1] + done, left)),
-                               constant(load(run.at[2] + done, left))};
-    CornerSums<Number> c = pair(position, direction);
-    Columns<Number> f = centroid_gradient(c, at, law.spacing);
-    const CellModes<Number> modes = {transposed_times(f, c.xy), transposed_times(f, c.yz),
-                                     transposed_times(f, c.zx), transposed_times(f, c.xyz)};
-    const double volume = law.spacing * law.spacing * law.spacing;
-    Columns<Number> first;
-    CellModes<Number> mode_force;
-    const auto freeze_turn = [&]() __attribute__((always_inline)) {
-        for (Triple<Number>* v :
-             {&c.x, &c.y, &c.z, &c.xy, &c.yz, &c.zx, &c.xyz, &f.x, &f.y, &f.z}) {
-            *v = scale_slope(*v, geometric);
+template <typename V>
+SWAGE_INLINE CellHistory<Dual<V>> load_history(const RunView& run, int begin) {
+    constexpr int kCount = kStrains + kModes + 1;
+    float copy[kCount][kLanes];
+    const float* from[kCount];
+    for (int n = 0; n < kStrains; ++n) from[n] = run.strain[n] + begin;
+    for (int n = 0; n < kModes; ++n) from[kStrains + n] = run.modes[n] + begin;
+    from[kCount - 1] = run.alpha + begin;
+    if (begin + kWidthOf < V >> run.cells) [[unlikely]] {
+        for (int n = 0; n < kCount; ++n) {
+            for (int l = 0; l < kWidthOf<V>; ++l) {
+                copy[n][l] = begin + l < run.cells ? from[n][l] : 0.0f;
+            }
+            from[n] = copy[n];
         }
-    };
-    if constexpr (kRubber) {
-        const Number scale = volume * fill;
-        first = rubber_stress(law, f);
-        first = {scale * first.x, scale * first.y, scale * first.z};
-        mode_force = mode_fill(fill) * mode_stress(law, modes);
-        freeze_turn();
-    } else {
-        const CellStrain<Number> strain = cell_strain(f);
-        Number kept = constant(1.0 + 0.0 * fill_value), size = trace(strain.log);
-        Symmetric<Number> distortion = deviator(strain.log);
-        CellModes<Number> elastic = modes;
-        if constexpr (kYields) {
-            const auto history = [&](const float* from) __attribute__((always_inline)) {
-                return constant(load(from == nullptr ? from : from + done, left));
-            };
-            const auto mode = [&](int m) __attribute__((always_inline)) {
-                return Triple<Number>{history(run.modes[m]), history(run.modes[m + 1]),
-                                      history(run.modes[m + 2])};
-            };
-            const CellHistory<Number> committed = {
-                {history(run.strain[0]), history(run.strain[1]), history(run.strain[2]),
-                 history(run.strain[3]), history(run.strain[4]), history(run.strain[5])},
-                {mode(0), mode(3), mode(6), mode(9)},
-                history(run.alpha)};
-            const CellFlowed<Number> r = flow_cell(law, committed, strain.log, modes, fill);
-            kept = r.kept;
-            size = r.trace;
-            distortion = r.distortion;
-            elastic = r.modes;
-        }
-        const Number pressure = law.bulk * size;
-        Symmetric<Number> t = ((2 * law.shear) * kept) * distortion;
-        t.xx = t.xx + pressure, t.yy = t.yy + pressure, t.zz = t.zz + pressure;
-        const Symmetric<Number> stress = (volume * fill) * material_stress(strain, t);
-        mode_force = (mode_fill(fill) * kept) * mode_stress(law, elastic);
-        freeze_turn();
-        first = f * stress;
     }
-    const CornerSums<Number> r = sum_forces(c, f, first, mode_force, at, law.spacing);
-    const auto minus = [](const Triple<Number>& a) __attribute__((always_inline)) {
-        const Triple<Lanes> s = slope(a);
-        return Triple<Lanes>{-s.x, -s.y, -s.z};
+    const auto one = [&](int n) __attribute__((always_inline)) {
+        return constant(load<V>(from[n]));
     };
-    return {minus(r.x),  minus(r.y),  minus(r.z),  minus(r.xy),
-            minus(r.yz), minus(r.zx), minus(r.xyz)};
+    const auto triple = [&](int n) __attribute__((always_inline)) {
+        return Triple<Dual<V>>{one(n), one(n + 1), one(n + 2)};
+    };
+    return {{one(0), one(1), one(2), one(3), one(4), one(5)},
+            {triple(6), triple(9), triple(12), triple(15)},
+            one(18)};
 }
 
-SWAGE_INLINE void spread(const CornerSums<Lanes>& r, Lanes (&force)[3][8]) {
+// Minus the change of the cells' forces on their corners' sums.
+template <CellKind kKind, typename V>
+SWAGE_INLINE CornerSums<V> tangent_forces(const CellConstants& constants, const RunView& run,
+                                          int begin, double turning, const CornerSums<V>& x,
+                                          const CornerSums<V>& way) {
+    using N = Dual<V>;
+    const CornerSums<N> c = {pair(x.x, way.x),    pair(x.y, way.y),   pair(x.z, way.z),
+                             pair(x.xy, way.xy),  pair(x.yz, way.yz), pair(x.zx, way.zx),
+                             pair(x.xyz, way.xyz)};
+    CornerSums<N> r;
+    const bool flowed = kKind == CellKind::yielding && run.alpha != nullptr;
+    if (run.whole[begin / kLanes]) {
+        const CellShare<N> all{};
+        r = flowed ? cell_forces<kKind, false, true>(constants, c, all, load_history<V>(run, begin),
+                                                     turning)
+                   : cell_forces<kKind, false, false>(constants, c, all, CellHistory<N>{}, turning);
+    } else {
+        const CellShare<N> part{
+            constant(load<V>(run.fill + begin)),
+            {constant(load<V>(run.at[0] + begin)), constant(load<V>(run.at[1] + begin)),
+             constant(load<V>(run.at[2] + begin))}};
+        r = flowed ? cell_forces<kKind, true, true>(constants, c, part, load_history<V>(run, begin),
+                                                    turning)
+                   : cell_forces<kKind, true, false>(constants, c, part, CellHistory<N>{}, turning);
+    }
+    return {minus_slope(r.x),  minus_slope(r.y),  minus_slope(r.z),  minus_slope(r.xy),
+            minus_slope(r.yz), minus_slope(r.zx), minus_slope(r.xyz)};
+}
+
+template <typename V>
+SWAGE_INLINE void spread(const CornerSums<V>& r, V (&force)[3][8]) {
     spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, force[0]);
     spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, force[1]);
     spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, force[2]);
 }
 
-template <bool kYields, bool kRubber>
-SWAGE_INLINE void run_product(const CellModuli& law, const RunView& run, double geometric,
-                              const double* const (&direction)[3][4], double* const (&to)[3][4]) {
-    Lanes carry[3][4] = {};  // lane 0: what the last batch left for its last particle
-    for (int done = 0; done < run.count; done += kLanes) {
-        const int left = run.count - done, count = left < kLanes ? left : kLanes;
-        CornerSums<Lanes> x, p;
-        gather(run.x, done, left, x);
-        gather(direction, done, left, p);
-        Lanes force[3][8];
-        spread(tangent_forces<kYields, kRubber>(law, run, done, geometric, x, p), force);
-        for (int i = 0; i < 3; ++i) {
-            for (int q = 0; q < 4; ++q) {
-                typedef long long Index __attribute__((vector_size(8 * kLanes)));
-                const Lanes high = force[i][2 * q + 1];
-                const Lanes sum =
-                    force[i][2 * q] +
-                    __builtin_shuffle(high, carry[i][q], Index{8, 0, 1, 2, 3, 4, 5, 6});
-                double* at = to[i][q] + done;
-                for (int l = 0; l < count; ++l) at[l] += sum[l];
-                carry[i][q][0] = high[count - 1];
-            }
-        }
+struct RunProduct {
+    CornerRows<const double> direction;
+    CornerRows<double> result;
+    int room[4];  // in each row of the result
+    double turning;
+};
+
+template <CellKind kKind, int kWidth>
+SWAGE_INLINE void run_product(const CellConstants& constants, const RunView& run,
+                              const RunProduct& p) {
+    typedef LanesOf<kWidth> V;
+    ForceCarry<V> carry;
+    for (int begin = 0; begin < run.count; begin += kWidth) {
+        const int count = std::min(kWidth, run.count - begin);
+        const CornerSums<V> x = gather<V>(run.x, begin, count, run.room);
+        const CornerSums<V> way = gather<V>(p.direction, begin, count, run.room);
+        add_forces(tangent_forces<kKind>(constants, run, begin, p.turning, x, way), p.result,
+                   p.room, begin, count, carry);
     }
-    for (int i = 0; i < 3; ++i) {
-        for (int q = 0; q < 4; ++q) to[i][q][run.count] += carry[i][q][0];
-    }
+    if (run.count % kWidth == 0) add_carried(p.result, run.count, carry);
 }
 
 // A direction along one axis, from the sums of how far each corner goes.
@@ -202,11 +143,11 @@ struct Places {
 };
 
 // Tangent of eight cells in terms of their coarse cells' corners, upper triangle by columns.
-template <bool kYields, bool kRubber>
-SWAGE_INLINE void batch_matrices(const CellModuli& law, const RunView& run, int done,
-                                 double geometric, const Places& place, Lanes* matrix) {
-    CornerSums<Lanes> x;
-    gather(run.x, done, run.count - done, x);
+template <CellKind kKind>
+SWAGE_INLINE void batch_matrices(const CellConstants& constants, const RunView& run, int begin,
+                                 double turning, const Places& place, Lanes* matrix) {
+    const int count = std::min(kLanes, run.count - begin);
+    const CornerSums<Lanes> x = gather<Lanes>(run.x, begin, count, run.room);
     for (int corner = 0; corner < 8; ++corner) {
         // How the cell's corners follow this coarse corner.
         Lanes follow[8], sum[7];
@@ -220,8 +161,7 @@ SWAGE_INLINE void batch_matrices(const CellModuli& law, const RunView& run, int 
         sum_corners(follow, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
         for (int axis = 0; axis < 3; ++axis) {
             Lanes force[3][8];
-            spread(tangent_forces<kYields, kRubber>(law, run, done, geometric, x,
-                                                    along_axis(sum, axis)),
+            spread(tangent_forces<kKind>(constants, run, begin, turning, x, along_axis(sum, axis)),
                    force);
             const int column = 3 * corner + axis;
             for (int i = 0; i < 3; ++i) {
@@ -245,19 +185,18 @@ SWAGE_INLINE void batch_matrices(const CellModuli& law, const RunView& run, int 
 }
 
 // Of eight cells' corners, the blocks that are their own: xx, yy, zz, xy, yz, zx.
-template <bool kYields, bool kRubber>
-SWAGE_INLINE void batch_blocks(const CellModuli& law, const RunView& run, int done,
-                               double geometric, Lanes (*block)[6]) {
-    CornerSums<Lanes> x;
-    gather(run.x, done, run.count - done, x);
+template <CellKind kKind>
+SWAGE_INLINE void batch_blocks(const CellConstants& constants, const RunView& run, int begin,
+                               double turning, Lanes (*block)[6]) {
+    const int count = std::min(kLanes, run.count - begin);
+    const CornerSums<Lanes> x = gather<Lanes>(run.x, begin, count, run.room);
     for (int corner = 0; corner < 8; ++corner) {
         Lanes alone[8] = {}, sum[7], column[3][3];
         alone[corner] = 1.0 + Lanes{};
         sum_corners(alone, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
         for (int axis = 0; axis < 3; ++axis) {
             Lanes force[3][8];
-            spread(tangent_forces<kYields, kRubber>(law, run, done, geometric, x,
-                                                    along_axis(sum, axis)),
+            spread(tangent_forces<kKind>(constants, run, begin, turning, x, along_axis(sum, axis)),
                    force);
             for (int i = 0; i < 3; ++i) column[axis][i] = force[i][corner];
         }
@@ -267,85 +206,117 @@ SWAGE_INLINE void batch_blocks(const CellModuli& law, const RunView& run, int do
     }
 }
 
-#define SWAGE_TANGENT(name, yields, rubber)                                                     \
+template <CellKind kKind>
+SWAGE_WIDE_VECTORS void wide_product(const CellConstants& k, const RunView& r,
+                                     const RunProduct& p) {
+    run_product<kKind, 8>(k, r, p);
+}
+template <CellKind kKind>
+SWAGE_MIDDLE_VECTORS void middle_product(const CellConstants& k, const RunView& r,
+                                         const RunProduct& p) {
+    run_product<kKind, 4>(k, r, p);
+}
+template <CellKind kKind>
+void narrow_product(const CellConstants& k, const RunView& r, const RunProduct& p) {
+    run_product<kKind, 2>(k, r, p);
+}
+template <CellKind kKind>
+void product_of(const CellConstants& k, const RunView& r, const RunProduct& p) {
+    const int width = vector_width();
+    width == 8   ? wide_product<kKind>(k, r, p)
+    : width == 4 ? middle_product<kKind>(k, r, p)
+                 : narrow_product<kKind>(k, r, p);
+}
+
+#define SWAGE_TANGENT(kind)                                                                     \
     SWAGE_VECTOR_CLONES                                                                         \
-    void name##_product(const CellModuli& law, const RunView& run, double geometric,            \
-                        const double* const(&direction)[3][4], double* const(&to)[3][4]) {      \
-        run_product<yields, rubber>(law, run, geometric, direction, to);                        \
-    }                                                                                           \
-    SWAGE_VECTOR_CLONES                                                                         \
-    void name##_matrices(const CellModuli& law, const RunView& run, int done, double geometric, \
+    void kind##_matrices(const CellConstants& k, const RunView& run, int begin, double turning, \
                          const Places& place, Lanes* matrix) {                                  \
-        batch_matrices<yields, rubber>(law, run, done, geometric, place, matrix);               \
+        batch_matrices<CellKind::kind>(k, run, begin, turning, place, matrix);                  \
     }                                                                                           \
     SWAGE_VECTOR_CLONES                                                                         \
-    void name##_blocks(const CellModuli& law, const RunView& run, int done, double geometric,   \
+    void kind##_blocks(const CellConstants& k, const RunView& run, int begin, double turning,   \
                        Lanes(*block)[6]) {                                                      \
-        batch_blocks<yields, rubber>(law, run, done, geometric, block);                         \
+        batch_blocks<CellKind::kind>(k, run, begin, turning, block);                            \
     }
-SWAGE_TANGENT(elastic, false, false)
-SWAGE_TANGENT(yielding, true, false)
-SWAGE_TANGENT(rubber, false, true)
+SWAGE_TANGENT(elastic)
+SWAGE_TANGENT(yielding)
+SWAGE_TANGENT(rubber)
 #undef SWAGE_TANGENT
+
+// What of the kinds' functions applies.
+template <typename F>
+F of_kind(CellKind kind, F elastic, F yielding, F rubber) {
+    return kind == CellKind::rubber ? rubber : kind == CellKind::yielding ? yielding : elastic;
+}
 
 }  // namespace
 
-CellTangent::CellTangent(const Aggregate& matter, const std::vector<float>& fill) : fill_(fill) {
+CellTangent::CellTangent(const Aggregate& matter, const std::vector<float>& fill)
+    : fill_(fill), slab_(cell_slabs(matter)) {
+    fill_.resize(fill.size() + kLanes);
     for (int i = 0; i < 3; ++i) {
         for (const Eigen::Vector3f& c : matter.cell_centroid) at_[i].push_back(2 * c[i]);
+        at_[i].resize(at_[i].size() + kLanes);
     }
-    const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    const std::size_t cells = matter.cell_fill.size();
-    const std::size_t slabs = std::clamp<std::size_t>(cells / kSlabCells, 1, 64);
-    std::size_t r = 0;
-    for (std::size_t s = 0; s < slabs; ++s) {
-        const std::size_t begin = r, stop = cells * (s + 1) / slabs;
-        ForceSlab part{std::numeric_limits<ParticleId>::max(), 0, {}};
-        for (; r < runs.size() && (s + 1 == slabs || std::size_t(runs[r].first) < stop); ++r) {
-            for (ParticleId p : runs[r].row) {
-                part.begin = std::min(part.begin, p);
-                part.reach = std::max(part.reach, p + runs[r].count + 1);
+    for (const CellRun& run : matter.lattice.cell_run) {
+        batch_.push_back(whole_.size());
+        for (int begin = 0; begin < run.count; begin += kLanes) {
+            bool whole = true;
+            for (int n = begin; n < std::min(run.count, begin + kLanes); ++n) {
+                const CellId cell = run.first + n;
+                whole = whole && fill[cell] == 1 && matter.cell_centroid[cell].isZero(0);
             }
+            whole_.push_back(whole);
         }
-        if (r == begin) continue;
-        part.part.resize(static_cast<std::size_t>(part.reach - part.begin));
-        slab_.push_back({begin, r});
-        part_.push_back(std::move(part));
     }
 }
 
+struct CellTangent::Law {
+    CellConstants constants;
+    CellKind kind;
+};
+
 CellTangent::Law CellTangent::law_for(const Aggregate& matter, Flow flow) const {
     const Material& m = matter.material;
-    const bool yields = std::isfinite(m.yield_stress) &&
-                        (flow == Flow::trial || !matter.cell_plastic_strain[0].empty());
+    const bool yields =
+        std::isfinite(m.yield_stress) && (flow == Flow::trial || !matter.cell_hardening.empty());
     const double yield_stress = flow == Flow::none ? 1e100 : m.yield_stress;
-    return {cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
-                        yields ? yield_stress : 0, yields ? m.hardening : 0),
-            yields, m.elasticity == Elasticity::neo_hookean};
+    return {CellConstants(cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
+                                      yields ? yield_stress : 0, yields ? m.hardening : 0)),
+            m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
+            : yields                                ? CellKind::yielding
+                                                    : CellKind::elastic};
 }
 
 namespace {
 
-RunView view_of(const Aggregate& matter, const CellRun& run, const std::vector<float>& fill,
-                const std::array<std::vector<float>, 3>& at) {
-    RunView view{};
-    const Vec3Array& x = matter.particle_position;
-    const std::vector<double>* component[3] = {&x.x, &x.y, &x.z};
+CornerRows<const double> rows_of(const Vec3Array& v, const CellRun& run) {
+    CornerRows<const double> rows;
+    const std::vector<double>* component[3] = {&v.x, &v.y, &v.z};
     for (int i = 0; i < 3; ++i) {
-        for (int q = 0; q < 4; ++q) view.x[i][q] = component[i]->data() + run.row[q];
-        view.at[i] = at[i].data() + run.first;
+        for (int q = 0; q < 4; ++q) rows.at[i][q] = component[i]->data() + run.row[q];
     }
-    view.fill = fill.data() + run.first;
+    return rows;
+}
+
+RunView view_of(const Aggregate& matter, const CellRun& run, const std::vector<float>& fill,
+                const std::array<std::vector<float>, 3>& at, const char* whole) {
+    RunView view{};
+    view.x = rows_of(matter.particle_position, run);
+    view.room = static_cast<int>(matter.particle_count()) - run.row[3];
     view.count = run.count;
-    if (!matter.cell_plastic_strain[0].empty()) {
-        for (int s = 0; s < kStrains; ++s) {
-            view.strain[s] = matter.cell_plastic_strain[s].data() + run.first;
-        }
-        for (int s = 0; s < kModes; ++s) {
-            view.modes[s] = matter.cell_plastic_modes[s].data() + run.first;
-        }
-        view.alpha = matter.cell_hardening.data() + run.first;
+    view.cells = static_cast<int>(matter.cell_fill.size()) - run.first;
+    view.whole = whole;
+    view.fill = fill.data() + run.first;
+    for (int i = 0; i < 3; ++i) view.at[i] = at[i].data() + run.first;
+    if (matter.cell_hardening.empty()) return view;
+    for (int s = 0; s < kStrains; ++s) {
+        view.strain[s] = matter.cell_plastic_strain[s].data() + run.first;
     }
+    for (int s = 0; s < kModes; ++s)
+        view.modes[s] = matter.cell_plastic_modes[s].data() + run.first;
+    view.alpha = matter.cell_hardening.data() + run.first;
     return view;
 }
 
@@ -354,34 +325,39 @@ RunView view_of(const Aggregate& matter, const CellRun& run, const std::vector<f
 void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& direction,
                           Vec3Array& result) {
     const Law law = law_for(matter, kind.flow);
-    const std::vector<double>* from[3] = {&direction.x, &direction.y, &direction.z};
+    const auto sweep = of_kind(law.kind, product_of<CellKind::elastic>,
+                               product_of<CellKind::yielding>, product_of<CellKind::rubber>);
+    result.resize(matter.particle_count());
     parallel_for(slab_.size(), [&](std::size_t index) {
-        ForceSlab& slab = part_[index];
-        slab.clear();
-        double* component[3] = {slab.part.x.data(), slab.part.y.data(), slab.part.z.data()};
-        for (std::size_t r = slab_[index].run_begin; r < slab_[index].run_end; ++r) {
+        CellSlab& slab = slab_[index];
+        double *own[3] = {result.x.data(), result.y.data(), result.z.data()},
+               *seam[3] = {slab.seam.x.data(), slab.seam.y.data(), slab.seam.z.data()};
+        for (double* component : own) {
+            std::fill(component + slab.begin, component + slab.end, 0.0);
+        }
+        for (auto* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
+            std::fill(component->begin(), component->end(), 0.0);
+        }
+        for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
             const CellRun& run = matter.lattice.cell_run[r];
-            const RunView view = view_of(matter, run, fill_, at_);
-            const double* along[3][4];
-            double* to[3][4];
-            for (int i = 0; i < 3; ++i) {
-                for (int q = 0; q < 4; ++q) {
-                    along[i][q] = from[i]->data() + run.row[q];
-                    to[i][q] = component[i] + (run.row[q] - slab.begin);
+            RunProduct p{rows_of(direction, run), {}, {}, kind.geometric};
+            for (int q = 0; q < 4; ++q) {
+                const ParticleId row = run.row[q];
+                const bool is_own = row < slab.end;
+                p.room[q] = (is_own ? slab.end : slab.reach + kSeamRoom) - row;
+                for (int i = 0; i < 3; ++i) {
+                    p.result.at[i][q] = is_own ? own[i] + row : seam[i] + (row - slab.end);
                 }
             }
-            const auto sweep = law.rubber   ? rubber_product
-                               : law.yields ? yielding_product
-                                            : elastic_product;
-            sweep(law.moduli, view, kind.geometric, along, to);
+            sweep(law.constants, view_of(matter, run, fill_, at_, whole_.data() + batch_[r]), p);
         }
     });
-    sum_slabs(part_, matter.particle_count(), result);
+    add_seams(slab_, result);
 }
 
 std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) const {
     const Law law = law_for(matter, kind.flow);
-    const auto blocks = law.rubber ? rubber_blocks : law.yields ? yielding_blocks : elastic_blocks;
+    const auto blocks = of_kind(law.kind, elastic_blocks, yielding_blocks, rubber_blocks);
     std::vector<Mat3> own(matter.particle_count(), Mat3::Zero());
     // Planes of cells share particles with the next ones only: every other plane at a time.
     std::vector<std::size_t> plane(matter.lattice.cell_count.z() + 1, 0);
@@ -394,9 +370,9 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
             Lanes block[8][6];
             for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
                 const CellRun& run = matter.lattice.cell_run[r];
-                const RunView view = view_of(matter, run, fill_, at_);
+                const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
                 for (int done = 0; done < run.count; done += kLanes) {
-                    blocks(law.moduli, view, done, kind.geometric, block);
+                    blocks(law.constants, view, done, kind.geometric, block);
                     for (int l = 0; l < kLanes && done + l < run.count; ++l) {
                         for (int c = 0; c < 8; ++c) {
                             const Lanes(&b)[6] = block[c];
@@ -416,9 +392,7 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
 std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind kind,
                                                   const Lattice& coarse, const Vec3i& ratio) const {
     const Law law = law_for(matter, kind.flow);
-    const auto matrices = law.rubber   ? rubber_matrices
-                          : law.yields ? yielding_matrices
-                                       : elastic_matrices;
+    const auto matrices = of_kind(law.kind, elastic_matrices, yielding_matrices, rubber_matrices);
     std::size_t count = 0;
     for (const CellRun& run : coarse.cell_run) count += run.count;
     std::vector<CellMatrix> sum(count);
@@ -430,7 +404,7 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
         Lanes matrix[std::tuple_size_v<decltype(CellMatrix::upper)>];
         for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
             const CellRun& run = matter.lattice.cell_run[r];
-            const RunView view = view_of(matter, run, fill_, at_);
+            const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
             const Vec3i site(run.i, run.j, run.k);
             for (int done = 0; done < run.count; done += kLanes) {
                 Places place;
@@ -447,7 +421,7 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
                                                  at.z() / ratio.z());
                     }
                 }
-                matrices(law.moduli, view, done, kind.geometric, place, matrix);
+                matrices(law.constants, view, done, kind.geometric, place, matrix);
                 for (int l = 0; l < many; ++l) {
                     auto& to = sum[cell[l]].upper;
                     for (std::size_t e = 0; e < to.size(); ++e) to[e] += matrix[e][l];

@@ -7,7 +7,6 @@
 #include <array>
 #include <vector>
 
-#include "laws/cell_moduli.h"
 #include "matter/aggregate.h"
 #include "sim/cell_sweep.h"
 #include "sim/force_slabs.h"
@@ -48,19 +47,14 @@ class CellTangent {
                                          const Vec3i& ratio) const;
 
   private:
-    struct Law {
-        CellModuli moduli;
-        bool yields, rubber;
-    };
+    struct Law;
     Law law_for(const Aggregate& matter, Flow flow) const;
 
-    const std::vector<float>& fill_;
+    std::vector<float> fill_;  // these two with room for a batch behind
     std::array<std::vector<float>, 3> at_;
-    struct Slab {
-        std::size_t run_begin, run_end;
-    };
-    std::vector<Slab> slab_;
-    ForceSlabs part_;
+    std::vector<char> whole_;         // of each batch of cells: full, and centred
+    std::vector<std::size_t> batch_;  // first one of each run
+    std::vector<CellSlab> slab_;
 };
 
 }  // namespace swage

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whole quasi-static solutions: a bar sagging under its weight, twisted, and bent in frames by its
-// ends. usage: bench_equilibrium [name ...]
+// ends; and the product of the tangent that they are found with. usage: bench_equilibrium [name ...]
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "base/parallel.h"
+#include "sim/cell_tangent.h"
+#include "sim/lattice_forces.h"
 #include "verify/stand.h"
 
 using namespace swage;
@@ -88,9 +91,39 @@ void bend(int across, bool plastic) {
                plastic ? "plastic" : "elastic", particles, iterations, seconds);
 }
 
+// Nanoseconds a cell of the tangent's product, one thread.
+void product(int across, bool plastic) {
+    Material material = unit_material();
+    if (plastic) material.yield_stress = 0.005, material.hardening = 0.02;
+    Aggregate bar = unit_bar(10, across, material);
+    for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+        const Vec3 x = bar.particle_reference.at(p);
+        bar.particle_position.add(p, 0.02 * Vec3(std::sin(x.y()), std::sin(x.x()), x.z()));
+    }
+    LatticeForces forces(bar);
+    forces.commit(bar);
+    CellTangent tangent(bar, bar.cell_fill);
+    Vec3Array result;
+    std::vector<double> time;
+    for (int n = 0; n < 15; ++n) {
+        time.push_back(
+            seconds_of([&] { tangent.product(bar, {}, bar.particle_reference, result); }));
+    }
+    std::sort(time.begin(), time.end());
+    fmt::print("tangent's product, {}, {} cells: {:.1f} ns a cell\n",
+               plastic ? "plastic" : "elastic", bar.cell_fill.size(),
+               time[time.size() / 2] * 1e9 / static_cast<double>(bar.cell_fill.size()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (wanted(argc, argv, "product")) {
+        set_thread_count(1);
+        for (int across : {8, 22}) {
+            for (bool plastic : {false, true}) product(across, plastic);
+        }
+    }
     if (wanted(argc, argv, "weight")) {
         set_thread_count(1);
         for (const auto& [g, tip] : {std::pair{1.0, -0.1481}, {9.81, -0.7501}}) {
