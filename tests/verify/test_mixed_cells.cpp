@@ -105,7 +105,7 @@ TEST_CASE("a body of two materials has its mass, its volume, and the same bits i
     CHECK(m.mass() == Approx(2 * 1000 + 7000 * ball).epsilon(0.01));
     shake(m, 0.05);
     LatticeForces forces(m);
-    CHECK(forces.commit(m) > 0);
+    CHECK(forces.commit(m).plastic > 0);
     shake(m, 0.02, 5);
     Vec3Array expected;
     forces.find(m, Flow::trial, expected);
