@@ -17,7 +17,7 @@ namespace {
 struct VerifyArguments {
     std::vector<std::string> cases;
     std::string out;
-    bool json = false, brief = false;
+    bool json = false, markdown = false, brief = false;
 };
 
 std::vector<Case> chosen_cases(const VerifyArguments& given) {
@@ -87,6 +87,8 @@ int verify(const VerifyArguments& given) {
     }
     if (given.json) {
         put_json(verified_json(all));
+    } else if (given.markdown) {
+        put_out(verified_markdown(all));
     } else {
         put_out(verified_text(all));
     }
@@ -111,7 +113,9 @@ void add_verify_command(CLI::App& app, Action& chosen) {
         ->type_name("CASE");
     command->add_option("--out", given.out, "write verify.json and verify.html there")
         ->type_name("DIR");
-    command->add_flag("--json", given.json, "print JSON");
+    CLI::Option* json = command->add_flag("--json", given.json, "print JSON");
+    command->add_flag("--markdown", given.markdown, "print the table of the README")
+        ->excludes(json);
     command->add_flag("--short", given.brief, "the quick cases, without their finest bodies");
 }
 

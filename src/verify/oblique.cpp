@@ -42,7 +42,8 @@ void oblique(const Section& section, bool brief, Values& values) {
         int across;
         double bending, torsion;
     };
-    for (const auto& [across, bending, torsion] : {Level{4, 0.06, 0.08}, Level{8, 0.017, 0.025}}) {
+    for (const auto& [across, bending, torsion] :
+         {Level{4, 0.06, 0.08}, Level{8, 0.017, 0.025}, Level{16, 0.005, 0.007}}) {
         if (brief && across > 4) break;
         const Aggregate bar = unit_mold(mesh, across, unit_material());
         values.add(

@@ -149,6 +149,38 @@ std::string verified_text(const std::vector<Verified>& all) {
            fmt::format("{} of {} cases within their bounds\n", all.size() - missed, all.size());
 }
 
+std::string verified_markdown(const std::vector<Verified>& all) {
+    std::string text =
+        "| case | | cells across: error (bound) | expected after |\n|---|---|---|---|\n";
+    for (const Verified& one : all) {
+        // In the order in which the resolutions come.
+        std::vector<const Value*> worst;
+        for (const Value& v : one.result.value) {
+            if (!v.bounded()) continue;
+            const auto same = std::find_if(worst.begin(), worst.end(), [&](const Value* other) {
+                return other->across == v.across;
+            });
+            if (same == worst.end()) {
+                worst.push_back(&v);
+            } else if (!(v.error / v.bound <= (*same)->error / (*same)->bound)) {
+                *same = &v;
+            }
+        }
+        std::string errors;
+        for (const Value* v : worst) {
+            errors += errors.empty() ? "" : ", ";
+            if (v->across > 0) errors += fmt::format("{}: ", v->across);
+            const std::string error = error_text(v->error);
+            errors += fmt::format("{} ({})", v->missed() ? "**" + error + "**" : error,
+                                  error_text(v->bound));
+        }
+        if (!one.result.failure.empty()) errors = "**" + one.result.failure + "**";
+        text += fmt::format("| `{}` | {} | {} | {} |\n", one.verification.name,
+                            one.verification.help, errors, one.verification.source);
+    }
+    return text;
+}
+
 std::string verified_page(const std::vector<Verified>& all) {
     std::string page = kPageHead;
     const auto add_row = [&](const Row& row, const char* tag) {

@@ -15,6 +15,8 @@ struct Verified {
 };
 
 std::string verified_text(const std::vector<Verified>& all);
+// A row a case, for a README: of each resolution the value that comes closest to its bound.
+std::string verified_markdown(const std::vector<Verified>& all);
 std::string verified_page(const std::vector<Verified>& all);
 
 }  // namespace swage

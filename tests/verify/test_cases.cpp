@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "tests/catch.h"
 #include "verify/table.h"
@@ -36,4 +38,30 @@ TEST_CASE("a case beyond its bound, of too low an order or stopped early is miss
     CHECK(with(0, {relative("x", 2, 1, 1.06, 0.05)}).missed);
     CHECK(with(0, {relative("x", 2, 1, std::nan(""), 0.05)}).missed);
     CHECK(!with(0, {told("x", 2, 1, 7)}).missed);
+}
+
+TEST_CASE("the README's table has a row for every case, and the command writes such rows") {
+    std::ifstream file(std::string(SWAGE_SOURCE_DIR) + "/README.md");
+    std::stringstream text;
+    text << file.rdbuf();
+    const std::string whole = text.str();
+    const std::size_t section = whole.find("## How right it is");
+    REQUIRE(section != std::string::npos);
+    const std::string readme = whole.substr(section, whole.find("\n## ", section) - section);
+    std::size_t rows = 0;
+    for (std::size_t at = readme.find("\n| `"); at != std::string::npos;
+         at = readme.find("\n| `", at + 1)) {
+        ++rows;
+    }
+    const std::vector<Case> cases = verification_cases();
+    CHECK(rows == cases.size());
+    for (const Case& c : cases) {
+        INFO(c.name);
+        CHECK(readme.find("\n| `" + c.name + "` | " + c.help + " | ") != std::string::npos);
+        Result result;
+        result.value = {relative("x", 4, 1, 1.01, 0.02), relative("y", 4, 1, 1.05, 0.1),
+                        relative("x", 8, 1, 1.03, 0.02)};
+        CHECK(verified_markdown({{c, result}}).find("| 4: 1 % (2 %), 8: **3 %** (2 %) |") !=
+              std::string::npos);
+    }
 }
