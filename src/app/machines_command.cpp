@@ -79,9 +79,9 @@ Json machine_json(const MachineSpec& machine) {
                               {"high", parameter.high},
                               {"help", parameter.help}});
     }
-    return {{"name", machine.name},          {"help", machine.help},
-            {"file", machine.file.string()}, {"parameters", parameters},
-            {"tools", machine.tool.size()},  {"grips", machine.grip.size()},
+    return {{"name", machine.name},           {"help", machine.help},
+            {"file", machine.file.string()},  {"parameters", parameters},
+            {"tools", machine.tool.size()},   {"grips", machine.grip.size()},
             {"blades", machine.blade.size()}, {"loads", machine.load.size()}};
 }
 

@@ -229,10 +229,10 @@ SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const CayleySe
     const CayleySeries<N> m = {1.0 + 2.0 * odd.a + y6.a, 2.0 * odd.b + y6.b - 2.0,
                                2.0 + 2.0 * odd.c + y6.c};
     const N m3 = m.b * t.c + m.c * t.b, m4 = m.c * t.c;
-    return evaluate(e, CayleySeries<N>{
-                           m.a * t.a + (m3 * y3.a + m4 * y4.a),
-                           (m.a * t.b + m.b * t.a) + (m3 * y3.b + m4 * y4.b),
-                           (m.a * t.c + m.b * t.b + m.c * t.a) + (m3 * y3.c + m4 * y4.c)});
+    return evaluate(e,
+                    CayleySeries<N>{m.a * t.a + (m3 * y3.a + m4 * y4.a),
+                                    (m.a * t.b + m.b * t.a) + (m3 * y3.b + m4 * y4.b),
+                                    (m.a * t.c + m.b * t.b + m.c * t.a) + (m3 * y3.c + m4 * y4.c)});
 }
 
 // f^2, which alone leaves nothing to hold a sliver's corners; and f times that.

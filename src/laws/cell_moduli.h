@@ -6,9 +6,9 @@
 
 namespace swage {
 
-// f^2, a partly filled cell's deviations over its mean strain, is never taken below this: with less,
-// slivers flap about and no solver is quick. 0.001 changes the stiffness of oblique bars 4 cells
-// across by 0.1 % from this.
+// f^2, a partly filled cell's deviations over its mean strain, is never taken below this: with
+// less, slivers flap about and no solver is quick. 0.001 changes the stiffness of oblique bars 4
+// cells across by 0.1 % from this.
 inline constexpr double kLeastModeFill = 0.03;
 
 // One material at one spacing.

@@ -64,8 +64,7 @@ inline double strength_at(double young_modulus, double strength, double toughnes
 
 inline Fracture fracture_law(double young_modulus, double strength, double toughness,
                              double spacing) {
-    const double onset =
-        strength_at(young_modulus, strength, toughness, spacing) / young_modulus;
+    const double onset = strength_at(young_modulus, strength, toughness, spacing) / young_modulus;
     return {onset, 0.5 * onset, toughness / (1.8 * spacing * young_modulus * 0.5 * onset)};
 }
 

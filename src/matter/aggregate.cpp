@@ -101,16 +101,16 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_reference) + bytes_of(particle_position) +
                       bytes_of(particle_velocity) + bytes_of(particle_mass) + bytes_of(cell_fill) +
-                      bytes_of(cell_centroid) + bytes_of(cell_cracked) + bytes_of(cell_hardening) + bytes_of(inset) +
-                      bytes_of(cell_material) + bytes_of(mixed_cell) + bytes_of(surface.corner) +
-                      bytes_of(surface.weight) + bytes_of(surface.area) +
+                      bytes_of(cell_centroid) + bytes_of(cell_cracked) + bytes_of(cell_hardening) +
+                      bytes_of(inset) + bytes_of(cell_material) + bytes_of(mixed_cell) +
+                      bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& v : cell_plastic_strain) sum += bytes_of(v);
     for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);
     for (const ConnectionArrays& direction : connection) {
-        sum += bytes_of(direction.weight) + bytes_of(direction.plastic) +
-               bytes_of(direction.damage);
+        sum +=
+            bytes_of(direction.weight) + bytes_of(direction.plastic) + bytes_of(direction.damage);
     }
     return sum;
 }

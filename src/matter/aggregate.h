@@ -113,8 +113,8 @@ struct Lattice {
 struct ConnectionArrays {
     std::vector<float> weight;   // share of the full connection's section, 0: none (or no longer)
     std::vector<float> plastic;  // rest_length / reference_length - 1
-    // Share of its stiffness that is lost for being pulled (laws/fracture.h); 1: broken by load, its
-    // weight is then 0 too. Empty while nothing is damaged.
+    // Share of its stiffness that is lost for being pulled (laws/fracture.h); 1: broken by load,
+    // its weight is then 0 too. Empty while nothing is damaged.
     std::vector<float> damage;
 };
 

@@ -80,8 +80,10 @@ std::string csv_text(const StageCurves& curves) {
     }
     text +=
         ",kinetic energy [J],elastic energy [J],plastic work [J],damped work [J],"
-        "machine work [J],load work [J],gravity work [J],severed energy [J],fracture energy [J],set "
-        "free [J],remainder [J],severed connections,broken connections,pieces,iterations,increments,"
+        "machine work [J],load work [J],gravity work [J],severed energy [J],fracture energy "
+        "[J],set "
+        "free [J],remainder [J],severed connections,broken "
+        "connections,pieces,iterations,increments,"
         "halvings,steps,"
         "residual\n";
     for (std::size_t row = 0; row < curves.rows(); ++row) {

@@ -40,7 +40,7 @@ struct FrameReport {
     // Of all work since the stage began, what none of the others accounts for [J]: friction's, and
     // what relaxation lets go where something snaps or is put on at once.
     double remainder = 0;
-    std::vector<ToolLoad> load;  // tools, then grips, then blades, then loads, then gravity
+    std::vector<ToolLoad> load;   // tools, then grips, then blades, then loads, then gravity
     int severed = 0, broken = 0;  // connections, in this frame: by blades, by load
     int pieces = 1;
     std::vector<std::string> warning;

@@ -121,8 +121,8 @@ void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest
 double LooseSprings::now_worst(std::size_t n) const {
     const Spring& s = spring_[n];
     const bool single = s.partner == static_cast<int>(n);
-    return std::max(s.worst, single ? now_[n].strain
-                                    : face_strain(now_[n].strain, now_[s.partner].strain));
+    return std::max(s.worst,
+                    single ? now_[n].strain : face_strain(now_[n].strain, now_[s.partner].strain));
 }
 
 // What softening on from the committed history takes. A diagonal softens by the strain of its face

@@ -33,15 +33,14 @@ class LooseSprings {
 
     // Adds the springs' forces. `rest`: as for LatticeSweep; read with mechanics "springs" only,
     // whose sweep carries every connection as if sound: what it carries too much is taken off.
-    void add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest,
-                    Vec3Array& force);
+    void add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest, Vec3Array& force);
 
     // Remembers the softening of a converged state. Connections that it breaks have no weight from
     // then on: connections_changed() must follow when there are any.
     Broken commit(Aggregate& matter, const RestStrains* rest);
 
-    // [J], softened as far as the present positions ask; with mechanics "springs" beside that of the
-    // sweep.
+    // [J], softened as far as the present positions ask; with mechanics "springs" beside that of
+    // the sweep.
     double elastic_energy(const Aggregate& matter);
     // Energy that softening on to the present positions would take [J].
     double trial_loss(const Aggregate& matter);

@@ -168,8 +168,7 @@ void Stand::start_from(const Aggregate& coarse) {
 FrameReport Stand::settle() {
     FrameReport report;
     Vec3Array last;
-    const bool jumps =
-        std::isinf(matter.material.yield_stress) && !matter.material.breaks();
+    const bool jumps = std::isinf(matter.material.yield_stress) && !matter.material.breaks();
     for (int frame = 0; frame < kMostFrames; ++frame) {
         const Vec3Array before = matter.particle_position;
         report = move(drive);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whole quasi-static solutions: a bar sagging under its weight, twisted, and bent in frames by its
-// ends; and the product of the tangent that they are found with. usage: bench_equilibrium [name ...]
+// ends; and the product of the tangent that they are found with. usage: bench_equilibrium [name
+// ...]
 #include <fmt/format.h>
 
 #include <algorithm>

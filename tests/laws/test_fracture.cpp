@@ -61,7 +61,8 @@ TEST_CASE("a connection unloads to the origin, and the damage tells its largest 
     CHECK(worst_strain(f, 1) == Approx(f.broken));
 }
 
-TEST_CASE("a spacing that cannot resolve the softening lowers the strength and keeps the toughness") {
+TEST_CASE(
+    "a spacing that cannot resolve the softening lowers the strength and keeps the toughness") {
     const double reach = fracture_reach(kModulus, kStrength, kToughness);
     CHECK(reach == Approx(0.02));
     CHECK(strength_at(kModulus, kStrength, kToughness, reach / 4) == Approx(kStrength));
@@ -71,7 +72,9 @@ TEST_CASE("a spacing that cannot resolve the softening lowers the strength and k
     CHECK(1.8 * kModulus * reach * coarse.peak * coarse.broken == Approx(kToughness));
 }
 
-TEST_CASE("the diagonals of a face soften by their strain where both are pulled alike, not when pressed") {
+TEST_CASE(
+    "the diagonals of a face soften by their strain where both are pulled alike, not when "
+    "pressed") {
     CHECK(face_strain(0.3, 0.3) == Approx(0.3));
     CHECK(face_strain(-0.3, -0.3) == 0);
     CHECK(face_strain(0, -0.3) == 0);

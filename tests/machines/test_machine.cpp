@@ -102,7 +102,8 @@ TEST_CASE("parameters take their defaults from the body and from earlier paramet
 TEST_CASE("a parameter out of range is refused with its name, value and range in its own unit") {
     CHECK(says(refusal(roller(), {{"angle", 200 * kPi / 180}}),
                {"roller", "angle", "200 deg", "0 deg to 180 deg"}));
-    CHECK(says(refusal(roller(), {{"radius", 0.001}}), {"roller", "radius", "1 mm", "1.25 cm to 1 m"}));
+    CHECK(says(refusal(roller(), {{"radius", 0.001}}),
+               {"roller", "radius", "1 mm", "1.25 cm to 1 m"}));
     CHECK(says(refusal(roller(), {{"radius", std::nan("")}}), {"roller", "radius"}));
     CHECK(says(refusal(roller(), {{"angel", 1}}), {"roller", "angel"}));
     CHECK(refusal(roller(), {{"angle", kPi}}) == "");

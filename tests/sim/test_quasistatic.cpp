@@ -62,7 +62,8 @@ TEST_CASE("a bar bent past yield keeps a set and loses an elastic share") {
 }
 
 // Without any friction the bar's place between the tools is unstable and it slides out.
-TEST_CASE("an elastic bar stores the work that bends it and gives it back, but for friction's share") {
+TEST_CASE(
+    "an elastic bar stores the work that bends it and gives it back, but for friction's share") {
     const auto lost = [](double friction) {
         const Bent bent = bend(kElastic, bender(friction), 40);
         const FrameReport& pressed = bent.report[23];
