@@ -125,13 +125,6 @@ SWAGE_INLINE Symmetric<N> square(const Symmetric<N>& a) {
             a.zx * a.zx + a.yz * a.yz + a.zz * a.zz, a.xy * (a.xx + a.yy) + a.zx * a.yz,
             a.yz * (a.yy + a.zz) + a.xy * a.zx,      a.zx * (a.zz + a.xx) + a.yz * a.xy};
 }
-// The product of two symmetric tensors that commute.
-template <typename N>
-SWAGE_INLINE Symmetric<N> commuting(const Symmetric<N>& a, const Symmetric<N>& b) {
-    return {a.xx * b.xx + a.xy * b.xy + a.zx * b.zx, a.xy * b.xy + a.yy * b.yy + a.yz * b.yz,
-            a.zx * b.zx + a.yz * b.yz + a.zz * b.zz, a.xx * b.xy + a.xy * b.yy + a.zx * b.yz,
-            a.xy * b.zx + a.yy * b.yz + a.yz * b.zz, a.zx * b.xx + a.yz * b.xy + a.zz * b.zx};
-}
 // a b a
 template <typename N>
 SWAGE_INLINE Symmetric<N> sandwich(const Symmetric<N>& a, const Symmetric<N>& b) {
@@ -148,14 +141,6 @@ SWAGE_INLINE Symmetric<N> sandwich(const Symmetric<N>& a, const Symmetric<N>& b)
     return {a.xx * mx.x + a.xy * mx.y + a.zx * mx.z, a.xy * my.x + a.yy * my.y + a.yz * my.z,
             a.zx * mz.x + a.yz * mz.y + a.zz * mz.z, a.xx * my.x + a.xy * my.y + a.zx * my.z,
             a.xy * mz.x + a.yy * mz.y + a.yz * mz.z, a.xx * mz.x + a.xy * mz.y + a.zx * mz.z};
-}
-template <typename N>
-SWAGE_INLINE Symmetric<N> inverse(const Symmetric<N>& a) {
-    const N xx = a.yy * a.zz - a.yz * a.yz, xy = a.yz * a.zx - a.xy * a.zz,
-            zx = a.xy * a.yz - a.yy * a.zx;
-    const N over = 1.0 / (a.xx * xx + a.xy * xy + a.zx * zx);
-    return {over * xx, over * (a.xx * a.zz - a.zx * a.zx), over * (a.xx * a.yy - a.xy * a.xy),
-            over * xy, over * (a.xy * a.zx - a.xx * a.yz), over * zx};
 }
 // F S
 template <typename N>

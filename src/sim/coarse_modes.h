@@ -15,14 +15,9 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "sim/held_point.h"
 
 namespace swage {
-
-// A point of the surface that something holds or presses on.
-struct HeldPoint {
-    int point;
-    Mat3 stiffness;  // [N/m]
-};
 
 class CoarseModes {
   public:

@@ -8,7 +8,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
-#include "sim/coarse_modes.h"
+#include "sim/held_point.h"
 #include "sim/settings.h"
 
 namespace swage {

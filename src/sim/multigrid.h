@@ -13,7 +13,7 @@
 
 #include "matter/aggregate.h"
 #include "sim/cell_tangent.h"
-#include "sim/coarse_modes.h"
+#include "sim/held_point.h"
 #include "sim/lattice_transfer.h"
 #include "sim/node_stiffness.h"
 #include "sim/slab_cholesky.h"

@@ -30,7 +30,6 @@ Newton::Newton(const Aggregate& matter, const std::vector<float>& carried_fill)
 
 void Newton::product(const Aggregate& matter, const NewtonProblem& problem, CellTangent::Kind kind,
                      const Vec3Array& direction, Vec3Array& result) {
-    ++products_;
     tangent_.product(matter, kind, direction, result);
     for (const HeldPoint& h : problem.held) {
         const auto& corner = matter.surface.corner[h.point];
@@ -205,7 +204,6 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
 
 Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
     Result result;
-    products_ = 0;
     problem.forces(force_);
     for (result.steps = 0; result.steps < kMostSteps; ++result.steps) {
         result.residual = problem.residual(force_);
@@ -222,7 +220,6 @@ Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
         if (share == 0) break;
         if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) stale_ = true;
     }
-    result.products = products_;
     return result;
 }
 

@@ -10,7 +10,7 @@
 
 #include "matter/aggregate.h"
 #include "sim/cell_tangent.h"
-#include "sim/coarse_modes.h"
+#include "sim/held_point.h"
 #include "sim/multigrid.h"
 #include "sim/soft_mode.h"
 
@@ -32,8 +32,7 @@ class Newton {
 
     struct Result {
         bool converged = false;
-        int steps = 0;     // of Newton
-        int products = 0;  // with the tangent, in all
+        int steps = 0;
         double residual = 0;
     };
     // Moves the particles. What it leaves when it does not converge means nothing.
@@ -71,7 +70,6 @@ class Newton {
     double firmness_ = 0;  // of the softest motion, when last looked at
     int since_ = -1;       // increments since then; -1: never looked
     int unwatched_ = 0;    // increments that need no look at it
-    int products_ = 0;
     Vec3Array force_, direction_, residual_, search_, image_, better_, from_;
 };
 

@@ -22,9 +22,6 @@ class SoftMode {
 
     const Vec3Array& motion() const { return motion_; }  // of any length
 
-    // Another body from now on.
-    void forget() { motion_.resize(0); }
-
   private:
     Vec3Array motion_, last_;  // the last step towards it
 };
