@@ -28,6 +28,7 @@ struct Grip {
     TriMesh jaw;               // for drawing, in the grip's frame; may be empty
     Vec3 color = {0.42, 0.36, 0.30};
     Vec3 hold = Vec3::Ones();  // along each axis of the frame: 1 held, 0 free
+    int body = 0;              // which it holds, whose surface the points are of
 };
 
 // A blade severs the connections that its edge sweeps through.
@@ -46,6 +47,7 @@ struct Load {
     std::vector<Vec3> force;  // on each at full strength, in the world [N]; empty: a pressure
     double pressure = 0;      // at full strength [Pa]; less than zero sucks
     bool closed = false;      // the points make up whole closed surfaces
+    int body = 0;             // which it pushes, whose surface the points are of
 };
 
 struct Apparatus {

@@ -160,7 +160,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
     }
     const int first_frame = last_frame + 1;
     Simulation simulation(piece.matter, machine.apparatus, stage.sim);
-    StageCurves curves(stage.name, last_frame, simulation.bodies(start));
+    StageCurves curves(stage.name, last_frame, simulation.loads(start));
     WarningBook warnings;
     Totals totals;
     const fs::path meshes = context.root / "meshes";

@@ -37,29 +37,63 @@ std::vector<char> crumbs_of(const Aggregate& matter) {
     return crumb;
 }
 
-}  // namespace
+std::variant<QuasistaticSolver, ExplicitSolver> choose_solver(const std::vector<Aggregate*>& bodies,
+                                                              const Apparatus& apparatus,
+                                                              const SimSettings& settings) {
+    if (settings.solver == Solver::explicit_steps) {
+        return ExplicitSolver(bodies, apparatus, settings);
+    }
+    return QuasistaticSolver(*bodies[0], apparatus, settings);
+}
 
-struct Simulation::Rooms {
-    Aggregate& matter;
-    const Apparatus& apparatus;
-    std::variant<QuasistaticSolver, ExplicitSolver> solver;
-    int pieces = 1;
+// A body, and what the stage has done to it so far.
+struct WorkedBody {
+    Aggregate* matter;
+    int pieces;
     std::ptrdiff_t crumbs = 0;  // particles
-    double plastic = 0, damped = 0, severed_energy = 0, fracture = 0, set_free = 0;
-    std::vector<double> work, push_work;
+    Books books{};
     double stored_at_start = 0;                  // kinetic and elastic [J]
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
+};
 
-    const LoadSet& pushes() const {
-        return std::visit([](const auto& solver) -> const LoadSet& { return solver.pushes(); },
-                          solver);
+}  // namespace
+
+void Books::add(const Books& other) {
+    kinetic += other.kinetic;
+    elastic += other.elastic;
+    work += other.work;
+    load_work += other.load_work;
+    gravity_work += other.gravity_work;
+    plastic += other.plastic;
+    damped += other.damped;
+    severed_energy += other.severed_energy;
+    fracture += other.fracture;
+    set_free += other.set_free;
+    remainder += other.remainder;
+}
+
+struct Simulation::Rooms {
+    std::vector<WorkedBody> body;
+    const Apparatus& apparatus;
+    std::variant<QuasistaticSolver, ExplicitSolver> solver;
+    std::vector<double> work, push_work;  // of each tool and grip, load and gravity, on all bodies
+
+    const LoadSet& pushes(std::size_t b) const {
+        const auto* steps = std::get_if<ExplicitSolver>(&solver);
+        return steps ? steps->pushes(b) : std::get<QuasistaticSolver>(solver).pushes();
+    }
+    double elastic(std::size_t b) {
+        auto* steps = std::get_if<ExplicitSolver>(&solver);
+        return steps ? steps->elastic_energy(b)
+                     : std::get<QuasistaticSolver>(solver).elastic_energy();
+    }
+    void connections_changed(std::size_t b) {
+        auto* steps = std::get_if<ExplicitSolver>(&solver);
+        steps ? steps->connections_changed(b)
+              : std::get<QuasistaticSolver>(solver).connections_changed();
     }
 
-    double elastic() {
-        return std::visit([](auto& solver) { return solver.elastic_energy(); }, solver);
-    }
-
-    std::vector<SeverEvent> crossed(const Aggregate& body, const Drive& from,
+    std::vector<SeverEvent> crossed(const Aggregate& matter, const Drive& from,
                                     const Drive& to) const {
         std::vector<std::array<Vec3, 3>> swept;
         for (std::size_t b = 0; b < apparatus.blade.size(); ++b) {
@@ -67,72 +101,140 @@ struct Simulation::Rooms {
                                               to.world_from_blade[b]);
             swept.insert(swept.end(), part.begin(), part.end());
         }
-        return crossed_connections(body, swept);
+        return crossed_connections(matter, swept);
     }
 
-    static std::variant<QuasistaticSolver, ExplicitSolver> choose(Aggregate& matter,
-                                                                  const Apparatus& apparatus,
-                                                                  const SimSettings& settings) {
-        if (settings.solver == Solver::explicit_steps) {
-            return ExplicitSolver(matter, apparatus, settings);
-        }
-        return QuasistaticSolver(matter, apparatus, settings);
-    }
+    std::vector<PushSum> push_sums(const Drive& now) const;
+    int sever(std::size_t b, const Drive& from, const Drive& to);
+    void count_pieces(std::size_t b, const char* who, std::vector<std::string>& warning);
+    void book(const MoveOutcome& outcome, FrameReport& report);
 };
 
-Simulation::Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)
-    : rooms_(new Rooms{matter,
-                       apparatus,
-                       Rooms::choose(matter, apparatus, settings),
-                       find_pieces(matter).count,
-                       0,
-                       0,
-                       0,
-                       0,
-                       0,
-                       0,
-                       std::vector<double>(apparatus.tool.size() + apparatus.grip.size(), 0.0),
-                       {}}) {
-    if (settings.solver == Solver::quasistatic) {
-        // Equilibria have no speed; whatever an explicit stage left behind is gone.
-        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-            matter.particle_velocity.set(p, Vec3::Zero());
+// Of all bodies together.
+std::vector<PushSum> Simulation::Rooms::push_sums(const Drive& now) const {
+    std::vector<PushSum> all = pushes(0).sums(*body[0].matter, now);
+    double mass = body[0].matter->mass();
+    for (std::size_t b = 1; b < body.size(); ++b) {
+        const std::vector<PushSum> more = pushes(b).sums(*body[b].matter, now);
+        for (std::size_t n = 0; n < apparatus.load.size(); ++n) {
+            if (apparatus.load[n].body == static_cast<int>(b)) all[n] = more[n];
         }
+        if (!pushes(b).has_gravity()) continue;
+        const double own = body[b].matter->mass();
+        all.back().centre = (mass * all.back().centre + own * more.back().centre) / (mass + own);
+        all.back().force += more.back().force;
+        mass += own;
     }
-    rooms_->push_work.assign(rooms_->pushes().count(), 0.0);
-    rooms_->stored_at_start = kinetic_energy(matter) + rooms_->elastic();
+    return all;
+}
+
+// Severs what the blades sweep on this way; returns the number of connections.
+int Simulation::Rooms::sever(std::size_t b, const Drive& from, const Drive& to) {
+    WorkedBody& at = body[b];
+    std::vector<SeverEvent> events;
+    if (at.plan.empty()) {
+        events = crossed(*at.matter, from, to);
+    } else {
+        events = std::move(at.plan.front());
+        at.plan.pop_front();
+    }
+    if (events.empty()) return 0;
+    const double before = elastic(b);
+    for (const SeverEvent& e : events) at.matter->connection[e.direction].weight[e.lower] = 0;
+    connections_changed(b);
+    at.books.severed_energy += before - elastic(b);
+    return static_cast<int>(events.size());
+}
+
+void Simulation::Rooms::count_pieces(std::size_t b, const char* who,
+                                     std::vector<std::string>& warning) {
+    WorkedBody& at = body[b];
+    const std::vector<char> crumb = crumbs_of(*at.matter);
+    const auto loose = std::count(crumb.begin(), crumb.end(), 1);
+    if (loose > at.crumbs) {
+        warning.push_back(
+            fmt::format("{} left crumbs of less than one cell, {} particles in all", who, loose));
+    }
+    at.crumbs = loose;
+    at.pieces = find_pieces(*at.matter).count;
+}
+
+void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
+    for (std::size_t b = 0; b < body.size(); ++b) {
+        const BodyOutcome& part = outcome.body[b];
+        Books& books = body[b].books;
+        books.plastic += part.plastic_work;
+        books.damped += part.damped_work;
+        books.fracture += part.fracture_work;
+        books.set_free += part.set_free;
+        for (double done : part.work) books.work += done;
+        for (std::size_t n = 0; n < part.push_work.size(); ++n) {
+            const bool gravity = n == apparatus.load.size();
+            (gravity ? books.gravity_work : books.load_work) += part.push_work[n];
+        }
+        books.elastic = elastic(b);
+        books.kinetic = kinetic_energy(*body[b].matter);
+        books.remainder = books.work + books.load_work + books.gravity_work -
+                          (books.kinetic + books.elastic - body[b].stored_at_start) -
+                          books.plastic - books.damped - books.severed_energy - books.fracture -
+                          books.set_free;
+        report.body.push_back(books);
+        report.add(books);
+    }
+}
+
+Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
+                       const SimSettings& settings)
+    : rooms_(new Rooms{{}, apparatus, choose_solver(bodies, apparatus, settings), {}, {}}) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        Aggregate& matter = *bodies[b];
+        if (settings.solver == Solver::quasistatic) {
+            // Equilibria have no speed; whatever an explicit stage left behind is gone.
+            for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+                matter.particle_velocity.set(p, Vec3::Zero());
+            }
+        }
+        rooms_->body.push_back({&matter, find_pieces(matter).count});
+        rooms_->body[b].stored_at_start = kinetic_energy(matter) + rooms_->elastic(b);
+    }
+    rooms_->work.assign(apparatus.tool.size() + apparatus.grip.size(), 0.0);
+    rooms_->push_work.assign(rooms_->pushes(0).count(), 0.0);
 }
 
 Simulation::~Simulation() = default;
 
 bool Simulation::blades_reach(const Drive& from, const Drive& to) const {
-    return !rooms_->crossed(rooms_->matter, from, to).empty();
+    return std::any_of(rooms_->body.begin(), rooms_->body.end(), [&](const WorkedBody& b) {
+        return !rooms_->crossed(*b.matter, from, to).empty();
+    });
 }
 
 void Simulation::plan_cuts(const std::vector<Drive>& drives) {
-    Aggregate ahead = rooms_->matter;
-    rooms_->plan.clear();
-    for (std::size_t n = 0; n + 1 < drives.size(); ++n) {
-        rooms_->plan.push_back(rooms_->crossed(ahead, drives[n], drives[n + 1]));
-        for (const SeverEvent& e : rooms_->plan.back()) {
-            ahead.connection[e.direction].weight[e.lower] = 0;
+    for (WorkedBody& body : rooms_->body) {
+        Aggregate ahead = *body.matter;
+        body.plan.clear();
+        for (std::size_t n = 0; n + 1 < drives.size(); ++n) {
+            body.plan.push_back(rooms_->crossed(ahead, drives[n], drives[n + 1]));
+            for (const SeverEvent& e : body.plan.back()) {
+                ahead.connection[e.direction].weight[e.lower] = 0;
+            }
         }
-    }
-    // What would fall off as a crumb stays with the side that it is cut from.
-    const std::vector<char> crumb = crumbs_of(ahead);
-    for (std::vector<SeverEvent>& events : rooms_->plan) {
-        std::erase_if(events,
-                      [&](const SeverEvent& e) { return crumb[e.lower] || crumb[e.upper]; });
+        // What would fall off as a crumb stays with the side that it is cut from.
+        const std::vector<char> crumb = crumbs_of(ahead);
+        for (std::vector<SeverEvent>& events : body.plan) {
+            std::erase_if(events,
+                          [&](const SeverEvent& e) { return crumb[e.lower] || crumb[e.upper]; });
+        }
     }
 }
 
-std::vector<ToolLoad> Simulation::bodies(const Drive& now) const {
-    std::vector<ToolLoad> bodies;
+std::vector<ToolLoad> Simulation::loads(const Drive& now) const {
+    std::vector<ToolLoad> loads;
     const auto add = [&](const auto& parts, const std::vector<Pose>& pose) {
         for (std::size_t n = 0; n < parts.size(); ++n) {
-            bodies.emplace_back();
-            bodies.back().name = parts[n].name;
-            bodies.back().pose = pose[n];
+            loads.emplace_back();
+            loads.back().name = parts[n].name;
+            loads.back().pose = pose[n];
         }
     };
     const Apparatus& apparatus = rooms_->apparatus;
@@ -140,59 +242,37 @@ std::vector<ToolLoad> Simulation::bodies(const Drive& now) const {
     add(apparatus.grip, now.world_from_grip);
     add(apparatus.blade, now.world_from_blade);
     std::vector<Pose> middle;
-    for (const PushSum& push : rooms_->pushes().sums(rooms_->matter, now)) {
+    for (const PushSum& push : rooms_->push_sums(now)) {
         middle.push_back({Quat::Identity(), push.centre});
     }
     add(apparatus.load, middle);
-    if (rooms_->pushes().has_gravity()) {
-        bodies.emplace_back();
-        bodies.back().name = "gravity";
-        bodies.back().pose = middle.back();
+    if (rooms_->pushes(0).has_gravity()) {
+        loads.emplace_back();
+        loads.back().name = "gravity";
+        loads.back().pose = middle.back();
     }
-    return bodies;
+    return loads;
 }
 
 FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     Rooms& r = *rooms_;
     FrameReport report;
     report.time = to.time;
-
-    // Sever what the blades sweep.
-    std::vector<SeverEvent> events;
-    if (r.plan.empty()) {
-        events = r.crossed(r.matter, from, to);
-    } else {
-        events = std::move(r.plan.front());
-        r.plan.pop_front();
+    for (std::size_t b = 0; b < r.body.size(); ++b) {
+        const int severed = r.sever(b, from, to);
+        report.severed += severed;
+        if (severed > 0) r.count_pieces(b, "the blade", report.warning);
     }
-    if (!events.empty()) {
-        const double before = r.elastic();
-        for (const SeverEvent& e : events) r.matter.connection[e.direction].weight[e.lower] = 0;
-        report.severed = static_cast<int>(events.size());
-        std::visit([](auto& solver) { solver.connections_changed(); }, r.solver);
-        r.severed_energy += before - r.elastic();
-    }
-    const auto count_pieces = [&](const char* who) {
-        const std::vector<char> crumb = crumbs_of(r.matter);
-        const auto loose = std::count(crumb.begin(), crumb.end(), 1);
-        if (loose > r.crumbs) {
-            report.warning.push_back(fmt::format(
-                "{} left crumbs of less than one cell, {} particles in all", who, loose));
-        }
-        r.crumbs = loose;
-        r.pieces = find_pieces(r.matter).count;
-    };
-    if (report.severed > 0) count_pieces("the blade");
 
-    // Move.
     const MoveOutcome outcome =
         std::visit([&](auto& solver) { return solver.advance(from, to); }, r.solver);
 
-    report.broken = outcome.broken;
-    if (report.broken > 0) count_pieces("fracture");
-
-    // Report.
-    report.pieces = r.pieces;
+    report.pieces = 0;
+    for (std::size_t b = 0; b < r.body.size(); ++b) {
+        report.broken += outcome.body[b].broken;
+        if (outcome.body[b].broken > 0) r.count_pieces(b, "fracture", report.warning);
+        report.pieces += r.body[b].pieces;
+    }
     report.iterations = outcome.iterations;
     report.increments = outcome.increments;
     report.halvings = outcome.halvings;
@@ -216,41 +296,32 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         report.warning.push_back(
             "the work-piece buckled: it left its shape for one that bears less");
     }
-    r.plastic += outcome.plastic_work;
-    r.damped += outcome.damped_work;
-    report.plastic = r.plastic;
-    report.damped = r.damped;
-    report.severed_energy = r.severed_energy;
-    r.fracture += outcome.fracture_work;
-    r.set_free += outcome.set_free;
-    report.fracture = r.fracture;
-    report.set_free = r.set_free;
-    report.elastic = r.elastic();
-    report.kinetic = kinetic_energy(r.matter);
-    report.load = bodies(to);
-    for (std::size_t n = 0; n < outcome.load.size(); ++n) {
-        r.work[n] += outcome.work[n];
-        report.work += r.work[n];
-        const LoadSum& sum = outcome.load[n];
+
+    r.book(outcome, report);
+    report.load = loads(to);
+    for (std::size_t n = 0; n < r.work.size(); ++n) {
         ToolLoad& load = report.load[n];
-        load = {load.name, load.pose,       sum.force,   sum.torque,
-                r.work[n], sum.penetration, sum.contacts};
+        for (const BodyOutcome& body : outcome.body) {
+            r.work[n] += body.work[n];
+            load.force += body.load[n].force;
+            load.torque += body.load[n].torque;
+            load.penetration = std::max(load.penetration, body.load[n].penetration);
+            load.contacts += body.load[n].contacts;
+        }
+        load.work = r.work[n];
     }
-    const std::vector<PushSum> pushes = r.pushes().sums(r.matter, to);
+    const std::vector<PushSum> pushes = r.push_sums(to);
     const std::size_t first = report.load.size() - pushes.size();
     for (std::size_t n = 0; n < pushes.size(); ++n) {
-        r.push_work[n] += outcome.push_work[n];
-        const bool gravity = n == r.apparatus.load.size();
-        (gravity ? report.gravity_work : report.load_work) += r.push_work[n];
+        for (const BodyOutcome& body : outcome.body) r.push_work[n] += body.push_work[n];
         ToolLoad& load = report.load[first + n];
         load.force = pushes[n].force;
         load.torque = pushes[n].torque;
         load.work = r.push_work[n];
-        if (!gravity) load.contacts = static_cast<int>(r.apparatus.load[n].point.size());
+        if (n < r.apparatus.load.size()) {
+            load.contacts = static_cast<int>(r.apparatus.load[n].point.size());
+        }
     }
-    report.remainder = report.work + report.load_work + report.gravity_work -
-                       (report.kinetic + report.elastic - r.stored_at_start) - report.plastic -
-                       report.damped - report.severed_energy - report.fracture - report.set_free;
     return report;
 }
 

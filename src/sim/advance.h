@@ -24,14 +24,12 @@ struct ToolLoad {
     int contacts = 0;
 };
 
-struct FrameReport {
-    double time = 0;  // [s] since the stage began
-    int iterations = 0, increments = 0, halvings = 0;
-    long steps = 0;                            // explicit steps taken
-    double residual = 0;                       // over the largest push; quasi-static only
-    double kinetic = 0, elastic = 0;           // now [J]
-    double plastic = 0, damped = 0, work = 0;  // since the stage began [J]; work of tools, grips
-    double load_work = 0, gravity_work = 0;    // likewise [J]
+// The energy books of one body, or of all.
+struct Books {
+    double kinetic = 0, elastic = 0;                   // now [J]
+    double work = 0, load_work = 0, gravity_work = 0;  // done on it since the stage began [J], by
+                                                       // tools and grips, loads, gravity
+    double plastic = 0, damped = 0;                    // taken since the stage began [J]
     double severed_energy = 0;  // elastic energy lost with severed connections, likewise [J]
     double fracture = 0;        // energy that breaking took, likewise [J]
     // By cracks that ran on while the drive stood, likewise [J]: what an equilibrium loses of a
@@ -40,19 +38,33 @@ struct FrameReport {
     // Of all work since the stage began, what none of the others accounts for [J]: friction's, and
     // what relaxation lets go where something snaps or is put on at once.
     double remainder = 0;
+
+    void add(const Books& other);
+};
+
+struct FrameReport : Books {  // of all bodies
+    std::vector<Books> body;
+    double time = 0;  // [s] since the stage began
+    int iterations = 0, increments = 0, halvings = 0;
+    long steps = 0;               // explicit steps taken
+    double residual = 0;          // over the largest push; quasi-static only
     std::vector<ToolLoad> load;   // tools, then grips, then blades, then loads, then gravity
     int severed = 0, broken = 0;  // connections, in this frame: by blades, by load
-    int pieces = 1;
+    int pieces = 1;               // of all bodies
     std::vector<std::string> warning;
 };
 
 class Simulation {
   public:
-    // Keeps references to the matter and the apparatus; they must outlive it.
-    Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
+    // Keeps references to the bodies and the apparatus; they must outlive it. Several bodies move
+    // by explicit steps only.
+    Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
+               const SimSettings& settings);
+    Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)
+        : Simulation(std::vector<Aggregate*>{&matter}, apparatus, settings) {}
     ~Simulation();
 
-    // Whether a blade would sever anything on this way through the matter as it is now.
+    // Whether a blade would sever anything on this way through any body as it is now.
     bool blades_reach(const Drive& from, const Drive& to) const;
 
     // Plans all cuts of the coming frames (drives[0] is now) through the matter as it is now:
@@ -60,9 +72,9 @@ class Simulation {
     // that was cut along the same path opens cleanly. Frames beyond the plan sever what they meet.
     void plan_cuts(const std::vector<Drive>& drives);
 
-    // Everything that may act on the matter, in the order of FrameReport::load, without what it
+    // Everything that may act on the bodies, in the order of FrameReport::load, without what it
     // does.
-    std::vector<ToolLoad> bodies(const Drive& now) const;
+    std::vector<ToolLoad> loads(const Drive& now) const;
 
     // Moves the matter on while the apparatus goes from one drive to another. What the blades
     // sweep in this frame is severed first. Throws Error(stopped) with a sentence that names what

@@ -39,8 +39,9 @@ double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
 }  // namespace
 
 ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
-                       const SimSettings& settings)
+                       const SimSettings& settings, int body)
     : apparatus_(&apparatus),
+      body_(body),
       settings_(settings),
       spacing_(matter.lattice.spacing),
       young_modulus_(matter.material.young_modulus) {
@@ -136,8 +137,9 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
     for (const Pair& pair : pair_) {
         add(pair.point, point_stiffness(matter, pair.point, settings_.contact_stiffness));
     }
-    for (const Grip& grip : apparatus_->grip) {
-        for (int point : grip.point) {
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        for (int point : apparatus_->grip[g].point) {
             add(point, point_stiffness(matter, point, settings_.grip_stiffness));
         }
     }
@@ -152,6 +154,7 @@ std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Dr
             held.push_back({pair_[n].point, k * (contact.slips ? across : Mat3(Mat3::Identity()))});
         });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];
         const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
         const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
@@ -199,6 +202,7 @@ void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array
                    [&](std::size_t n, const Vec3&, const Distance&, double,
                        const ContactForce& contact) { push(pair_[n].point, contact.force); });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             push(grip.point[n], grip_force(matter, now, g, n));
@@ -221,6 +225,7 @@ std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now
             sum.sliding += contact.slips;
         });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];
         LoadSum& sum = sums[apparatus_->tool.size() + g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
@@ -266,6 +271,7 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
         }
     }
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
         for (const Vec3& anchor : apparatus_->grip[g].anchor) {
             farthest = std::max(
                 farthest,

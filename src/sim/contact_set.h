@@ -25,7 +25,9 @@ struct LoadSum {
 
 class ContactSet {
   public:
-    ContactSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);
+    // `body`: the matter's number among the bodies, by which grips name it.
+    ContactSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
+               int body = 0);
 
     // Explicit steps of this length [s] must stay stable: no point is stiffer than a quarter of
     // what its lightest carrier can follow.
@@ -50,7 +52,7 @@ class ContactSet {
     // Adds all contact and grip forces.
     void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;
 
-    // Sums by tool, then by grip, for the present state.
+    // Sums by tool, then by grip, for the present state; zero for grips that hold another body.
     std::vector<LoadSum> loads(const Aggregate& matter, const Drive& now) const;
 
     // Remembers where each touching point sticks; forgets those that have left.
@@ -76,7 +78,10 @@ class ContactSet {
     template <typename Act>
     void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const;
 
+    bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
+
     const Apparatus* apparatus_;
+    int body_;
     SimSettings settings_;
     double spacing_, young_modulus_;
     std::vector<double> point_modulus_;    // of bodies of several materials [Pa]

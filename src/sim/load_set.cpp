@@ -72,8 +72,8 @@ Vec3 mass_moment(const Aggregate& matter) {
 
 }  // namespace
 
-LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings)
-    : apparatus_(&apparatus), gravity_(settings.gravity) {}
+LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings, int body)
+    : apparatus_(&apparatus), body_(body), gravity_(settings.gravity) {}
 
 std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
                                      const Aggregate& matter) const {
@@ -100,7 +100,7 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
 void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
         const Load& load = apparatus_->load[l];
-        if (now.load_strength[l] == 0) continue;
+        if (!pushes(load) || now.load_strength[l] == 0) continue;
         const std::vector<Vec3> push = forces_of(load, now.load_strength[l], matter);
         for (std::size_t n = 0; n < push.size(); ++n) {
             spread(matter.surface, load.point[n], push[n], force);
@@ -112,6 +112,7 @@ double LoadSet::size(const Aggregate& matter, const Drive& now) const {
     double largest = has_gravity() ? matter.mass() * gravity(now).norm() : 0;
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
         const Load& load = apparatus_->load[l];
+        if (!pushes(load)) continue;
         double sum = 0;
         for (const Vec3& force : load.force) sum += force.norm();
         if (load.force.empty()) {
@@ -125,6 +126,7 @@ double LoadSet::size(const Aggregate& matter, const Drive& now) const {
 bool LoadSet::eases(const Drive& from, const Drive& to) const {
     bool eases = has_gravity() && gravity(to).norm() < gravity(from).norm();
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        if (!pushes(apparatus_->load[l])) continue;
         eases = eases || std::abs(to.load_strength[l]) < std::abs(from.load_strength[l]);
     }
     return eases;
@@ -134,6 +136,11 @@ LoadSet::Settled LoadSet::settled(const Aggregate& matter, const Drive& now) con
     Settled state;
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
         const Load& load = apparatus_->load[l];
+        if (!pushes(load)) {
+            state.position.emplace_back();
+            state.force.emplace_back();
+            continue;
+        }
         state.position.push_back(positions_of(matter, load.point));
         state.force.push_back(forces_of(load, now.load_strength[l], matter));
     }
@@ -169,6 +176,10 @@ std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) co
     std::vector<PushSum> sums;
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
         const Load& load = apparatus_->load[l];
+        if (!pushes(load)) {
+            sums.emplace_back();
+            continue;
+        }
         sums.push_back(sum_of(matter, load.point, positions_of(matter, load.point),
                               forces_of(load, now.load_strength[l], matter)));
     }

@@ -19,7 +19,8 @@ struct PushSum {
 
 class LoadSet {
   public:
-    LoadSet(const Apparatus& apparatus, const SimSettings& settings);
+    // `body`: the matter's number among the bodies, by which loads name it.
+    LoadSet(const Apparatus& apparatus, const SimSettings& settings, int body = 0);
 
     bool has_gravity() const { return gravity_ != Vec3::Zero(); }
     Vec3 gravity(const Drive& now) const { return now.gravity_strength * gravity_; }  // [m/s2]
@@ -39,7 +40,7 @@ class LoadSet {
     // from the state settled before: the mean of the forces at both ends, times the way.
     void commit(const Aggregate& matter, const Drive& now, std::vector<double>& work);
 
-    // By load, then gravity where there is any.
+    // By load, then gravity where there is any; zero for loads on another body.
     std::vector<PushSum> sums(const Aggregate& matter, const Drive& now) const;
     std::size_t count() const { return apparatus_->load.size() + has_gravity(); }
 
@@ -47,7 +48,10 @@ class LoadSet {
     // On each point of a load [N].
     std::vector<Vec3> forces_of(const Load& load, double strength, const Aggregate& matter) const;
 
+    bool pushes(const Load& load) const { return load.body == body_; }
+
     const Apparatus* apparatus_;
+    int body_;
     Vec3 gravity_;
     // When settled last: by load, then point; and for gravity.
     struct Settled {

@@ -63,8 +63,8 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       settings_(settings),
       lattice_(matter),
       coarse_(matter),
-      contacts_(matter, apparatus, settings),
-      pushes_(apparatus, settings),
+      contacts_(matter, apparatus, settings, 0),
+      pushes_(apparatus, settings, 0),
       body_size_(largest_extent(matter)),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       most_load_(load_.size(), 0.0),
@@ -451,7 +451,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     std::vector<double> work(load_.size(), 0.0);
     add_work(from, to, load_, load, work);
     for (std::size_t n = 0; n < work.size(); ++n) {
-        outcome.work[n] += work[n];
+        outcome.body[0].work[n] += work[n];
         if (n < carries_.size() && carries_[n] && work[n] > 0) {
             std::copy_n(motion.begin() + 6 * n, 6, pressing_motion_.begin() + 6 * n);
         }
@@ -459,15 +459,14 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     load_ = std::move(load);
     previous_ = start_;
     previous_motion_ = std::move(motion);
-    pushes_.commit(matter_, to, outcome.push_work);
+    pushes_.commit(matter_, to, outcome.body[0].push_work);
     if (buckled || breaks) previous_motion_.clear();  // neither goes on as it did
     ++outcome.increments;
 }
 
 MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
-    outcome.work.assign(load_.size(), 0.0);
-    outcome.push_work.assign(pushes_.count(), 0.0);
+    outcome.body.emplace_back(apparatus_, pushes_.count());
     pushes_.start(matter_, from);
     const double travel = contacts_.travel(matter_, from, to);
     moved_ = moved_ || travel > 0;
@@ -479,7 +478,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
         let_crack(after, outcome);
         before = after;
     }
-    outcome.load = load_;
+    outcome.body[0].load = load_;
     return outcome;
 }
 

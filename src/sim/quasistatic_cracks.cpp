@@ -8,9 +8,9 @@ namespace swage {
 
 bool QuasistaticSolver::commit(MoveOutcome& outcome) {
     const Committed lost = lattice_.commit(matter_);
-    outcome.plastic_work += lost.plastic;
-    outcome.fracture_work += lost.fracture;
-    outcome.broken += lost.broken;
+    outcome.body[0].plastic_work += lost.plastic;
+    outcome.body[0].fracture_work += lost.fracture;
+    outcome.body[0].broken += lost.broken;
     if (lost.broken > 0) connections_changed();
     return lost.fracture > 0;
 }
@@ -22,8 +22,8 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
     // What the matter holds and took, less what loads have put in.
     const auto booked = [&] {
         double pushed = 0;
-        for (double work : outcome.push_work) pushed += work;
-        return elastic_energy() + outcome.fracture_work + outcome.plastic_work - pushed;
+        for (double work : outcome.body[0].push_work) pushed += work;
+        return elastic_energy() + outcome.body[0].fracture_work + outcome.body[0].plastic_work - pushed;
     };
     for (;;) {
         const double before = booked();
@@ -31,9 +31,9 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
         if (cracked.cells == 0) return;
         connections_changed();
         std::fill(carries_.begin(), carries_.end(), false);
-        outcome.fracture_work += cracked.lost;
+        outcome.body[0].fracture_work += cracked.lost;
         increment(to, to, settings_.halving_limit, outcome);
-        outcome.set_free += before - booked();
+        outcome.body[0].set_free += before - booked();
     }
 }
 
