@@ -27,18 +27,22 @@ Json mistakes_json(const std::vector<Mistake>& mistakes) {
     return list;
 }
 
-std::string cost_text(const SceneSpec& scene, const InputMesh& input, const RunCost& cost) {
+std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                      const RunCost& cost) {
+    const Material& material = scene.work_piece().material;
     std::string text = scene.name + ": no mistakes\n";
     const auto line = [&](const char* name, const std::string& value) {
         text += fmt::format("  {:<12} {}\n", name, value);
     };
     const char* about = cost.counted ? "" : "about ";
-    line("mesh", summary_line(input.report));
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        line("mesh", (b == 0 ? "" : scene.body[b].name + ": ") + summary_line(input[b].report));
+    }
     line("cells", fmt::format("{}{} of {}", about, count_text(cost.mold.active_cells),
                               length_text(cost.mold.spacing)));
     line("particles", about + count_text(cost.mold.particles));
     line("connections", about + count_text(cost.mold.connections));
-    if (scene.material.mechanics == Mechanics::cells) {
+    if (material.mechanics == Mechanics::cells) {
         const double across = cost.mold.cell_count.minCoeff();
         const Accuracy accuracy = accuracy_at(across);
         line("accuracy",
@@ -50,7 +54,7 @@ std::string cost_text(const SceneSpec& scene, const InputMesh& input, const RunC
         line("accuracy", "springs: stretch alone is right; bending and torsion are too stiff");
     }
     const std::string strength =
-        strength_warning(scene.material, cost.mold.spacing, cost.mold.cell_count.minCoeff());
+        strength_warning(material, cost.mold.spacing, cost.mold.cell_count.minCoeff());
     if (!strength.empty()) line("strength", strength);
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));
@@ -75,18 +79,19 @@ int check(const CheckArguments& given) {
     RunOptions options;
     options.out = ".";
     try {
-        const InputMesh input = read_input_mesh(reading.scene->mesh, reading.scene->mold.kind);
+        const std::vector<InputMesh> input = read_input_meshes(*reading.scene);
         const RunCost cost = count_cost(*reading.scene, input, options);
-        json["mesh"] = mesh_json(input);
+        const Material& material = reading.scene->work_piece().material;
+        for (const InputMesh& one : input) json["meshes"].push_back(mesh_json(one));
         json["cost"] = cost_json(cost);
-        if (reading.scene->material.mechanics == Mechanics::cells) {
+        if (material.mechanics == Mechanics::cells) {
             const Accuracy accuracy = accuracy_at(cost.mold.cell_count.minCoeff());
             json["accuracy"] = {{"bending", accuracy.bending},
                                 {"torsion", accuracy.torsion},
                                 {"across_for_percent", accuracy.cells_for_percent}};
         }
-        const Resolved strength = resolved_strength(reading.scene->material, cost.mold.spacing,
-                                                    cost.mold.cell_count.minCoeff());
+        const Resolved strength =
+            resolved_strength(material, cost.mold.spacing, cost.mold.cell_count.minCoeff());
         if (!strength.whole()) {
             json["strength"] = {{"resolved_Pa", strength.strength},
                                 {"across_for_whole", strength.cells_for_whole}};

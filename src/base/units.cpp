@@ -83,6 +83,10 @@ constexpr Unit kUnits[] = {
     {"Pa s/m", Quantity::drag, 1, true},
     {"mPa s/m", Quantity::drag, 1e-3, true},
     {"N s/m3", Quantity::drag, 1},
+    {"rad/s", Quantity::spin, 1, true},
+    {"deg/s", Quantity::spin, kDegree},
+    {"rpm", Quantity::spin, 2 * kPi / 60},
+    {"turns/s", Quantity::spin, 2 * kPi},
     {"%", Quantity::number, 1e-2},
 };
 
@@ -106,6 +110,7 @@ constexpr QuantityName kQuantities[] = {
     {Quantity::acceleration, "acceleration", "m/s2", "an acceleration"},
     {Quantity::toughness, "toughness", "J/m2", "a toughness"},
     {Quantity::drag, "drag", "Pa s/m", "a drag"},
+    {Quantity::spin, "spin", "rad/s", "a spin"},
 };
 
 const QuantityName& about(Quantity quantity) {

@@ -25,6 +25,7 @@ enum class Quantity {
     acceleration,  // [m/s2]
     toughness,     // [J/m2]
     drag,          // of a surface [Pa s/m]
+    spin,          // [rad/s]
 };
 
 std::string quantity_name(Quantity quantity);  // "length"

@@ -87,13 +87,15 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
         refuse(setting, fmt::format("the friction of tool {} is {}; it cannot be negative",
                                     spec.name, tool.friction));
     }
-    if (!(spec.axis.norm() > 0)) {
+    const Vec3 axis = evaluate(spec.axis, setting.known);
+    if (!(axis.norm() > 0)) {
         refuse(setting, fmt::format("the axis of tool {} has no length", spec.name));
     }
-    Pose work_from_tool{Quat::FromTwoVectors(Vec3::UnitZ(), spec.axis).normalized(),
+    Pose work_from_tool{Quat::FromTwoVectors(Vec3::UnitZ(), axis).normalized(),
                         evaluate(spec.at, setting.known)};
-    if (spec.touch.norm() > 0) {
-        const Vec3 direction = spec.touch.normalized();
+    const Vec3 touch = evaluate(spec.touch, setting.known);
+    if (touch.norm() > 0) {
+        const Vec3 direction = touch.normalized();
         const std::optional<double> shift =
             slide_to_touch(tool.shape, work_from_tool, direction, setting.point,
                            evaluate(spec.gap, setting.known));
@@ -111,8 +113,8 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
                                                 quantity_text(-nearest, Quantity::length)));
         }
     }
-    for (int axis = 0; axis < 3; ++axis) {
-        setting.known[spec.name + "_" + "xyz"[axis]] = work_from_tool.translation[axis];
+    for (int c = 0; c < 3; ++c) {
+        setting.known[spec.name + "_" + "xyz"[c]] = work_from_tool.translation[c];
     }
     machine.apparatus.tool.push_back(std::move(tool));
     machine.work_from_tool.push_back(work_from_tool);

@@ -50,10 +50,10 @@ struct ToolSpec {
     Expression3 size = {"0", "0", "0"};  // box
     Expression rounding = "0";           // box
     std::filesystem::path mesh;  // mesh: absolute; scaled so that its longest side is `length`
-    Vec3 axis = Vec3::UnitZ();   // the shape's z axis, in the work frame
+    Expression3 axis = {"0", "0", "1"};  // the shape's z axis, in the work frame
     Expression3 at = {"0", "0", "0"};  // centre before `touch`, in the work frame
     // Slides the tool along this direction (from far outside) until it just touches; zero: stays.
-    Vec3 touch = Vec3::Zero();
+    Expression3 touch = {"0", "0", "0"};
     Expression gap = "0";  // left between tool and work-piece by `touch`
     Expression friction;   // empty: the material's
     MotionSpec motion;

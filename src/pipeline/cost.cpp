@@ -41,22 +41,37 @@ double lattice_steps_per_second(const Material& material, double spacing, const 
     return 2.5 * wave_speed / spacing / sim.step_safety;
 }
 
-void add_up(RunCost& cost, const SceneSpec& scene, const InputMesh& input,
-            const RunOptions& options, const Aggregate* matter) {
+// Of the body with the shortest stable step.
+double steps_per_second(const SceneSpec& scene, const RunCost& cost,
+                        const std::vector<Aggregate>& matter, const SimSettings& sim) {
+    double most = 0;
+    for (const Aggregate& body : matter)
+        most = std::max(most, explicit_steps_per_second(body, sim));
+    if (matter.empty()) {
+        for (std::size_t b = 0; b < scene.body.size(); ++b) {
+            most = std::max(most,
+                            lattice_steps_per_second(scene.body[b].material, cost.spacing[b], sim));
+        }
+    }
+    return most;
+}
+
+// `matter`: of each body, or empty.
+void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
+            const RunOptions& options, const std::vector<Aggregate>& matter) {
     cost.frames = frame_count(scene);
     cost.steps = 0;
     for (const StageSpec& stage : scene.stage) {
         if (stage.sim.solver == Solver::quasistatic) {
             cost.steps += kIterationsPerFrame * stage.frames;
         } else {
-            cost.steps += stage_duration(stage, scene) *
-                          (matter != nullptr ? explicit_steps_per_second(*matter, stage.sim)
-                                             : lattice_steps_per_second(
-                                                   scene.material, cost.mold.spacing, stage.sim));
+            cost.steps +=
+                stage_duration(stage, scene) * steps_per_second(scene, cost, matter, stage.sim);
         }
     }
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
-    const double vertices = static_cast<double>(input.mesh.position.size());
+    double vertices = 0;
+    for (const InputMesh& one : input) vertices += static_cast<double>(one.mesh.position.size());
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
     const double cores = std::min(thread_count(), 2);
@@ -107,28 +122,47 @@ int frame_count(const SceneSpec& scene) {
     return static_cast<int>(std::min<long>(frames, std::numeric_limits<int>::max()));
 }
 
-RunCost estimate_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options) {
+RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                      const RunOptions& options) {
     RunCost cost;
-    cost.mold = estimate_mold(input.to_mold(), scene.mold);
-    add_up(cost, scene, input, options, nullptr);
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        const MoldEstimate mold = estimate_mold(input[b].to_mold(), scene.body[b].mold);
+        cost.spacing.push_back(mold.spacing);
+        if (b == 0) {
+            cost.mold = mold;
+            continue;
+        }
+        cost.mold.active_cells += mold.active_cells;
+        cost.mold.particles += mold.particles;
+        cost.mold.connections += mold.connections;
+        cost.mold.bytes += mold.bytes;
+    }
+    add_up(cost, scene, input, options, {});
     return cost;
 }
 
-RunCost count_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options) {
+RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                   const RunOptions& options) {
     RunCost cost = estimate_cost(scene, input, options);
     if (cost.mold.active_cells > kCountedCells || scene.stage.empty()) return cost;
-    const Aggregate matter =
-        mold(input.to_mold(), scene.material, scene.mold, insets_for(input, scene));
+    std::vector<Aggregate> matter;
     cost.counted = true;
-    cost.mold.active_cells = static_cast<double>(matter.cell_fill.size());
-    cost.mold.particles = static_cast<double>(matter.particle_count());
-    cost.mold.connections = static_cast<double>(matter.connection_count());
-    cost.mold.bytes = static_cast<double>(matter.bytes());
+    cost.mold.active_cells = cost.mold.particles = cost.mold.connections = cost.mold.bytes = 0;
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        const BodySpec& body = scene.body[b];
+        matter.push_back(
+            mold(input[b].to_mold(), body.material, body.mold, insets_for(input[b], body)));
+        place_at_start(body.start, matter[b]);
+        cost.mold.active_cells += static_cast<double>(matter[b].cell_fill.size());
+        cost.mold.particles += static_cast<double>(matter[b].particle_count());
+        cost.mold.connections += static_cast<double>(matter[b].connection_count());
+        cost.mold.bytes += static_cast<double>(matter[b].bytes());
+    }
     const StageSpec& first = scene.stage.front();
     cost.note = build_machine(first.machine, first.parameter,
-                              place_work_frame(matter, first.axis, first.up), matter)
+                              place_work_frame(matter[0], first.axis, first.up), matter[0])
                     .notes;
-    add_up(cost, scene, input, options, &matter);
+    add_up(cost, scene, input, options, matter);
     return cost;
 }
 

@@ -14,7 +14,8 @@
 namespace swage {
 
 struct RunCost {
-    MoldEstimate mold;
+    MoldEstimate mold;  // sums over all bodies; spacing and cell_count are the work-piece's
+    std::vector<double> spacing;    // of each body [m]
     bool counted = false;           // the mold was made, so its numbers are no estimate
     int frames = 0;                 // stills, the start included
     double steps = 0;               // relaxation iterations and explicit steps, about
@@ -27,11 +28,13 @@ struct RunCost {
 int frame_count(const SceneSpec& scene);
 
 // From sizes alone, at once.
-RunCost estimate_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options);
+RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                      const RunOptions& options);
 
-// The same with a mold of moderate size made for real and the first machine set up at it, which
+// The same with molds of moderate size made for real and the first machine set up at it, which
 // finds the mistakes that only show there. Throws what these throw.
-RunCost count_cost(const SceneSpec& scene, const InputMesh& input, const RunOptions& options);
+RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                   const RunOptions& options);
 
 Json cost_json(const RunCost& cost);
 

@@ -29,18 +29,24 @@ class FrameSource {
 
     Picture picture(int frame) {
         const StoredFrame stored = store_.frame(frame - 1);
-        if (stored.skin != skin_id_) {
-            skin_ = store_.skin(stored.skin);
-            skin_id_ = stored.skin;
-        }
+        body_.resize(stored.body.size());
         if (tools_ && stored.machine != machine_id_) {
             machine_ = store_.machine(stored.machine);
             machine_id_ = stored.machine;
         }
-        position_.clear();
-        for (const Eigen::Vector3f& p : stored.position) position_.push_back(p.cast<double>());
         Picture picture;
-        picture.item.push_back({&skin_, &position_, {}, std::nullopt});
+        for (std::size_t b = 0; b < body_.size(); ++b) {
+            Body& body = body_[b];
+            if (stored.body[b].skin != body.skin_id) {
+                body.skin = store_.skin(stored.body[b].skin);
+                body.skin_id = stored.body[b].skin;
+            }
+            body.position.clear();
+            for (const Eigen::Vector3f& p : stored.body[b].position) {
+                body.position.push_back(p.cast<double>());
+            }
+            picture.item.push_back({&body.skin, &body.position, {}, std::nullopt});
+        }
         for (std::size_t b = 0; tools_ && b < machine_.size(); ++b) {
             if (machine_[b].surface.triangle.empty()) continue;
             SurfaceMaterial look;
@@ -56,10 +62,14 @@ class FrameSource {
   private:
     const FrameStore& store_;
     bool tools_;
-    int skin_id_ = -1, machine_id_ = -1;
-    TriMesh skin_;
-    std::vector<DrawnBody> machine_;
-    std::vector<Vec3> position_;
+    struct Body {
+        int skin_id = -1;
+        TriMesh skin;
+        std::vector<Vec3> position;
+    };
+    std::vector<Body> body_;
+    int machine_id_ = -1;
+    std::vector<DrawnPart> machine_;
 };
 
 // Frames of the sheet: evenly spread, first and last among them.
@@ -123,20 +133,22 @@ ActionBox find_action(const FrameStore& store, bool tools) {
     Box skin, machines;
     Outline outline;
     std::vector<Vec3> tool_corners;
-    std::vector<std::vector<Box>> body_box;  // of each machine's bodies, in their own frames
+    std::vector<std::vector<Box>> part_box;  // of each machine's parts, in their own frames
     for (int m = 0; m < store.machine_count(); ++m) {
-        body_box.emplace_back();
-        for (const DrawnBody& body : store.machine(m)) {
-            body_box.back().push_back(box_of(body.surface.position));
+        part_box.emplace_back();
+        for (const DrawnPart& part : store.machine(m)) {
+            part_box.back().push_back(box_of(part.surface.position));
         }
     }
     for (int f = 0; f < store.frame_count(); ++f) {
         const StoredFrame frame = store.frame(f);
-        for (const Eigen::Vector3f& p : frame.position) {
-            skin.grow(p.cast<double>());
-            outline.grow(p.cast<double>());
+        for (const StoredBody& body : frame.body) {
+            for (const Eigen::Vector3f& p : body.position) {
+                skin.grow(p.cast<double>());
+                outline.grow(p.cast<double>());
+            }
         }
-        const std::vector<Box>& boxes = body_box.at(static_cast<std::size_t>(frame.machine));
+        const std::vector<Box>& boxes = part_box.at(static_cast<std::size_t>(frame.machine));
         for (std::size_t b = 0; b < boxes.size() && b < frame.pose.size(); ++b) {
             if (boxes[b].empty()) continue;
             for (int corner = 0; corner < 8; ++corner) {

@@ -27,7 +27,7 @@ void check_drawing(const RenderSettings& settings);
 // much of the machines as lies near.
 struct ActionBox {
     Box bounds;
-    double ground_height = 0;  // world y
+    double ground_height = 0;   // world y
     std::vector<Vec3> outline;  // points that together reach as far as the action
 };
 ActionBox find_action(const FrameStore& store, bool tools);

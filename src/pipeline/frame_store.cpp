@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3130'6567'6177'7300;  // "\0swage01" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3230'6567'6177'7300;  // "\0swage02" on a little-endian machine
 
 enum RecordKind : std::uint32_t { kSkin = 1, kMachine = 2, kFrame = 3, kEnd = 4 };
 
@@ -87,13 +87,13 @@ int FrameStoreWriter::add_skin(const TriMesh& skin) {
     return skins_++;
 }
 
-int FrameStoreWriter::add_machine(const std::vector<DrawnBody>& bodies) {
+int FrameStoreWriter::add_machine(const std::vector<DrawnPart>& parts) {
     ByteWriter out;
-    out.put<std::uint64_t>(bodies.size());
-    for (const DrawnBody& body : bodies) {
-        out.put_text(body.name);
-        put_mesh(out, body.surface);
-        out.put(body.color);
+    out.put<std::uint64_t>(parts.size());
+    for (const DrawnPart& part : parts) {
+        out.put_text(part.name);
+        put_mesh(out, part.surface);
+        out.put(part.color);
     }
     put(kMachine, out.bytes());
     return machines_++;
@@ -101,9 +101,12 @@ int FrameStoreWriter::add_machine(const std::vector<DrawnBody>& bodies) {
 
 void FrameStoreWriter::add_frame(const StoredFrame& frame) {
     ByteWriter out;
-    out.put(frame.skin);
     out.put(frame.machine);
-    out.put_array(frame.position);
+    out.put<std::uint64_t>(frame.body.size());
+    for (const StoredBody& body : frame.body) {
+        out.put(body.skin);
+        out.put_array(body.position);
+    }
     out.put<std::uint64_t>(frame.pose.size());
     for (const Pose& pose : frame.pose) {
         for (int c = 0; c < 4; ++c) out.put(pose.rotation.coeffs()[c]);
@@ -168,9 +171,12 @@ StoredFrame FrameStore::frame(int index) const {
     const std::string bytes = bytes_at(frame_.at(static_cast<std::size_t>(index)));
     ByteReader in(bytes);
     StoredFrame frame;
-    frame.skin = in.get<int>();
     frame.machine = in.get<int>();
-    frame.position = in.get_array<Eigen::Vector3f>();
+    frame.body.resize(in.get<std::uint64_t>());
+    for (StoredBody& body : frame.body) {
+        body.skin = in.get<int>();
+        body.position = in.get_array<Eigen::Vector3f>();
+    }
     frame.pose.resize(in.get<std::uint64_t>());
     for (Pose& pose : frame.pose) {
         for (int c = 0; c < 4; ++c) pose.rotation.coeffs()[c] = in.get<double>();
@@ -185,16 +191,16 @@ TriMesh FrameStore::skin(int index) const {
     return get_mesh(in);
 }
 
-std::vector<DrawnBody> FrameStore::machine(int index) const {
+std::vector<DrawnPart> FrameStore::machine(int index) const {
     const std::string bytes = bytes_at(machine_.at(static_cast<std::size_t>(index)));
     ByteReader in(bytes);
-    std::vector<DrawnBody> bodies(in.get<std::uint64_t>());
-    for (DrawnBody& body : bodies) {
-        body.name = in.get_text();
-        body.surface = get_mesh(in);
-        body.color = in.get<Vec3>();
+    std::vector<DrawnPart> parts(in.get<std::uint64_t>());
+    for (DrawnPart& part : parts) {
+        part.name = in.get_text();
+        part.surface = get_mesh(in);
+        part.color = in.get<Vec3>();
     }
-    return bodies;
+    return parts;
 }
 
 }  // namespace swage

@@ -16,17 +16,21 @@
 namespace swage {
 
 // A tool, grip or blade as it is drawn: a surface in its own frame.
-struct DrawnBody {
+struct DrawnPart {
     std::string name;
     TriMesh surface;
     Vec3 color = {0.5, 0.5, 0.5};
 };
 
-struct StoredFrame {
+struct StoredBody {
     int skin = 0;                           // which skin
-    int machine = 0;                        // which machine
     std::vector<Eigen::Vector3f> position;  // of the skin's vertices [m]
-    std::vector<Pose> pose;                 // world from body, of the machine's bodies
+};
+
+struct StoredFrame {
+    std::vector<StoredBody> body;
+    int machine = 0;         // which machine
+    std::vector<Pose> pose;  // world from part, of the machine's parts
 };
 
 class FrameStoreWriter {
@@ -39,7 +43,7 @@ class FrameStoreWriter {
 
     // Both are numbered from 0. A skin's positions are those of the mesh at rest.
     int add_skin(const TriMesh& skin);
-    int add_machine(const std::vector<DrawnBody>& body);
+    int add_machine(const std::vector<DrawnPart>& part);
     void add_frame(const StoredFrame& frame);
     void finish();
 
@@ -64,7 +68,7 @@ class FrameStore {
     int machine_count() const { return static_cast<int>(machine_.size()); }
     StoredFrame frame(int index) const;
     TriMesh skin(int index) const;
-    std::vector<DrawnBody> machine(int index) const;
+    std::vector<DrawnPart> machine(int index) const;
 
   private:
     struct Place {

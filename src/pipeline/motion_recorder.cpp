@@ -3,7 +3,7 @@
 
 namespace swage {
 
-std::vector<Pose> body_poses(const Drive& drive) {
+std::vector<Pose> part_poses(const Drive& drive) {
     std::vector<Pose> poses = drive.world_from_tool;
     poses.insert(poses.end(), drive.world_from_grip.begin(), drive.world_from_grip.end());
     poses.insert(poses.end(), drive.world_from_blade.begin(), drive.world_from_blade.end());
@@ -11,33 +11,38 @@ std::vector<Pose> body_poses(const Drive& drive) {
 }
 
 void MotionRecorder::set_machine(const Apparatus& apparatus) {
-    std::vector<DrawnBody> bodies;
+    std::vector<DrawnPart> parts;
     for (const Tool& tool : apparatus.tool) {
-        bodies.push_back({tool.name, surface_of(tool.shape), tool.color});
+        parts.push_back({tool.name, surface_of(tool.shape), tool.color});
     }
-    for (const Grip& grip : apparatus.grip) bodies.push_back({grip.name, grip.jaw, grip.color});
+    for (const Grip& grip : apparatus.grip) parts.push_back({grip.name, grip.jaw, grip.color});
     for (const Blade& blade : apparatus.blade) {
-        bodies.push_back({blade.name, blade.body, blade.color});
+        parts.push_back({blade.name, blade.body, blade.color});
     }
-    machine_id_ = writer_.add_machine(bodies);
+    machine_id_ = writer_.add_machine(parts);
 }
 
-void MotionRecorder::add_frame(const WorkPiece& piece, const Drive& drive) {
-    // A skin that is made anew in every frame changes only where matter was severed or
-    // broke. Its smoothing,
-    // told from angles, changes as it bends, and is kept as it first was.
-    const bool same = skin_id_ >= 0 && skin_.triangle == piece.skin.triangle &&
-                      skin_.position.size() == piece.skin.position.size();
-    if (!same) {
-        skin_ = piece.skin;
-        skin_id_ = writer_.add_skin(skin_);
-    }
+void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive) {
     StoredFrame frame;
-    frame.skin = skin_id_;
+    skin_.resize(bodies.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const WorkPiece& piece = bodies[b];
+        Skin& stored = skin_[b];
+        // A skin that is made anew in every frame changes only where matter was severed or broke.
+        // Its smoothing, told from angles, changes as it bends, and is kept as it first was.
+        const bool same = stored.id >= 0 && stored.mesh.triangle == piece.skin.triangle &&
+                          stored.mesh.position.size() == piece.skin.position.size();
+        if (!same) {
+            stored.mesh = piece.skin;
+            stored.id = writer_.add_skin(stored.mesh);
+        }
+        StoredBody body{stored.id, {}};
+        body.position.reserve(piece.position.size());
+        for (const Vec3& p : piece.position) body.position.push_back(p.cast<float>());
+        frame.body.push_back(std::move(body));
+    }
     frame.machine = machine_id_;
-    frame.position.reserve(piece.position.size());
-    for (const Vec3& p : piece.position) frame.position.push_back(p.cast<float>());
-    frame.pose = body_poses(drive);
+    frame.pose = part_poses(drive);
     writer_.add_frame(frame);
     ++frames_;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Puts the work-piece and the machine at it into the motion file, frame by frame, storing a skin or
+// Puts the bodies and the machine at them into the motion file, frame by frame, storing a skin or
 // a machine anew only when it has changed.
 #pragma once
 
@@ -10,21 +10,25 @@
 namespace swage {
 
 // Poses of what a machine is made of: tools, then grips, then blades.
-std::vector<Pose> body_poses(const Drive& drive);
+std::vector<Pose> part_poses(const Drive& drive);
 
 class MotionRecorder {
   public:
     explicit MotionRecorder(const std::filesystem::path& file) : writer_(file) {}
 
     void set_machine(const Apparatus& apparatus);
-    void add_frame(const WorkPiece& piece, const Drive& drive);
+    void add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive);
     int frame_count() const { return frames_; }
     void finish() { writer_.finish(); }
 
   private:
     FrameStoreWriter writer_;
-    TriMesh skin_;  // as last stored
-    int skin_id_ = -1, machine_id_ = -1;
+    struct Skin {
+        TriMesh mesh;  // as last stored
+        int id = -1;
+    };
+    std::vector<Skin> skin_;  // of each body
+    int machine_id_ = -1;
     int frames_ = 0;
 };
 

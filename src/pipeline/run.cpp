@@ -40,7 +40,7 @@ void write_record(const RunDirectory& directory, Json& record, const Stopwatch& 
 
 // All stages; the motion file and run.json stand when it returns. The error, when the simulation
 // gave up on the way.
-std::optional<Error> simulate(const SceneSpec& scene, const InputMesh& input,
+std::optional<Error> simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
                               const RunDirectory& directory, Json& record, Stopwatch& watch) {
     make_folder(directory.root() / "meshes");
     make_folder(directory.root() / "curves");
@@ -50,30 +50,34 @@ std::optional<Error> simulate(const SceneSpec& scene, const InputMesh& input,
             "no program gnuplot was found, so the curves are not plotted "
             "(apt-get install gnuplot-nox)");
     }
-    WorkPiece piece;
-    {
-        const auto lap = watch.lap("mold");
-        piece = make_work_piece(input, scene);
-    }
-    record["matter"] = matter_json(piece.matter);
-    log_info("molded: {} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
-             piece.matter.cell_fill.size(), 1e3 * piece.matter.lattice.spacing,
-             piece.matter.particle_count(), piece.matter.connection_count(), piece.matter.mass());
-
-    MotionRecorder recorder(directory.store());
-    Progress progress("simulate", frame_count(scene) - 1);
-    std::vector<std::string> warnings = input.finding;
-    const std::string strength = strength_warning(scene.material, piece.matter.lattice.spacing,
-                                                  piece.matter.lattice.cell_count.minCoeff());
-    if (!strength.empty()) {
+    std::vector<WorkPiece> bodies;
+    std::vector<std::string> warnings;
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        {
+            const auto lap = watch.lap("mold");
+            bodies.push_back(make_work_piece(input[b], scene.body[b], scene.skin.kind));
+        }
+        const Aggregate& matter = bodies[b].matter;
+        record["bodies"][b]["matter"] = matter_json(matter);
+        log_info("{}: {} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
+                 input.size() == 1 ? "molded" : "molded " + bodies[b].name, matter.cell_fill.size(),
+                 1e3 * matter.lattice.spacing, matter.particle_count(), matter.connection_count(),
+                 matter.mass());
+        warnings.insert(warnings.end(), input[b].finding.begin(), input[b].finding.end());
+        const std::string strength = strength_warning(
+            scene.body[b].material, matter.lattice.spacing, matter.lattice.cell_count.minCoeff());
+        if (strength.empty()) continue;
         log_warning("{}", strength);
         warnings.push_back(strength);
     }
+
+    MotionRecorder recorder(directory.store());
+    Progress progress("simulate", frame_count(scene) - 1);
     std::optional<Error> stopped;
     long steps = 0;
     for (const StageSpec& stage : scene.stage) {
         const StageContext context{scene, directory.root(), recorder, watch, progress, can_plot};
-        StageOutcome outcome = run_stage(stage, recorder.frame_count(), piece, context);
+        StageOutcome outcome = run_stage(stage, recorder.frame_count(), bodies, context);
         record["stages"].push_back(outcome.record);
         steps += outcome.steps;
         warnings.insert(warnings.end(), outcome.warning.begin(), outcome.warning.end());
@@ -84,7 +88,7 @@ std::optional<Error> simulate(const SceneSpec& scene, const InputMesh& input,
     recorder.finish();
     record["frames"] = recorder.frame_count();
     record["steps"] = steps;
-    record["state_hash"] = hash_text(state_hash(piece.matter));
+    record["state_hash"] = hash_text(state_hash(bodies));
     record["warnings"] = warnings;
     record["state"] = stopped ? "stopped" : "simulated";
     if (stopped) record["stopped"] = stopped->what();
@@ -97,10 +101,10 @@ std::optional<Error> simulate(const SceneSpec& scene, const InputMesh& input,
 RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     Stopwatch watch;
     const FrameRange wanted = wanted_frames(scene, options);
-    InputMesh input;
+    std::vector<InputMesh> input;
     {
         const auto lap = watch.lap("read");
-        input = read_input_mesh(scene.mesh, scene.mold.kind);
+        input = read_input_meshes(scene);
     }
     const RunCost cost = estimate_cost(scene, input, options);
     const RunIdentity identity = identity_of(scene, input, options);

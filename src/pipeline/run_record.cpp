@@ -46,7 +46,8 @@ Json box_json(const Box& box) {
 
 }  // namespace
 
-RunIdentity identity_of(const SceneSpec& scene, const InputMesh& input, const RunOptions& options) {
+RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                        const RunOptions& options) {
     RunIdentity identity;
     std::vector<fs::path> files = {scene.file};
     for (const fs::path& file : scene.inputs) {
@@ -60,18 +61,21 @@ RunIdentity identity_of(const SceneSpec& scene, const InputMesh& input, const Ru
             }
         }
     }
-    for (const InsetSpec& inset : scene.inset) {
+    for (const InsetSpec& inset : scene.work_piece().inset) {
         if (inset.file.empty()) continue;
         if (std::find(files.begin(), files.end(), inset.file) == files.end()) {
             files.push_back(inset.file);
         }
     }
     for (const fs::path& file : files) add_file(identity, file == scene.file ? "scene" : "", file);
-    add_file(identity, "mesh", scene.mesh.file);
-    identity.input.push_back(
-        {"what the mesh was read as", scene.mesh.file, hash_of_mesh(input.mesh)});
-    for (const SurfaceMaterial& material : input.mesh.material) {
-        if (!material.texture.empty()) {
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        const BodySpec& body = scene.body[b];
+        const std::string role = b == 0 ? "mesh" : "mesh of " + body.name;
+        add_file(identity, role, body.mesh.file);
+        identity.input.push_back({fmt::format("what the {} was read as", role), body.mesh.file,
+                                  hash_of_mesh(input[b].mesh)});
+        for (const SurfaceMaterial& material : input[b].mesh.material) {
+            if (material.texture.empty()) continue;
             add_file(identity, "texture " + material.texture.filename().string(), material.texture);
         }
     }
@@ -182,7 +186,7 @@ RenderSettings render_settings_of(const Json& record) {
 }
 
 Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunIdentity& identity,
-                  const InputMesh& input) {
+                  const std::vector<InputMesh>& input) {
     Json record;
     record["program"] = "swage";
     record["version"] = identity.version;
@@ -194,7 +198,9 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
             {{"role", one.role}, {"file", one.file.string()}, {"hash", one.hash}});
     }
     record["threads"] = thread_count();
-    record["mesh"] = mesh_json(input);
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        record["bodies"].push_back({{"name", scene.body[b].name}, {"mesh", mesh_json(input[b])}});
+    }
     record["render"] = render_json(scene.render);
     return record;
 }

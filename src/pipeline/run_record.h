@@ -16,11 +16,12 @@ namespace swage {
 
 // Hashes of every file that was read, of the mesh as it was understood, and of what was set on
 // the command line.
-RunIdentity identity_of(const SceneSpec& scene, const InputMesh& input, const RunOptions& options);
+RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                        const RunOptions& options);
 
 // The parts of run.json that are known before the first stage.
 Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunIdentity& identity,
-                  const InputMesh& input);
+                  const std::vector<InputMesh>& input);
 Json mesh_json(const InputMesh& input);
 Json matter_json(const Aggregate& matter);
 Json drawing_json(const DrawOutcome& drawing);

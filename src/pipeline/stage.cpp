@@ -68,6 +68,12 @@ struct Totals {
     }
 };
 
+// Where a body's meshes go: under the stage's name, and its own where there are several.
+fs::path mesh_stem(const fs::path& root, const std::string& stage,
+                   const std::vector<WorkPiece>& bodies, std::size_t body) {
+    return root / "meshes" / (bodies.size() == 1 ? stage : stage + "-" + bodies[body].name);
+}
+
 void write_meshes(const TriMesh& mesh, const fs::path& stem) {
     write_obj(fs::path(stem) += ".obj", mesh);
     write_ply(fs::path(stem) += ".ply", mesh);
@@ -129,9 +135,21 @@ bool cut_ahead(const StageSpec& stage, const Machine& machine, const std::vector
     return cut.has_curved;
 }
 
+std::size_t particle_count(const std::vector<WorkPiece>& bodies) {
+    std::size_t count = 0;
+    for (const WorkPiece& body : bodies) count += body.matter.particle_count();
+    return count;
+}
+
+std::size_t connection_count(const std::vector<WorkPiece>& bodies) {
+    std::size_t count = 0;
+    for (const WorkPiece& body : bodies) count += body.matter.connection_count();
+    return count;
+}
+
 }  // namespace
 
-StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
+StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkPiece>& bodies,
                        const StageContext& context) {
     const SkinKind skin = context.scene.skin.kind;
     const double duration = stage.duration > 0 ? stage.duration
@@ -140,13 +158,16 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
     StageOutcome outcome;
     if (stage.remold) {
         const auto lap = context.watch.lap("mold");
-        piece = mold_anew(piece, context.scene);
-        log_info("{}: molded anew: {} particles", stage.name, piece.matter.particle_count());
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            bodies[b] = mold_anew(bodies[b], context.scene.body[b], skin);
+        }
+        log_info("{}: molded anew: {} particles", stage.name, particle_count(bodies));
     }
-    const std::size_t connections_before = piece.matter.connection_count();
+    const std::size_t connections_before = connection_count(bodies);
 
-    const WorkFrame frame = place_work_frame(piece.matter, stage.axis, stage.up);
-    const Machine machine = build_machine(stage.machine, stage.parameter, frame, piece.matter);
+    const Aggregate& work_piece = bodies.front().matter;
+    const WorkFrame frame = place_work_frame(work_piece, stage.axis, stage.up);
+    const Machine machine = build_machine(stage.machine, stage.parameter, frame, work_piece);
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
     std::vector<Drive> drives;
     for (int n = 0; n <= stage.frames; ++n) {
@@ -155,16 +176,21 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
     const Drive& start = drives.front();
     context.recorder.set_machine(machine.apparatus);
     if (last_frame == 0) {
-        context.recorder.add_frame(piece, start);
+        context.recorder.add_frame(bodies, start);
         last_frame = 1;
     }
     const int first_frame = last_frame + 1;
-    Simulation simulation(piece.matter, machine.apparatus, stage.sim);
+    std::vector<Aggregate*> matter;
+    for (WorkPiece& body : bodies) matter.push_back(&body.matter);
+    Simulation simulation(matter, machine.apparatus, stage.sim);
     StageCurves curves(stage.name, last_frame, simulation.loads(start));
     WarningBook warnings;
     Totals totals;
-    const fs::path meshes = context.root / "meshes";
-    if (context.scene.output.meshes_per_frame) make_folder(meshes / stage.name);
+    std::vector<fs::path> meshes;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        meshes.push_back(mesh_stem(context.root, stage.name, bodies, b));
+        if (context.scene.output.meshes_per_frame) make_folder(meshes[b]);
+    }
     bool cuts = false, tears = false;
     FrameReport last;
     for (int n = 1; n <= stage.frames; ++n) {
@@ -176,7 +202,9 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
             // skin.
             cuts = true;
             simulation.plan_cuts({drives.begin() + (n - 1), drives.end()});
-            tears = cut_ahead(stage, machine, drives, piece, skin);
+            for (WorkPiece& body : bodies) {
+                tears = cut_ahead(stage, machine, drives, body, skin) || tears;
+            }
         }
         try {
             const auto lap = context.watch.lap("simulate");
@@ -189,24 +217,25 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
         }
         {
             const auto lap = context.watch.lap("skin");
-            follow_matter(piece, skin);
             if (last.broken > 0 && skin != SkinKind::boundary) tears = true;
-            if (tears) remove_torn_triangles(piece.skin, piece.mount, piece.matter);
+            for (WorkPiece& body : bodies) {
+                follow_matter(body, skin);
+                if (tears) remove_torn_triangles(body.skin, body.mount, body.matter);
+            }
         }
         const auto lap = context.watch.lap("write");
-        context.recorder.add_frame(piece, after);
+        context.recorder.add_frame(bodies, after);
         curves.add(number, last);
         totals.add(last, machine.apparatus.tool.size());
         for (const std::string& sentence : last.warning) warnings.add(number, sentence);
-        if (context.scene.output.meshes_per_frame) {
-            write_meshes(piece.deformed(),
-                         meshes / stage.name / fmt::format("frame_{:04d}", number));
+        for (std::size_t b = 0; b < bodies.size() && context.scene.output.meshes_per_frame; ++b) {
+            write_meshes(bodies[b].deformed(), meshes[b] / fmt::format("frame_{:04d}", number));
         }
         context.progress.advance(number - 1, stage.name);
     }
 
     const auto lap = context.watch.lap("write");
-    write_meshes(piece.deformed(), meshes / stage.name);
+    for (std::size_t b = 0; b < bodies.size(); ++b) write_meshes(bodies[b].deformed(), meshes[b]);
     write_curves(curves, context);
     outcome.warning = warnings.told(stage.name);
     if (!machine.apparatus.tool.empty() && totals.tool_contacts == 0 && !outcome.stopped) {
@@ -220,9 +249,9 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
         {"frames", {first_frame, last_frame + static_cast<int>(curves.rows()) - 1}},
         {"duration_s", duration},
         {"remolded", stage.remold},
-        {"particles", piece.matter.particle_count()},
+        {"particles", particle_count(bodies)},
         {"connections_before", connections_before},
-        {"connections_after", piece.matter.connection_count()},
+        {"connections_after", connection_count(bodies)},
         {"severed", totals.severed},
         {"broken", totals.broken},
         {"pieces", last.pieces},
@@ -235,7 +264,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
         {"energies_J", energies_json(last)},
         {"notes", machine.notes},
         {"warnings", outcome.warning},
-        {"state_hash", hash_text(state_hash(piece.matter))},
+        {"state_hash", hash_text(state_hash(bodies))},
     };
     return outcome;
 }

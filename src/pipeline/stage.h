@@ -36,7 +36,8 @@ struct StageOutcome {
 
 // `last_frame`: the number of the last frame before the stage, 0 for the first stage, which then
 // also records frame 1, the untouched start.
-StageOutcome run_stage(const StageSpec& stage, int last_frame, WorkPiece& piece,
+// The first of the bodies is the work-piece, which the machine is set up at.
+StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkPiece>& bodies,
                        const StageContext& context);
 
 }  // namespace swage

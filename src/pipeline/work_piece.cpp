@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/work_piece.h"
 
+#include <Eigen/Geometry>
+
+#include "base/hash.h"
 #include "base/log.h"
 #include "geometry/make_shape.h"
 #include "geometry/mesh_read.h"
@@ -41,6 +44,15 @@ void make_solid(InputMesh& input, MoldKind kind) {
     }
 }
 
+// One colour all over.
+void paint(TriMesh& skin, const Vec3& color) {
+    SurfaceMaterial look;
+    look.color = color;
+    skin.material = {look};
+    skin.triangle_material.assign(skin.triangle.size(), 0);
+    skin.position_color.clear();
+}
+
 }  // namespace
 
 InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length) {
@@ -70,10 +82,18 @@ TriMesh WorkPiece::deformed() const {
     return mesh;
 }
 
-std::vector<Inset> insets_for(const InputMesh& input, const SceneSpec& scene) {
+std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
+    std::vector<InputMesh> input;
+    for (const BodySpec& body : scene.body) {
+        input.push_back(read_input_mesh(body.mesh, body.mold.kind));
+    }
+    return input;
+}
+
+std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body) {
     std::vector<Inset> insets;
     const Box box = box_of(input.to_mold().position);
-    for (const InsetSpec& spec : scene.inset) {
+    for (const InsetSpec& spec : body.inset) {
         TriMesh solid;
         if (spec.file.empty()) {
             const Vec3 low = box.low + spec.from.cwiseProduct(box.size());
@@ -101,30 +121,73 @@ std::vector<Inset> insets_for(const InputMesh& input, const SceneSpec& scene) {
     return insets;
 }
 
-WorkPiece make_work_piece(const InputMesh& input, const SceneSpec& scene) {
-    WorkPiece piece;
-    piece.matter = mold(input.to_mold(), scene.material, scene.mold, insets_for(input, scene));
-    if (scene.skin.kind == SkinKind::boundary) {
-        follow_matter(piece, scene.skin.kind);
-        return piece;
+void place_at_start(const StartSpec& start, Aggregate& matter) {
+    std::vector<Vec3> surface;
+    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+        surface.push_back(matter.surface_position(p));
     }
-    piece.skin = input.mesh;
-    piece.position = input.mesh.position;
-    piece.mount = mount_mesh(input.mesh.position, piece.matter, scene.skin.kind);
+    const Vec3 middle = box_of(surface).center();
+    const double angle = start.turn.norm();
+    const Mat3 turn =
+        angle > 0 ? Mat3(Eigen::AngleAxisd(angle, start.turn / angle)) : Mat3(Mat3::Identity());
+    const Vec3 at = start.at.value_or(middle);
+    Vec3 moment = Vec3::Zero();
+    double mass = 0;
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        const Vec3 x = turn * (matter.particle_position.at(p) - middle) + at;
+        matter.particle_position.set(p, x);
+        moment += matter.particle_mass[p] * x;
+        mass += matter.particle_mass[p];
+    }
+    const Vec3 centre = moment / mass;
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        const Vec3 arm = matter.particle_position.at(p) - centre;
+        matter.particle_velocity.set(p, start.velocity + start.spin.cross(arm));
+    }
+}
+
+WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, SkinKind skin) {
+    WorkPiece piece;
+    piece.name = body.name;
+    piece.color = body.color;
+    piece.matter = mold(input.to_mold(), body.material, body.mold, insets_for(input, body));
+    if (skin != SkinKind::boundary) {
+        piece.skin = input.mesh;
+        if (body.color) paint(piece.skin, *body.color);
+        piece.position = input.mesh.position;
+        piece.mount = mount_mesh(input.mesh.position, piece.matter, skin);
+    }
+    const StartSpec& start = body.start;
+    const bool stands = !start.at && start.turn == Vec3::Zero();
+    if (!stands || start.moves()) place_at_start(start, piece.matter);
+    if (!stands || skin == SkinKind::boundary) follow_matter(piece, skin);
     return piece;
 }
 
-WorkPiece mold_anew(const WorkPiece& piece, const SceneSpec& scene) {
+WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, SkinKind skin) {
     InputMesh input;
     input.mesh = piece.deformed();
     input.report = check_mesh(input.mesh);
-    make_solid(input, scene.mold.kind);
-    return make_work_piece(input, scene);
+    make_solid(input, body.mold.kind);
+    BodySpec as_it_stands = body;
+    as_it_stands.start = {};
+    return make_work_piece(input, as_it_stands, skin);
+}
+
+std::uint64_t state_hash(const std::vector<WorkPiece>& bodies) {
+    if (bodies.size() == 1) return state_hash(bodies[0].matter);
+    Hasher hasher;
+    for (const WorkPiece& body : bodies) {
+        const std::uint64_t own = state_hash(body.matter);
+        hasher.add_bytes(&own, sizeof own);
+    }
+    return hasher.value();
 }
 
 void follow_matter(WorkPiece& piece, SkinKind kind) {
     if (kind == SkinKind::boundary) {
         piece.skin = boundary_skin(piece.matter);
+        if (piece.color) paint(piece.skin, *piece.color);
         piece.position = piece.skin.position;
     } else {
         skin_positions(piece.mount, piece.matter, piece.position);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The work-piece on its way through the stages: the mesh that came in, the matter that was molded
-// from it, and the skin that follows the matter.
+// A body on its way through the stages: the mesh that came in, the matter that was molded from it,
+// and the skin that follows the matter.
 #pragma once
 
 #include <filesystem>
@@ -35,10 +35,15 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
 // repair.
 InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind);
 
-// The scene's insets where this mesh is. Throws Error(mesh).
-std::vector<Inset> insets_for(const InputMesh& input, const SceneSpec& scene);
+// The meshes of all bodies of a scene.
+std::vector<InputMesh> read_input_meshes(const SceneSpec& scene);
+
+// The body's insets where this mesh is. Throws Error(mesh).
+std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body);
 
 struct WorkPiece {
+    std::string name;
+    std::optional<Vec3> color;  // instead of its mesh's own
     Aggregate matter;
     TriMesh skin;                // its positions: as mounted
     Mount mount;                 // unless the skin is a boundary
@@ -48,10 +53,18 @@ struct WorkPiece {
     TriMesh deformed() const;
 };
 
-WorkPiece make_work_piece(const InputMesh& input, const SceneSpec& scene);
+// At its start: molded as its mesh stands in its file, then turned, moved and set in motion, so
+// that how it stands has no effect on how well it is resolved.
+WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, SkinKind skin);
+
+// Turns about the middle of the surface's box, moves and sets in motion. For a body as molded.
+void place_at_start(const StartSpec& start, Aggregate& matter);
 
 // A new representation of the work-piece as it is now, at rest.
-WorkPiece mold_anew(const WorkPiece& piece, const SceneSpec& scene);
+WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, SkinKind skin);
+
+// Of one body its own; of several, of all.
+std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 
 // Brings the skin to where the matter is.
 void follow_matter(WorkPiece& piece, SkinKind kind);

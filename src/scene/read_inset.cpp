@@ -53,12 +53,13 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
 }
 
 void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
-    if (scene.inset.empty()) return;
-    if (scene.material.mechanics == Mechanics::springs) {
+    const BodySpec& body = scene.work_piece();
+    if (body.inset.empty()) return;
+    if (body.material.mechanics == Mechanics::springs) {
         root.mistake("inset", "springs know one material: use mechanics = \"cells\" in [material]");
     }
-    bool breaks = scene.material.breaks();
-    for (const InsetSpec& inset : scene.inset) breaks = breaks || inset.material.breaks();
+    bool breaks = body.material.breaks();
+    for (const InsetSpec& inset : body.inset) breaks = breaks || inset.material.breaks();
     if (breaks) {
         root.mistake("inset",
                      "bodies of two materials do not break yet: leave strength and toughness out "

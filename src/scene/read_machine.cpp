@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kNoDirection = "axis = [0, 0, 0] has no direction";
+
 bool is_work_piece_name(const std::string& name) {
     const std::vector<std::string>& names = work_piece_names();
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -153,11 +155,14 @@ class MachineReader {
             expression_.read(table, "rounding", tool.rounding);
         }
         if (tool.shape == "mesh") read_tool_mesh(table, tool.mesh);
-        if (table.vector("axis", Quantity::number, tool.axis)) expect_direction(table, tool.axis);
+        if (expression_.read(table, "axis", tool.axis) &&
+            tool.axis == Expression3{"0", "0", "0"}) {
+            table.mistake("axis", kNoDirection);
+        }
         if (!expression_.read(table, "at", tool.at)) {
             table.missing("at", "where its centre is, such as [0, \"-height\", 0]");
         }
-        table.vector("touch", Quantity::number, tool.touch);
+        expression_.read(table, "touch", tool.touch);
         expression_.read(table, "gap", tool.gap);
         if (table.find("gap") != nullptr && table.find("touch") == nullptr) {
             table.warn("gap", "gap has no effect without touch");
@@ -193,10 +198,6 @@ class MachineReader {
         }
     }
 
-    void expect_direction(TableReader& table, const Vec3& axis) {
-        if (!(axis.norm() > 0)) table.mistake("axis", "axis = [0, 0, 0] has no direction");
-    }
-
     void read_motion(TableReader& part, const std::string& section, MotionSpec& motion) {
         TableReader table(part.table("motion"), section, reading_);
         ExpressionReader timed = expression_;
@@ -204,7 +205,7 @@ class MachineReader {
         timed.read(table, "move", motion.move);
         const bool turns = timed.read(table, "turn", motion.turn);
         const bool has_axis = table.vector("axis", Quantity::number, motion.axis);
-        if (has_axis) expect_direction(table, motion.axis);
+        if (has_axis && !(motion.axis.norm() > 0)) table.mistake("axis", kNoDirection);
         const bool has_pivot = timed.read(table, "pivot", motion.pivot);
         if (!turns && (has_axis || has_pivot)) {
             table.warn(has_axis ? "axis" : "pivot", "axis and pivot have no effect without turn");

@@ -6,8 +6,8 @@
 #include "base/suggest.h"
 #include "base/text.h"
 #include "scene/document.h"
-#include "scene/file_text.h"
 #include "scene/overrides.h"
+#include "scene/read_body.h"
 #include "scene/read_inset.h"
 #include "scene/read_material.h"
 #include "scene/read_render.h"
@@ -18,58 +18,6 @@ namespace swage {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kDefaultAcross = 6;
-
-void read_mesh_section(TableReader& table, const fs::path& folder, MeshSpec& mesh) {
-    std::string file;
-    if (table.text("file", file)) {
-        mesh.file = (folder / file).lexically_normal();
-        if (file.empty()) {
-            if (table.find("file")->kind == Node::Kind::text) {
-                table.mistake("file", "the mesh's file name is empty");
-            }
-        } else if (const auto reason = why_unreadable(mesh.file)) {
-            table.mistake("file",
-                          fmt::format("the mesh \"{}\" {} ({})", file, *reason, mesh.file.string()),
-                          ExitCode::mesh);
-        }
-    } else if (table.place().line == 0) {
-        if (table.reading().is_complete) {
-            table.mistake("file",
-                          "the section [mesh] is missing: it needs a file, such as "
-                          "file = \"bar.obj\"");
-        }
-    } else {
-        table.missing("file", "the mesh to be worked on");
-    }
-    double length = 0;
-    if (table.quantity("length", Quantity::length, above(0), length) && length > 0) {
-        mesh.length = length;
-    }
-    table.finish();
-}
-
-void read_mold(TableReader& table, MoldSettings& mold) {
-    table.choice<MoldKind>("kind", {{"shape", MoldKind::shape}, {"block", MoldKind::block}},
-                           mold.kind);
-    int across = kDefaultAcross;
-    double spacing = 0;
-    const bool has_across = table.whole("across", 1, 1'000'000, across);
-    const bool has_spacing = table.quantity("spacing", Quantity::length, above(0), spacing);
-    if (has_across && has_spacing) {
-        table.mistake("spacing", "across and spacing say the same: give one of them");
-    }
-    if (has_spacing) {
-        if (spacing > 0) mold.spacing = spacing;
-    } else {
-        mold.across = across;
-    }
-    int limit = static_cast<int>(mold.cell_limit);
-    table.whole("cell_limit", 1, 2'000'000'000, limit);
-    mold.cell_limit = static_cast<std::size_t>(limit);
-    table.finish();
-}
 
 void read_skin(TableReader& table, SkinSettings& skin) {
     table.choice<SkinKind>("kind",
@@ -82,7 +30,7 @@ void read_skin(TableReader& table, SkinSettings& skin) {
 
 // Sections and keys at the top that nothing is known of.
 void report_unknown_sections(const Document& document, Reading& reading) {
-    const std::vector<std::string> sections = {"mesh", "material", "inset",  "mold",
+    const std::vector<std::string> sections = {"mesh", "material", "inset",  "mold",  "body",
                                                "skin", "stage",    "render", "output"};
     for (const Entry& entry : document.root.entry) {
         if (std::find(sections.begin(), sections.end(), entry.key) != sections.end()) continue;
@@ -116,13 +64,16 @@ void read_document_into(const Document& document, const AssetPaths& assets, Read
     };
     TableReader mesh = section("mesh"), material = section("material"), mold = section("mold"),
                 skin = section("skin"), render = section("render"), output = section("output");
-    read_mesh_section(mesh, folder, scene.mesh);
-    read_material(material, assets, folder, scene.material, scene.inputs);
+    BodySpec& work_piece = scene.body.emplace_back();
+    read_mesh_section(mesh, folder, work_piece);
+    read_material(material, assets, folder, work_piece.material, scene.inputs);
     for (const Node* node : root.tables("inset", "[[inset]]")) {
         TableReader inset(*node, "[[inset]]", reading);
-        scene.inset.push_back(read_inset(inset, assets, folder, scene.inputs));
+        work_piece.inset.push_back(read_inset(inset, assets, folder, scene.inputs));
     }
-    read_mold(mold, scene.mold);
+    read_mold(mold, work_piece.mold);
+    BodyReader bodies(reading, assets, folder);
+    for (const Node* node : root.tables("body", "[[body]]")) bodies.read(*node, scene);
     read_skin(skin, scene.skin);
     StageReader stages(reading, assets, folder);
     for (const Node* node : root.tables("stage", "[[stage]]")) {
@@ -130,6 +81,7 @@ void read_document_into(const Document& document, const AssetPaths& assets, Read
     }
     scene.inputs.insert(scene.inputs.end(), stages.inputs().begin(), stages.inputs().end());
     refuse_with_insets(root, scene);
+    refuse_without_motion(root, scene);
     if (root.find("stage") == nullptr && reading.is_complete) {
         reading.mistakes.add(absent.place,
                              "nothing to do: the scene has no [[stage]], such as\n"

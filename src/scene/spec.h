@@ -30,6 +30,25 @@ struct InsetSpec {
     Material material;
 };
 
+// Where a body stands and how it moves before the first stage.
+struct StartSpec {
+    std::optional<Vec3> at;        // [m], of the middle of its box; none: where its file has it
+    Vec3 turn = Vec3::Zero();      // about the middle of its box: axis times angle [rad]
+    Vec3 velocity = Vec3::Zero();  // [m/s]
+    Vec3 spin = Vec3::Zero();      // about its centre of mass [rad/s]
+    bool moves() const { return velocity != Vec3::Zero() || spin != Vec3::Zero(); }
+};
+
+struct BodySpec {
+    std::string name = "work-piece";  // a file name
+    MeshSpec mesh;
+    StartSpec start;
+    std::optional<Vec3> color;  // linear RGB, instead of what its file says
+    Material material;
+    std::vector<InsetSpec> inset;
+    MoldSettings mold;
+};
+
 struct StageSpec {
     std::string name;  // "1-bend": number and machine, or the user's own; a file name
     MachineSpec machine;
@@ -49,12 +68,12 @@ struct OutputSpec {
 struct SceneSpec {
     std::filesystem::path file;  // absolute
     std::string name;            // stem of the file
-    MeshSpec mesh;
-    Material material;
-    std::vector<InsetSpec> inset;
-    MoldSettings mold;
+    std::vector<BodySpec> body;  // the first is the work-piece, which machines are set up at and
+                                 // take hold of
     SkinSettings skin;
     std::vector<StageSpec> stage;
+
+    const BodySpec& work_piece() const { return body.front(); }
     RenderSettings render;
     OutputSpec output;
     std::vector<std::filesystem::path> inputs;  // every file that was read, scene and machines

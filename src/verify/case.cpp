@@ -66,6 +66,7 @@ std::vector<Case> verification_cases() {
     add_two_material_cases(cases);
     add_plastic_cases(cases);
     add_fracture_cases(cases);
+    add_motion_cases(cases);
     return cases;
 }
 

@@ -82,5 +82,6 @@ void add_invariance_cases(std::vector<Case>& cases);
 void add_two_material_cases(std::vector<Case>& cases);
 void add_plastic_cases(std::vector<Case>& cases);
 void add_fracture_cases(std::vector<Case>& cases);
+void add_motion_cases(std::vector<Case>& cases);
 
 }  // namespace swage

@@ -58,9 +58,9 @@ TEST_CASE(
     CHECK(Json::parse(first.out) == record);
     CHECK(record.at("state") == "complete");
     CHECK(record.at("frames") == 4);
-    CHECK(record.at("matter").at("cells") == 40);
+    CHECK(record.at("bodies").at(0).at("matter").at("cells") == 40);
     CHECK(record.at("stages").at(0).at("frames") == Json({2, 4}));
-    CHECK(record.at("mesh").at("watertight") == true);
+    CHECK(record.at("bodies").at(0).at("mesh").at("watertight") == true);
     CHECK(record.at("drawing").at("film").get<bool>() == fs::exists(run / "film.mp4"));
     // Every line of the table: its heading, the start, three frames.
     const std::string table = bytes_of(run / "curves/1-bend.csv");
@@ -174,7 +174,7 @@ TEST_CASE("the option --set goes over what the scene says") {
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     const Json record = Json::parse(outcome.out);
-    CHECK(record.at("matter").at("cells") == 135);
+    CHECK(record.at("bodies").at(0).at("matter").at("cells") == 135);
     CHECK(record.at("frames") == 3);
     CHECK(record.at("overrides").size() == 2);
 }

@@ -43,6 +43,8 @@ TEST_CASE("a quantity has the value of its unit, however it is spelled") {
         {"210 GPa", Quantity::stress, 210e9},
         {"210 N/mm^2", Quantity::stress, 210e6},
         {"60 deg", Quantity::angle, kPi / 3},
+        {"30 rpm", Quantity::spin, kPi},
+        {"90 deg/s", Quantity::spin, kPi / 2},
         {"60\u00b0", Quantity::angle, kPi / 3},
         {"0.5 turn", Quantity::angle, kPi},
         {"0.5 mm/s", Quantity::speed, 0.0005},

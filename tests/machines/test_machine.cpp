@@ -31,12 +31,12 @@ MachineSpec roller() {
     support.radius = "radius";
     support.length = "2*width";
     support.at = {"0", "-height", "0"};
-    support.touch = Vec3::UnitY();
+    support.touch = {"0", "1", "0"};
     ToolSpec pusher = support;
     pusher.name = "pusher";
     pusher.radius = "0.05*length";
     pusher.at = {"offset", "height", "0"};
-    pusher.touch = -Vec3::UnitY();
+    pusher.touch = {"0", "-1", "0"};
     pusher.friction = "0.7";
     pusher.motion.turn = "-angle*ramp(t, 0, 0.5)";
     pusher.motion.pivot = {"support_x", "support_y", "0"};
@@ -176,7 +176,7 @@ TEST_CASE("tools that cannot be are refused by name") {
 TEST_CASE("a tool that starts inside the body is noted") {
     MachineSpec spec = roller();
     CHECK(set_up(spec).notes.empty());
-    spec.tool[0].touch = Vec3::Zero();
+    spec.tool[0].touch = {"0", "0", "0"};
     const Machine machine = set_up(spec);
     REQUIRE(machine.notes.size() == 1);
     CHECK(says(machine.notes[0], {"support", "deep"}));

@@ -33,8 +33,12 @@ TriMesh tetrahedron() {
 
 StoredFrame some_frame(int number) {
     StoredFrame frame;
-    frame.skin = number % 2;
-    for (int v = 0; v < 4; ++v) frame.position.emplace_back(number + 0.5f * v, v, -v);
+    for (int b = 0; b < 2; ++b) {
+        frame.body.push_back({(number + b) % 2, {}});
+        for (int v = 0; v < 4; ++v) {
+            frame.body[b].position.emplace_back(number + 0.5f * v, v + b, -v);
+        }
+    }
     frame.pose.push_back(
         {Quat(Eigen::AngleAxisd(0.1 * number, Vec3::UnitZ())), {1, 2, 1.0 * number}});
     return frame;
@@ -61,8 +65,11 @@ TEST_CASE("a motion file gives back what was put in") {
     CHECK(store.machine_count() == 1);
     for (int f : {4, 0, 2}) {
         const StoredFrame frame = store.frame(f), expected = some_frame(f);
-        CHECK(frame.skin == expected.skin);
-        CHECK(frame.position == expected.position);
+        REQUIRE(frame.body.size() == expected.body.size());
+        for (std::size_t b = 0; b < frame.body.size(); ++b) {
+            CHECK(frame.body[b].skin == expected.body[b].skin);
+            CHECK(frame.body[b].position == expected.body[b].position);
+        }
         CHECK(frame.pose[0].rotation.coeffs() == expected.pose[0].rotation.coeffs());
         CHECK(frame.pose[0].translation == expected.pose[0].translation);
     }
@@ -80,7 +87,7 @@ TEST_CASE("a motion file gives back what was put in") {
     CHECK(*skin.material[0].embedded_texture == "PNG and so on");
     CHECK_FALSE(skin.material[1].embedded_texture);
     CHECK(skin.part_name == expected.part_name);
-    const std::vector<DrawnBody> machine = store.machine(0);
+    const std::vector<DrawnPart> machine = store.machine(0);
     CHECK(machine[0].name == "pusher");
     CHECK(machine[0].color == Vec3(1, 0, 0));
 }

@@ -50,13 +50,13 @@ TEST_CASE("the sample scene reads whole, in SI") {
     const SceneSpec& scene = *reading.scene;
     CHECK(scene.name == "sample");
     CHECK(scene.file == file);
-    CHECK(scene.mesh.file == scratch.folder() / "meshes/calf.obj");
-    CHECK(scene.mesh.length.value() == Approx(0.4));
-    CHECK(scene.material.name == "rubber");
-    CHECK(scene.material.young_modulus == Approx(2e6));
-    CHECK(scene.material.yield_stress == Approx(3e6));
-    CHECK(scene.mold.across.value() == 6);
-    CHECK_FALSE(scene.mold.spacing.has_value());
+    CHECK(scene.work_piece().mesh.file == scratch.folder() / "meshes/calf.obj");
+    CHECK(scene.work_piece().mesh.length.value() == Approx(0.4));
+    CHECK(scene.work_piece().material.name == "rubber");
+    CHECK(scene.work_piece().material.young_modulus == Approx(2e6));
+    CHECK(scene.work_piece().material.yield_stress == Approx(3e6));
+    CHECK(scene.work_piece().mold.across.value() == 6);
+    CHECK_FALSE(scene.work_piece().mold.spacing.has_value());
     CHECK(scene.skin.kind == SkinKind::mount);
     REQUIRE(scene.stage.size() == 1);
     CHECK(scene.stage[0].name == "1-bend");
@@ -147,19 +147,19 @@ meshes_per_frame = true
     REQUIRE(reading.scene);
     CHECK(reading.mistakes.empty());
     const SceneSpec& scene = *reading.scene;
-    CHECK(scene.material.young_modulus == 1e9);
-    CHECK(scene.material.poisson_ratio == 0.25);
-    CHECK(scene.material.density == Approx(1200));
-    CHECK(scene.material.yield_stress == 3e6);
-    CHECK(scene.material.hardening == 1e6);
-    CHECK(scene.material.strength == 4e6);
-    CHECK(scene.material.toughness == 2e3);
-    CHECK(scene.material.damping_ratio == 0.1);
-    CHECK(scene.material.friction == 0.4);
-    CHECK(scene.mold.spacing.value() == Approx(0.005));
-    CHECK_FALSE(scene.mold.across.has_value());
-    CHECK(scene.mold.kind == MoldKind::block);
-    CHECK(scene.mold.cell_limit == 1000);
+    CHECK(scene.work_piece().material.young_modulus == 1e9);
+    CHECK(scene.work_piece().material.poisson_ratio == 0.25);
+    CHECK(scene.work_piece().material.density == Approx(1200));
+    CHECK(scene.work_piece().material.yield_stress == 3e6);
+    CHECK(scene.work_piece().material.hardening == 1e6);
+    CHECK(scene.work_piece().material.strength == 4e6);
+    CHECK(scene.work_piece().material.toughness == 2e3);
+    CHECK(scene.work_piece().material.damping_ratio == 0.1);
+    CHECK(scene.work_piece().material.friction == 0.4);
+    CHECK(scene.work_piece().mold.spacing.value() == Approx(0.005));
+    CHECK_FALSE(scene.work_piece().mold.across.has_value());
+    CHECK(scene.work_piece().mold.kind == MoldKind::block);
+    CHECK(scene.work_piece().mold.cell_limit == 1000);
     CHECK(scene.skin.kind == SkinKind::boundary);
     const StageSpec& stage = scene.stage.at(0);
     CHECK(stage.name == "wring it");
@@ -265,7 +265,7 @@ TEST_CASE("paths are relative to the file they stand in, from wherever the progr
         const SceneReading reading = read_scene(file, {}, shipped());
         INFO(told(reading.mistakes, scratch.folder()));
         REQUIRE(reading.scene);
-        CHECK(reading.scene->mesh.file == scratch.folder() / "bar.obj");
+        CHECK(reading.scene->work_piece().mesh.file == scratch.folder() / "bar.obj");
         CHECK(reading.scene->stage[0].machine.tool[0].mesh ==
               scratch.folder() / "deep/mine/tool.obj");
         const auto& inputs = reading.scene->inputs;
@@ -284,12 +284,12 @@ TEST_CASE("machines and materials beside the scene come before the shipped ones"
     const SceneReading reading = read(scratch, kHead + "[[stage]]\nmachine = \"bend\"\n");
     INFO(told(reading.mistakes, scratch.folder()));
     REQUIRE(reading.scene);
-    CHECK(reading.scene->material.young_modulus == 5e6);
+    CHECK(reading.scene->work_piece().material.young_modulus == 5e6);
     CHECK(reading.scene->stage[0].machine.grip.size() == 1);
     const SceneReading other =
         read(scratch, kHead + "[[stage]]\nmachine = \"bend\"\n", {"material.name=copper"});
     REQUIRE(other.scene);
-    CHECK(other.scene->material.name == "copper");
+    CHECK(other.scene->work_piece().material.name == "copper");
 }
 
 TEST_CASE("a material that yields can be made elastic") {
@@ -300,7 +300,7 @@ TEST_CASE("a material that yields can be made elastic") {
                                       "machine = \"bend\"\n");
     INFO(told(reading.mistakes, scratch.folder()));
     REQUIRE(reading.scene);
-    CHECK(std::isinf(reading.scene->material.yield_stress));
+    CHECK(std::isinf(reading.scene->work_piece().material.yield_stress));
 }
 
 TEST_CASE("overrides count as if the file said so") {
@@ -322,11 +322,11 @@ TEST_CASE("overrides count as if the file said so") {
     CHECK(scene.stage[0].frames == 3);
     CHECK(scene.stage[1].frames == 3);
     CHECK(scene.stage[1].remold);
-    CHECK(scene.material.young_modulus == 2e9);
-    CHECK(scene.material.name == "copper");
+    CHECK(scene.work_piece().material.young_modulus == 2e9);
+    CHECK(scene.work_piece().material.name == "copper");
     CHECK(scene.render.width == 64);
     CHECK(scene.render.camera[0].azimuth == Approx(kPi / 6));
-    CHECK(scene.mold.across.value() == 4);
+    CHECK(scene.work_piece().mold.across.value() == 4);
     CHECK(scene.output.meshes_per_frame);
 }
 

@@ -100,9 +100,9 @@ otherwise = "choose a smaller radius"
     CHECK(roll.shape == "cylinder");
     CHECK(roll.radius == "radius");
     CHECK(roll.length == "width + 2 mm");
-    CHECK(roll.axis == Vec3(0, 1, 0));
+    CHECK(roll.axis == Expression3{"0", "1", "0"});
     CHECK(roll.at == Expression3{"0", "-height", "0.25"});
-    CHECK(roll.touch == Vec3(0, 1, 0));
+    CHECK(roll.touch == Expression3{"0", "1", "0"});
     CHECK(roll.gap == "1 mm");
     CHECK(roll.friction == "0.2");
     CHECK(roll.motion.turn == "turned*t");

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "scene/file_text.h"
+#include "scene/read_material.h"
+#include "scene/read_stage.h"
+
+namespace swage {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDefaultAcross = 6;
+
+double linear_of(double srgb) {
+    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+void read_file(TableReader& table, const fs::path& folder, const char* what, MeshSpec& mesh) {
+    std::string file;
+    if (table.text("file", file)) {
+        mesh.file = (folder / file).lexically_normal();
+        if (file.empty()) {
+            if (table.find("file")->kind == Node::Kind::text) {
+                table.mistake("file", "the mesh's file name is empty");
+            }
+        } else if (const auto reason = why_unreadable(mesh.file)) {
+            table.mistake("file",
+                          fmt::format("the mesh \"{}\" {} ({})", file, *reason, mesh.file.string()),
+                          ExitCode::mesh);
+        }
+    } else if (table.place().line == 0) {
+        if (table.reading().is_complete) {
+            table.mistake("file",
+                          "the section [mesh] is missing: it needs a file, such as "
+                          "file = \"bar.obj\"");
+        }
+    } else {
+        table.missing("file", what);
+    }
+    double length = 0;
+    if (table.quantity("length", Quantity::length, above(0), length) && length > 0) {
+        mesh.length = length;
+    }
+}
+
+void read_start(TableReader& table, BodySpec& body) {
+    Vec3 at = Vec3::Zero();
+    if (table.vector("at", Quantity::length, at)) body.start.at = at;
+    table.vector("turn", Quantity::angle, body.start.turn);
+    table.vector("velocity", Quantity::speed, body.start.velocity);
+    table.vector("spin", Quantity::spin, body.start.spin);
+    Vec3 color = Vec3::Zero();
+    if (!table.vector("color", Quantity::number, color)) return;
+    if ((color.array() < 0).any() || (color.array() > 1).any()) {
+        table.mistake("color", fmt::format("color = [{:g}, {:g}, {:g}]: red, green and blue are "
+                                           "each 0 to 1",
+                                           color.x(), color.y(), color.z()));
+    }
+    body.color = Vec3(linear_of(color.x()), linear_of(color.y()), linear_of(color.z()));
+}
+
+void read_fineness(TableReader& table, MoldSettings& mold) {
+    int across = kDefaultAcross;
+    double spacing = 0;
+    const bool has_across = table.whole("across", 1, 1'000'000, across);
+    const bool has_spacing = table.quantity("spacing", Quantity::length, above(0), spacing);
+    if (has_across && has_spacing) {
+        table.mistake("spacing", "across and spacing say the same: give one of them");
+    }
+    if (has_spacing) {
+        if (spacing > 0) mold.spacing = spacing;
+        mold.across.reset();
+    } else if (has_across || !mold.spacing) {
+        mold.across = has_across || !mold.across ? across : *mold.across;
+        mold.spacing.reset();
+    }
+}
+
+}  // namespace
+
+void read_mesh_section(TableReader& table, const fs::path& scene_folder, BodySpec& body) {
+    read_file(table, scene_folder, "the mesh to be worked on", body.mesh);
+    read_start(table, body);
+    table.finish();
+}
+
+void read_mold(TableReader& table, MoldSettings& mold) {
+    table.choice<MoldKind>("kind", {{"shape", MoldKind::shape}, {"block", MoldKind::block}},
+                           mold.kind);
+    read_fineness(table, mold);
+    int limit = static_cast<int>(mold.cell_limit);
+    table.whole("cell_limit", 1, 2'000'000'000, limit);
+    mold.cell_limit = static_cast<std::size_t>(limit);
+    table.finish();
+}
+
+void BodyReader::read_name(TableReader& table, const SceneSpec& scene, BodySpec& body) {
+    body.name = fmt::format("body-{}", scene.body.size() + 1);
+    const bool is_named = table.text("name", body.name);
+    if (const auto reason = why_no_file_name(body.name); is_named && reason) {
+        table.mistake("name", fmt::format("the name {}; it becomes the name of files", *reason));
+    } else if (std::any_of(scene.body.begin(), scene.body.end(),
+                           [&](const BodySpec& other) { return other.name == body.name; })) {
+        table.mistake("name", fmt::format("two bodies are called \"{}\"", body.name));
+    }
+}
+
+// A name, or a table as [material] is.
+void BodyReader::read_material_key(TableReader& table, SceneSpec& scene, BodySpec& body) {
+    const Node* node = table.find("material");
+    if (node == nullptr) return;
+    Node named;
+    if (node->kind == Node::Kind::text) {
+        named.place = node->place;
+        named.entry.push_back({"name", node->place, *node});
+        node = &named;
+    } else if (node->kind != Node::Kind::table) {
+        table.mistake("material",
+                      "material is the name of one, such as \"rubber\", or a section "
+                      "[body.material]");
+        return;
+    }
+    body.material = {};
+    TableReader material(*node, "[body.material]", reading_);
+    read_material(material, assets_, scene_folder_, body.material, scene.inputs);
+}
+
+void BodyReader::read(const Node& node, SceneSpec& scene) {
+    TableReader table(node, "[[body]]", reading_);
+    BodySpec body;
+    body.material = scene.work_piece().material;
+    body.mold = scene.work_piece().mold;
+    read_name(table, scene, body);
+    read_file(table, scene_folder_, "the mesh of the body", body.mesh);
+    read_start(table, body);
+    read_fineness(table, body.mold);
+    read_material_key(table, scene, body);
+    table.finish();
+    scene.body.push_back(std::move(body));
+}
+
+void refuse_without_motion(TableReader& root, const SceneSpec& scene) {
+    const bool moves = std::any_of(scene.body.begin(), scene.body.end(),
+                                   [](const BodySpec& body) { return body.start.moves(); });
+    if (scene.body.size() == 1 && !moves) return;
+    for (const StageSpec& stage : scene.stage) {
+        if (stage.sim.solver != Solver::quasistatic) continue;
+        root.mistake(
+            scene.body.size() > 1 ? "body" : "mesh",
+            fmt::format("stage \"{}\" goes from equilibrium to equilibrium, which knows {}: "
+                        "use solver = \"explicit\"",
+                        stage.name,
+                        scene.body.size() > 1 ? "one body" : "no velocity and no spin"));
+    }
+}
+
+}  // namespace swage

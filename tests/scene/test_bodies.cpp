@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scenes of several bodies, and of bodies that move from the start.
+#include "base/math.h"
+#include "tests/scene/bad_scene.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+const std::string kSteps = "[[stage]]\nmachine = \"floor\"\nsolver = \"explicit\"\n";
+
+// Lines of the body: 12 and on.
+Parts beside(const std::string& lines) {
+    Parts parts = with(&Parts::rest, "[render]\nfps = 30\n[[body]]\n" + lines);
+    parts.stage = kSteps;
+    return parts;
+}
+
+}  // namespace
+
+TEST_CASE("a body takes material and mold from the work-piece where it has no own") {
+    const Scratch scratch;
+    Parts parts = beside(R"(file = "bar.obj"
+at = ["1 cm", 0, "-2 cm"]
+turn = [0, 0, "90 deg"]
+velocity = [0, "-3 m/s", 0]
+spin = ["30 rpm", 0, 0]
+color = [1, 0.5, 0]
+[[body]]
+name = "egg"
+file = "bar.obj"
+length = "5 cm"
+material = "wax"
+spacing = "2 mm"
+[[body]]
+file = "bar.obj"
+across = 3
+[body.material]
+name = "lead"
+friction = 0.4
+)");
+    const SceneReading reading = read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+    INFO(told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.mistakes.empty());
+    const std::vector<BodySpec>& body = reading.scene->body;
+    REQUIRE(body.size() == 4);
+    CHECK(body[0].name == "work-piece");
+    CHECK(body[1].name == "body-2");
+    CHECK(body[1].material.name == "rubber");
+    CHECK(body[1].mold.across.value() == 6);
+    CHECK(body[1].start.at.value() == Vec3(0.01, 0, -0.02));
+    CHECK(body[1].start.turn.z() == Approx(kPi / 2));
+    CHECK(body[1].start.velocity == Vec3(0, -3, 0));
+    CHECK(body[1].start.spin.x() == Approx(kPi));
+    CHECK(body[1].color.value().y() == Approx(0.2140).epsilon(1e-3));
+    CHECK(body[2].name == "egg");
+    CHECK(body[2].mesh.length.value() == Approx(0.05));
+    CHECK(body[2].material.name == "wax");
+    CHECK(body[2].mold.spacing.value() == Approx(0.002));
+    CHECK_FALSE(body[2].mold.across.has_value());
+    CHECK_FALSE(body[2].start.at.has_value());
+    CHECK(body[3].material.friction == 0.4);
+    CHECK(body[3].mold.across.value() == 3);
+}
+
+TEST_CASE("mistakes in bodies are found") {
+    Parts still = beside("file = \"bar.obj\"\n");
+    still.stage = "[[stage]]\nmachine = \"bend\"\nangle = \"60 deg\"\n";
+    Parts thrown = with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nvelocity = [1, 0, 0]\n");
+    check_all({
+        {"no mesh",
+         beside("name = \"egg\"\n"),
+         {"12:1: [[body]] needs \"file\": the mesh of the body"}},
+        {"no such mesh", beside("file = \"none.obj\"\n"), {"13:8: the mesh \"none.obj\""}},
+        {"a name twice",
+         beside("file = \"bar.obj\"\nname = \"work-piece\"\n"),
+         {"14:8: two bodies are called \"work-piece\""}},
+        {"a name that is no file's",
+         beside("file = \"bar.obj\"\nname = \"a/b\"\n"),
+         {"14:8: the name has a \"/\""}},
+        {"no such material",
+         beside("file = \"bar.obj\"\nmaterial = \"waxx\"\n"),
+         {"14:12: no material \"waxx\", did you mean \"wax\"?"}},
+        {"material of another kind",
+         beside("file = \"bar.obj\"\nmaterial = 3\n"),
+         {"14:12: material is the name of one"}},
+        {"typo",
+         beside("file = \"bar.obj\"\nvelocty = [0, 0, 0]\n"),
+         {"did you mean \"velocity\"?"}},
+        {"unit", beside("file = \"bar.obj\"\nspin = [0, 0, \"3 m\"]\n"), {"14:18: spin: \"3 m\" is a length; a spin is wanted"}},
+        {"colour", beside("file = \"bar.obj\"\ncolor = [2, 0, 0]\n"), {"14:9: color = [2, 0, 0]"}},
+        {"two in equilibrium", still, {"stage \"1-bend\" goes from equilibrium to equilibrium"}},
+        {"a speed in equilibrium", thrown, {"which knows no velocity and no spin"}},
+    });
+}
