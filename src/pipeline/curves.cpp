@@ -79,13 +79,11 @@ std::string csv_text(const StageCurves& curves) {
         }
     }
     text +=
-        ",kinetic energy [J],elastic energy [J],plastic work [J],damped work [J],"
+        ",kinetic energy [J],elastic energy [J],contact energy [J],plastic work [J],"
+        "damped work [J],friction work [J],drag work [J],"
         "machine work [J],load work [J],gravity work [J],severed energy [J],fracture energy "
-        "[J],set "
-        "free [J],remainder [J],severed connections,broken "
-        "connections,pieces,iterations,increments,"
-        "halvings,steps,"
-        "residual\n";
+        "[J],set free [J],remainder [J],severed connections,broken connections,pieces,"
+        "iterations,increments,halvings,steps,steps taken back,residual\n";
     for (std::size_t row = 0; row < curves.rows(); ++row) {
         const FrameReport& report = curves.report()[row];
         std::vector<std::string> cells = {std::to_string(curves.frame()[row]), number(report.time)};
@@ -100,14 +98,15 @@ std::string csv_text(const StageCurves& curves) {
             cells.push_back(std::to_string(load.contacts[row]));
         }
         for (double energy :
-             {report.kinetic, report.elastic, report.plastic, report.damped, report.work,
+             {report.kinetic, report.elastic, report.contact, report.plastic, report.damped,
+              report.friction, report.drag, report.work,
               report.load_work, report.gravity_work, report.severed_energy, report.fracture,
               report.set_free, report.remainder}) {
             cells.push_back(number(energy));
         }
         for (long count : {long(report.severed), long(report.broken), long(report.pieces),
                            long(report.iterations), long(report.increments), long(report.halvings),
-                           report.steps}) {
+                           report.steps, report.rejected}) {
             cells.push_back(std::to_string(count));
         }
         cells.push_back(number(report.residual));

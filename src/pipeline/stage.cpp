@@ -49,7 +49,9 @@ class WarningBook {
 };
 
 struct Totals {
-    long iterations = 0, increments = 0, halvings = 0, steps = 0, severed = 0, broken = 0;
+    long iterations = 0, increments = 0, halvings = 0, steps = 0, rejected = 0, severed = 0,
+         broken = 0;
+    double shortest_step = 0;  // [s]
     double residual = 0, penetration = 0;
     long tool_contacts = 0;
 
@@ -58,6 +60,11 @@ struct Totals {
         increments += report.increments;
         halvings += report.halvings;
         steps += report.steps;
+        rejected += report.rejected;
+        if (report.steps > 0) {
+            shortest_step = shortest_step > 0 ? std::min(shortest_step, report.shortest_step)
+                                              : report.shortest_step;
+        }
         severed += report.severed;
         broken += report.broken;
         residual = std::max(residual, report.residual);
@@ -94,8 +101,11 @@ Json energies_json(const FrameReport& last) {
             {"gravity_work", last.gravity_work},
             {"kinetic", last.kinetic},
             {"elastic", last.elastic},
+            {"contact", last.contact},
             {"plastic", last.plastic},
             {"damped", last.damped},
+            {"friction", last.friction},
+            {"drag", last.drag},
             {"severed", last.severed_energy},
             {"fracture", last.fracture},
             {"set_free", last.set_free},
@@ -258,7 +268,9 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         {"iterations", totals.iterations},
         {"increments", totals.increments},
         {"halvings", totals.halvings},
-        {"explicit_steps", totals.steps},
+        {"steps", totals.steps},
+        {"steps_rejected", totals.rejected},
+        {"shortest_step_s", totals.shortest_step},
         {"largest_residual", totals.residual},
         {"deepest_penetration_m", totals.penetration},
         {"energies_J", energies_json(last)},

@@ -32,20 +32,17 @@ const std::vector<std::string> kStageKeys = {"machine",
                                              "gravity",
                                              "gravity_strength",
                                              "load",
-                                             "gravity_strength",
                                              "medium_density",
-                                             "gravity_strength",
                                              "drag_coefficient",
-                                             "gravity_strength",
                                              "directional_drag",
-                                             "gravity_strength",
                                              "directional_drag_along",
                                              "tolerance",
                                              "iteration_limit",
                                              "halving_limit",
                                              "contact_stiffness",
                                              "grip_stiffness",
-                                             "step_safety"};
+                                             "step_safety",
+                                             "retry_limit"};
 
 bool is_path(const std::string& machine) {
     return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";
@@ -224,6 +221,7 @@ void StageReader::read_solver(TableReader& table, SimSettings& sim) {
              table.quantity("step_safety", Quantity::number,
                             {.low = 0, .high = 1, .low_open = true}, sim.step_safety),
              !relaxes);
+    only_for("retry_limit", table.whole("retry_limit", 0, 20, sim.retry_limit), !relaxes);
     only_for("medium_density",
              table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
              !relaxes);

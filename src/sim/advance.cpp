@@ -19,14 +19,6 @@ namespace {
 
 constexpr int kCrumb = 8;  // a piece of fewer particles is less than one cell
 
-double kinetic_energy(const Aggregate& matter) {
-    double sum = 0;
-    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-        sum += 0.5 * matter.particle_mass[p] * matter.particle_velocity.at(p).squaredNorm();
-    }
-    return sum;
-}
-
 // Marks the particles of pieces that are less than a cell.
 std::vector<char> crumbs_of(const Aggregate& matter) {
     const Pieces pieces = find_pieces(matter);
@@ -52,7 +44,8 @@ struct WorkedBody {
     int pieces;
     std::ptrdiff_t crumbs = 0;  // particles
     Books books{};
-    double stored_at_start = 0;                  // kinetic and elastic [J]
+    bool begun = false;
+    double stored_at_start = 0;  // [J]
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
 };
 
@@ -64,7 +57,10 @@ void Books::add(const Books& other) {
     work += other.work;
     load_work += other.load_work;
     gravity_work += other.gravity_work;
+    contact += other.contact;
     plastic += other.plastic;
+    friction += other.friction;
+    drag += other.drag;
     damped += other.damped;
     severed_energy += other.severed_energy;
     fracture += other.fracture;
@@ -166,18 +162,26 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         books.plastic += part.plastic_work;
         books.damped += part.damped_work;
         books.fracture += part.fracture_work;
+        books.friction += part.friction_work;
+        books.drag += part.drag_work;
         books.set_free += part.set_free;
         for (double done : part.work) books.work += done;
         for (std::size_t n = 0; n < part.push_work.size(); ++n) {
             const bool gravity = n == apparatus.load.size();
             (gravity ? books.gravity_work : books.load_work) += part.push_work[n];
         }
-        books.elastic = elastic(b);
-        books.kinetic = kinetic_energy(*body[b].matter);
+        books.kinetic = part.after.kinetic;
+        books.elastic = part.after.elastic;
+        books.contact = part.after.contact;
+        if (!body[b].begun) {
+            // What the blades took before the first move was in it too.
+            body[b].stored_at_start = part.before.sum() + books.severed_energy;
+            body[b].begun = true;
+        }
         books.remainder = books.work + books.load_work + books.gravity_work -
-                          (books.kinetic + books.elastic - body[b].stored_at_start) -
-                          books.plastic - books.damped - books.severed_energy - books.fracture -
-                          books.set_free;
+                          (part.after.sum() - body[b].stored_at_start) - books.plastic -
+                          books.damped - books.friction - books.drag - books.severed_energy -
+                          books.fracture - books.set_free;
         report.body.push_back(books);
         report.add(books);
     }
@@ -195,7 +199,6 @@ Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& a
             }
         }
         rooms_->body.push_back({&matter, find_pieces(matter).count});
-        rooms_->body[b].stored_at_start = kinetic_energy(matter) + rooms_->elastic(b);
     }
     rooms_->work.assign(apparatus.tool.size() + apparatus.grip.size(), 0.0);
     rooms_->push_work.assign(rooms_->pushes(0).count(), 0.0);
@@ -277,6 +280,8 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.increments = outcome.increments;
     report.halvings = outcome.halvings;
     report.steps = outcome.steps;
+    report.rejected = outcome.rejected;
+    report.shortest_step = outcome.shortest_step;
     report.residual = outcome.residual;
     if (!outcome.lost.empty()) {
         std::string names;
@@ -291,6 +296,12 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         report.warning.push_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "
             "is held to what a step can follow");
+    }
+    if (outcome.inside_out > 0) {
+        report.warning.push_back(fmt::format(
+            "{} cell{} turned inside out, which shorter steps did not keep from it: the matter is "
+            "crushed harder than its stiffness can hold",
+            outcome.inside_out, outcome.inside_out == 1 ? "" : "s"));
     }
     if (outcome.buckled) {
         report.warning.push_back(

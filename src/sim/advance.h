@@ -27,16 +27,18 @@ struct ToolLoad {
 // The energy books of one body, or of all.
 struct Books {
     double kinetic = 0, elastic = 0;                   // now [J]
+    double contact = 0;                                // in contacts and grips, now [J]
     double work = 0, load_work = 0, gravity_work = 0;  // done on it since the stage began [J], by
                                                        // tools and grips, loads, gravity
     double plastic = 0, damped = 0;                    // taken since the stage began [J]
+    double friction = 0, drag = 0;                     // likewise; drag of the medium
     double severed_energy = 0;  // elastic energy lost with severed connections, likewise [J]
     double fracture = 0;        // energy that breaking took, likewise [J]
     // By cracks that ran on while the drive stood, likewise [J]: what an equilibrium loses of a
     // snap. Quasi-static only.
     double set_free = 0;
-    // Of all work since the stage began, what none of the others accounts for [J]: friction's, and
-    // what relaxation lets go where something snaps or is put on at once.
+    // Of all work since the stage began, what none of the others accounts for [J]: in motion the
+    // error of the steps; else what relaxation lets go where something snaps or is put on at once.
     double remainder = 0;
 
     void add(const Books& other);
@@ -46,7 +48,8 @@ struct FrameReport : Books {  // of all bodies
     std::vector<Books> body;
     double time = 0;  // [s] since the stage began
     int iterations = 0, increments = 0, halvings = 0;
-    long steps = 0;               // explicit steps taken
+    long steps = 0, rejected = 0;  // in motion: kept, and taken back
+    double shortest_step = 0;      // likewise [s]
     double residual = 0;          // over the largest push; quasi-static only
     std::vector<ToolLoad> load;   // tools, then grips, then blades, then loads, then gravity
     int severed = 0, broken = 0;  // connections, in this frame: by blades, by load

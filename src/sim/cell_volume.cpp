@@ -146,6 +146,20 @@ int add_guard_forces(const Aggregate& matter,
     return resist(matter, found, force);
 }
 
+int count_inside_out(const Aggregate& matter,
+                     const std::vector<std::vector<const CellRun*>>& crushed) {
+    std::vector<SmallCell> found;
+    for (const std::vector<const CellRun*>& part : crushed) {
+        for (const CellRun* run : part) add_cells_below(matter, *run, 0, found);
+    }
+    return static_cast<int>(found.size());
+}
+
+CellId first_inside_out(const Aggregate& matter) {
+    const std::vector<SmallCell> found = cells_below(matter, 0);
+    return found.empty() ? -1 : id_of(found[0]);
+}
+
 void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness) {
     for (const SmallCell& cell : cells_below(matter, 0)) {
         if (!is_guarded(matter, cell)) continue;

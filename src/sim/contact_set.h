@@ -55,8 +55,12 @@ class ContactSet {
     // Sums by tool, then by grip, for the present state; zero for grips that hold another body.
     std::vector<LoadSum> loads(const Aggregate& matter, const Drive& now) const;
 
-    // Remembers where each touching point sticks; forgets those that have left.
-    void commit(const Aggregate& matter, const Drive& now);
+    // In the springs of touching and gripped points [J].
+    double stored_energy(const Aggregate& matter, const Drive& now) const;
+
+    // Remembers where each touching point sticks; forgets those that have left. Returns the work
+    // that friction took on the way that they slipped [J].
+    double commit(const Aggregate& matter, const Drive& now);
 
     // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;

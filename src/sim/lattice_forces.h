@@ -39,6 +39,9 @@ class LatticeForces {
     // says, by add_guard_stiffness().
     int find(const Aggregate& matter, Flow flow, Vec3Array& force);
 
+    // Cells that were inside out when the forces were last found, rubber among them.
+    int inside_out(const Aggregate& matter) const;
+
     // Remembers the flow and softening of a converged state.
     Committed commit(Aggregate& matter);
 
@@ -65,6 +68,7 @@ class LatticeForces {
     std::unique_ptr<CellFlow> spring_flow_;  // springs that yield
     std::unique_ptr<CellSweep> cells_;       // null: springs
     bool guarded_;
+    int mirrored_ = 0;  // guarded cells inside out
     LooseSprings loose_;  // of cells that are not sound
 };
 

@@ -2,6 +2,7 @@
 // What a solver reports of one move of the drive.
 #pragma once
 
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -9,20 +10,40 @@
 
 namespace swage {
 
+// What a body holds at one time [J].
+struct Stored {
+    double kinetic = 0, elastic = 0;
+    double contact = 0;  // in the springs of contacts and grips
+
+    double sum() const { return kinetic + elastic + contact; }
+};
+
 // What one body went through in a move.
 struct BodyOutcome {
+    Stored before, after;
     double plastic_work = 0;        // [J]
     double fracture_work = 0;       // [J]
+    double friction_work = 0;       // [J]
     double set_free = 0;            // elastic energy that cracks let go of at a standing drive [J];
                                     // quasi-static only
     int broken = 0;                 // connections
-    double damped_work = 0;         // [J]; explicit steps only
+    double damped_work = 0;         // [J]; in motion only
+    double drag_work = 0;           // [J]; in motion only
     std::vector<double> work;       // by tool, then grip [J]
     std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
 
     BodyOutcome(const Apparatus& apparatus, std::size_t pushes)
         : work(apparatus.tool.size() + apparatus.grip.size(), 0.0), push_work(pushes, 0.0) {}
+
+    // On the body by tools, grips, loads and gravity [J].
+    double done() const {
+        return std::accumulate(work.begin(), work.end(), 0.0) +
+               std::accumulate(push_work.begin(), push_work.end(), 0.0);
+    }
+    double lost() const {  // [J]
+        return plastic_work + fracture_work + friction_work + damped_work + drag_work;
+    }
 };
 
 struct MoveOutcome {
@@ -30,9 +51,12 @@ struct MoveOutcome {
     int iterations = 0;
     int increments = 0;
     int halvings = 0;
-    long steps = 0;                 // explicit steps only
+    long steps = 0;                 // kept; in motion only
+    long rejected = 0;              // steps taken back; in motion only
+    double shortest_step = 0;       // [s]; in motion only
     double residual = 0;            // of the last increment, over its reference force
-    bool drag_held = false;         // was more than a step can follow; explicit steps only
+    bool drag_held = false;         // was more than a step can follow; in motion only
+    int inside_out = 0;             // cells that shorter steps did not keep from it; likewise
     bool buckled = false;           // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/cell_volume.h"
 #include "sim/lattice_sweep.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
@@ -54,110 +56,159 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       pushes_(apparatus, settings, number),
       step_(swage::stable_step(matter, settings, lattice_, damping_.branches())),
       drag_(matter, settings, step_),
-      load_(apparatus.tool.size() + apparatus.grip.size()) {}
+      load_(apparatus.tool.size() + apparatus.grip.size()),
+      touches_(!apparatus.tool.empty()),
+      remembers_(false) {
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        const Material& material = matter.material_at(m);
+        remembers_ = remembers_ || material.breaks() || std::isfinite(material.yield_stress);
+    }
+}
 
 double MovingBody::elastic_energy() {
     return lattice_.elastic_energy(matter_) +
            (damping_.acts() ? damping_.stored_energy(matter_) : 0);
 }
 
+void MovingBody::start(const Drive& from, BodyOutcome& outcome) {
+    pushes_.start(matter_, from);
+    find_candidates(from);
+    begin_step(from);
+    find_forces(from, 0, outcome);
+    load_ = contacts_.loads(matter_, from);
+}
+
 void MovingBody::find_candidates(const Drive& now) {
     contacts_.find_candidates(matter_, now);
-    listed_ = matter_.particle_position;
+    if (touches_) listed_ = matter_.particle_position;
+    gone_ = 0;
 }
 
-void MovingBody::find_forces(const Drive& before, const Drive& now, double step,
-                             BodyOutcome& outcome) {
-    contacts_.begin_move(matter_, before);
+void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {
+    if (!touches_) return;
+    const double far = 0.45 * matter_.lattice.spacing;
+    gone_ += way + contacts_.travel(matter_, before, now);
+    if (gone_ > far) find_candidates(now);
+}
+
+double MovingBody::move(double kick, double step) {
+    Vec3Array &x = matter_.particle_position, &v = matter_.particle_velocity;
+    std::vector<double> fastest(vector_chunks(x.size()));
+    for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
+        double most = 0, wrong = 0;  // wrong: 0 while all is finite
+        for (std::size_t p = begin; p < end; ++p) {
+            const double push = kick / matter_.particle_mass[p];
+            v.x[p] += push * force_.x[p] + kick * gravity_.x();
+            v.y[p] += push * force_.y[p] + kick * gravity_.y();
+            v.z[p] += push * force_.z[p] + kick * gravity_.z();
+            x.x[p] += step * v.x[p];
+            x.y[p] += step * v.y[p];
+            x.z[p] += step * v.z[p];
+            const double speed = v.x[p] * v.x[p] + v.y[p] * v.y[p] + v.z[p] * v.z[p];
+            most = speed > most ? speed : most;
+            wrong += speed - speed;
+        }
+        fastest[begin / kVectorChunk] = most + wrong;
+    });
+    double most = 0;
+    for (double one : fastest) most = std::isnan(one) ? one : std::max(one, most);
+    return step * std::sqrt(most);
+}
+
+void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome) {
     lattice_.find(matter_, Flow::trial, force_);
+    inside_out_ = lattice_.inside_out(matter_);
     if (damping_.acts()) outcome.damped_work += damping_.add_forces(matter_, step, force_);
-    if (drag_.acts()) outcome.damped_work += step * drag_.add_forces(matter_, force_);
+    if (drag_.acts()) outcome.drag_work += step * drag_.add_forces(matter_, force_);
     contacts_.add_forces(matter_, now, force_);
     pushes_.add_forces(matter_, now, force_);
+    gravity_ = pushes_.gravity(now);
 }
 
-void MovingBody::move(const Drive& now, double step) {
-    Vec3Array &x = matter_.particle_position, &v = matter_.particle_velocity;
-    const Vec3 g = pushes_.gravity(now);
-    for (std::size_t p = 0; p < x.size(); ++p) {
-        const double push = step / matter_.particle_mass[p];
-        v.x[p] += push * force_.x[p] + step * g.x();
-        v.y[p] += push * force_.y[p] + step * g.y();
-        v.z[p] += push * force_.z[p] + step * g.z();
-        x.x[p] += step * v.x[p];
-        x.y[p] += step * v.y[p];
-        x.z[p] += step * v.z[p];
+void MovingBody::finish_step(const Drive& before, const Drive& now, BodyOutcome& outcome) {
+    if (remembers_) {
+        const Committed lost = lattice_.commit(matter_);
+        outcome.plastic_work += lost.plastic;
+        outcome.fracture_work += lost.fracture;
+        outcome.broken += lost.broken;
+        const Cracked cracked = lattice_.crack(matter_);
+        outcome.fracture_work += cracked.lost;
+        if (cracked.cells > 0) find_forces(now, 0, outcome);
     }
-}
-
-bool MovingBody::is_finite() const {
-    const Vec3Array& x = matter_.particle_position;
-    double sum = 0;
-    for (std::size_t p = 0; p < x.size(); ++p) sum += x.x[p] + x.y[p] + x.z[p];
-    return std::isfinite(sum);
-}
-
-double MovingBody::travel() const {
-    const Vec3Array& x = matter_.particle_position;
-    double farthest = 0;
-    for (std::size_t p = 0; p < x.size(); ++p) {
-        farthest = std::max({farthest, std::abs(x.x[p] - listed_.x[p]),
-                             std::abs(x.y[p] - listed_.y[p]), std::abs(x.z[p] - listed_.z[p])});
-    }
-    return farthest;
-}
-
-void MovingBody::commit(const Drive& before, const Drive& now, BodyOutcome& outcome) {
-    const Committed lost = lattice_.commit(matter_);
-    outcome.plastic_work += lost.plastic;
-    outcome.fracture_work += lost.fracture;
-    outcome.broken += lost.broken;
-    outcome.fracture_work += lattice_.crack(matter_).lost;
-    contacts_.commit(matter_, now);
+    outcome.friction_work += contacts_.commit(matter_, now);
     std::vector<LoadSum> load = contacts_.loads(matter_, now);
     add_work(before, now, load_, load, outcome.work);
     pushes_.commit(matter_, now, outcome.push_work);
     load_ = std::move(load);
 }
 
-struct MovingBody::State {
-    Vec3Array position, velocity;
-    std::array<ConnectionArrays, kForwardCount> connection;
-    std::array<std::vector<float>, kCellConnectionCount> plastic;
-    std::vector<char> cracked;
-    std::array<std::vector<float>, 6> strain;
-    std::array<std::vector<float>, 12> modes;
-    std::vector<float> hardening;
-    std::vector<MixedCell> mixed;
-    ContactSet contacts;
-    LoadSet pushes;
-    InternalDamping damping;
-    std::vector<LoadSum> load;
-};
+Stored MovingBody::stored(const Drive& now, double step) {
+    const Vec3Array& v = matter_.particle_velocity;
+    Stored held;
+    held.elastic = elastic_energy();
+    held.contact = contacts_.stored_energy(matter_, now);
+    const double half = 0.5 * step;
+    held.kinetic = chunked_sum(v.size(), [&](std::size_t p) {
+        return 0.5 * matter_.particle_mass[p] *
+               (v.at(p).squaredNorm() - (half * acceleration(p)).squaredNorm());
+    });
+    return held;
+}
 
-std::shared_ptr<const MovingBody::State> MovingBody::save() const {
+double MovingBody::top_speed() const {
+    const Vec3Array& v = matter_.particle_velocity;
+    double most = 0;
+    for (std::size_t p = 0; p < v.size(); ++p) most = std::max(most, v.at(p).squaredNorm());
+    return std::sqrt(most);
+}
+
+double MovingBody::present_step() {
+    if (inside_out_ == 0) return step_;
+    std::vector<double> guard(matter_.particle_count(), 0.0);
+    add_guard_stiffness(matter_, guard);
+    double highest = 0;
+    for (std::size_t p = 0; p < guard.size(); ++p) {
+        highest = std::max(highest, guard[p] / matter_.particle_mass[p]);
+    }
+    return 1 / std::sqrt(1 / (step_ * step_) + 0.25 * highest);
+}
+
+void MovingBody::save(State& state) const {
     const Aggregate& m = matter_;
-    return std::make_shared<const State>(
-        State{m.particle_position, m.particle_velocity, m.connection, m.cell_plastic,
-              m.cell_cracked, m.cell_plastic_strain, m.cell_plastic_modes, m.cell_hardening,
-              m.mixed_cell, contacts_, pushes_, damping_, load_});
+    state.position = m.particle_position;
+    state.velocity = m.particle_velocity;
+    if (remembers_) {
+        state.connection = m.connection;
+        state.plastic = m.cell_plastic;
+        state.cracked = m.cell_cracked;
+        state.strain = m.cell_plastic_strain;
+        state.modes = m.cell_plastic_modes;
+        state.hardening = m.cell_hardening;
+        state.mixed = m.mixed_cell;
+    }
+    state.contacts.assign(1, contacts_);
+    state.pushes.assign(1, pushes_);
+    state.damping.assign(1, damping_);
+    state.load = load_;
 }
 
 void MovingBody::restore(const State& state) {
     matter_.particle_position = state.position;
     matter_.particle_velocity = state.velocity;
-    matter_.connection = state.connection;
-    matter_.cell_plastic = state.plastic;
-    matter_.cell_cracked = state.cracked;
-    matter_.cell_plastic_strain = state.strain;
-    matter_.cell_plastic_modes = state.modes;
-    matter_.cell_hardening = state.hardening;
-    matter_.mixed_cell = state.mixed;
-    contacts_ = state.contacts;
-    pushes_ = state.pushes;
-    damping_ = state.damping;
+    if (remembers_) {
+        matter_.connection = state.connection;
+        matter_.cell_plastic = state.plastic;
+        matter_.cell_cracked = state.cracked;
+        matter_.cell_plastic_strain = state.strain;
+        matter_.cell_plastic_modes = state.modes;
+        matter_.cell_hardening = state.hardening;
+        matter_.mixed_cell = state.mixed;
+        lattice_.connections_changed(matter_);
+    }
+    contacts_ = state.contacts[0];
+    pushes_ = state.pushes[0];
+    damping_ = state.damping[0];
     load_ = state.load;
-    lattice_.connections_changed(matter_);
 }
 
 }  // namespace swage

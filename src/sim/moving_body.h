@@ -2,8 +2,6 @@
 // One body in motion by explicit steps: its matter, and all that acts on it except other bodies.
 #pragma once
 
-#include <memory>
-
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/contact_set.h"
@@ -31,22 +29,34 @@ class MovingBody {
     // No contact is stiffer than what its carriers can follow in steps of this length [s].
     void limit_stiffness(double step) { contacts_.limit_stiffness(matter_, step); }
 
-    // A frame begins.
-    void start(const Drive& from) { pushes_.start(matter_, from); }
+    // A frame begins: forces where the body is now.
+    void start(const Drive& from, BodyOutcome& outcome);
     void find_candidates(const Drive& now);
 
-    // Forces at the present positions, at which a step of this length [s] has just ended and one
-    // toward `now` begins.
-    void find_forces(const Drive& before, const Drive& now, double step, BodyOutcome& outcome);
-    // Symplectic Euler: v += dt f / m, x += dt v.
-    void move(const Drive& now, double step);
-    bool is_finite() const;
+    // A step from the present positions and drive begins.
+    void begin_step(const Drive& before) { contacts_.begin_move(matter_, before); }
+    // v += kick (f / m + g), x += step v. Returns the longest way of any particle, not a number
+    // where one is lost [m].
+    double move(double kick, double step);
+    void kick(double kick) { move(kick, 0); }
+    // Forces at the present positions, at which a step of this length [s] has just ended.
+    void find_forces(const Drive& now, double step, BodyOutcome& outcome);
     // The step is kept.
-    void commit(const Drive& before, const Drive& now, BodyOutcome& outcome);
-    // The farthest any particle has gone since the candidates were found [m].
-    double travel() const;
-    double tool_travel(const Drive& before, const Drive& now) const {
-        return contacts_.travel(matter_, before, now);
+    void finish_step(const Drive& before, const Drive& now, BodyOutcome& outcome);
+    // Finds the candidates anew if anything could have come near since.
+    void renew_candidates(const Drive& before, const Drive& now, double way);
+
+    // What it holds at the present positions and forces, between steps of this length [s]. The
+    // kinetic energy is that of the steps themselves, 1/2 m v(-) v(+) with the velocities half a
+    // step before and after: what the forces' work by the trapezoid rule adds up to exactly.
+    Stored stored(const Drive& now, double step);
+
+    double top_speed() const;  // of any particle [m/s]
+    int inside_out() const { return inside_out_; }  // cells, when the forces were found
+    // Of the present state, cells inside out included [s].
+    double present_step();
+    Vec3 acceleration(std::size_t p) const {
+        return force_.at(p) / matter_.particle_mass[p] + gravity_;
     }
 
     void connections_changed() { lattice_.connections_changed(matter_); }
@@ -61,8 +71,21 @@ class MovingBody {
     bool drag_is_held() const { return drag_.is_held(); }
 
     // All that a step changes.
-    struct State;
-    std::shared_ptr<const State> save() const;
+    struct State {
+        Vec3Array position, velocity;
+        std::array<ConnectionArrays, kForwardCount> connection;
+        std::array<std::vector<float>, kCellConnectionCount> plastic;
+        std::vector<char> cracked;
+        std::array<std::vector<float>, 6> strain;
+        std::array<std::vector<float>, 12> modes;
+        std::vector<float> hardening;
+        std::vector<MixedCell> mixed;
+        std::vector<ContactSet> contacts;  // one
+        std::vector<LoadSet> pushes;       // one
+        std::vector<InternalDamping> damping;  // one
+        std::vector<LoadSum> load;
+    };
+    void save(State& state) const;
     void restore(const State& state);
 
   private:
@@ -75,6 +98,11 @@ class MovingBody {
     SurfaceDrag drag_;
     Vec3Array force_, listed_;  // listed: positions when the candidates were found
     std::vector<LoadSum> load_;
+    double gone_ = 0;  // no particle has gone farther since then [m]
+    bool touches_;     // a tool could
+    bool remembers_;   // its matter yields or breaks
+    Vec3 gravity_ = Vec3::Zero();
+    int inside_out_ = 0;
 };
 
 }  // namespace swage

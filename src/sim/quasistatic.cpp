@@ -437,7 +437,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     }
 
     const bool breaks = commit(outcome);
-    contacts_.commit(matter_, to);
+    outcome.body[0].friction_work += contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
     for (std::size_t n = 0; n < load.size(); ++n) {
         largest_push_ = std::max(largest_push_, load[n].size);
@@ -468,6 +468,10 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     outcome.body.emplace_back(apparatus_, pushes_.count());
     pushes_.start(matter_, from);
+    if (!begun_) {
+        outcome.body[0].before = {0, elastic_energy(), contacts_.stored_energy(matter_, from)};
+        begun_ = true;
+    }
     const double travel = contacts_.travel(matter_, from, to);
     moved_ = moved_ || travel > 0;
     const int count = std::max(1, static_cast<int>(std::ceil(travel / matter_.lattice.spacing)));
@@ -479,6 +483,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
         before = after;
     }
     outcome.body[0].load = load_;
+    outcome.body[0].after = {0, elastic_energy(), contacts_.stored_energy(matter_, to)};
     return outcome;
 }
 

@@ -84,6 +84,7 @@ class QuasistaticSolver {
                                            // the candidates were found
     std::vector<double> previous_motion_;  // empty: nothing to extrapolate from
     bool moved_ = false;                   // any tool or grip, ever
+    bool begun_ = false;
     double largest_push_ = 0;              // of any tool so far [N]
     std::vector<LoadSum> load_;            // at the end of the last increment, by tool, then grip
     std::vector<double> most_load_;        // that each has carried so far [N]

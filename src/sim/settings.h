@@ -24,6 +24,7 @@ struct SimSettings {
 
     // Explicit steps.
     double step_safety = 0.8;  // share of the stable step, 0 to 1
+    int retry_limit = 10;      // halvings of a step that goes wrong (sim/motion_guard.h); 0 to 20
 
     // What the medium around does to the surface (laws/ambient_drag.h, laws/directional_drag.h);
     // explicit steps only.

@@ -152,7 +152,7 @@ TEST_CASE("a body falling through air follows the tanh of quadratic drag") {
         CHECK(-mean_velocity(m).y() == Approx(v).epsilon(0.005));
         CHECK(start - m.particle_position.at(0).y() == Approx(fall).epsilon(0.01));
     }
-    CHECK(r.damped == Approx(r.gravity_work - r.kinetic).epsilon(0.01));
+    CHECK(r.drag == Approx(r.gravity_work - r.kinetic).epsilon(0.01));
     CHECK(std::abs(r.remainder) < 0.01 * r.gravity_work);
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("a plate sinks flat as fast as its weight over drag and area, and slow
         const FrameReport r = simulation.advance(at(0), at(0.05));
         CHECK(-mean_velocity(m).y() ==
               Approx(terminal * (1 - std::exp(-0.05 * rate))).epsilon(0.02));
-        CHECK(r.damped == Approx(r.gravity_work - r.kinetic - r.elastic).epsilon(0.03));
+        CHECK(r.drag == Approx(r.gravity_work - r.kinetic - r.elastic).epsilon(0.03));
     }
 }
 

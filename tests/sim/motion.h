@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For tests of bodies in motion.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/advance.h"
+#include "tests/shared/block.h"
+
+namespace swage::test {
+
+inline const Material kSpringy{.young_modulus = 1e6, .density = 1000, .damping_ratio = 0};
+
+inline SimSettings motion_settings(Solver solver = Solver::explicit_steps) {
+    SimSettings s;
+    s.solver = solver;
+    return s;
+}
+
+inline Drive still(double time) {
+    Drive d;
+    d.time = time;
+    return d;
+}
+
+// The most that any unsevered connection differs from its length, over that.
+inline double largest_stretch(const Aggregate& m) {
+    double most = 0;
+    for (const Span& span : m.lattice.span) {
+        const double length = reference_length(m.lattice, span.direction);
+        for (int n = 0; n < span.count; ++n) {
+            if (!(m.connection[span.direction].weight[span.lower + n] > 0)) continue;
+            const double distance = (m.particle_position.at(span.upper + n) -
+                                     m.particle_position.at(span.lower + n))
+                                        .norm();
+            most = std::max(most, std::abs(distance / length - 1));
+        }
+    }
+    return most;
+}
+
+}  // namespace swage::test

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the guard of bodies in motion sees, takes back, and says.
+#include <limits>
+
+#include "base/error.h"
+#include "sim/advance.h"
+#include "sim/cell_volume.h"
+#include "sim/explicit_steps.h"
+#include "sim/motion_guard.h"
+#include "tests/catch.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Aggregate block(const Material& material = kSpringy) {
+    return make_block(4, 3, 3, 0.1, material);
+}
+
+}  // namespace
+
+TEST_CASE("a particle without a place stops the run, and is named") {
+    Aggregate m = block();
+    m.particle_velocity.x[7] = kNan;
+    const Apparatus nothing;
+    Simulation simulation(m, nothing, motion_settings());
+    try {
+        simulation.advance(still(0), still(0.01));
+        FAIL("it went on");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::stopped);
+        const std::string text = error.what();
+        CHECK(text.find("particle 7 of body 1 is lost") != std::string::npos);
+        CHECK(text.find("connection of particles") != std::string::npos);
+        CHECK(text.find("step_safety") != std::string::npos);
+    }
+}
+
+TEST_CASE("a particle that would go far in a step makes the steps short, and none does") {
+    Aggregate m = block();
+    const Apparatus nothing;
+    const double dt = explicit_step(m, motion_settings());
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_velocity.set(p, Vec3(10 * 0.1 / dt, 0, 0));  // ten spacings a stable step
+    }
+    Simulation simulation(m, nothing, motion_settings());
+    const FrameReport r = simulation.advance(still(0), still(10 * dt));
+    CHECK(r.shortest_step < 0.031 * dt);
+    CHECK(r.rejected == 0);
+    CHECK(r.steps >= 333);
+    CHECK(m.particle_position.x[0] - m.particle_reference.x[0] == Approx(10.0).epsilon(1e-9));
+}
+
+TEST_CASE("a step that goes too far, or is lost, or turns a cell inside out, is found") {
+    Aggregate m = block();
+    const Apparatus nothing;
+    const SimSettings settings = motion_settings();
+    MovingBody body(m, 0, nothing, settings);
+    CHECK_FALSE(look_at(body, 0.49 * 0.1, 0));
+    CHECK(look_at(body, 0.51 * 0.1, 0).fault == Fault::too_far);
+    CHECK(look_at(body, kNan, 0).fault == Fault::lost);
+    for (double& x : m.particle_position.x) x = -x;
+    BodyOutcome outcome(nothing, 0);
+    body.find_forces(still(0), 0, outcome);
+    CHECK(body.inside_out() == 36);
+    CHECK(look_at(body, 0, 35).fault == Fault::inside_out);
+    CHECK_FALSE(look_at(body, 0, 36));
+    const Finding finding = look_at(body, 0, 0);
+    const std::string text = sentence_of(finding, body, "drop", 1e-6);
+    CHECK(text.find("cell 0 turns inside out") != std::string::npos);
+}
+
+TEST_CASE("rubber that is inside out is counted though its law needs no guard") {
+    Material rubber = kSpringy;
+    rubber.elasticity = Elasticity::neo_hookean;
+    Aggregate m = block(rubber);
+    for (double& x : m.particle_position.x) x = -x;
+    const Apparatus nothing;
+    const SimSettings settings = motion_settings();
+    MovingBody body(m, 0, nothing, settings);
+    BodyOutcome outcome(nothing, 0);
+    body.find_forces(still(0), 0, outcome);
+    CHECK(body.inside_out() == 36);
+}
+
+TEST_CASE("energy that appears from nowhere is refused once it is a twentieth of what was put in") {
+    EnergyGuard guard;
+    guard.start(100);
+    CHECK(guard.accepts(0, 0, 0, 0.1));    // too little to be an alarm
+    CHECK(guard.accepts(0, 0, 0, 4.8));    // within the tolerance
+    CHECK_FALSE(guard.accepts(0, 0, 0, 0.3));
+    CHECK(guard.accepts(0, 0, 0.05, 0.05));  // again too little
+    CHECK(guard.accepts(50, 50, 0, 50));   // work was done
+    CHECK_FALSE(guard.accepts(0, 0, 0, kNan));
+    CHECK(guard.accepts(0, 0, 0, -90));    // losses are no alarm, and are not saved up for long
+    CHECK_FALSE(guard.accepts(0, 0, 0, 20));
+}
+
+TEST_CASE("steps beyond the stable one are halved until energy keeps") {
+    Aggregate m = block();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_velocity.set(p, Vec3(p % 2 ? 0.1 : -0.1, p % 3 ? 0.1 : -0.1, 0));
+    }
+    double start = 0;
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        start += 0.5 * m.particle_mass[p] * m.particle_velocity.at(p).squaredNorm();
+    }
+    SimSettings settings = motion_settings();
+    settings.step_safety = 8;
+    const Apparatus nothing;
+    Simulation simulation(m, nothing, settings);
+    const FrameReport r = simulation.advance(still(0), still(50 * explicit_step(m, settings)));
+    CHECK(r.halvings > 0);
+    CHECK(r.rejected > 0);
+    CHECK(r.shortest_step < 0.2 * explicit_step(m, settings));
+    CHECK(r.kinetic + r.elastic < 1.06 * start);
+}
+
+TEST_CASE("a lattice turned inside out or crushed a hundred times comes back to its shape") {
+    Material material = kSpringy;
+    material.damping_ratio = 0.3;
+    for (const bool mirrored : {true, false}) {
+        Aggregate m = block(material);
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            const Vec3 x = m.particle_reference.at(p);
+            m.particle_position.set(p, mirrored ? Vec3(-x.x(), x.y(), x.z()) : Vec3(0.01 * x));
+        }
+        const Apparatus nothing;
+        Simulation simulation(m, nothing, motion_settings());
+        const double period = 0.4 / std::sqrt(1e6 / 1000);
+        FrameReport r;
+        for (int n = 0; n < 40; ++n) {
+            r = simulation.advance(still(n * 2 * period), still((n + 1) * 2 * period));
+        }
+        INFO("mirrored " << mirrored);
+        CHECK(smallest_cell_volume(m) > 0.98);
+        // Every connection is as long as it was; the body may have turned.
+        CHECK(largest_stretch(m) < 0.02);
+    }
+}
