@@ -85,7 +85,8 @@ struct DampingStep {
 };
 inline DampingStep damping_step(const DampingBranches& branches, int j, double step) {
     const double share = step / branches.time[j];
-    return {std::exp(-share), branches.share[j] * -std::expm1(-share) / share};
+    const double grown = share > 0 ? -std::expm1(-share) / share : 1;
+    return {std::exp(-share), branches.share[j] * grown};
 }
 
 }  // namespace swage

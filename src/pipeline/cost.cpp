@@ -22,6 +22,7 @@ namespace {
 constexpr double kIterationsPerFrame = 350;
 constexpr double kSecondsPerParticleStep = 60e-9;  // one core
 constexpr double kSecondsPerPixel = 1.8e-7;        // drawing and writing, two cores
+constexpr double kEnergyStepsPerStep = 100;        // while a body swings
 constexpr double kBytesPerParticle = 500;          // beside the aggregate: solver, mount, skin
 constexpr double kBytesPerVertex = 600;
 constexpr double kProgramBytes = 80e6;  // libraries and the drawing's own buffers
@@ -62,11 +63,16 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.frames = frame_count(scene);
     cost.steps = 0;
     for (const StageSpec& stage : scene.stage) {
-        if (stage.sim.solver == Solver::quasistatic) {
+        const Solver solver = stage.sim.solver;
+        if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
             cost.steps += kIterationsPerFrame * stage.frames;
         } else {
-            cost.steps +=
-                stage_duration(stage, scene) * steps_per_second(scene, cost, matter, stage.sim);
+            const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
+                                   : solver == Solver::euler
+                                       ? 1 / std::max(scene.material.damping_ratio, 1e-3)
+                                       : 1;
+            cost.steps += shorter * stage_duration(stage, scene) *
+                          steps_per_second(scene, cost, matter, stage.sim);
         }
     }
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;

@@ -99,9 +99,8 @@ std::string csv_text(const StageCurves& curves) {
         }
         for (double energy :
              {report.kinetic, report.elastic, report.contact, report.plastic, report.damped,
-              report.friction, report.drag, report.work,
-              report.load_work, report.gravity_work, report.severed_energy, report.fracture,
-              report.set_free, report.remainder}) {
+              report.friction, report.drag, report.work, report.load_work, report.gravity_work,
+              report.severed_energy, report.fracture, report.set_free, report.remainder}) {
             cells.push_back(number(energy));
         }
         for (long count : {long(report.severed), long(report.broken), long(report.pieces),

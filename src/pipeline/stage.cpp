@@ -49,8 +49,8 @@ class WarningBook {
 };
 
 struct Totals {
-    long iterations = 0, increments = 0, halvings = 0, steps = 0, rejected = 0, severed = 0,
-         broken = 0;
+    long iterations = 0, increments = 0, halvings = 0, steps = 0, rejected = 0, rescued = 0,
+         severed = 0, broken = 0;
     double shortest_step = 0;  // [s]
     double residual = 0, penetration = 0;
     long tool_contacts = 0;
@@ -61,6 +61,7 @@ struct Totals {
         halvings += report.halvings;
         steps += report.steps;
         rejected += report.rejected;
+        rescued += report.rescued;
         if (report.steps > 0) {
             shortest_step = shortest_step > 0 ? std::min(shortest_step, report.shortest_step)
                                               : report.shortest_step;
@@ -95,21 +96,14 @@ Json parameters_json(const Machine& machine) {
     return json;
 }
 
-Json energies_json(const FrameReport& last) {
-    return {{"machine_work", last.work},
-            {"load_work", last.load_work},
-            {"gravity_work", last.gravity_work},
-            {"kinetic", last.kinetic},
-            {"elastic", last.elastic},
-            {"contact", last.contact},
-            {"plastic", last.plastic},
-            {"damped", last.damped},
-            {"friction", last.friction},
-            {"drag", last.drag},
-            {"severed", last.severed_energy},
-            {"fracture", last.fracture},
-            {"set_free", last.set_free},
-            {"remainder", last.remainder}};
+Json energies_json(const Books& last) {
+    return {{"machine_work", last.work},         {"load_work", last.load_work},
+            {"gravity_work", last.gravity_work}, {"kinetic", last.kinetic},
+            {"elastic", last.elastic},           {"contact", last.contact},
+            {"plastic", last.plastic},           {"damped", last.damped},
+            {"friction", last.friction},         {"drag", last.drag},
+            {"severed", last.severed_energy},    {"fracture", last.fracture},
+            {"set_free", last.set_free},         {"remainder", last.remainder}};
 }
 
 void write_curves(const StageCurves& curves, const StageContext& context) {
@@ -252,6 +246,8 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
     }
     outcome.steps = totals.iterations + totals.steps;
+    Json by_body = Json::array();
+    for (const Books& books : last.body) by_body.push_back(energies_json(books));
     outcome.record = {
         {"name", stage.name},
         {"machine", stage.machine.name},
@@ -268,12 +264,15 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         {"iterations", totals.iterations},
         {"increments", totals.increments},
         {"halvings", totals.halvings},
+        {"solver", name_of(stage.sim.solver)},
         {"steps", totals.steps},
+        {"steps_implicit_instead", totals.rescued},
         {"steps_rejected", totals.rejected},
         {"shortest_step_s", totals.shortest_step},
         {"largest_residual", totals.residual},
         {"deepest_penetration_m", totals.penetration},
         {"energies_J", energies_json(last)},
+        {"energies_by_body_J", by_body},
         {"notes", machine.notes},
         {"warnings", outcome.warning},
         {"state_hash", hash_text(state_hash(bodies))},

@@ -71,9 +71,9 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
                                               "would lose the inset: leave remold out",
                                               stage.name));
         }
-        if (stage.sim.solver == Solver::explicit_steps) {
-            root.mistake("inset", fmt::format("stage \"{}\" takes explicit steps, whose damping "
-                                              "knows one material: use solver = \"quasistatic\"",
+        if (stage.sim.solver != Solver::quasistatic) {
+            root.mistake("inset", fmt::format("stage \"{}\" moves by steps, whose damping knows "
+                                              "one material: use solver = \"quasistatic\"",
                                               stage.name));
         }
     }

@@ -75,7 +75,7 @@ void read_document_into(const Document& document, const AssetPaths& assets, Read
     BodyReader bodies(reading, assets, folder);
     for (const Node* node : root.tables("body", "[[body]]")) bodies.read(*node, scene);
     read_skin(skin, scene.skin);
-    StageReader stages(reading, assets, folder);
+    StageReader stages(reading, assets, folder, scene);
     for (const Node* node : root.tables("stage", "[[stage]]")) {
         scene.stage.push_back(stages.read(*node));
     }

@@ -8,9 +8,9 @@
 //     [mold]      across or spacing, kind ("shape", "block"), cell_limit
 //     [skin]      kind ("mount", "frame4", "boundary")
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",
-//                 "explicit"), gravity, gravity_strength; tolerance, iteration_limit,
-//                 halving_limit, contact_stiffness, grip_stiffness, step_safety (see
-//                 sim/settings.h); and the machine's parameters
+//                 "explicit", "euler", "energy-stepped", "implicit"), gravity,
+//                 gravity_strength; tolerance, iteration_limit, halving_limit,
+//                 contact_stiffness, grip_stiffness, step_safety, retry_limit (see sim/settings.h); and the machine's parameters
 //     [[stage.load]]  name, force or pressure, on, from, to, strength (see scene/read_load.h)
 //     [render]    size, fps, film, tools, ground, gl ("auto", "osmesa", "egl"), field_of_view
 //     [render.camera]  azimuth, elevation, zoom, or eye and target; orbit; or keys = [{at, ...}]

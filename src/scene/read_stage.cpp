@@ -10,6 +10,7 @@
 #include "scene/file_text.h"
 #include "scene/read_load.h"
 #include "scene/read_machine.h"
+#include "scene/read_solver.h"
 #include "scene/stage_keys.h"
 
 namespace swage {
@@ -75,8 +76,9 @@ std::optional<std::string> why_no_file_name(const std::string& text) {
     return std::nullopt;
 }
 
-StageReader::StageReader(Reading& reading, const AssetPaths& assets, fs::path scene_folder)
-    : reading_(reading), scene_folder_(std::move(scene_folder)) {
+StageReader::StageReader(Reading& reading, const AssetPaths& assets, fs::path scene_folder,
+                         const SceneSpec& scene)
+    : reading_(reading), scene_folder_(std::move(scene_folder)), scene_(scene) {
     reading_.known["[[stage]]"].insert(kStageKeys.begin(), kStageKeys.end());
     known_ = known_machines(assets, scene_folder_);
     looked_in_.push_back((scene_folder_ / "machines").string());
@@ -198,61 +200,6 @@ void StageReader::read_loads(TableReader& table, StageSpec& stage) {
     }
 }
 
-void StageReader::read_solver(TableReader& table, SimSettings& sim) {
-    table.choice<Solver>(
-        "solver", {{"quasistatic", Solver::quasistatic}, {"explicit", Solver::explicit_steps}},
-        sim.solver);
-    const bool relaxes = sim.solver == Solver::quasistatic;
-    const auto only_for = [&](const std::string& key, bool is_given, bool is_used) {
-        if (!is_given || is_used) return;
-        table.warn(key, fmt::format("{} has no effect with solver = \"{}\"", key,
-                                    relaxes ? "quasistatic" : "explicit"));
-    };
-    const auto number = [&](const std::string& key, double low, double high, double& into) {
-        return table.quantity(key, Quantity::number, between(low, high), into);
-    };
-    only_for("tolerance", number("tolerance", 1e-4, 0.1, sim.tolerance), relaxes);
-    only_for("iteration_limit", table.whole("iteration_limit", 100, 1'000'000, sim.iteration_limit),
-             relaxes);
-    only_for("halving_limit", table.whole("halving_limit", 0, 8, sim.halving_limit), relaxes);
-    number("contact_stiffness", 0.5, 100, sim.contact_stiffness);
-    number("grip_stiffness", 1, 100, sim.grip_stiffness);
-    only_for("step_safety",
-             table.quantity("step_safety", Quantity::number,
-                            {.low = 0, .high = 1, .low_open = true}, sim.step_safety),
-             !relaxes);
-    only_for("retry_limit", table.whole("retry_limit", 0, 20, sim.retry_limit), !relaxes);
-    only_for("medium_density",
-             table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
-             !relaxes);
-    only_for(
-        "drag_coefficient",
-        table.quantity("drag_coefficient", Quantity::number, at_least(0), sim.drag_coefficient),
-        !relaxes);
-    only_for("directional_drag",
-             table.quantity("directional_drag", Quantity::drag, at_least(0), sim.directional_drag),
-             !relaxes);
-    only_for("directional_drag_along",
-             table.choice<DragAlong>("directional_drag_along",
-                                     {{"motion", DragAlong::motion}, {"normal", DragAlong::normal}},
-                                     sim.directional_drag_along),
-             !relaxes);
-    const auto idle = [&](const char* key, const char* without, double of) {
-        if (relaxes || of > 0 || table.find(key) == nullptr) return;
-        table.warn(key, fmt::format("{} has no effect without {}", key, without));
-    };
-    idle("drag_coefficient", "medium_density", sim.medium_density);
-    idle("directional_drag_along", "directional_drag", sim.directional_drag);
-    const Node* gravity = table.find("gravity");
-    if (gravity != nullptr && gravity->kind != Node::Kind::array) {
-        double down = 0;  // a single number points down
-        table.quantity("gravity", Quantity::acceleration, {}, down);
-        sim.gravity = {0, -down + 0.0, 0};
-    } else {
-        table.vector("gravity", Quantity::acceleration, sim.gravity);
-    }
-}
-
 void StageReader::read_frame(TableReader& table, StageSpec& stage) {
     const auto same = [](std::vector<std::string> names) {
         std::vector<std::pair<std::string, std::string>> pairs;
@@ -300,7 +247,7 @@ StageSpec StageReader::read(const Node& node) {
     table.quantity("duration", Quantity::time, above(0), stage.duration);
     table.truth("remold", stage.remold);
     read_frame(table, stage);
-    read_solver(table, stage.sim);
+    read_solver(table, scene_, stage.sim);
     if (loaded != nullptr && loaded->machine) {
         stage.machine = *loaded->machine;
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));

@@ -18,7 +18,9 @@ namespace swage {
 // Reads the [[stage]]s of one scene in their order; a machine file is read once.
 class StageReader {
   public:
-    StageReader(Reading& reading, const AssetPaths& assets, std::filesystem::path scene_folder);
+    // `scene`: all before its stages has been read.
+    StageReader(Reading& reading, const AssetPaths& assets, std::filesystem::path scene_folder,
+                const SceneSpec& scene);
 
     StageSpec read(const Node& node);
 
@@ -35,12 +37,12 @@ class StageReader {
     const Loaded* load(const std::filesystem::path& file);
     void read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage);
     void read_loads(TableReader& table, StageSpec& stage);
-    void read_solver(TableReader& table, SimSettings& sim);
     void read_frame(TableReader& table, StageSpec& stage);
     void name_stage(TableReader& table, const std::string& machine, StageSpec& stage);
 
     Reading& reading_;
     std::filesystem::path scene_folder_;
+    const SceneSpec& scene_;
     std::vector<MachineFile> known_;
     std::vector<std::string> looked_in_;
     std::map<std::filesystem::path, Loaded> loaded_;

@@ -8,6 +8,8 @@
 #include <deque>
 #include <variant>
 
+#include "base/error.h"
+#include "sim/energy_steps.h"
 #include "sim/explicit_steps.h"
 #include "sim/lattice_forces.h"
 #include "sim/quasistatic.h"
@@ -29,13 +31,28 @@ std::vector<char> crumbs_of(const Aggregate& matter) {
     return crumb;
 }
 
-std::variant<QuasistaticSolver, ExplicitSolver> choose_solver(const std::vector<Aggregate*>& bodies,
-                                                              const Apparatus& apparatus,
-                                                              const SimSettings& settings) {
-    if (settings.solver == Solver::explicit_steps) {
-        return ExplicitSolver(bodies, apparatus, settings);
+using AnySolver = std::variant<QuasistaticSolver, ExplicitSolver, EnergySteps>;
+
+AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
+                        const SimSettings& settings) {
+    if (settings.solver == Solver::quasistatic) {
+        return QuasistaticSolver(*bodies[0], apparatus, settings);
     }
-    return QuasistaticSolver(*bodies[0], apparatus, settings);
+    if (settings.solver == Solver::energy_stepped) return EnergySteps(bodies, apparatus, settings);
+    if (settings.solver == Solver::implicit_steps) {
+        if (bodies.size() > 1) {
+            fail(ExitCode::stopped,
+                 "{}: solver = \"implicit\" moves one body: use solver = \"explicit\"",
+                 apparatus.name);
+        }
+        for (const Aggregate* body : bodies) {
+            if (const char* why = ImplicitStep::cannot(*body)) {
+                fail(ExitCode::stopped, "{}: solver = \"implicit\" cannot move this body: {}",
+                     apparatus.name, why);
+            }
+        }
+    }
+    return ExplicitSolver(bodies, apparatus, settings);
 }
 
 // A body, and what the stage has done to it so far.
@@ -45,7 +62,7 @@ struct WorkedBody {
     std::ptrdiff_t crumbs = 0;  // particles
     Books books{};
     bool begun = false;
-    double stored_at_start = 0;  // [J]
+    double stored_at_start = 0;                  // [J]
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
 };
 
@@ -71,22 +88,17 @@ void Books::add(const Books& other) {
 struct Simulation::Rooms {
     std::vector<WorkedBody> body;
     const Apparatus& apparatus;
-    std::variant<QuasistaticSolver, ExplicitSolver> solver;
+    AnySolver solver;
     std::vector<double> work, push_work;  // of each tool and grip, load and gravity, on all bodies
 
     const LoadSet& pushes(std::size_t b) const {
-        const auto* steps = std::get_if<ExplicitSolver>(&solver);
-        return steps ? steps->pushes(b) : std::get<QuasistaticSolver>(solver).pushes();
+        return std::visit([&](const auto& any) -> const LoadSet& { return any.pushes(b); }, solver);
     }
     double elastic(std::size_t b) {
-        auto* steps = std::get_if<ExplicitSolver>(&solver);
-        return steps ? steps->elastic_energy(b)
-                     : std::get<QuasistaticSolver>(solver).elastic_energy();
+        return std::visit([&](auto& any) { return any.elastic_energy(b); }, solver);
     }
     void connections_changed(std::size_t b) {
-        auto* steps = std::get_if<ExplicitSolver>(&solver);
-        steps ? steps->connections_changed(b)
-              : std::get<QuasistaticSolver>(solver).connections_changed();
+        std::visit([&](auto& any) { any.connections_changed(b); }, solver);
     }
 
     std::vector<SeverEvent> crossed(const Aggregate& matter, const Drive& from,
@@ -280,6 +292,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.increments = outcome.increments;
     report.halvings = outcome.halvings;
     report.steps = outcome.steps;
+    report.rescued = outcome.rescued;
     report.rejected = outcome.rejected;
     report.shortest_step = outcome.shortest_step;
     report.residual = outcome.residual;

@@ -50,10 +50,11 @@ struct FrameReport : Books {  // of all bodies
     int iterations = 0, increments = 0, halvings = 0;
     long steps = 0, rejected = 0;  // in motion: kept, and taken back
     double shortest_step = 0;      // likewise [s]
-    double residual = 0;          // over the largest push; quasi-static only
-    std::vector<ToolLoad> load;   // tools, then grips, then blades, then loads, then gravity
-    int severed = 0, broken = 0;  // connections, in this frame: by blades, by load
-    int pieces = 1;               // of all bodies
+    long rescued = 0;              // of those kept: implicit ones where explicit ones went wrong
+    double residual = 0;           // over the largest push; quasi-static only
+    std::vector<ToolLoad> load;    // tools, then grips, then blades, then loads, then gravity
+    int severed = 0, broken = 0;   // connections, in this frame: by blades, by load
+    int pieces = 1;                // of all bodies
     std::vector<std::string> warning;
 };
 

@@ -2,6 +2,8 @@
 #include "sim/cell_volume.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "base/parallel.h"
 #include "laws/volume_guard.h"
@@ -146,13 +148,47 @@ int add_guard_forces(const Aggregate& matter,
     return resist(matter, found, force);
 }
 
-int count_inside_out(const Aggregate& matter,
-                     const std::vector<std::vector<const CellRun*>>& crushed) {
-    std::vector<SmallCell> found;
-    for (const std::vector<const CellRun*>& part : crushed) {
-        for (const CellRun* run : part) add_cells_below(matter, *run, 0, found);
+int count_inside_out(const Aggregate& matter) {
+    return static_cast<int>(cells_below(matter, 0).size());
+}
+
+// NOTE: what the guard's law gives back to matter that was turned inside out is 16 times what would
+// tear it apart, so it is taken on the way.
+double calm_crushed(Aggregate& matter, double keep) {
+    double taken = 0;
+    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
+        std::array<std::size_t, 8> p;
+        double mass = 0;
+        Vec3 center = Vec3::Zero(), drift = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) {
+            p[c] = static_cast<std::size_t>(cell.run->row[c >> 1] + cell.n + (c & 1));
+            const double m = matter.particle_mass[p[c]];
+            mass += m;
+            center += m * matter.particle_position.at(p[c]);
+            drift += m * matter.particle_velocity.at(p[c]);
+        }
+        center /= mass;
+        drift /= mass;
+        Mat3 inertia = Mat3::Zero();
+        Vec3 spin = Vec3::Zero();
+        for (std::size_t q : p) {
+            const Vec3 r = matter.particle_position.at(q) - center;
+            inertia +=
+                matter.particle_mass[q] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+            spin += matter.particle_mass[q] * r.cross(matter.particle_velocity.at(q));
+        }
+        const double trace = inertia.trace();
+        if (!(trace > 0) || !std::isfinite(trace)) continue;
+        inertia.diagonal().array() += 1e-12 * trace;
+        const Vec3 turn = inertia.ldlt().solve(spin);
+        for (std::size_t q : p) {
+            const Vec3 rigid = drift + turn.cross(matter.particle_position.at(q) - center);
+            const Vec3 v = matter.particle_velocity.at(q), calmed = rigid + keep * (v - rigid);
+            taken += 0.5 * matter.particle_mass[q] * (v.squaredNorm() - calmed.squaredNorm());
+            matter.particle_velocity.set(q, calmed);
+        }
     }
-    return static_cast<int>(found.size());
+    return taken;
 }
 
 CellId first_inside_out(const Aggregate& matter) {

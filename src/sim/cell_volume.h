@@ -22,10 +22,12 @@ int add_guard_forces(const Aggregate& matter, Vec3Array& force);
 // The same when these runs are all that have such cells (CellSweep::crushed_runs).
 int add_guard_forces(const Aggregate& matter,
                      const std::vector<std::vector<const CellRun*>>& crushed, Vec3Array& force);
-int count_inside_out(const Aggregate& matter,
-                     const std::vector<std::vector<const CellRun*>>& crushed);
+int count_inside_out(const Aggregate& matter);
 // The first cell that is inside out, or -1.
 CellId first_inside_out(const Aggregate& matter);
+// Keeps only a share of the speed by which cells below half of their volume deform; momentum and
+// angular momentum stay. Returns the energy that this takes [J].
+double calm_crushed(Aggregate& matter, double keep);
 // Adds to each particle what the guard of cells inside out can add to its stiffness [N/m].
 void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness);
 double guard_energy_of(const Aggregate& matter);  // [J]

@@ -242,12 +242,12 @@ std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now
 
 double ContactSet::stored_energy(const Aggregate& matter, const Drive& now) const {
     double sum = 0;
-    for_each_touch(matter, now,
-                   [&](std::size_t, const Vec3&, const Distance&, double k,
-                       const ContactForce& contact) {
-                       // Both springs have the stiffness k: |F|^2 = N^2 + T^2.
-                       sum += 0.5 * contact.force.squaredNorm() / k;
-                   });
+    for_each_touch(
+        matter, now,
+        [&](std::size_t, const Vec3&, const Distance&, double k, const ContactForce& contact) {
+            // Both springs have the stiffness k: |F|^2 = N^2 + T^2.
+            sum += 0.5 * contact.force.squaredNorm() / k;
+        });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];
@@ -262,23 +262,22 @@ double ContactSet::stored_energy(const Aggregate& matter, const Drive& now) cons
 double ContactSet::commit(const Aggregate& matter, const Drive& now) {
     std::vector<char> touches(pair_.size(), 0);
     double lost = 0;
-    for_each_touch(
-        matter, now,
-        [&](std::size_t n, const Vec3& x, const Distance& d, double k,
-            const ContactForce& contact) {
-            Pair& pair = pair_[n];
-            touches[n] = 1;
-            const Pose& pose = now.world_from_tool[pair.tool];
-            const Vec3 anchor = dragged_anchor(contact, d.normal, x, k);
-            if (contact.slips) {
-                const Vec3 reach = pose * anchor_of(pair) - x;
-                const Vec3 held = anchor - x;  // along the force, k |held| long
-                const double slipped =
-                    (reach - d.normal * d.normal.dot(reach)).norm() - held.norm();
-                lost += k * held.norm() * slipped;
-            }
-            pair.anchor = pose.inverse() * anchor;
-        });
+    for_each_touch(matter, now,
+                   [&](std::size_t n, const Vec3& x, const Distance& d, double k,
+                       const ContactForce& contact) {
+                       Pair& pair = pair_[n];
+                       touches[n] = 1;
+                       const Pose& pose = now.world_from_tool[pair.tool];
+                       const Vec3 anchor = dragged_anchor(contact, d.normal, x, k);
+                       if (contact.slips) {
+                           const Vec3 reach = pose * anchor_of(pair) - x;
+                           const Vec3 held = anchor - x;  // along the force, k |held| long
+                           const double slipped =
+                               (reach - d.normal * d.normal.dot(reach)).norm() - held.norm();
+                           lost += k * held.norm() * slipped;
+                       }
+                       pair.anchor = pose.inverse() * anchor;
+                   });
     for (std::size_t n = 0; n < pair_.size(); ++n) pair_[n].stuck = touches[n];
     return lost;
 }

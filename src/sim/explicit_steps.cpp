@@ -6,20 +6,30 @@
 #include <limits>
 
 #include "base/error.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
 namespace {
 
-constexpr long kBlock = 64;       // steps
-constexpr double kWayAhead = 0.3; // spacings a step that the fastest particle is given
-constexpr int kPatience = 8;      // blocks until a halved step is doubled again
+constexpr long kBlock = 64;           // steps
+constexpr double kWayAhead = 0.3;     // spacings a step that the fastest particle is given
+constexpr int kPatience = 8;          // blocks until a halved step is doubled again
+constexpr double kFrameShare = 0.25;  // of a frame, in an implicit step
+constexpr double kRescueStep = 64;    // explicit steps in an implicit one that stands in for them
+constexpr int kRescueHalvings = 10;
+constexpr long kRescue = 4;  // blocks of these
 
 // What was done, whether for or against.
 double turned_over(const std::vector<double>& before, const std::vector<double>& after) {
     double sum = 0;
     for (std::size_t n = 0; n < after.size(); ++n) sum += std::abs(after[n] - before[n]);
     return sum;
+}
+
+double euler_step(const Aggregate& matter, const MovingBody& body) {
+    const double zeta = matter.material.damping_ratio;
+    return body.stable_step() * zeta / (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
 }  // namespace
@@ -30,28 +40,34 @@ ExplicitSolver::ExplicitSolver(const std::vector<Aggregate*>& bodies, const Appa
       settings_(settings),
       state_(bodies.size()),
       step_(std::numeric_limits<double>::infinity()),
-      inside_out_(bodies.size(), 0) {
+      inside_out_(bodies.size(), 0),
+      implicit_(bodies.size()) {
     body_.reserve(bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         body_.emplace_back(*bodies[b], static_cast<int>(b), apparatus, settings);
-        step_ = std::min(step_, body_[b].stable_step());
+        step_ = std::min(step_, settings.solver == Solver::euler ? euler_step(*bodies[b], body_[b])
+                                                                 : body_[b].stable_step());
     }
+    if (settings.solver == Solver::implicit_steps) return;
     for (MovingBody& body : body_) body.limit_stiffness(step_);
 }
 
 void ExplicitSolver::connections_changed(std::size_t body) {
     body_[body].connections_changed();  // fewer are never faster, so the step stays
+    implicit_[body] = {};
 }
 
 // What the state of the bodies and what the guard has asked for allow.
-double ExplicitSolver::longest_step() {
-    double dt = share_ * step_;
+double ExplicitSolver::longest_step(double frame) {
+    const bool is_free = is_implicit();
+    double dt = !is_free ? step_ : rescued_blocks_ > 0 ? kRescueStep * step_ : kFrameShare * frame;
     for (MovingBody& body : body_) {
-        dt = std::min(dt, share_ * body.present_step());
+        if (!is_free && body.inside_out() > 0) dt = std::min(dt, body.present_step());
         const double speed = body.top_speed();
-        if (speed > 0) dt = std::min(dt, kWayAhead * body.matter().lattice.spacing / speed);
+        if (speed > 0 && (!is_free || body.meets_tools()))
+            dt = std::min(dt, kWayAhead * body.matter().lattice.spacing / speed);
     }
-    return dt;
+    return share_ * dt;
 }
 
 std::vector<Stored> ExplicitSolver::stored(const Drive& now, double dt) {
@@ -60,23 +76,48 @@ std::vector<Stored> ExplicitSolver::stored(const Drive& now, double dt) {
     return held;
 }
 
+double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
+                            MoveOutcome& outcome) {
+    MovingBody& body = body_[b];
+    if (has_half_kicks()) return body.move(n == 1 ? 0.5 * dt : dt, dt);
+    if (!is_implicit()) {
+        const double gone = body.move(0, dt);
+        body.kick(dt);
+        return gone;
+    }
+    const Vec3Array from = body.matter().particle_position;
+    if (!implicit_[b].move(body, now, dt, outcome.body[b])) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    if (!body.meets_tools()) return 0;  // nothing that it could go through
+    return farthest_move(from, body.matter().particle_position);
+}
+
+bool ExplicitSolver::can_be_rescued() const {
+    return settings_.solver == Solver::explicit_steps && rescued_blocks_ == 0 &&
+           body_.size() == 1 && ImplicitStep::cannot(body_[0].matter()) == nullptr &&
+           body_[0].cells_alone() != nullptr;
+}
+
 // `count` steps of dt from a drive on, the last of which ends at the time `end`.
 Finding ExplicitSolver::block(const Way& way, const Drive& begin, double end, long count, double dt,
                               MoveOutcome& outcome) {
     Drive before = begin;
     for (long n = 1; n <= count; ++n) {
         const double time = n == count ? end : begin.time + double(n) * dt;
-        const Drive now = time >= way.to.time ? way.to : drive_between(way.from, way.to, way.at(time));
+        const Drive now =
+            time >= way.to.time ? way.to : drive_between(way.from, way.to, way.at(time));
         std::vector<double> gone(body_.size());
         for (std::size_t b = 0; b < body_.size(); ++b) {
             body_[b].begin_step(before);
-            gone[b] = body_[b].move(n == 1 ? 0.5 * dt : dt, dt);
+            gone[b] = move(b, now, dt, n, outcome);
         }
         for (std::size_t b = 0; b < body_.size(); ++b) {
             Finding found;
             found = look_at(body_[b], gone[b], std::numeric_limits<int>::max());
             if (!found) {
-                body_[b].find_forces(now, dt, outcome.body[b]);
+                body_[b].find_forces(now, is_implicit() ? 0 : dt, outcome.body[b]);
+                if (n == count) body_[b].count_inside_out();
                 found = look_at(body_[b], gone[b], inside_out_[b]);
             }
             if (!found) continue;
@@ -86,12 +127,14 @@ Finding ExplicitSolver::block(const Way& way, const Drive& begin, double end, lo
             return found;
         }
         for (std::size_t b = 0; b < body_.size(); ++b) {
-            body_[b].finish_step(before, now, outcome.body[b]);
+            body_[b].finish_step(before, now, dt, outcome.body[b]);
             body_[b].renew_candidates(before, now, gone[b]);
         }
         before = now;
     }
-    for (MovingBody& body : body_) body.kick(0.5 * dt);
+    if (has_half_kicks()) {
+        for (MovingBody& body : body_) body.kick(0.5 * dt);
+    }
     return {};
 }
 
@@ -99,6 +142,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     outcome.body.assign(body_.size(), BodyOutcome(apparatus_, body_[0].pushes().count()));
     const Way way{from, to};
+    const double frame = to.time - from.time;
     double dt = step_;
     for (std::size_t b = 0; b < body_.size(); ++b) {
         body_[b].start(from, outcome.body[b]);
@@ -106,19 +150,19 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     std::vector<Stored> held;
     Drive begin = from;
     int halvings = 0;  // of this block
-    outcome.shortest_step = step_;
+    outcome.shortest_step = frame;
     while (begin.time < to.time) {
         const double left = to.time - begin.time;
-        const double parts = std::ceil(left / longest_step() * (1 - 1e-9));
+        const double parts = std::ceil(left / longest_step(frame) * (1 - 1e-9));
         if (!(parts < 1e15)) {
             fail(ExitCode::stopped, "{}: step {} at {:.6g} s would be shorter than {:.3g} s",
                  apparatus_.name, steps_ + 1, begin.time, left / 1e15);
         }
         dt = left / std::max(parts, 1.0);
         const long count = std::min(kBlock, static_cast<long>(std::max(parts, 1.0)));
-        const double end =
-            double(count) == parts ? to.time : begin.time + double(count) * dt;
-        held = stored(begin, dt);
+        const double end = double(count) == parts ? to.time : begin.time + double(count) * dt;
+        const double lag = has_half_kicks() ? dt : 0;
+        held = stored(begin, lag);
         if (begin.time == from.time) {
             double sum = 0;
             for (std::size_t b = 0; b < body_.size(); ++b) {
@@ -130,14 +174,15 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         }
         for (std::size_t b = 0; b < body_.size(); ++b) {
             body_[b].save(state_[b]);
-            inside_out_[b] = halvings >= kInsideOutHalvings ? std::numeric_limits<int>::max()
-                                                            : body_[b].inside_out();
+            const bool may =
+                halvings >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);
+            inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
         }
         const std::vector<BodyOutcome> so_far = outcome.body;
         Finding found = block(way, begin, end, count, dt, outcome);
         const Drive now = end >= to.time ? to : drive_between(from, to, way.at(end));
         if (!found) {
-            const std::vector<Stored> after = stored(now, dt);
+            const std::vector<Stored> after = stored(now, lag);
             double turned = 0, done = 0, lost = 0, gain = 0;
             for (std::size_t b = 0; b < body_.size(); ++b) {
                 const BodyOutcome& was = so_far[b];
@@ -156,13 +201,17 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
             }
         }
         if (!found) {
-            if (halvings >= kInsideOutHalvings) {
+            if (share_ <= std::ldexp(1.0, -kInsideOutHalvings)) {
                 for (MovingBody& body : body_) outcome.inside_out += body.inside_out();
             }
             begin = now;
             steps_ += count;
             outcome.steps += count;
             outcome.shortest_step = std::min(outcome.shortest_step, dt);
+            if (rescued_blocks_ > 0) {
+                outcome.rescued += count;
+                if (--rescued_blocks_ == 0) share_ = 1;
+            }
             halvings = 0;
             if (share_ < 1 && ++good_blocks_ == kPatience) {
                 share_ *= 2;
@@ -173,7 +222,10 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         ++halvings;
         ++outcome.halvings;
         outcome.rejected += found.step - steps_;
-        const bool gives_up = halvings > settings_.retry_limit;
+        const int limit = rescued_blocks_ > 0 ? kRescueHalvings : settings_.retry_limit;
+        const bool fails = halvings > limit || share_ < std::ldexp(1.0, -limit);
+        const bool rescue = fails && can_be_rescued();
+        const bool gives_up = fails && !rescue;
         const std::string why =
             gives_up ? sentence_of(found, body_[found.body], apparatus_.name, dt) : std::string();
         outcome.body = so_far;
@@ -183,8 +235,13 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
             body_[b].find_forces(begin, 0, outcome.body[b]);
         }
         if (gives_up) fail(ExitCode::stopped, "{}", why);
-        share_ = 0.5 * std::min(share_, dt / step_);
+        share_ *= 0.5;
         good_blocks_ = 0;
+        if (rescue) {
+            share_ = 1;
+            rescued_blocks_ = kRescue;
+            halvings = 0;
+        }
     }
     for (std::size_t b = 0; b < body_.size(); ++b) {
         outcome.body[b].load = body_[b].load();

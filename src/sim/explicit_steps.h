@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies in motion by explicit steps with real masses: symplectic Euler,
+// Bodies in motion with real masses, in blocks of steps that sim/motion_guard.h watches, takes back
+// and tries again. The step is also short enough that nothing goes far in it, however fast.
+//
+// Solver::explicit_steps: symplectic Euler,
 //
 //     v += dt f(x) / m,   x += dt v,
 //
@@ -11,14 +14,20 @@
 // zeta); explicit_step() takes the fastest swing of the fastest body. Contact and grip points are
 // kept below a quarter of what their carriers can follow in one step.
 //
-// Blocks of steps are watched, taken back and tried again by sim/motion_guard.h. The step is also
-// short enough that nothing goes far in it, however fast.
+// Solver::euler, as the papers have it: x += dt v, v += dt f(x) / m, both of the old state. The
+// trace of the map is 2 and its determinant 1 + (w dt)^2: every undamped swing grows, at any step.
+// With damping the determinant is 1 - 2 zeta w dt + (w dt)^2, so the swing stays bounded while w dt
+// < 2 zeta, which is the step it takes: a share zeta or so of the symplectic one.
+//
+// Solver::implicit_steps: sim/implicit_step.h; a quarter of a frame a step where no tool is in
+// reach. Explicit steps that go wrong however short pass on to it too, where it can move the body.
 #pragma once
 
 #include <vector>
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/implicit_step.h"
 #include "sim/motion_guard.h"
 #include "sim/move_outcome.h"
 #include "sim/moving_body.h"
@@ -43,10 +52,19 @@ class ExplicitSolver {
         const Drive &from, &to;
         double at(double time) const { return (time - from.time) / (to.time - from.time); }
     };
-    double longest_step();
+    double longest_step(double frame);
+    bool is_implicit() const {
+        return settings_.solver == Solver::implicit_steps || rescued_blocks_ > 0;
+    }
+    bool has_half_kicks() const {
+        return settings_.solver == Solver::explicit_steps && rescued_blocks_ == 0;
+    }
+    // Moves one body on by step n of a block; returns the longest way of any particle [m].
+    double move(std::size_t body, const Drive& now, double dt, long n, MoveOutcome& outcome);
     Finding block(const Way& way, const Drive& begin, double end, long count, double dt,
                   MoveOutcome& outcome);
     std::vector<Stored> stored(const Drive& now, double dt);
+    bool can_be_rescued() const;
 
     const Apparatus& apparatus_;
     SimSettings settings_;
@@ -54,11 +72,13 @@ class ExplicitSolver {
     std::vector<MovingBody::State> state_;
     EnergyGuard energy_;
     bool started_ = false;
-    double step_;           // [s]
-    double share_ = 1;      // of the step that is taken now: halved where the guard asked
-    int good_blocks_ = 0;   // since then
-    long steps_ = 0;        // of the stage
+    double step_;                  // [s]
+    double share_ = 1;             // of the step that is taken now: halved where the guard asked
+    int good_blocks_ = 0;          // since then
+    long steps_ = 0;               // of the stage
     std::vector<int> inside_out_;  // cells that may be, by body
+    std::vector<ImplicitStep> implicit_;
+    int rescued_blocks_ = 0;  // of implicit steps yet to come where explicit ones went wrong
 };
 
 }  // namespace swage

@@ -31,20 +31,23 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force) {
     if (cells_) {
         cells_->forces(matter, flow, force);
         loose_.add_forces(matter, flow, nullptr, force);
-        mirrored_ = guarded_ ? add_guard_forces(matter, cells_->crushed_runs(), force) : 0;
-        return mirrored_;
+        return guarded_ ? add_guard_forces(matter, cells_->crushed_runs(), force) : 0;
     }
     const bool flows = spring_flow_ && flow == Flow::trial;
     const RestStrains* const rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
     spring_sweep_.forces(matter, spring_law_, rest, force);
     loose_.add_forces(matter, flow, rest, force);
-    mirrored_ = add_guard_forces(matter, force);
-    return mirrored_;
+    const int mirrored = add_guard_forces(matter, force);
+    mirrored_ = mirrored > 0;
+    return mirrored;
 }
 
-int LatticeForces::inside_out(const Aggregate& matter) const {
-    if (!cells_ || (guarded_ && matter.inset.empty())) return mirrored_;
-    return count_inside_out(matter, cells_->crushed_runs());
+bool LatticeForces::saw_crushed() const {
+    if (!cells_) return mirrored_;
+    for (const auto& runs : cells_->crushed_runs()) {
+        if (!runs.empty()) return true;
+    }
+    return false;
 }
 
 Committed LatticeForces::commit(Aggregate& matter) {

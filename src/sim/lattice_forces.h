@@ -39,8 +39,13 @@ class LatticeForces {
     // says, by add_guard_stiffness().
     int find(const Aggregate& matter, Flow flow, Vec3Array& force);
 
-    // Cells that were inside out when the forces were last found, rubber among them.
-    int inside_out(const Aggregate& matter) const;
+    // Whether find() sees every cell that is inside out; rubber's law needs no such look.
+    bool sees_inside_out(const Aggregate& matter) const {
+        return guarded_ && (!cells_ || matter.inset.empty());
+    }
+
+    // Whether any cell may have been below half of its volume then.
+    bool saw_crushed() const;
 
     // Remembers the flow and softening of a converged state.
     Committed commit(Aggregate& matter);
@@ -68,8 +73,8 @@ class LatticeForces {
     std::unique_ptr<CellFlow> spring_flow_;  // springs that yield
     std::unique_ptr<CellSweep> cells_;       // null: springs
     bool guarded_;
-    int mirrored_ = 0;  // guarded cells inside out
-    LooseSprings loose_;  // of cells that are not sound
+    bool mirrored_ = false;  // springs: some cells are inside out
+    LooseSprings loose_;     // of cells that are not sound
 };
 
 }  // namespace swage

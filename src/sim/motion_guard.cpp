@@ -88,8 +88,7 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
     const std::size_t p = worst_particle(matter);
     const std::string where =
         fmt::format("particle {} of body {}", p, finding.body + 1) +
-        (is_lost(matter, p) ? std::string()
-                            : " at " + place(matter.particle_position.at(p)));
+        (is_lost(matter, p) ? std::string() : " at " + place(matter.particle_position.at(p)));
     std::string what;
     switch (finding.fault) {
         case Fault::none:
@@ -103,10 +102,10 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
             break;
         case Fault::inside_out: {
             const CellId cell = first_inside_out(matter);
-            what = fmt::format("cell {} turns inside out, next to {}", cell,
-                               cell < 0 ? where
-                                        : fmt::format("particle {}",
-                                                      matter.lattice.cell_corners(cell)[0]));
+            what = fmt::format(
+                "cell {} turns inside out, next to {}", cell,
+                cell < 0 ? where
+                         : fmt::format("particle {}", matter.lattice.cell_corners(cell)[0]));
             break;
         }
         case Fault::gains:
@@ -115,8 +114,8 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
             break;
     }
     const bool lost = is_lost(matter, p);
-    const Strained worst = lost ? most_strained(matter, static_cast<std::ptrdiff_t>(p))
-                                : most_strained(matter);
+    const Strained worst =
+        lost ? most_strained(matter, static_cast<std::ptrdiff_t>(p)) : most_strained(matter);
     return fmt::format(
         "{}: step {} at {:.6g} s: {}, and {}, even with steps of {:.3g} s; move the tools slower "
         "(a longer duration), lower step_safety, raise [mold] across where matter is crushed, or "

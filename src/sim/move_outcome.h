@@ -53,6 +53,7 @@ struct MoveOutcome {
     int halvings = 0;
     long steps = 0;                 // kept; in motion only
     long rejected = 0;              // steps taken back; in motion only
+    long rescued = 0;               // implicit steps where explicit ones went wrong
     double shortest_step = 0;       // [s]; in motion only
     double residual = 0;            // of the last increment, over its reference force
     bool drag_held = false;         // was more than a step can follow; in motion only

@@ -37,6 +37,8 @@ double stable_step(const Aggregate& matter, const SimSettings& settings,
     return settings.step_safety * 2 / fastest(matter, bound) * (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
+constexpr double kCalm = 0.5;  // of the speed that crushed matter deforms by, in a stable step
+
 }  // namespace
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
@@ -116,8 +118,7 @@ double MovingBody::move(double kick, double step) {
 }
 
 void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome) {
-    lattice_.find(matter_, Flow::trial, force_);
-    inside_out_ = lattice_.inside_out(matter_);
+    inside_out_ = lattice_.find(matter_, Flow::trial, force_);
     if (damping_.acts()) outcome.damped_work += damping_.add_forces(matter_, step, force_);
     if (drag_.acts()) outcome.drag_work += step * drag_.add_forces(matter_, force_);
     contacts_.add_forces(matter_, now, force_);
@@ -125,7 +126,11 @@ void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome
     gravity_ = pushes_.gravity(now);
 }
 
-void MovingBody::finish_step(const Drive& before, const Drive& now, BodyOutcome& outcome) {
+void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
+                             BodyOutcome& outcome) {
+    if (lattice_.saw_crushed() || inside_out_ > 0) {
+        outcome.damped_work += calm_crushed(matter_, std::exp(-kCalm * step / step_));
+    }
     if (remembers_) {
         const Committed lost = lattice_.commit(matter_);
         outcome.plastic_work += lost.plastic;
@@ -155,11 +160,21 @@ Stored MovingBody::stored(const Drive& now, double step) {
     return held;
 }
 
+std::vector<double> MovingBody::stiffness_bound() const {
+    std::vector<double> bound = lattice_.stiffness_bound(matter_);
+    contacts_.add_stiffness(matter_, bound);
+    return bound;
+}
+
 double MovingBody::top_speed() const {
     const Vec3Array& v = matter_.particle_velocity;
     double most = 0;
     for (std::size_t p = 0; p < v.size(); ++p) most = std::max(most, v.at(p).squaredNorm());
     return std::sqrt(most);
+}
+
+void MovingBody::count_inside_out() {
+    if (!lattice_.sees_inside_out(matter_)) inside_out_ = swage::count_inside_out(matter_);
 }
 
 double MovingBody::present_step() {

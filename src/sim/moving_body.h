@@ -42,7 +42,7 @@ class MovingBody {
     // Forces at the present positions, at which a step of this length [s] has just ended.
     void find_forces(const Drive& now, double step, BodyOutcome& outcome);
     // The step is kept.
-    void finish_step(const Drive& before, const Drive& now, BodyOutcome& outcome);
+    void finish_step(const Drive& before, const Drive& now, double step, BodyOutcome& outcome);
     // Finds the candidates anew if anything could have come near since.
     void renew_candidates(const Drive& before, const Drive& now, double way);
 
@@ -51,8 +51,18 @@ class MovingBody {
     // step before and after: what the forces' work by the trapezoid rule adds up to exactly.
     Stored stored(const Drive& now, double step);
 
+    // What a solution by the tangent asks for.
+    const std::vector<float>* cells_alone() const { return lattice_.cells_alone(); }
+    std::vector<HeldPoint> held_points(const Drive& now) const {
+        return contacts_.held_points(matter_, now);
+    }
+    std::vector<double> stiffness_bound() const;  // of each particle [N/m]
+    bool meets_tools() const { return touches_; }
+
     double top_speed() const;  // of any particle [m/s]
-    int inside_out() const { return inside_out_; }  // cells, when the forces were found
+    // Cells inside out when the forces were found; of rubber, when it was last looked at.
+    int inside_out() const { return inside_out_; }
+    void count_inside_out();
     // Of the present state, cells inside out included [s].
     double present_step();
     Vec3 acceleration(std::size_t p) const {
@@ -80,8 +90,8 @@ class MovingBody {
         std::array<std::vector<float>, 12> modes;
         std::vector<float> hardening;
         std::vector<MixedCell> mixed;
-        std::vector<ContactSet> contacts;  // one
-        std::vector<LoadSet> pushes;       // one
+        std::vector<ContactSet> contacts;      // one
+        std::vector<LoadSet> pushes;           // one
         std::vector<InternalDamping> damping;  // one
         std::vector<LoadSum> load;
     };

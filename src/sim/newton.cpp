@@ -142,11 +142,11 @@ Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {
 
 // Goes as far as the forces still work along the way; they are found there. Returns the share of
 // the direction gone, 0 when nowhere is better.
-double Newton::line_search(Aggregate& matter, const NewtonProblem& problem) {
+double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool turns) {
     from_ = matter.particle_position;
     const double start = dot(force_, direction_);
     if (!(start > 0)) return 0;
-    const Way way = way_of(matter, problem.held.empty());
+    const Way way = way_of(matter, turns);
     Vec3Array& x = matter.particle_position;
     double share = 1;
     for (int n = 0; n < kMostTries; ++n) {
@@ -202,21 +202,26 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     return dot(softest_.motion(), better_) < -kFalls * material;
 }
 
-Newton::Result Newton::solve(Aggregate& matter, const NewtonProblem& problem) {
+Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
     Result result;
     problem.forces(force_);
+    const bool turns = problem.held.empty() && !problem.held_now;
     for (result.steps = 0; result.steps < kMostSteps; ++result.steps) {
         result.residual = problem.residual(force_);
         if (!std::isfinite(result.residual)) break;
         result.converged = result.residual <= problem.tolerance;
         if (result.converged) break;
+        if (problem.held_now) {
+            problem.held = problem.held_now();
+            stale_ = stale_ || problem.held.size() != held_;
+        }
         if ((stale_ || !prepared_) && !prepare(matter, problem, true)) break;
         const double accuracy = std::clamp(std::sqrt(result.residual) / 10, 1e-4, 0.1);
         if (!find_direction(matter, problem, accuracy) &&
             !(prepare(matter, problem, false) && find_direction(matter, problem, accuracy))) {
             break;
         }
-        const double share = line_search(matter, problem);
+        const double share = line_search(matter, problem, turns);
         if (share == 0) break;
         if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) stale_ = true;
     }

@@ -22,6 +22,8 @@ struct NewtonProblem {
     std::function<double(const Vec3Array& force)> residual;  // 1: as much as is pushed with
     double tolerance;                                        // of that residual
     std::vector<HeldPoint> held;
+    // Asked before each step where what holds the body changes as it moves; may be empty.
+    std::function<std::vector<HeldPoint>()> held_now;
     std::vector<double> diagonal;  // of each particle, no less than its stiffness [N/m]
     std::vector<double> drag;      // springs to where the particles began [N/m]
 };
@@ -36,7 +38,7 @@ class Newton {
         double residual = 0;
     };
     // Moves the particles. What it leaves when it does not converge means nothing.
-    Result solve(Aggregate& matter, const NewtonProblem& problem);
+    Result solve(Aggregate& matter, NewtonProblem problem);
 
     // Whether the body, at rest, would leave this equilibrium at the slightest touch; by which
     // motion.
@@ -46,7 +48,8 @@ class Newton {
   private:
     bool prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact);
     bool find_direction(const Aggregate& matter, const NewtonProblem& problem, double accuracy);
-    double line_search(Aggregate& matter, const NewtonProblem& problem);
+    // `turns`: nothing holds the body, it may turn as a whole.
+    double line_search(Aggregate& matter, const NewtonProblem& problem, bool turns);
     void product(const Aggregate& matter, const NewtonProblem& problem, CellTangent::Kind kind,
                  const Vec3Array& direction, Vec3Array& result);
 

@@ -74,7 +74,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
     connections_changed();
 }
 
-void QuasistaticSolver::connections_changed() {
+void QuasistaticSolver::connections_changed(std::size_t) {
     lattice_.connections_changed(matter_);
     lattice_bound_ = lattice_.stiffness_bound(matter_);
     probed_.resize(0);

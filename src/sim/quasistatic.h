@@ -37,9 +37,9 @@ class QuasistaticSolver {
     MoveOutcome advance(const Drive& from, const Drive& to);
 
     // The connections have changed (severed): masses are found anew.
-    void connections_changed();
-    double elastic_energy() { return lattice_.elastic_energy(matter_); }  // [J]
-    const LoadSet& pushes() const { return pushes_; }
+    void connections_changed(std::size_t body = 0);
+    double elastic_energy(std::size_t = 0) { return lattice_.elastic_energy(matter_); }  // [J]
+    const LoadSet& pushes(std::size_t = 0) const { return pushes_; }
 
   private:
     struct Relaxation {

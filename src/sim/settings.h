@@ -10,7 +10,27 @@ namespace swage {
 enum class Solver {
     quasistatic,     // each frame is an equilibrium, found by relaxation; no inertia
     explicit_steps,  // symplectic Euler with real masses and damping
+    euler,           // explicit Euler, as the papers have it, for comparison
+    energy_stepped,  // a step that the body's energy chooses
+    implicit_steps,  // backward Euler
 };
+
+// As a scene names it.
+inline const char* name_of(Solver solver) {
+    switch (solver) {
+        case Solver::quasistatic:
+            return "quasistatic";
+        case Solver::explicit_steps:
+            return "explicit";
+        case Solver::euler:
+            return "euler";
+        case Solver::energy_stepped:
+            return "energy-stepped";
+        case Solver::implicit_steps:
+            return "implicit";
+    }
+    return "";
+}
 
 struct SimSettings {
     Solver solver = Solver::quasistatic;

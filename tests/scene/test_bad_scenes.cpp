@@ -380,6 +380,35 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
          {"14:12: friction is the whole body's: say it in [material]"}},
         {"breaking", inset("name = \"ice\"\n" + box), {"bodies of two materials do not break yet"}},
         {"in springs", springs, {"springs know one material"}},
-        {"in explicit steps", steps, {"takes explicit steps, whose damping knows one material"}},
+        {"in explicit steps", steps, {"moves by steps, whose damping knows one material"}},
+    });
+}
+
+TEST_CASE("a solver that cannot move the scene's matter is refused where it is named") {
+    const auto solver = [](const std::string& material, const std::string& lines) {
+        Parts parts = with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\n" + lines);
+        parts.material = "[material]\nname = \"rubber\"\n" + material;
+        return parts;
+    };
+    check_all({
+        {"misspelt", solver("", "solver = \"implcit\"\n"), {"did you mean \"implicit\"?"}},
+        {"Euler without damping",
+         solver("damping_ratio = 0\n", "solver = \"euler\"\n"),
+         {"10:10: solver = \"euler\" gains energy at any step"}},
+        {"implicit springs",
+         solver("mechanics = \"springs\"\n", "solver = \"implicit\"\n"),
+         {"10:10: solver = \"implicit\" needs mechanics = \"cells\""}},
+        {"implicit cracks",
+         solver("strength = \"1 MPa\"\ntoughness = \"100 J/m2\"\n", "solver = \"implicit\"\n"),
+         {"11:10: solver = \"implicit\" does not follow cracks"}},
+        {"implicit drag",
+         solver("", "solver = \"implicit\"\nmedium_density = 1.2\n"),
+         {"10:18: warning: medium_density has no effect with solver = \"implicit\""}},
+        {"retries at rest",
+         solver("", "retry_limit = 3\n"),
+         {"9:15: warning: retry_limit has no effect with solver = \"quasistatic\""}},
+        {"retries",
+         solver("", "solver = \"explicit\"\nretry_limit = 21\n"),
+         {"10:15: retry_limit = 21"}},
     });
 }

@@ -31,9 +31,9 @@ inline double largest_stretch(const Aggregate& m) {
         const double length = reference_length(m.lattice, span.direction);
         for (int n = 0; n < span.count; ++n) {
             if (!(m.connection[span.direction].weight[span.lower + n] > 0)) continue;
-            const double distance = (m.particle_position.at(span.upper + n) -
-                                     m.particle_position.at(span.lower + n))
-                                        .norm();
+            const double distance =
+                (m.particle_position.at(span.upper + n) - m.particle_position.at(span.lower + n))
+                    .norm();
             most = std::max(most, std::abs(distance / length - 1));
         }
     }

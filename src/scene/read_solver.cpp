@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_solver.h"
+
+#include <fmt/format.h>
+
+namespace swage {
+
+namespace {
+
+// What a solver cannot do with the scene's matter, and what to do instead.
+void refuse(TableReader& table, const SceneSpec& scene, Solver solver) {
+    const Material& material = scene.material;
+    if (solver == Solver::euler && material.damping_ratio == 0) {
+        table.mistake("solver",
+                      "solver = \"euler\" gains energy at any step where nothing damps: give "
+                      "[material] a damping_ratio, or use solver = \"explicit\"");
+    }
+    if (solver != Solver::implicit_steps) return;
+    if (material.damping_ratio > 0) {
+        table.warn("solver",
+                   "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "
+                   "themselves");
+    }
+    if (material.mechanics == Mechanics::springs) {
+        table.mistake("solver",
+                      "solver = \"implicit\" needs mechanics = \"cells\" in [material], or use "
+                      "solver = \"explicit\"");
+    }
+    if (material.breaks()) {
+        table.mistake("solver",
+                      "solver = \"implicit\" does not follow cracks: leave strength and toughness "
+                      "out (strength = \"inf\" over a named material's), or use solver = "
+                      "\"explicit\"");
+    }
+}
+
+}  // namespace
+
+void read_solver(TableReader& table, const SceneSpec& scene, SimSettings& sim) {
+    std::vector<std::pair<std::string, Solver>> solvers;
+    for (const Solver solver : {Solver::quasistatic, Solver::explicit_steps, Solver::euler,
+                                Solver::energy_stepped, Solver::implicit_steps}) {
+        solvers.emplace_back(name_of(solver), solver);
+    }
+    table.choice<Solver>("solver", solvers, sim.solver);
+    refuse(table, scene, sim.solver);
+    const bool relaxes = sim.solver == Solver::quasistatic;
+    const bool is_implicit = sim.solver == Solver::implicit_steps;
+    const bool is_explicit = sim.solver == Solver::explicit_steps || sim.solver == Solver::euler;
+    const bool drags = !relaxes && !is_implicit;
+    const auto only_for = [&](const std::string& key, bool is_given, bool is_used) {
+        if (!is_given || is_used) return;
+        table.warn(key,
+                   fmt::format("{} has no effect with solver = \"{}\"", key, name_of(sim.solver)));
+    };
+    const auto number = [&](const std::string& key, double low, double high, double& into) {
+        return table.quantity(key, Quantity::number, between(low, high), into);
+    };
+    only_for("tolerance", number("tolerance", 1e-4, 0.1, sim.tolerance), relaxes);
+    only_for("iteration_limit", table.whole("iteration_limit", 100, 1'000'000, sim.iteration_limit),
+             relaxes);
+    only_for("halving_limit", table.whole("halving_limit", 0, 8, sim.halving_limit), relaxes);
+    number("contact_stiffness", 0.5, 100, sim.contact_stiffness);
+    number("grip_stiffness", 1, 100, sim.grip_stiffness);
+    only_for("step_safety",
+             table.quantity("step_safety", Quantity::number,
+                            {.low = 0, .high = 1, .low_open = true}, sim.step_safety),
+             is_explicit);
+    only_for("retry_limit", table.whole("retry_limit", 0, 20, sim.retry_limit),
+             is_explicit || is_implicit);
+    only_for("medium_density",
+             table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
+             drags);
+    only_for(
+        "drag_coefficient",
+        table.quantity("drag_coefficient", Quantity::number, at_least(0), sim.drag_coefficient),
+        drags);
+    only_for("directional_drag",
+             table.quantity("directional_drag", Quantity::drag, at_least(0), sim.directional_drag),
+             drags);
+    only_for("directional_drag_along",
+             table.choice<DragAlong>("directional_drag_along",
+                                     {{"motion", DragAlong::motion}, {"normal", DragAlong::normal}},
+                                     sim.directional_drag_along),
+             drags);
+    if (is_implicit) sim.medium_density = sim.directional_drag = 0;
+    const auto idle = [&](const char* key, const char* without, double of) {
+        if (!drags || of > 0 || table.find(key) == nullptr) return;
+        table.warn(key, fmt::format("{} has no effect without {}", key, without));
+    };
+    idle("drag_coefficient", "medium_density", sim.medium_density);
+    idle("directional_drag_along", "directional_drag", sim.directional_drag);
+    const Node* gravity = table.find("gravity");
+    if (gravity != nullptr && gravity->kind != Node::Kind::array) {
+        double down = 0;  // a single number points down
+        table.quantity("gravity", Quantity::acceleration, {}, down);
+        sim.gravity = {0, -down + 0.0, 0};
+    } else {
+        table.vector("gravity", Quantity::acceleration, sim.gravity);
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "scene/spec.h"
+#include "scene/table_reader.h"
+
+namespace swage {
+
+// The keys of a [[stage]] that say how its matter moves; the scene's materials have been read. What
+// a solver cannot do with them is a mistake at `solver`, a key that it does not ask a warning.
+void read_solver(TableReader& table, const SceneSpec& scene, SimSettings& sim);
+
+}  // namespace swage

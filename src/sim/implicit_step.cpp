@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/implicit_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/vector_sums.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kTolerance = 1e-6;  // of the forces that are at work
+constexpr double kRoundOff = 1e-13;  // of E a^2 a particle
+
+}  // namespace
+
+const char* ImplicitStep::cannot(const Aggregate& matter) {
+    if (matter.material.mechanics == Mechanics::springs) {
+        return "mechanics = \"springs\" has no exact tangent";
+    }
+    if (!matter.inset.empty()) return "it knows one material in a body";
+    if (matter.material.breaks()) return "matter that breaks has no exact tangent";
+    return nullptr;
+}
+
+bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOutcome& outcome) {
+    Aggregate& matter = body.matter();
+    const std::vector<float>* cells = body.cells_alone();
+    if (cells == nullptr) return false;
+    if (!newton_) newton_ = std::make_unique<Newton>(matter, *cells);
+    const std::size_t count = matter.particle_count();
+    inertia_.resize(count);
+    start_ = matter.particle_position;
+    aim_ = start_;
+    combine(1, step, matter.particle_velocity, aim_);
+    for (std::size_t p = 0; p < count; ++p) inertia_[p] = matter.particle_mass[p] / (step * step);
+    matter.particle_position = aim_;
+    body.find_candidates(now);
+
+    // Forces below these are round-off: of the matter's, and of the inertia's.
+    const double a = matter.lattice.spacing;
+    double extent = a, stiff = 0;
+    for (std::size_t p = 0; p < count; ++p) {
+        extent = std::max(extent, matter.particle_position.at(p).cwiseAbs().maxCoeff());
+        stiff += inertia_[p];
+    }
+    const double least =
+        kRoundOff * (matter.mean_modulus() * a * a * double(count) + stiff * 0.01 * extent);
+    double pushed = 0;  // the forces at work: the most they were in this step
+    NewtonProblem problem;
+    problem.forces = [&](Vec3Array& force) {
+        body.find_forces(now, 0, outcome);
+        force.resize(count);
+        for (std::size_t p = 0; p < count; ++p) {
+            force.set(p, matter.particle_mass[p] * body.acceleration(p) -
+                             inertia_[p] * (matter.particle_position.at(p) - aim_.at(p)));
+        }
+    };
+    problem.residual = [&](const Vec3Array& force) {
+        const double sum = chunked_sum(count, [&](std::size_t p) { return force.at(p).norm(); });
+        const double at_work = chunked_sum(count, [&](std::size_t p) {
+            return matter.particle_mass[p] * body.acceleration(p).norm();
+        });
+        pushed = std::max(pushed, at_work);
+        return sum / (pushed + least / kTolerance);
+    };
+    problem.tolerance = kTolerance;
+    if (body.meets_tools()) {
+        problem.held_now = [&] { return body.held_points(now); };
+    } else {
+        problem.held = body.held_points(now);
+    }
+    problem.diagonal = body.stiffness_bound();
+    for (std::size_t p = 0; p < count; ++p) problem.diagonal[p] += inertia_[p];
+    problem.drag = inertia_;
+    const Newton::Result result = newton_->solve(matter, problem);
+    iterations_ += result.steps;
+    if (!result.converged) return false;
+    for (std::size_t p = 0; p < count; ++p) {
+        matter.particle_velocity.set(p, (matter.particle_position.at(p) - start_.at(p)) / step);
+    }
+    return true;
+}
+
+}  // namespace swage

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The integrators: their order, their energy, and what each is for.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "sim/energy_steps.h"
+#include "sim/explicit_steps.h"
+#include "sim/implicit_step.h"
+#include "tests/catch.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+const Apparatus kNothing;
+
+// A bar along x that swings along its axis by small strains: displacement at the time t.
+Aggregate after_swing(Solver solver, double time, int frames, double safety, double damping,
+                      FrameReport* last = nullptr) {
+    Material material = kSpringy;
+    material.damping_ratio = damping;
+    Aggregate m = make_block(8, 1, 1, 0.1, material);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const double x = m.particle_reference.x[p];
+        m.particle_velocity.set(p, Vec3(0.01 * std::sin(kPi * x / 0.8), 0, 0));
+    }
+    SimSettings settings = motion_settings(solver);
+    settings.step_safety = safety;
+    Simulation simulation(m, kNothing, settings);
+    FrameReport r;
+    for (int n = 0; n < frames; ++n) {
+        r = simulation.advance(still(time * n / frames), still(time * (n + 1) / frames));
+    }
+    if (last != nullptr) *last = r;
+    return m;
+}
+
+double difference(const Aggregate& a, const Aggregate& b) {
+    double sum = 0;
+    for (std::size_t p = 0; p < a.particle_count(); ++p) {
+        sum += (a.particle_position.at(p) - b.particle_position.at(p)).squaredNorm();
+    }
+    return std::sqrt(sum);
+}
+
+constexpr double kTime = 0.02;  // two fifths of a period
+
+// A floor whose upper side is y = 0.
+Apparatus ground() {
+    Apparatus a;
+    a.name = "drop";
+    a.tool.push_back({"floor", BoxShape{Vec3(50, 2, 50), 0}, 0.3});
+    return a;
+}
+Drive on_ground(double time) {
+    Drive d = still(time);
+    d.world_from_tool.push_back({Quat::Identity(), Vec3(0, -1, 0)});
+    return d;
+}
+
+double lowest(const Aggregate& m) {
+    return *std::min_element(m.particle_position.y.begin(), m.particle_position.y.end());
+}
+
+}  // namespace
+
+TEST_CASE("symplectic steps follow a swing with the second order of the step") {
+    const Aggregate exact = after_swing(Solver::explicit_steps, kTime, 1, 0.01, 0);
+    const double coarse = difference(after_swing(Solver::explicit_steps, kTime, 1, 0.8, 0), exact);
+    const double fine = difference(after_swing(Solver::explicit_steps, kTime, 1, 0.4, 0), exact);
+    CHECK(coarse / fine > 3);
+    CHECK(coarse / fine < 6);
+}
+
+TEST_CASE("the papers' Euler follows a damped swing with the first order of the step") {
+    const Aggregate exact = after_swing(Solver::euler, kTime, 1, 0.005, 0.2);
+    const double coarse = difference(after_swing(Solver::euler, kTime, 1, 0.4, 0.2), exact);
+    const double fine = difference(after_swing(Solver::euler, kTime, 1, 0.2, 0.2), exact);
+    CHECK(coarse / fine > 1.6);
+    CHECK(coarse / fine < 2.6);
+    const Aggregate other = after_swing(Solver::explicit_steps, kTime, 1, 0.05, 0.2);
+    CHECK(difference(exact, other) < 0.02 * difference(exact, make_block(8, 1, 1, 0.1, kSpringy)));
+}
+
+TEST_CASE("the papers' Euler gains energy where nothing damps, and is stopped") {
+    // Its step has no length then; the scene reader refuses it before.
+    Aggregate m = make_block(4, 1, 1, 0.1, kSpringy);
+    for (double& v : m.particle_velocity.x) v = 1;
+    Simulation simulation(m, kNothing, motion_settings(Solver::euler));
+    CHECK_THROWS_AS(simulation.advance(still(0), still(0.01)), Error);
+}
+
+TEST_CASE("implicit steps follow a swing with the first order of the step, and only lose energy") {
+    const Aggregate exact = after_swing(Solver::explicit_steps, kTime, 1, 0.01, 0);
+    FrameReport r;
+    const double coarse =
+        difference(after_swing(Solver::implicit_steps, kTime, 40, 0.8, 0, &r), exact);
+    const double energy = r.kinetic + r.elastic;
+    const double fine =
+        difference(after_swing(Solver::implicit_steps, kTime, 80, 0.8, 0, &r), exact);
+    CHECK(coarse / fine > 1.7);
+    CHECK(coarse / fine < 2.4);
+    CHECK(r.remainder > 0);  // what the steps took
+    CHECK(r.kinetic + r.elastic > energy);
+}
+
+TEST_CASE("implicit steps a thousand times the stable one bring a held bar to rest as it hangs") {
+    Aggregate m = make_block(10, 2, 2, 0.05, kSpringy);
+    Apparatus clamp;
+    clamp.name = "clamp";
+    Grip g;
+    g.name = "hold";
+    g.point = points_where(m, [](const Vec3& x) { return x.x() < -0.25 + 1e-9; });
+    for (int p : g.point) g.anchor.push_back(m.surface_position(p));
+    clamp.grip.push_back(g);
+    const auto drive = [](double t) {
+        Drive d = still(t);
+        d.world_from_grip.push_back({Quat::Identity(), Vec3::Zero()});
+        return d;
+    };
+    SimSettings settings = motion_settings(Solver::implicit_steps);
+    settings.gravity = {0, -1, 0};
+    const double frame = 4 * 1000 * explicit_step(m, settings);
+    Simulation simulation(m, clamp, settings);
+    FrameReport r;
+    for (int n = 0; n < 6; ++n) r = simulation.advance(drive(frame * n), drive(frame * (n + 1)));
+    CHECK(r.steps == 4);
+    CHECK(r.rejected == 0);
+    Aggregate rest = make_block(10, 2, 2, 0.05, kSpringy);
+    SimSettings quiet = settings;
+    quiet.solver = Solver::quasistatic;
+    quiet.tolerance = 1e-4;
+    Simulation relaxed(rest, clamp, quiet);
+    relaxed.advance(drive(0), drive(1));
+    double sag = 0;
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        sag = std::max(sag, rest.particle_reference.y[p] - rest.particle_position.y[p]);
+    }
+    CHECK(sag > 0.001);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        CHECK((m.particle_position.at(p) - rest.particle_position.at(p)).norm() < 0.01 * sag);
+    }
+}
+
+TEST_CASE("a body that falls by implicit steps lands on the floor and stays on it") {
+    Aggregate m = make_block(3, 3, 3, 0.1, kSpringy);
+    for (double& y : m.particle_position.y) y += 0.25;
+    SimSettings settings = motion_settings(Solver::implicit_steps);
+    settings.gravity = {0, -9.81, 0};
+    const Apparatus apparatus = ground();
+    Simulation simulation(m, apparatus, settings);
+    double deepest = 0;
+    FrameReport r;
+    for (int n = 0; n < 60; ++n) {
+        r = simulation.advance(on_ground(0.02 * n), on_ground(0.02 * (n + 1)));
+        deepest = std::min(deepest, lowest(m));
+    }
+    CHECK(deepest > -0.03);
+    CHECK(lowest(m) > -0.01);
+    CHECK(lowest(m) < 0.001);
+    CHECK(r.kinetic < 1e-3 * m.mass() * 9.81 * 0.1);
+    CHECK(r.load[0].force.y() == Approx(m.mass() * 9.81).epsilon(0.01));
+}
+
+TEST_CASE("implicit steps refuse what they cannot move") {
+    Material springs = kSpringy;
+    springs.mechanics = Mechanics::springs;
+    Aggregate m = make_block(2, 1, 1, 0.1, springs);
+    CHECK(ImplicitStep::cannot(m) != nullptr);
+    CHECK(ImplicitStep::cannot(make_block(2, 1, 1, 0.1, kSpringy)) == nullptr);
+    CHECK_THROWS_AS(Simulation(m, kNothing, motion_settings(Solver::implicit_steps)), Error);
+}
+
+TEST_CASE("steps that energy chooses never gain any, and few are taken back") {
+    Material material = kSpringy;
+    material.damping_ratio = 0.1;
+    Aggregate m = make_block(3, 2, 2, 0.1, material);
+    for (double& y : m.particle_position.y) y += 0.3;
+    SimSettings settings = motion_settings(Solver::energy_stepped);
+    settings.gravity = {0, -9.81, 0};
+    const Apparatus apparatus = ground();
+    Simulation simulation(m, apparatus, settings);
+    long steps = 0, rejected = 0;
+    double before = 0;
+    for (int n = 0; n < 12; ++n) {
+        const FrameReport r = simulation.advance(on_ground(0.025 * n), on_ground(0.025 * (n + 1)));
+        steps += r.steps, rejected += r.rejected;
+        CHECK(r.remainder > before - 1e-3 * m.mass() * 9.81 * 0.2);
+        before = r.remainder;
+    }
+    CHECK(steps > 20);
+    CHECK(double(steps + rejected) / double(steps) < 1.5);
+    CHECK(lowest(m) > -0.05);
+    CHECK(lowest(m) < 0.25);
+}
+
+TEST_CASE("bodies far apart take their own steps, those that may meet the same") {
+    Material stiff = kSpringy;
+    stiff.young_modulus = 1e10;
+    const auto steps = [&](double apart) {
+        Aggregate soft = make_block(2, 1, 1, 0.1, kSpringy);
+        Aggregate hard = make_block(2, 1, 1, 0.1, stiff);
+        for (double& x : hard.particle_position.x) x += apart;
+        for (Aggregate* m : {&soft, &hard}) {
+            for (std::size_t p = 0; p < m->particle_count(); ++p) {
+                m->particle_velocity.x[p] = 0.001 * (p % 2 ? 1 : -1);
+            }
+        }
+        Simulation simulation({&soft, &hard}, kNothing, motion_settings(Solver::energy_stepped));
+        return simulation.advance(still(0), still(2e-4)).steps;
+    };
+    // The soft one's few steps are in the count when it goes alone.
+    CHECK(steps(10) != steps(0.35));
+}
+
+TEST_CASE("every integrator gives the same bytes with one thread and two") {
+    for (const Solver solver :
+         {Solver::explicit_steps, Solver::euler, Solver::energy_stepped, Solver::implicit_steps}) {
+        std::uint64_t hash[2];
+        for (const int threads : {1, 2}) {
+            set_thread_count(threads);
+            Material material = kSpringy;
+            material.damping_ratio = 0.1;
+            Aggregate m = make_block(6, 5, 5, 0.1, material);
+            for (double& y : m.particle_position.y) y += 0.251;
+            for (double& v : m.particle_velocity.y) v = -1;
+            SimSettings settings = motion_settings(solver);
+            settings.gravity = {0, -9.81, 0};
+            const Apparatus apparatus = ground();
+            Simulation simulation(m, apparatus, settings);
+            simulation.advance(on_ground(0), on_ground(0.01));
+            hash[threads - 1] = state_hash(m);
+        }
+        set_thread_count(0);
+        INFO("solver " << static_cast<int>(solver));
+        CHECK(hash[0] == hash[1]);
+    }
+}
