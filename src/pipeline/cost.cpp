@@ -67,10 +67,11 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
         if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
             cost.steps += kIterationsPerFrame * stage.frames;
         } else {
-            const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
-                                   : solver == Solver::euler
-                                       ? 1 / std::max(scene.material.damping_ratio, 1e-3)
-                                       : 1;
+            const double shorter =
+                solver == Solver::energy_stepped ? kEnergyStepsPerStep
+                : solver == Solver::euler
+                    ? 1 / std::max(scene.work_piece().material.damping_ratio, 1e-3)
+                    : 1;
             cost.steps += shorter * stage_duration(stage, scene) *
                           steps_per_second(scene, cost, matter, stage.sim);
         }

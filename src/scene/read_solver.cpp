@@ -8,8 +8,7 @@ namespace swage {
 namespace {
 
 // What a solver cannot do with the scene's matter, and what to do instead.
-void refuse(TableReader& table, const SceneSpec& scene, Solver solver) {
-    const Material& material = scene.material;
+void refuse(TableReader& table, const Material& material, Solver solver) {
     if (solver == Solver::euler && material.damping_ratio == 0) {
         table.mistake("solver",
                       "solver = \"euler\" gains energy at any step where nothing damps: give "
@@ -43,7 +42,10 @@ void read_solver(TableReader& table, const SceneSpec& scene, SimSettings& sim) {
         solvers.emplace_back(name_of(solver), solver);
     }
     table.choice<Solver>("solver", solvers, sim.solver);
-    refuse(table, scene, sim.solver);
+    for (const BodySpec& body : scene.body) refuse(table, body.material, sim.solver);
+    if (sim.solver == Solver::implicit_steps && scene.body.size() > 1) {
+        table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
+    }
     const bool relaxes = sim.solver == Solver::quasistatic;
     const bool is_implicit = sim.solver == Solver::implicit_steps;
     const bool is_explicit = sim.solver == Solver::explicit_steps || sim.solver == Solver::euler;
