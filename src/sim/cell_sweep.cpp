@@ -38,8 +38,7 @@ struct SlabTask {
     const float* share;
     int particles, cells;
     const double* position[3];
-    double* force[3];
-    double* seam[3] = {};
+    ForceRows to{};
     ParticleId zeroed = 0, end = 0, reach = 0;  // the slab's forces are zero up to `zeroed`
     const float* strain[kStrains] = {};         // committed
     const float* modes[kModes] = {};
@@ -47,7 +46,7 @@ struct SlabTask {
     std::vector<const CellRun*>* crushed_run = nullptr;
 
     void zero_up_to(ParticleId stop) {
-        for (double* component : force) std::fill(component + zeroed, component + stop, 0.0);
+        for (double* component : to.own) std::fill(component + zeroed, component + stop, 0.0);
         zeroed = stop;
     }
 };
@@ -105,7 +104,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             room[q] = (own ? task.end : task.reach + kSeamRoom) - row;
             for (int i = 0; i < 3; ++i) {
                 x.at[i][q] = task.position[i] + row;
-                force.at[i][q] = own ? task.force[i] + row : task.seam[i] + (row - task.end);
+                force.at[i][q] = own ? task.to.own[i] + row : task.to.seam[i] + (row - task.end);
             }
         }
         ForceCarry<V> carry;
@@ -249,7 +248,7 @@ CellSweep::CellSweep(const Aggregate& matter)
     : law_(material_laws(matter)), slab_(cell_slabs(matter)), crushed_(slab_.size()) {
     yields_ = std::any_of(law_.begin(), law_.end(),
                           [](const MaterialLaw& law) { return law.kind == CellKind::yielding; });
-    for (const CellSlab& slab : slab_) {
+    for (const RowSlab& slab : slab_) {
         slab_run_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
         for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
             add_pieces(matter, matter.lattice.cell_run[r], piece_);
@@ -321,23 +320,18 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
                    .share = share_.data(),
                    .particles = static_cast<int>(x.size()),
                    .cells = static_cast<int>(matter.cell_fill.size()),
-                   .position = {x.x.data(), x.y.data(), x.z.data()},
-                   .force = {force.x.data(), force.y.data(), force.z.data()}};
+                   .position = {x.x.data(), x.y.data(), x.z.data()}};
     if (!matter.cell_hardening.empty()) {
         for (int n = 0; n < kStrains; ++n) whole.strain[n] = matter.cell_plastic_strain[n].data();
         for (int n = 0; n < kModes; ++n) whole.modes[n] = matter.cell_plastic_modes[n].data();
         whole.alpha = matter.cell_hardening.data();
     }
     parallel_for(slab_.size(), [&](std::size_t index) {
-        CellSlab& slab = slab_[index];
+        RowSlab& slab = slab_[index];
         SlabTask task = whole;
+        task.to = force_rows(slab, force);
         task.batch = batch_.data() + slab_batch_[index];
         task.zeroed = slab.begin, task.end = slab.end, task.reach = slab.reach;
-        double** seam = task.seam;
-        for (std::vector<double>* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
-            std::fill(component->begin(), component->end(), 0.0);
-            *seam++ = component->data();
-        }
         crushed_[index].clear();
         task.crushed_run = &crushed_[index];
         const CellRun* const end = runs.data() + slab_run_[index + 1];

@@ -32,7 +32,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
     const double duration = to.time - from.time;
     const long count = std::max(1L, static_cast<long>(std::ceil(duration / dt)));
     dt = duration / static_cast<double>(count);
-    for (MovingBody& body : body_) body.find_candidates(from);
+    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].begin_steps(from, outcome.body[b]);
     Drive before = from;
     for (long n = 1; n <= count; ++n) {
         const Drive now = n == count ? to : drive_between(from, to, double(n) / double(count));
@@ -40,8 +40,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
             body_[b].find_forces(before, now, dt, outcome.body[b]);
         }
         for (MovingBody& body : body_) {
-            body.move(now, dt);
-            if (!body.is_finite()) return false;
+            if (!body.move(now, dt)) return false;
         }
         for (std::size_t b = 0; b < body_.size(); ++b) {
             body_[b].commit(before, now, outcome.body[b]);
@@ -50,6 +49,7 @@ bool ExplicitSolver::steps(const Drive& from, const Drive& to, double dt, MoveOu
         }
         before = now;
     }
+    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].end_steps(outcome.body[b]);
     outcome.steps += count;
     return true;
 }

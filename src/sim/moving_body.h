@@ -34,17 +34,19 @@ class MovingBody {
     // A frame begins.
     void start(const Drive& from) { pushes_.start(matter_, from); }
     void find_candidates(const Drive& now);
+    // Steps from here, and after the last of them.
+    void begin_steps(const Drive& from, BodyOutcome& outcome);
+    void end_steps(BodyOutcome& outcome);
 
     // Forces at the present positions, at which a step of this length [s] has just ended and one
-    // toward `now` begins.
+    // toward `now` begins. What flows and breaks there does so for good.
     void find_forces(const Drive& before, const Drive& now, double step, BodyOutcome& outcome);
-    // Symplectic Euler: v += dt f / m, x += dt v.
-    void move(const Drive& now, double step);
-    bool is_finite() const;
+    // Symplectic Euler: v += dt f / m, x += dt v. False: it is not finite any more.
+    bool move(const Drive& now, double step);
     // The step is kept.
     void commit(const Drive& before, const Drive& now, BodyOutcome& outcome);
     // The farthest any particle has gone since the candidates were found [m].
-    double travel() const;
+    double travel() const { return farthest_; }
     double tool_travel(const Drive& before, const Drive& now) const {
         return contacts_.travel(matter_, before, now);
     }
@@ -66,6 +68,10 @@ class MovingBody {
     void restore(const State& state);
 
   private:
+    double branch_energy();
+    void find_inner_forces(double step, BodyOutcome& outcome);
+    void remember(BodyOutcome& outcome);
+
     Aggregate& matter_;
     LatticeForces lattice_;
     InternalDamping damping_;
@@ -73,7 +79,9 @@ class MovingBody {
     LoadSet pushes_;
     double step_;
     SurfaceDrag drag_;
+    bool remembers_;            // something can flow or break
     Vec3Array force_, listed_;  // listed: positions when the candidates were found
+    double farthest_ = 0;
     std::vector<LoadSum> load_;
 };
 
