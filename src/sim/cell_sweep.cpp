@@ -354,43 +354,54 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
 
 double CellSweep::commit(Aggregate& matter) const {
     if (!yields_) return 0;
-    const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    bool fresh = matter.cell_plastic_strain[0].empty();
+    // Calls act(cell, its law, what flows) for each cell of a slab that flows.
+    const auto for_each_flowing = [&](const RowSlab& slab, const auto& act) {
+        for_each_cell(matter, slab.run_begin, slab.run_end,
+                      [&](const CellRun& run, int n, CellId cell) {
+                          const MaterialLaw& law = law_of(matter, cell);
+                          if (swept()[cell] <= 0 || law.kind != CellKind::yielding) return;
+                          const OneCell c = one_cell(matter, run, n);
+                          const CellFlowed<double> r =
+                              flow_cell(law.moduli, history_of(matter, cell),
+                                        cell_strain(c.gradient).log, c.modes, double(fill_[cell]));
+                          if (r.d_alpha > 0) act(cell, law.moduli, r);
+                      });
+    };
+    if (matter.cell_plastic_strain[0].empty()) {
+        const double flowing = ordered_sum(slab_.size(), [&](std::size_t s) {
+            double count = 0;
+            for_each_flowing(slab_[s], [&](CellId, const CellModuli&, const auto&) { ++count; });
+            return count;
+        });
+        if (flowing == 0) return mixed_.commit(matter, law_);
+        for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
+        for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
+        matter.cell_hardening.assign(fill_.size(), 0.0f);
+    }
     const double volume = std::pow(matter.lattice.spacing, 3);
-    double lost = 0;
-    for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
-        const MaterialLaw& material = law_of(matter, cell);
-        if (swept()[cell] <= 0 || material.kind != CellKind::yielding) return;
-        const CellModuli& law = material.moduli;
-        const OneCell c = one_cell(matter, run, n);
-        const CellFlowed<double> r =
-            flow_cell(law, history_of(matter, cell), cell_strain(c.gradient).log, c.modes,
-                      double(fill_[cell]));
-        if (!(r.d_alpha > 0)) return;
-        if (fresh) {
-            for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
-            for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
-            matter.cell_hardening.assign(fill_.size(), 0.0f);
-            fresh = false;
-        }
-        // The stress that did the flow's work is the one after the return, less what hardening
-        // stores: linear hardening is booked as lost.
-        const double alpha = matter.cell_hardening[cell];
-        lost += volume * fill_[cell] * r.d_alpha *
-                (law.yield_stress + law.hardening * (alpha + 0.5 * r.d_alpha));
-        const double flows = 1 - r.kept;
-        const double e[kStrains] = {r.distortion.xx, r.distortion.yy, r.distortion.zz,
-                                    r.distortion.xy, r.distortion.yz, r.distortion.zx};
-        const double q[kModes] = {r.modes.xy.x, r.modes.xy.y,  r.modes.xy.z,  r.modes.yz.x,
-                                  r.modes.yz.y, r.modes.yz.z,  r.modes.zx.x,  r.modes.zx.y,
-                                  r.modes.zx.z, r.modes.xyz.x, r.modes.xyz.y, r.modes.xyz.z};
-        for (int s = 0; s < kStrains; ++s) {
-            matter.cell_plastic_strain[s][cell] += static_cast<float>(flows * e[s]);
-        }
-        for (int s = 0; s < kModes; ++s) {
-            matter.cell_plastic_modes[s][cell] += static_cast<float>(flows * q[s]);
-        }
-        matter.cell_hardening[cell] += static_cast<float>(r.d_alpha);
+    const double lost = ordered_sum(slab_.size(), [&](std::size_t s) {
+        double sum = 0;
+        for_each_flowing(slab_[s], [&](CellId cell, const CellModuli& law, const auto& r) {
+            // The stress that did the flow's work is the one after the return, less what hardening
+            // stores: linear hardening is booked as lost.
+            const double alpha = matter.cell_hardening[cell];
+            sum += volume * fill_[cell] * r.d_alpha *
+                   (law.yield_stress + law.hardening * (alpha + 0.5 * r.d_alpha));
+            const double flows = 1 - r.kept;
+            const double e[kStrains] = {r.distortion.xx, r.distortion.yy, r.distortion.zz,
+                                        r.distortion.xy, r.distortion.yz, r.distortion.zx};
+            const double q[kModes] = {r.modes.xy.x, r.modes.xy.y,  r.modes.xy.z,  r.modes.yz.x,
+                                      r.modes.yz.y, r.modes.yz.z,  r.modes.zx.x,  r.modes.zx.y,
+                                      r.modes.zx.z, r.modes.xyz.x, r.modes.xyz.y, r.modes.xyz.z};
+            for (int n = 0; n < kStrains; ++n) {
+                matter.cell_plastic_strain[n][cell] += static_cast<float>(flows * e[n]);
+            }
+            for (int n = 0; n < kModes; ++n) {
+                matter.cell_plastic_modes[n][cell] += static_cast<float>(flows * q[n]);
+            }
+            matter.cell_hardening[cell] += static_cast<float>(r.d_alpha);
+        });
+        return sum;
     });
     return lost + mixed_.commit(matter, law_);
 }
