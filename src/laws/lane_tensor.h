@@ -39,6 +39,21 @@ SWAGE_INLINE V root(const V& a) {
     for (std::size_t l = 0; l < sizeof(V) / sizeof(double); ++l) r[l] = __builtin_sqrt(a[l]);
     return r;
 }
+template <typename V>
+inline constexpr int kWidthOf = sizeof(V) / sizeof(double);
+// From floats.
+// NOTE: written out number by number; what the compiler makes of __builtin_convertvector() goes
+// through halves of the vector.
+template <typename V, typename F>
+SWAGE_INLINE V widened(const F& f) {
+    if constexpr (kWidthOf<V> == 8) {
+        return V{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
+    } else if constexpr (kWidthOf<V> == 4) {
+        return V{f[0], f[1], f[2], f[3]};
+    } else {
+        return V{f[0], f[1]};
+    }
+}
 template <LaneVector V>
 SWAGE_INLINE V larger(const V& a, const V& b) {
     return a > b ? a : b;

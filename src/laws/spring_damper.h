@@ -35,6 +35,19 @@ Number spring_energy(const SpringDamper& c, const Number& distance) {
     return 0.5 * c.stiffness * (distance - c.rest_length) * (distance - c.rest_length);
 }
 
+// T = k (d - l) over k d, as sweeps over many want it, with no division: d over the
+// reference_length has the inverse 1 / y, and l the ratio 1 + p to it.
+template <typename Number>
+Number spring_slack(const Number& y) {
+    return 1.0 - y;
+}
+template <typename Number>
+Number spring_slack(const Number& y, const Number& p) {
+    return 1.0 - (y + p * y);
+}
+// Where the strain d / l - 1 is s.
+inline double slack_at(double s) { return s / (1 + s); }
+
 // k of a connection whose surrounding cells are wholly solid [N/m].
 inline double lattice_stiffness(double young_modulus, double spacing) {
     return 0.4 * young_modulus * spacing;

@@ -12,9 +12,6 @@
 namespace swage {
 
 template <typename V>
-inline constexpr int kWidthOf = sizeof(V) / sizeof(double);
-
-template <typename V>
 SWAGE_INLINE V load(const double* from) {
     V v;
     std::memcpy(&v, from, sizeof v);
@@ -22,9 +19,7 @@ SWAGE_INLINE V load(const double* from) {
 }
 template <typename V>
 SWAGE_INLINE V load(const float* from) {
-    typename LaneBatch<kWidthOf<V>>::Floats v;
-    std::memcpy(&v, from, sizeof v);
-    return __builtin_convertvector(v, V);
+    return widened<V>(from);
 }
 
 // One vector field along the four particle rows of a run, by component: where its first cell's low

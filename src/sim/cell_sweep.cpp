@@ -38,8 +38,7 @@ struct SlabTask {
     const float* share;
     int particles, cells;
     const double* position[3];
-    double* force[3];
-    double* seam[3] = {};
+    ForceRows to{};
     ParticleId zeroed = 0, end = 0, reach = 0;  // the slab's forces are zero up to `zeroed`
     const float* strain[kStrains] = {};         // committed
     const float* modes[kModes] = {};
@@ -47,7 +46,7 @@ struct SlabTask {
     std::vector<const CellRun*>* crushed_run = nullptr;
 
     void zero_up_to(ParticleId stop) {
-        for (double* component : force) std::fill(component + zeroed, component + stop, 0.0);
+        for (double* component : to.own) std::fill(component + zeroed, component + stop, 0.0);
         zeroed = stop;
     }
 };
@@ -105,7 +104,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             room[q] = (own ? task.end : task.reach + kSeamRoom) - row;
             for (int i = 0; i < 3; ++i) {
                 x.at[i][q] = task.position[i] + row;
-                force.at[i][q] = own ? task.force[i] + row : task.seam[i] + (row - task.end);
+                force.at[i][q] = own ? task.to.own[i] + row : task.to.seam[i] + (row - task.end);
             }
         }
         ForceCarry<V> carry;
@@ -249,7 +248,7 @@ CellSweep::CellSweep(const Aggregate& matter)
     : law_(material_laws(matter)), slab_(cell_slabs(matter)), crushed_(slab_.size()) {
     yields_ = std::any_of(law_.begin(), law_.end(),
                           [](const MaterialLaw& law) { return law.kind == CellKind::yielding; });
-    for (const CellSlab& slab : slab_) {
+    for (const RowSlab& slab : slab_) {
         slab_run_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
         for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
             add_pieces(matter, matter.lattice.cell_run[r], piece_);
@@ -321,23 +320,18 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
                    .share = share_.data(),
                    .particles = static_cast<int>(x.size()),
                    .cells = static_cast<int>(matter.cell_fill.size()),
-                   .position = {x.x.data(), x.y.data(), x.z.data()},
-                   .force = {force.x.data(), force.y.data(), force.z.data()}};
+                   .position = {x.x.data(), x.y.data(), x.z.data()}};
     if (!matter.cell_hardening.empty()) {
         for (int n = 0; n < kStrains; ++n) whole.strain[n] = matter.cell_plastic_strain[n].data();
         for (int n = 0; n < kModes; ++n) whole.modes[n] = matter.cell_plastic_modes[n].data();
         whole.alpha = matter.cell_hardening.data();
     }
     parallel_for(slab_.size(), [&](std::size_t index) {
-        CellSlab& slab = slab_[index];
+        RowSlab& slab = slab_[index];
         SlabTask task = whole;
+        task.to = force_rows(slab, force);
         task.batch = batch_.data() + slab_batch_[index];
         task.zeroed = slab.begin, task.end = slab.end, task.reach = slab.reach;
-        double** seam = task.seam;
-        for (std::vector<double>* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
-            std::fill(component->begin(), component->end(), 0.0);
-            *seam++ = component->data();
-        }
         crushed_[index].clear();
         task.crushed_run = &crushed_[index];
         const CellRun* const end = runs.data() + slab_run_[index + 1];
@@ -360,43 +354,54 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
 
 double CellSweep::commit(Aggregate& matter) const {
     if (!yields_) return 0;
-    const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    bool fresh = matter.cell_plastic_strain[0].empty();
+    // Calls act(cell, its law, what flows) for each cell of a slab that flows.
+    const auto for_each_flowing = [&](const RowSlab& slab, const auto& act) {
+        for_each_cell(matter, slab.run_begin, slab.run_end,
+                      [&](const CellRun& run, int n, CellId cell) {
+                          const MaterialLaw& law = law_of(matter, cell);
+                          if (swept()[cell] <= 0 || law.kind != CellKind::yielding) return;
+                          const OneCell c = one_cell(matter, run, n);
+                          const CellFlowed<double> r =
+                              flow_cell(law.moduli, history_of(matter, cell),
+                                        cell_strain(c.gradient).log, c.modes, double(fill_[cell]));
+                          if (r.d_alpha > 0) act(cell, law.moduli, r);
+                      });
+    };
+    if (matter.cell_plastic_strain[0].empty()) {
+        const double flowing = ordered_sum(slab_.size(), [&](std::size_t s) {
+            double count = 0;
+            for_each_flowing(slab_[s], [&](CellId, const CellModuli&, const auto&) { ++count; });
+            return count;
+        });
+        if (flowing == 0) return mixed_.commit(matter, law_);
+        for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
+        for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
+        matter.cell_hardening.assign(fill_.size(), 0.0f);
+    }
     const double volume = std::pow(matter.lattice.spacing, 3);
-    double lost = 0;
-    for_each_cell(matter, 0, runs.size(), [&](const CellRun& run, int n, CellId cell) {
-        const MaterialLaw& material = law_of(matter, cell);
-        if (swept()[cell] <= 0 || material.kind != CellKind::yielding) return;
-        const CellModuli& law = material.moduli;
-        const OneCell c = one_cell(matter, run, n);
-        const CellFlowed<double> r =
-            flow_cell(law, history_of(matter, cell), cell_strain(c.gradient).log, c.modes,
-                      double(fill_[cell]));
-        if (!(r.d_alpha > 0)) return;
-        if (fresh) {
-            for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
-            for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
-            matter.cell_hardening.assign(fill_.size(), 0.0f);
-            fresh = false;
-        }
-        // The stress that did the flow's work is the one after the return, less what hardening
-        // stores: linear hardening is booked as lost.
-        const double alpha = matter.cell_hardening[cell];
-        lost += volume * fill_[cell] * r.d_alpha *
-                (law.yield_stress + law.hardening * (alpha + 0.5 * r.d_alpha));
-        const double flows = 1 - r.kept;
-        const double e[kStrains] = {r.distortion.xx, r.distortion.yy, r.distortion.zz,
-                                    r.distortion.xy, r.distortion.yz, r.distortion.zx};
-        const double q[kModes] = {r.modes.xy.x, r.modes.xy.y,  r.modes.xy.z,  r.modes.yz.x,
-                                  r.modes.yz.y, r.modes.yz.z,  r.modes.zx.x,  r.modes.zx.y,
-                                  r.modes.zx.z, r.modes.xyz.x, r.modes.xyz.y, r.modes.xyz.z};
-        for (int s = 0; s < kStrains; ++s) {
-            matter.cell_plastic_strain[s][cell] += static_cast<float>(flows * e[s]);
-        }
-        for (int s = 0; s < kModes; ++s) {
-            matter.cell_plastic_modes[s][cell] += static_cast<float>(flows * q[s]);
-        }
-        matter.cell_hardening[cell] += static_cast<float>(r.d_alpha);
+    const double lost = ordered_sum(slab_.size(), [&](std::size_t s) {
+        double sum = 0;
+        for_each_flowing(slab_[s], [&](CellId cell, const CellModuli& law, const auto& r) {
+            // The stress that did the flow's work is the one after the return, less what hardening
+            // stores: linear hardening is booked as lost.
+            const double alpha = matter.cell_hardening[cell];
+            sum += volume * fill_[cell] * r.d_alpha *
+                   (law.yield_stress + law.hardening * (alpha + 0.5 * r.d_alpha));
+            const double flows = 1 - r.kept;
+            const double e[kStrains] = {r.distortion.xx, r.distortion.yy, r.distortion.zz,
+                                        r.distortion.xy, r.distortion.yz, r.distortion.zx};
+            const double q[kModes] = {r.modes.xy.x, r.modes.xy.y,  r.modes.xy.z,  r.modes.yz.x,
+                                      r.modes.yz.y, r.modes.yz.z,  r.modes.zx.x,  r.modes.zx.y,
+                                      r.modes.zx.z, r.modes.xyz.x, r.modes.xyz.y, r.modes.xyz.z};
+            for (int n = 0; n < kStrains; ++n) {
+                matter.cell_plastic_strain[n][cell] += static_cast<float>(flows * e[n]);
+            }
+            for (int n = 0; n < kModes; ++n) {
+                matter.cell_plastic_modes[n][cell] += static_cast<float>(flows * q[n]);
+            }
+            matter.cell_hardening[cell] += static_cast<float>(r.d_alpha);
+        });
+        return sum;
     });
     return lost + mixed_.commit(matter, law_);
 }

@@ -52,7 +52,7 @@ class CellSweep {
     // What the sweep itself carries: cells of two materials are beside it.
     const std::vector<float>& swept() const { return swept_.empty() ? fill_ : swept_; }
     std::vector<float> fill_, swept_;
-    std::vector<CellSlab> slab_;  // of the lattice's runs
+    std::vector<RowSlab> slab_;  // of the lattice's runs
     std::vector<CellRun> piece_;
     std::vector<std::size_t> slab_run_;  // first of runs() in each slab; the end
     // By batches of eight cells of a run: whether all are full and whole, or where their fills and

@@ -329,14 +329,10 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
                                product_of<CellKind::yielding>, product_of<CellKind::rubber>);
     result.resize(matter.particle_count());
     parallel_for(slab_.size(), [&](std::size_t index) {
-        CellSlab& slab = slab_[index];
-        double *own[3] = {result.x.data(), result.y.data(), result.z.data()},
-               *seam[3] = {slab.seam.x.data(), slab.seam.y.data(), slab.seam.z.data()};
-        for (double* component : own) {
+        RowSlab& slab = slab_[index];
+        const ForceRows to = force_rows(slab, result);
+        for (double* component : to.own) {
             std::fill(component + slab.begin, component + slab.end, 0.0);
-        }
-        for (auto* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
-            std::fill(component->begin(), component->end(), 0.0);
         }
         for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
             const CellRun& run = matter.lattice.cell_run[r];
@@ -346,7 +342,7 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
                 const bool is_own = row < slab.end;
                 p.room[q] = (is_own ? slab.end : slab.reach + kSeamRoom) - row;
                 for (int i = 0; i < 3; ++i) {
-                    p.result.at[i][q] = is_own ? own[i] + row : seam[i] + (row - slab.end);
+                    p.result.at[i][q] = is_own ? to.own[i] + row : to.seam[i] + (row - slab.end);
                 }
             }
             sweep(law.constants, view_of(matter, run, fill_, at_, whole_.data() + batch_[r]), p);

@@ -54,7 +54,7 @@ class CellTangent {
     std::array<std::vector<float>, 3> at_;
     std::vector<char> whole_;         // of each batch of cells: full, and centred
     std::vector<std::size_t> batch_;  // first one of each run
-    std::vector<CellSlab> slab_;
+    std::vector<RowSlab> slab_;
 };
 
 }  // namespace swage

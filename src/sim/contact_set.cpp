@@ -70,11 +70,16 @@ void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
 }
 
 void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
-    start_position_.resize(matter.surface.size());
-    for (std::size_t p = 0; p < start_position_.size(); ++p) {
-        start_position_[p] = matter.surface_position(p);
-    }
     tool_from_world_at_start_.clear();
+    if (apparatus_->tool.empty()) return;
+    start_position_.resize(matter.surface.size());
+    const std::size_t chunks = (start_position_.size() + kPointsPerChunk - 1) / kPointsPerChunk;
+    parallel_for(chunks, [&](std::size_t chunk) {
+        const std::size_t end = std::min(start_position_.size(), (chunk + 1) * kPointsPerChunk);
+        for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
+            start_position_[p] = matter.surface_position(p);
+        }
+    });
     for (const Pose& pose : from.world_from_tool)
         tool_from_world_at_start_.push_back(pose.inverse());
 }

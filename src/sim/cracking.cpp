@@ -67,15 +67,40 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
 
 }  // namespace
 
-std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law) {
+std::vector<std::size_t> cells_beside(const Aggregate& matter,
+                                      const std::vector<std::vector<const SpringRun*>>& particles) {
+    const Lattice& lattice = matter.lattice;
+    std::vector<std::size_t> runs;
+    for (const auto& slab : particles) {
+        for (const SpringRun* run : slab) {
+            for (int k = std::max(0, run->k - 1); k <= run->k && k < lattice.cell_count.z(); ++k) {
+                for (int j = std::max(0, run->j - 1); j <= run->j && j < lattice.cell_count.y();
+                     ++j) {
+                    const std::size_t row = j + std::size_t(lattice.cell_count.y()) * k;
+                    for (int r = lattice.cell_row_begin[row]; r < lattice.cell_row_begin[row + 1];
+                         ++r) {
+                        runs.push_back(r);
+                    }
+                }
+            }
+        }
+    }
+    std::sort(runs.begin(), runs.end());
+    runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+    return runs;
+}
+
+std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
+                                          const std::vector<std::size_t>* only) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
+    const std::size_t count = only ? only->size() : runs.size();
+    const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
     const bool springs = matter.material.mechanics == Mechanics::springs;
     std::vector<std::vector<Strained>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
+        const std::size_t end = std::min(count, (chunk + 1) * kRunsPerChunk);
         for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
-            const CellRun& run = runs[r];
+            const CellRun& run = runs[only ? (*only)[r] : r];
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
                 std::array<ParticleId, 4> row = run.row;

@@ -6,12 +6,18 @@
 
 #include "laws/fracture.h"
 #include "matter/aggregate.h"
+#include "sim/force_slabs.h"
 
 namespace swage {
 
 // Sound cells whose largest elastic strain, of their mean or of one of their connections, is beyond
 // onset and near the largest of all: those that are next, in the order of the cells. What is
-// committed counts; the state should have converged.
-std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law);
+// committed counts; the state should have converged. `only`: the runs of cells that are looked at.
+std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
+                                          const std::vector<std::size_t>* only = nullptr);
+
+// Runs of cells with connections of these particles, in their order.
+std::vector<std::size_t> cells_beside(const Aggregate& matter,
+                                      const std::vector<std::vector<const SpringRun*>>& particles);
 
 }  // namespace swage

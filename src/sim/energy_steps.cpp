@@ -139,10 +139,12 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
             earlier.push_back(m.before);
             m.body.save(m.state);
             m.body.begin_step(begin);
+            m.body.begin_block(outcome.body[b]);
             const Vec3Array was = m.body.matter().particle_position;
             take(m, step);
             m.body.find_forces(now, step, outcome.body[b]);
             m.body.finish_step(begin, now, step, outcome.body[b]);
+            m.body.end_block(outcome.body[b]);
             m.body.renew_candidates(
                 begin, now, std::sqrt(3.0) * farthest_move(was, m.body.matter().particle_position));
         }

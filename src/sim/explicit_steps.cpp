@@ -179,10 +179,12 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
             inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
         }
         const std::vector<BodyOutcome> so_far = outcome.body;
+        for (std::size_t b = 0; b < body_.size(); ++b) body_[b].begin_block(outcome.body[b]);
         Finding found = block(way, begin, end, count, dt, outcome);
         const Drive now = end >= to.time ? to : drive_between(from, to, way.at(end));
         if (!found) {
             const std::vector<Stored> after = stored(now, lag);
+            for (std::size_t b = 0; b < body_.size(); ++b) body_[b].end_block(outcome.body[b]);
             double turned = 0, done = 0, lost = 0, gain = 0;
             for (std::size_t b = 0; b < body_.size(); ++b) {
                 const BodyOutcome& was = so_far[b];

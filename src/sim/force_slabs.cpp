@@ -2,6 +2,7 @@
 #include "sim/force_slabs.h"
 
 #include <algorithm>
+#include <span>
 
 #include "base/parallel.h"
 #include "sim/vector_clones.h"
@@ -17,62 +18,14 @@ void add_block(const double* __restrict f, std::size_t count, double* __restrict
     for (std::size_t n = 0; n < count; ++n) sum[n] += f[n];
 }
 
+void make_seam(RowSlab& slab) {
+    const ParticleId seam = slab.reach - slab.end;
+    slab.seam.resize(seam > 0 ? static_cast<std::size_t>(seam + 2 * kSeamRoom) : 0);
+}
+
 }  // namespace
 
-void ForceSlab::clear() {
-    for (auto* component : {&part.x, &part.y, &part.z}) {
-        std::fill(component->begin(), component->end(), 0.0);
-    }
-}
-
-void sum_slabs(const ForceSlabs& slabs, std::size_t particles, Vec3Array& force) {
-    force.resize(particles);
-    const std::size_t chunks = std::max<std::size_t>(1, slabs.size());
-    parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t begin = particles * chunk / chunks;
-        const std::size_t end = particles * (chunk + 1) / chunks;
-        std::fill(force.x.begin() + begin, force.x.begin() + end, 0.0);
-        std::fill(force.y.begin() + begin, force.y.begin() + end, 0.0);
-        std::fill(force.z.begin() + begin, force.z.begin() + end, 0.0);
-        for (const ForceSlab& slab : slabs) {
-            const std::size_t from = std::max<std::size_t>(begin, slab.begin);
-            const std::size_t to = std::min<std::size_t>(end, slab.reach);
-            if (from >= to) continue;
-            add_block(slab.part.x.data() + (from - slab.begin), to - from, force.x.data() + from);
-            add_block(slab.part.y.data() + (from - slab.begin), to - from, force.y.data() + from);
-            add_block(slab.part.z.data() + (from - slab.begin), to - from, force.z.data() + from);
-        }
-    });
-}
-
-std::vector<SpanSlab> span_slabs(const Aggregate& matter, ForceSlabs& part) {
-    constexpr std::size_t kSlabParticles = 8192, kMost = 64;
-    const std::vector<Span>& spans = matter.lattice.span;
-    const std::size_t particles = matter.particle_count();
-    const std::size_t slabs = std::clamp<std::size_t>(particles / kSlabParticles, 1, kMost);
-    std::vector<SpanSlab> slab;
-    part.clear();
-    std::size_t s = 0;
-    for (std::size_t n = 0; n < slabs; ++n) {
-        const std::size_t begin = s, stop = particles * (n + 1) / slabs;
-        ForceSlab force;
-        force.begin = s < spans.size() ? spans[s].lower : static_cast<ParticleId>(particles);
-        force.reach = force.begin;
-        while (s < spans.size() &&
-               (n + 1 == slabs || static_cast<std::size_t>(spans[s].lower) < stop)) {
-            force.begin = std::min(force.begin, spans[s].lower);
-            force.reach = std::max(force.reach, spans[s].upper + spans[s].count);
-            ++s;
-        }
-        if (s == begin) continue;
-        force.part.resize(static_cast<std::size_t>(force.reach - force.begin));
-        slab.push_back({begin, s});
-        part.push_back(std::move(force));
-    }
-    return slab;
-}
-
-std::vector<CellSlab> cell_slabs(const Aggregate& matter) {
+std::vector<RowSlab> cell_slabs(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const auto same_row = [](const CellRun& a, const CellRun& b) {
         return a.j == b.j && a.k == b.k;
@@ -88,7 +41,7 @@ std::vector<CellSlab> cell_slabs(const Aggregate& matter) {
     };
     const std::size_t cells = matter.cell_fill.size();
     const std::size_t count = std::clamp<std::size_t>(cells / kSlabCells, 1, kMostSlabs);
-    std::vector<CellSlab> slabs;
+    std::vector<RowSlab> slabs;
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const bool full = !slabs.empty() && !same_row(runs[r], runs[r - 1]) &&
                           std::size_t(runs[r].first) >= cells * slabs.size() / count;
@@ -96,7 +49,7 @@ std::vector<CellSlab> cell_slabs(const Aggregate& matter) {
         slabs.back().run_end = r + 1;
     }
     for (std::size_t s = 0; s < slabs.size(); ++s) {
-        CellSlab& slab = slabs[s];
+        RowSlab& slab = slabs[s];
         slab.begin = s == 0 ? 0 : slabs[s - 1].end;
         slab.end = s + 1 == slabs.size() ? static_cast<ParticleId>(matter.particle_count())
                                          : row_begin(runs[slab.run_end]);
@@ -104,22 +57,104 @@ std::vector<CellSlab> cell_slabs(const Aggregate& matter) {
         for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
             slab.reach = std::max(slab.reach, runs[r].row[3] + runs[r].count + 1);
         }
-        const ParticleId seam = slab.reach - slab.end;
-        slab.seam.resize(seam > 0 ? static_cast<std::size_t>(seam + kSeamRoom) : 0);
+        make_seam(slab);
     }
     return slabs;
 }
 
-void add_seams(const std::vector<CellSlab>& slabs, Vec3Array& force) {
+namespace {
+
+// The runs of one row, found by their place in the order (k, j, i).
+std::span<const ParticleRun> row_of(const std::vector<ParticleRun>& runs, int j, int k) {
+    const auto before = [](const ParticleRun& run, const std::pair<int, int>& row) {
+        return std::pair(run.k, run.j) < row;
+    };
+    const auto begin = std::lower_bound(runs.begin(), runs.end(), std::pair(k, j), before);
+    const auto end = std::lower_bound(begin, runs.end(), std::pair(k, j + 1), before);
+    return {begin, end};
+}
+
+}  // namespace
+
+std::vector<SpringRun> spring_runs(const Lattice& lattice) {
+    constexpr int kAbove[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+    std::vector<SpringRun> runs;
+    for (const ParticleRun& own : lattice.particle_run) {
+        std::array<std::span<const ParticleRun>, 4> row;
+        for (int r = 0; r < 4; ++r) {
+            row[r] = row_of(lattice.particle_run, own.j + kAbove[r][0], own.k + kAbove[r][1]);
+        }
+        // Cut where the row above changes from one run to another.
+        std::array<const ParticleRun*, 4> now{};
+        for (int i = own.i; i < own.i + own.count; ++i) {
+            bool goes_on = i > own.i;
+            std::array<const ParticleRun*, 4> here{};
+            for (int r = 0; r < 4; ++r) {
+                for (const ParticleRun& up : row[r]) {
+                    if (i >= up.i && i < up.i + up.count) here[r] = &up;
+                }
+                goes_on = goes_on && (!here[r] || !now[r] || here[r] == now[r]);
+            }
+            if (!goes_on) {
+                runs.push_back({own.j, own.k, own.first + (i - own.i), 0, {-1, -1, -1, -1}});
+                now = {};
+            }
+            SpringRun& run = runs.back();
+            for (int r = 0; r < 4; ++r) {
+                if (!here[r] || now[r]) continue;
+                now[r] = here[r];
+                run.above[r] = here[r]->first + (i - run.count - here[r]->i);
+            }
+            ++run.count;
+        }
+    }
+    return runs;
+}
+
+std::vector<RowSlab> spring_slabs(const std::vector<SpringRun>& runs, std::size_t particles) {
+    const std::size_t count = std::clamp<std::size_t>(particles / kSlabCells, 1, kMostSlabs);
+    std::vector<RowSlab> slabs;
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        const bool same_row = r > 0 && runs[r].j == runs[r - 1].j && runs[r].k == runs[r - 1].k;
+        const bool full = !slabs.empty() && !same_row &&
+                          std::size_t(runs[r].first) >= particles * slabs.size() / count;
+        if (slabs.empty() || full) slabs.push_back({r, r, runs[r].first, 0, 0, {}});
+        RowSlab& slab = slabs.back();
+        slab.run_end = r + 1;
+        slab.end = runs[r].first + runs[r].count;
+        slab.reach = std::max(slab.reach, slab.end);
+        for (const ParticleId above : runs[r].above) {
+            if (above >= 0) slab.reach = std::max(slab.reach, above + runs[r].count + 1);
+        }
+    }
+    const ParticleId last = static_cast<ParticleId>(particles);
+    for (RowSlab& slab : slabs) {
+        slab.reach = std::min(slab.reach, last);
+        make_seam(slab);
+    }
+    return slabs;
+}
+
+ForceRows force_rows(RowSlab& slab, Vec3Array& force) {
+    ForceRows rows{{force.x.data(), force.y.data(), force.z.data()}};
+    double** seam = rows.seam;
+    for (std::vector<double>* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
+        std::fill(component->begin(), component->end(), 0.0);
+        *seam++ = component->empty() ? nullptr : component->data() + kSeamRoom;
+    }
+    return rows;
+}
+
+void add_seams(const std::vector<RowSlab>& slabs, Vec3Array& force) {
     if (slabs.size() <= 1) return;
     parallel_for(slabs.size() - 1, [&](std::size_t index) {
-        const CellSlab& to = slabs[index + 1];
+        const RowSlab& to = slabs[index + 1];
         for (std::size_t s = 0; s <= index; ++s) {
-            const CellSlab& from = slabs[s];
+            const RowSlab& from = slabs[s];
             const ParticleId begin = std::max(to.begin, from.end);
             const ParticleId end = std::min(to.end, from.reach);
             if (begin >= end) continue;
-            const std::size_t skip = begin - from.end, count = end - begin;
+            const std::size_t skip = begin - from.end + kSeamRoom, count = end - begin;
             add_block(from.seam.x.data() + skip, count, force.x.data() + begin);
             add_block(from.seam.y.data() + skip, count, force.y.data() + begin);
             add_block(from.seam.z.data() + skip, count, force.z.data() + begin);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces found slab by slab and added up in the order of the slabs, so that the order of all sums,
-// and with it every bit of the result, is the same for any number of threads.
+// Forces found slab by slab: the lattice is cut by its size alone and seams are added in the order
+// of the slabs, so that the order of all sums, and with it every bit of the result, is the same for
+// any number of threads.
 #pragma once
 
 #include <vector>
@@ -9,37 +10,40 @@
 
 namespace swage {
 
-struct ForceSlab {
-    ParticleId begin = 0, reach = 0;  // the particles that it may push: begin ... reach - 1
-    Vec3Array part;                   // forces on these [N]
-
-    void clear();
-};
-
-using ForceSlabs = std::vector<ForceSlab>;
-
-// force = sum of the slabs' parts.
-void sum_slabs(const ForceSlabs& slabs, std::size_t particles, Vec3Array& force);
-
-// Spans of connections, cut by the lattice's size alone; part: for the particles that each may
-// push.
-struct SpanSlab {
-    std::size_t begin, end;
-};
-std::vector<SpanSlab> span_slabs(const Aggregate& matter, ForceSlabs& part);
-
-// Rows of cells that add their forces in place: to the particles begin ... end - 1 of the result,
-// which no other slab writes. What they give to particles behind waits in the seam.
-struct CellSlab {
-    std::size_t run_begin, run_end;  // cell runs
+// Rows that add their forces in place: to the particles begin ... end - 1 of the result, which no
+// other slab writes. What they give to particles behind waits in the seam.
+struct RowSlab {
+    std::size_t run_begin, run_end;  // of the sweep's runs
     ParticleId begin, end, reach;    // pushes particles up to reach - 1
-    Vec3Array seam;                  // forces on end ... reach - 1 [N], and kSeamRoom behind
+    // Forces on end ... reach - 1 [N], with kSeamRoom more before and behind.
+    Vec3Array seam;
 };
 inline constexpr int kSeamRoom = 8;
 
-std::vector<CellSlab> cell_slabs(const Aggregate& matter);
+// By the lattice's runs of cells.
+std::vector<RowSlab> cell_slabs(const Aggregate& matter);
+
+// Consecutive particles of one row, with the same offsets to their neighbours in the rows above.
+struct SpringRun {
+    int j, k;  // the row
+    ParticleId first;
+    int count;
+    // Above the first one at (j + 1, k), (j, k + 1), (j + 1, k + 1) and (j - 1, k + 1); -1: none,
+    // and then no connection leads there or past there.
+    std::array<ParticleId, 4> above;
+};
+std::vector<SpringRun> spring_runs(const Lattice& lattice);
+std::vector<RowSlab> spring_slabs(const std::vector<SpringRun>& runs, std::size_t particles);
+
+// Where a slab's forces go: component by component, the result's beginning, and the seam's place of
+// the particle `end`. Clears the seam.
+struct ForceRows {
+    double* own[3];
+    double* seam[3] = {};
+};
+ForceRows force_rows(RowSlab& slab, Vec3Array& force);
 
 // Adds the seams, in the order of the slabs, when all slabs are done.
-void add_seams(const std::vector<CellSlab>& slabs, Vec3Array& force);
+void add_seams(const std::vector<RowSlab>& slabs, Vec3Array& force);
 
 }  // namespace swage

@@ -3,12 +3,11 @@
 // connection (laws/internal_damping.h), and what they remember.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "laws/internal_damping.h"
 #include "matter/aggregate.h"
-#include "sim/force_slabs.h"
+#include "sim/lattice_sweep.h"
 
 namespace swage {
 
@@ -23,21 +22,16 @@ class InternalDamping {
     bool acts() const { return branches_.count > 0; }
     const DampingBranches& branches() const { return branches_; }
 
-    // A step of this length [s] has been made with the present velocities. Adds the forces of the
-    // branches after it; returns the energy that they took during it [J].
-    double add_forces(const Aggregate& matter, double step, Vec3Array& force);
+    // A step of this length [s], for LatticeForces::find(): 0 to leave the branches as they are.
+    // `sweep` is the one that takes it.
+    BranchStep step(const LatticeSweep& sweep, double duration);
 
-    double stored_energy(const Aggregate& matter) const;  // in the branches [J]
+    double stored_energy(const Aggregate& matter, const LatticeSweep& sweep) const;  // [J]
 
   private:
     DampingBranches branches_;
-    double stiffness_;  // of a full connection [N/m]
-    // Tension over stiffness and length, by direction, branch and lower particle.
-    std::array<std::array<std::vector<float>, kMostBranches>, kForwardCount> strain_;
-    std::vector<SpanSlab> slab_;
-    ForceSlabs part_;
-    std::vector<double> taken_;  // [J], a slab
-    Vec3Array extra_;
+    // Tension over stiffness and length, as LatticeSweep keeps it.
+    std::vector<float> strain_;
 };
 
 }  // namespace swage

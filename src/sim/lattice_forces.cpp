@@ -8,9 +8,14 @@
 
 namespace swage {
 
+namespace {
+constexpr double kNearOnset = 1 - 1e-9;  // of the strain at which a cell is looked at
+}
+
 LatticeForces::LatticeForces(const Aggregate& matter)
-    : spring_law_(lattice_law(matter)), spring_sweep_(matter), loose_(matter) {
+    : spring_law_(lattice_law(matter)), loose_(matter) {
     const bool springs = matter.material.mechanics == Mechanics::springs;
+    if (springs) spring_sweep_ = std::make_unique<LatticeSweep>(matter);
     if (!springs) cells_ = std::make_unique<CellSweep>(matter);
     if (springs && std::isfinite(matter.material.yield_stress)) {
         spring_flow_ = std::make_unique<CellFlow>(matter);
@@ -24,18 +29,28 @@ LatticeForces::LatticeForces(const Aggregate& matter)
 
 void LatticeForces::connections_changed(const Aggregate& matter) {
     if (cells_) cells_->cells_changed(matter);
+    if (spring_sweep_) spring_sweep_->connections_changed(matter);
     loose_.connections_changed(matter);
 }
 
-int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force) {
+const LatticeSweep& LatticeForces::sweep(const Aggregate& matter) {
+    if (!spring_sweep_) spring_sweep_ = std::make_unique<LatticeSweep>(matter);
+    return *spring_sweep_;
+}
+
+int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
+                        const BranchStep* branches, double* given) {
     if (cells_) {
         cells_->forces(matter, flow, force);
+        if (branches) *given += spring_sweep_->add_branches(matter, spring_law_, *branches, force);
         loose_.add_forces(matter, flow, nullptr, force);
         return guarded_ ? add_guard_forces(matter, cells_->crushed_runs(), force) : 0;
     }
     const bool flows = spring_flow_ && flow == Flow::trial;
     const RestStrains* const rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
-    spring_sweep_.forces(matter, spring_law_, rest, force);
+    const double limit = loose_.law().onset > 0 ? kNearOnset * loose_.law().onset : 1e100;
+    const double work = spring_sweep_->forces(matter, spring_law_, rest, force, branches, limit);
+    if (branches) *given += work;
     loose_.add_forces(matter, flow, rest, force);
     const int mirrored = add_guard_forces(matter, force);
     mirrored_ = mirrored > 0;
@@ -61,9 +76,14 @@ Committed LatticeForces::commit(Aggregate& matter) {
     return result;
 }
 
-Cracked LatticeForces::crack(Aggregate& matter) {
+Cracked LatticeForces::crack(Aggregate& matter, bool just_found) {
     if (!matter.material.breaks()) return {};
-    const std::vector<CellId> cells = cells_beyond_strength(matter, loose_.law());
+    const bool told = just_found && !cells_;
+    const std::vector<std::size_t> runs =
+        told ? cells_beside(matter, spring_sweep_->stretched_runs()) : std::vector<std::size_t>{};
+    if (told && runs.empty()) return {};
+    const std::vector<CellId> cells =
+        cells_beyond_strength(matter, loose_.law(), told ? &runs : nullptr);
     if (cells.empty()) return {};
     const double before = elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);

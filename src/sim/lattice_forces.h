@@ -36,8 +36,12 @@ class LatticeForces {
 
     // Forces on every particle at the present positions [N].
     // Returns the number of cells that are inside out: they are stiffer than stiffness_bound()
-    // says, by add_guard_stiffness().
-    int find(const Aggregate& matter, Flow flow, Vec3Array& force);
+    // says, by add_guard_stiffness(). With branches, their forces are among them, and `given` grows
+    // by the work done on them [J].
+    int find(const Aggregate& matter, Flow flow, Vec3Array& force,
+             const BranchStep* branches = nullptr, double* given = nullptr);
+    // Whose branches find() moves on.
+    const LatticeSweep& sweep(const Aggregate& matter);
 
     // Whether find() sees every cell that is inside out; rubber's law needs no such look.
     bool sees_inside_out(const Aggregate& matter) const {
@@ -52,7 +56,8 @@ class LatticeForces {
 
     // Cells of a converged and committed state that have reached their strength act as springs from
     // now on; the most strained go first. The state has to be brought to rest again.
-    Cracked crack(Aggregate& matter);
+    // just_found: find() was last called at these positions, and what it saw is all that matters.
+    Cracked crack(Aggregate& matter, bool just_found = false);
 
     double elastic_energy(const Aggregate& matter);  // [J]
 
@@ -69,9 +74,9 @@ class LatticeForces {
 
   private:
     LatticeLaw spring_law_;
-    LatticeSweep spring_sweep_;
-    std::unique_ptr<CellFlow> spring_flow_;  // springs that yield
-    std::unique_ptr<CellSweep> cells_;       // null: springs
+    std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act
+    std::unique_ptr<CellFlow> spring_flow_;       // springs that yield
+    std::unique_ptr<CellSweep> cells_;            // null: springs
     bool guarded_;
     bool mirrored_ = false;  // springs: some cells are inside out
     LooseSprings loose_;     // of cells that are not sound

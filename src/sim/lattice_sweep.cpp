@@ -2,128 +2,319 @@
 #include "sim/lattice_sweep.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
-#include "laws/spring_damper.h"
+#include "sim/spring_batch.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
 
-constexpr int kBlock = 128;  // connections at a time, so that forces stay in the nearest cache
+constexpr ParticleId kZeroAhead = 2048;  // particles whose forces are zeroed at a time
 
-struct SpanArrays {
-    const double *x, *y, *z;     // positions of the lower ends
-    const double *ux, *uy, *uz;  // of the upper ends
-    const float *weight, *rest;
-    double inverse_reference;
-    double force_scale;  // stiffness * reference_length
+int batches_of(const SpringRun& run) { return (run.count + kLanes - 1) / kLanes; }
+
+// A run's rows: the five that it reads, and where the forces of the four above go.
+struct RunRows {
+    const double *x[5][3], *v[5][3];
+    double* to[5][3];
+    int room[5];
+    bool above[5];
 };
 
-// Force on the lower end of `count` connections.
-SWAGE_VECTOR_CLONES
-void spring_block(const SpanArrays& s, int count, double* __restrict fx, double* __restrict fy,
-                  double* __restrict fz) {
-    for (int n = 0; n < count; ++n) {
-        const double dx = s.ux[n] - s.x[n], dy = s.uy[n] - s.y[n], dz = s.uz[n] - s.z[n];
-        const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-        const double elastic = distance * s.inverse_reference - 1.0 - s.rest[n];
-        // Coincident ends have no direction and get no force.
-        const double pull = s.force_scale * s.weight[n] * elastic / (distance + 1e-300);
-        fx[n] = pull * dx;
-        fy[n] = pull * dy;
-        fz[n] = pull * dz;
+template <bool kDamped>
+SWAGE_INLINE RunRows rows_of(const SpringTask& task, const SpringRun& run) {
+    RunRows rows;
+    for (int q = 0; q < 5; ++q) {
+        rows.above[q] = q == 0 || run.above[q - 1] >= 0;
+        const ParticleId row = q == 0 || !rows.above[q] ? run.first : run.above[q - 1];
+        const bool own = row < task.end;
+        rows.room[q] = (own ? task.end : task.reach + kSeamRoom) - row;
+        for (int i = 0; i < 3; ++i) {
+            rows.x[q][i] = task.position[i] + row;
+            if constexpr (kDamped) rows.v[q][i] = task.velocity[i] + row;
+            rows.to[q][i] = own ? task.to.own[i] + row : task.to.seam[i] + (row - task.end);
+        }
+    }
+    return rows;
+}
+
+// At the end of the arrays: what a batch reads, as far as there is anything.
+template <int kWidth>
+struct EndCopy {
+    double x[2][5][3][kWidth + 2];
+    float f[2][kForwardCount][kWidth];
+};
+template <int kWidth, bool kDamped>
+[[gnu::noinline]] void copy_end(const SpringTask& task, const SpringRun& run, int begin,
+                                EndCopy<kWidth>& copy, SpringPlaces& at) {
+    for (int q = 0; q < 5; ++q) {
+        const ParticleId row = (q > 0 && run.above[q - 1] >= 0 ? run.above[q - 1] : run.first);
+        for (int i = 0; i < 3; ++i) {
+            for (int n = 0; n < kWidth + 2; ++n) {
+                const int p = std::clamp(row + begin - 1 + n, 0, task.particles - 1);
+                copy.x[0][q][i][n] = task.position[i][p];
+                if (kDamped) copy.x[1][q][i][n] = task.velocity[i][p];
+            }
+            at.x[q][i] = copy.x[0][q][i] + 1;
+            at.v[q][i] = copy.x[1][q][i] + 1;
+        }
+    }
+    for (int d = 0; d < kForwardCount; ++d) {
+        for (int n = 0; n < kWidth; ++n) {
+            const int p = std::min(run.first + begin + n, task.particles - 1);
+            copy.f[0][d][n] = task.weight[d][p];
+            copy.f[1][d][n] = task.rest[d][p];
+        }
+        at.weight[d] = copy.f[0][d];
+        at.rest[d] = copy.f[1][d];
     }
 }
 
-// The dashpots' share (S2.4): the part of the relative velocity along the connection; and the
-// power [W] that each takes.
-SWAGE_VECTOR_CLONES
-void dashpot_block(const SpanArrays& s, const SpanArrays& v, double damping, int count,
-                   double* __restrict fx, double* __restrict fy, double* __restrict fz,
-                   double* __restrict power) {
-    for (int n = 0; n < count; ++n) {
-        const double dx = s.ux[n] - s.x[n], dy = s.uy[n] - s.y[n], dz = s.uz[n] - s.z[n];
-        const double vx = v.ux[n] - v.x[n], vy = v.uy[n] - v.y[n], vz = v.uz[n] - v.z[n];
-        const double square = dx * dx + dy * dy + dz * dz;
-        const double along = vx * dx + vy * dy + vz * dz;
-        const double pull = damping * s.weight[n] * along / (square + 1e-300);
-        power[n] = pull * along;
-        fx[n] += pull * dx;
-        fy[n] += pull * dy;
-        fz[n] += pull * dz;
+template <BatchKind kKind, int kWidth, bool kSprings, bool kDamped, typename V = LanesOf<kWidth>>
+SWAGE_INLINE void batch_forces(SpringKernel<kWidth, kSprings, kDamped>& kernel,
+                               const SpringPlaces& at, const RunRows& rows, int begin, int count,
+                               float* strain, SpringCarry<V>& carry) {
+    typedef SpringKernel<kWidth, kSprings, kDamped> Kernel;
+    const Triple<V> x = load_triple<V>(at.x[0], 0);
+    Triple<V> v{};
+    if constexpr (kDamped) v = load_triple<V>(at.v[0], 0);
+    Triple<V> own{}, f[3];
+    const auto row_of_three = [&]<int d>(int r) __attribute__((always_inline)) {
+        kernel.template pull<kKind, d, 2 * d + 1, 2 * d + 2>(at, x, v, strain, f);
+        own = own + (f[0] + f[1] + f[2]);
+        const Triple<V> given = f[2] + Kernel::template moved<1>(carry.middle[r], f[0]) +
+                                Kernel::template moved<2>(carry.forward[r], f[1]);
+        carry.middle[r] = f[0], carry.forward[r] = f[1];
+        Kernel::take(rows.to[r + 1], begin - 1, rows.room[r + 1], count + 1, given);
+    };
+    if (rows.above[1]) row_of_three.template operator()<1>(0);
+    if (rows.above[2]) row_of_three.template operator()<2>(1);
+    kernel.template pull<kKind, 0, 7, 8>(at, x, v, strain, f);
+    own = own + (f[0] + f[1] + f[2]) - Kernel::template moved<1>(carry.along, f[0]);
+    carry.along = f[0];
+    if (rows.above[3]) Kernel::take(rows.to[3], begin, rows.room[3], count, f[1]);
+    if (rows.above[4]) Kernel::take(rows.to[4], begin, rows.room[4], count, f[2]);
+    Kernel::take(rows.to[0], begin, rows.room[0], count, Triple<V>{-own.x, -own.y, -own.z});
+}
+
+// What the last batch, which began at `begin`, has not given yet.
+template <typename V>
+SWAGE_INLINE void give_carried(const RunRows& rows, int begin, int count, bool goes_on,
+                               const SpringCarry<V>& carry) {
+    constexpr int kWidth = kWidthOf<V>;
+    const auto last = [](const Triple<V>& t, int i, int l) {
+        return i == 0 ? t.x[l] : i == 1 ? t.y[l] : t.z[l];
+    };
+    for (int i = 0; i < 3; ++i) {
+        if (goes_on && begin + kWidth == count) {
+            rows.to[0][i][count] -= last(carry.along, i, kWidth - 1);
+        }
+        for (int r = 0; r < 2; ++r) {
+            if (!rows.above[r + 1]) continue;
+            double* const to = rows.to[r + 1][i];
+            const double one =
+                last(carry.middle[r], i, kWidth - 1) + last(carry.forward[r], i, kWidth - 2);
+            if (begin + kWidth - 1 <= count) to[begin + kWidth - 1] -= one;
+            if (begin + kWidth <= count) to[count] -= last(carry.forward[r], i, kWidth - 1);
+        }
     }
 }
 
-SWAGE_VECTOR_CLONES
-void add_block(const double* __restrict f, int count, double* __restrict lower) {
-    for (int n = 0; n < count; ++n) lower[n] += f[n];
-}
-SWAGE_VECTOR_CLONES
-void subtract_block(const double* __restrict f, int count, double* __restrict upper) {
-    for (int n = 0; n < count; ++n) upper[n] -= f[n];
+template <int kWidth, bool kSprings, bool kDamped>
+SWAGE_INLINE void slab_forces(SpringTask& task) {
+    typedef LanesOf<kWidth> V;
+    typename LaneBatch<kWidth>::Indices lane;
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    const std::uint8_t* plain = task.plain;
+    float* strain = task.strain;
+    V work[kLanes / kWidth]{};
+    EndCopy<kWidth> copy;
+    for (const SpringRun* run = task.run; run != task.run_end; ++run) {
+        ParticleId reach = run->first;
+        for (ParticleId row : run->above) reach = std::max(reach, row);
+        if constexpr (kSprings) {
+            const ParticleId stop = std::min(task.end, reach + run->count + 1);
+            if (stop > task.zeroed) {
+                task.zero_up_to(std::min(task.end, std::max(stop, task.zeroed + kZeroAhead)));
+            }
+        }
+        const RunRows rows = rows_of<kDamped>(task, *run);
+        const bool goes_on = run + 1 != task.run_end && run[1].first == run->first + run->count &&
+                             run[1].j == run->j && run[1].k == run->k;
+        SpringKernel<kWidth, kSprings, kDamped> kernel{task};
+        SpringCarry<V> carry;
+        int begin = 0;
+        for (; begin < run->count; begin += kWidth) {
+            const int part = begin / kWidth % (kLanes / kWidth);
+            SpringPlaces at;
+            for (int q = 0; q < 5; ++q) {
+                for (int i = 0; i < 3; ++i) {
+                    at.x[q][i] = rows.x[q][i] + begin;
+                    if constexpr (kDamped) at.v[q][i] = rows.v[q][i] + begin;
+                }
+            }
+            for (int d = 0; d < kForwardCount; ++d) {
+                at.weight[d] = task.weight[d] + run->first + begin;
+                at.rest[d] = task.rest[d] + run->first + begin;
+            }
+            if (reach + begin + kWidth + 1 > task.particles) [[unlikely]] {
+                copy_end<kWidth, kDamped>(task, *run, begin, copy, at);
+            }
+            float* const own = kDamped ? strain + part * kWidth : nullptr;
+            kernel.work = work[part];
+            kernel.inside = lane < run->count - begin;
+            if (task.flowed) {
+                batch_forces<BatchKind::flowed>(kernel, at, rows, begin, run->count, own, carry);
+            } else if (*plain) {
+                batch_forces<BatchKind::plain>(kernel, at, rows, begin, run->count, own, carry);
+            } else {
+                batch_forces<BatchKind::weighted>(kernel, at, rows, begin, run->count, own, carry);
+            }
+            work[part] = kernel.work;
+            if (part == kLanes / kWidth - 1 || begin + kWidth >= run->count) {
+                ++plain;
+                strain += kForwardCount * task.branches * kLanes;
+            }
+        }
+        give_carried(rows, begin - kWidth, run->count, goes_on, carry);
+        bool stretched = false;
+        for (int l = 0; l < kWidth; ++l) {
+            stretched = stretched || kernel.most_slack[l] > task.slack_limit;
+        }
+        if (stretched) task.stretched->push_back(run);
+    }
+    for (int l = 0; l < kLanes; ++l) task.work[l] = work[l / kWidth][l % kWidth];
 }
 
-SpanArrays arrays_at(const Vec3Array& a, ParticleId lower, ParticleId upper) {
-    SpanArrays s{};
-    s.x = a.x.data() + lower, s.y = a.y.data() + lower, s.z = a.z.data() + lower;
-    s.ux = a.x.data() + upper, s.uy = a.y.data() + upper, s.uz = a.z.data() + upper;
-    return s;
+template <bool kSprings, bool kDamped>
+SWAGE_WIDE_VECTORS void wide_slab(SpringTask& task) {
+    slab_forces<8, kSprings, kDamped>(task);
+}
+template <bool kSprings, bool kDamped>
+SWAGE_MIDDLE_VECTORS void middle_slab(SpringTask& task) {
+    slab_forces<4, kSprings, kDamped>(task);
+}
+template <bool kSprings, bool kDamped>
+void narrow_slab(SpringTask& task) {
+    slab_forces<2, kSprings, kDamped>(task);
+}
+template <bool kSprings, bool kDamped>
+void slab_of(SpringTask& task) {
+    const int width = vector_width();
+    width == 8   ? wide_slab<kSprings, kDamped>(task)
+    : width == 4 ? middle_slab<kSprings, kDamped>(task)
+                 : narrow_slab<kSprings, kDamped>(task);
 }
 
 }  // namespace
 
 LatticeLaw lattice_law(const Aggregate& matter) {
-    return {lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing), 0};
+    return {lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing)};
 }
 
-LatticeSweep::LatticeSweep(const Aggregate& matter) : slab_(span_slabs(matter, part_)) {
-    damping_power_.resize(slab_.size());
+LatticeSweep::LatticeSweep(const Aggregate& matter)
+    : run_(spring_runs(matter.lattice)), slab_(spring_slabs(run_, matter.particle_count())) {
+    std::size_t batches = 0;
+    for (const RowSlab& slab : slab_) {
+        slab_batch_.push_back(batches);
+        for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) batches += batches_of(run_[r]);
+    }
+    plain_.resize(batches);
+    stretched_.resize(slab_.size());
+    work_.resize(slab_.size());
+    connections_changed(matter);
+}
+
+void LatticeSweep::connections_changed(const Aggregate& matter) {
+    const auto& all = matter.connection;
+    flowed_ = std::isfinite(matter.material.yield_stress);
+    flowed_ =
+        flowed_ || std::any_of(all.begin(), all.end(), [](const ConnectionArrays& c) {
+            return std::any_of(c.plastic.begin(), c.plastic.end(), [](float p) { return p != 0; });
+        });
+    std::uint8_t* plain = plain_.data();
+    for (const SpringRun& run : run_) {
+        for (int begin = 0; begin < run.count; begin += kLanes) {
+            bool whole = begin + kLanes <= run.count;
+            for (const ConnectionArrays& c : all) {
+                const float* const weight = c.weight.data() + run.first + begin;
+                for (int l = 0; l < kLanes && whole; ++l) whole = weight[l] == 1;
+            }
+            *plain++ = whole;
+        }
+    }
+}
+
+double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const Wanted& wanted,
+                           Vec3Array& force) {
+    const double a = matter.lattice.spacing;
+    const Vec3Array &x = matter.particle_position, &v = matter.particle_velocity;
+    SpringTask whole;
+    whole.particles = static_cast<int>(x.size());
+    for (int i = 0; i < 3; ++i) {
+        whole.position[i] = (i == 0 ? x.x : i == 1 ? x.y : x.z).data();
+        whole.velocity[i] = (i == 0 ? v.x : i == 1 ? v.y : v.z).data();
+    }
+    for (int d = 0; d < kForwardCount; ++d) {
+        const ConnectionArrays& own = matter.connection[d];
+        whole.weight[d] = own.weight.data();
+        whole.rest[d] = (wanted.rest ? (*wanted.rest)[d] : own.plastic).data();
+    }
+    whole.stiffness = law.stiffness;
+    whole.inverse_square[0] = 1 / (a * a), whole.inverse_square[1] = 0.5 / (a * a);
+    whole.slack_limit = slack_at(wanted.limit);
+    if (const BranchStep* step = wanted.branches) {
+        whole.branches = step->count;
+        for (int j = 0; j < step->count; ++j) {
+            whole.keep[j] = step->forward[j].keep;
+            whole.gain[j] = step->forward[j].gain;
+        }
+        for (int kind : {0, 1}) {
+            whole.stretch_scale[kind] = step->step * whole.inverse_square[kind];
+        }
+    }
+    whole.flowed = wanted.springs && (wanted.rest || flowed_);
+    force.resize(x.size());
+    parallel_for(slab_.size(), [&](std::size_t index) {
+        RowSlab& slab = slab_[index];
+        SpringTask task = whole;
+        task.to = force_rows(slab, force);
+        task.run = run_.data() + slab.run_begin, task.run_end = run_.data() + slab.run_end;
+        task.plain = plain_.data() + slab_batch_[index];
+        task.end = slab.end, task.reach = slab.reach, task.zeroed = slab.begin;
+        stretched_[index].clear();
+        task.stretched = &stretched_[index];
+        if (wanted.branches) {
+            task.strain = wanted.branches->strain->data() +
+                          slab_batch_[index] * kForwardCount * task.branches * kLanes;
+        }
+        if (!wanted.springs) {
+            slab_of<false, true>(task);
+        } else {
+            wanted.branches ? slab_of<true, true>(task) : slab_of<true, false>(task);
+            task.zero_up_to(slab.end);
+        }
+        double work = 0;
+        for (double lane : task.work) work += lane;
+        work_[index] = law.stiffness * a * a * work;
+    });
+    add_seams(slab_, force);
+    double work = 0;
+    for (double one : work_) work += one;
+    return work;
 }
 
 double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
-                            Vec3Array& force) {
-    const std::size_t particles = matter.particle_count();
-    parallel_for(slab_.size(), [&](std::size_t index) {
-        const SpanSlab& slab = slab_[index];
-        ForceSlab& sum = part_[index];
-        sum.clear();
-        alignas(64) double fx[kBlock], fy[kBlock], fz[kBlock], power[kBlock];
-        double damping_power = 0;
-        for (std::size_t n = slab.begin; n < slab.end; ++n) {
-            const Span& span = matter.lattice.span[n];
-            const ConnectionArrays& history = matter.connection[span.direction];
-            const double reference = reference_length(matter.lattice, span.direction);
-            for (int at = 0; at < span.count; at += kBlock) {
-                const int count = std::min(kBlock, span.count - at);
-                const ParticleId lower = span.lower + at, upper = span.upper + at;
-                SpanArrays s = arrays_at(matter.particle_position, lower, upper);
-                s.weight = history.weight.data() + lower;
-                s.rest = (rest ? (*rest)[span.direction] : history.plastic).data() + lower;
-                s.inverse_reference = 1.0 / reference;
-                s.force_scale = law.stiffness * reference;
-                spring_block(s, count, fx, fy, fz);
-                if (law.damping > 0) {
-                    const SpanArrays v = arrays_at(matter.particle_velocity, lower, upper);
-                    dashpot_block(s, v, law.damping, count, fx, fy, fz, power);
-                    for (int c = 0; c < count; ++c) damping_power += power[c];
-                }
-                const std::size_t l = lower - sum.begin, u = upper - sum.begin;
-                add_block(fx, count, sum.part.x.data() + l);
-                add_block(fy, count, sum.part.y.data() + l);
-                add_block(fz, count, sum.part.z.data() + l);
-                subtract_block(fx, count, sum.part.x.data() + u);
-                subtract_block(fy, count, sum.part.y.data() + u);
-                subtract_block(fz, count, sum.part.z.data() + u);
-            }
-        }
-        damping_power_[index] = damping_power;
-    });
-    sum_slabs(part_, particles, force);
-    double power = 0;
-    for (double one : damping_power_) power += one;
-    return power;
+                            Vec3Array& force, const BranchStep* branches, double limit) {
+    return sweep(matter, law, {true, rest, branches, limit}, force);
+}
+
+double LatticeSweep::add_branches(const Aggregate& matter, const LatticeLaw& law,
+                                  const BranchStep& branches, Vec3Array& force) {
+    return sweep(matter, law, {false, nullptr, &branches, 1e100}, force);
 }
 
 namespace {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sweep over all connections of a lattice: forces of the spring-damper law.
+// The sweep over all connections of a lattice: forces of their springs (laws/spring_damper.h) and
+// of the branches that damp them (laws/internal_damping.h).
 #pragma once
 
 #include <vector>
 
+#include "laws/internal_damping.h"
+#include "laws/lane_tensor.h"
 #include "matter/aggregate.h"
 #include "sim/force_slabs.h"
 
@@ -11,30 +14,76 @@ namespace swage {
 
 // Constants of the sweep, derived once from material and spacing.
 struct LatticeLaw {
-    double stiffness;    // of a full connection [N/m]
-    double damping = 0;  // of a full connection [N s/m]; 0 in quasi-static relaxation
+    double stiffness;  // of a full connection [N/m]
 };
 LatticeLaw lattice_law(const Aggregate& matter);
 
 // rest_length / reference_length - 1 of every connection, by direction and lower particle.
 using RestStrains = std::array<std::vector<float>, kForwardCount>;
 
-// The lattice cut into slabs of particles by its size alone, so that the order of all sums, and so
-// every bit of the result, is the same for any number of threads.
+// A step of the branches beside each connection (laws/internal_damping.h).
+struct BranchStep {
+    int count = 0;
+    std::array<DampingStep, kMostBranches> forward{};
+    double step = 0;                       // [s]
+    std::vector<float>* strain = nullptr;  // LatticeSweep::branch_floats() of them
+};
+
+// The lattice in slabs of rows, cut by its size alone; each row in lanes, as wide as the machine
+// has them. The same bits at any width and number of threads.
 class LatticeSweep {
   public:
     explicit LatticeSweep(const Aggregate& matter);
 
+    // Connections were severed or broken.
+    void connections_changed(const Aggregate& matter);
+
     // force = sum of the connections' forces on each particle [N], with the given rest strains or
-    // else the committed ones. Velocities are read only when the law has damping.
-    // Returns the power that the dashpots take [W].
+    // else the committed ones. A strain above `limit` is told by stretched_runs(). With branches,
+    // these are moved on and pull too; returns the work done on them in the step [J].
     double forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
-                  Vec3Array& force);
+                  Vec3Array& force, const BranchStep* branches = nullptr, double limit = 1e100);
+    // Adds those of the branches alone.
+    double add_branches(const Aggregate& matter, const LatticeLaw& law, const BranchStep& branches,
+                        Vec3Array& force);
+
+    std::size_t branch_floats(int count) const {
+        return plain_.size() * kForwardCount * static_cast<std::size_t>(count) * kLanes;
+    }
+    // Calls act(run, n, strain) with branch_floats() of the run's n-th particle: [direction *
+    // count + branch] at strain[that * kLanes].
+    template <typename Act>
+    void for_each_branched(const std::vector<float>& strain, int count, const Act& act) const {
+        const float* batch = strain.data();
+        for (const SpringRun& run : run_) {
+            for (int n = 0; n < run.count; ++n) {
+                act(run.first + n,
+                    batch + n / kLanes * kForwardCount * count * kLanes + n % kLanes);
+            }
+            batch += (run.count + kLanes - 1) / kLanes * kForwardCount * count * kLanes;
+        }
+    }
+
+    // Runs of the last sweep with a strain above the limit, slab by slab.
+    const std::vector<std::vector<const SpringRun*>>& stretched_runs() const { return stretched_; }
 
   private:
-    ForceSlabs part_;
-    std::vector<SpanSlab> slab_;
-    std::vector<double> damping_power_;  // a slab [W]
+    std::vector<SpringRun> run_;
+    std::vector<RowSlab> slab_;
+    std::vector<std::size_t> slab_batch_;  // first batch of eight of each slab
+    std::vector<std::uint8_t> plain_;      // of each batch: all its connections are there and whole
+    bool flowed_ = false;                  // some rest strain may not be zero
+    std::vector<std::vector<const SpringRun*>> stretched_;
+    std::vector<double> work_;  // a slab [J]
+
+    struct Wanted {
+        bool springs;
+        const RestStrains* rest;
+        const BranchStep* branches;
+        double limit;
+    };
+    double sweep(const Aggregate& matter, const LatticeLaw& law, const Wanted& wanted,
+                 Vec3Array& force);
 };
 
 // Elastic energy stored in the connections [J].

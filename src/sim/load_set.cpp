@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "sim/surface_forces.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
@@ -61,12 +62,15 @@ void balance(const Aggregate& matter, const std::vector<int>& points, std::vecto
 }
 
 Vec3 mass_moment(const Aggregate& matter) {
-    Vec3 sum = Vec3::Zero();
     const Vec3Array& x = matter.particle_position;
-    for (std::size_t p = 0; p < x.size(); ++p) {
-        const double m = matter.particle_mass[p];
-        sum += Vec3(m * x.x[p], m * x.y[p], m * x.z[p]);
-    }
+    std::vector<Vec3> part(vector_chunks(x.size()), Vec3::Zero());
+    for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t p = begin; p < end; ++p) sum += matter.particle_mass[p] * x.at(p);
+        part[begin / kVectorChunk] = sum;
+    });
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& one : part) sum += one;
     return sum;
 }
 

@@ -3,9 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 
+#include "base/parallel.h"
+#include "sim/cell_batch.h"
 #include "sim/cell_volume.h"
 #include "sim/lattice_sweep.h"
+#include "sim/vector_clones.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -37,7 +42,60 @@ double stable_step(const Aggregate& matter, const SimSettings& settings,
     return settings.step_safety * 2 / fastest(matter, bound) * (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
+constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCalm = 0.5;  // of the speed that crushed matter deforms by, in a stable step
+constexpr std::size_t kMoved = 2048;  // particles at a time, so that they stay in a near cache
+
+struct Movers {
+    double *x[3], *v[3];
+    const double *f[3], *mass;
+};
+
+// The square of the highest speed among particles that are moved on; NaN where any is lost.
+SWAGE_VECTOR_CLONES
+double move_block(const Movers& m, std::size_t begin, std::size_t end, double kick, double step,
+                  const double* fall) {
+    Lanes fastest{}, wrong{};  // wrong: stays 0 while all is finite
+    const auto batch = [&](const Movers& at, std::size_t p) __attribute__((always_inline)) {
+        const Lanes push = kick / load<Lanes>(at.mass + p);
+        Lanes speed{};
+        for (int i = 0; i < 3; ++i) {
+            const Lanes v =
+                load<Lanes>(at.v[i] + p) + (push * load<Lanes>(at.f[i] + p) + kick * fall[i]);
+            const Lanes x = load<Lanes>(at.x[i] + p) + step * v;
+            std::memcpy(at.v[i] + p, &v, sizeof v);
+            std::memcpy(at.x[i] + p, &x, sizeof x);
+            speed += v * v;
+            wrong += x - x;
+        }
+        fastest = larger(fastest, speed);
+        wrong += speed - speed;
+    };
+    for (; begin + kLanes <= end; begin += kLanes) batch(m, begin);
+    if (begin < end) {
+        double copy[10][kLanes];
+        Movers last;
+        const std::size_t count = end - begin;
+        const auto take = [&](int n, const double* from, double fill) {
+            std::fill_n(copy[n], kLanes, fill);
+            std::copy_n(from + begin, count, copy[n]);
+            return copy[n];
+        };
+        for (int i = 0; i < 3; ++i) {
+            last.x[i] = take(i, m.x[i], 0), last.v[i] = take(3 + i, m.v[i], 0);
+            last.f[i] = take(6 + i, m.f[i], 0);
+        }
+        last.mass = take(9, m.mass, 1);
+        batch(last, 0);
+        for (int i = 0; i < 3; ++i) {
+            std::copy_n(copy[i], count, m.x[i] + begin);
+            std::copy_n(copy[3 + i], count, m.v[i] + begin);
+        }
+    }
+    double most = 0, sum = 0;
+    for (int l = 0; l < kLanes; ++l) most = std::max(most, fastest[l]), sum += wrong[l];
+    return sum == 0 ? most : std::numeric_limits<double>::quiet_NaN();
+}
 
 }  // namespace
 
@@ -67,10 +125,11 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
     }
 }
 
-double MovingBody::elastic_energy() {
-    return lattice_.elastic_energy(matter_) +
-           (damping_.acts() ? damping_.stored_energy(matter_) : 0);
+double MovingBody::branch_energy() {
+    return damping_.acts() ? damping_.stored_energy(matter_, lattice_.sweep(matter_)) : 0;
 }
+
+double MovingBody::elastic_energy() { return lattice_.elastic_energy(matter_) + branch_energy(); }
 
 void MovingBody::start(const Drive& from, BodyOutcome& outcome) {
     pushes_.start(matter_, from);
@@ -95,35 +154,51 @@ void MovingBody::renew_candidates(const Drive& before, const Drive& now, double 
 
 double MovingBody::move(double kick, double step) {
     Vec3Array &x = matter_.particle_position, &v = matter_.particle_velocity;
-    std::vector<double> fastest(vector_chunks(x.size()));
-    for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
-        double most = 0, wrong = 0;  // wrong: 0 while all is finite
-        for (std::size_t p = begin; p < end; ++p) {
-            const double push = kick / matter_.particle_mass[p];
-            v.x[p] += push * force_.x[p] + kick * gravity_.x();
-            v.y[p] += push * force_.y[p] + kick * gravity_.y();
-            v.z[p] += push * force_.z[p] + kick * gravity_.z();
-            x.x[p] += step * v.x[p];
-            x.y[p] += step * v.y[p];
-            x.z[p] += step * v.z[p];
-            const double speed = v.x[p] * v.x[p] + v.y[p] * v.y[p] + v.z[p] * v.z[p];
-            most = speed > most ? speed : most;
-            wrong += speed - speed;
-        }
-        fastest[begin / kVectorChunk] = most + wrong;
+    const Vec3Array& f = force_;
+    const Movers movers{{x.x.data(), x.y.data(), x.z.data()},
+                        {v.x.data(), v.y.data(), v.z.data()},
+                        {f.x.data(), f.y.data(), f.z.data()},
+                        matter_.particle_mass.data()};
+    const double fall[3] = {gravity_.x(), gravity_.y(), gravity_.z()};
+    std::vector<double> fastest((x.size() + kMoved - 1) / kMoved);
+    parallel_for(fastest.size(), [&](std::size_t chunk) {
+        fastest[chunk] = move_block(movers, chunk * kMoved,
+                                    std::min(x.size(), (chunk + 1) * kMoved), kick, step, fall);
     });
     double most = 0;
-    for (double one : fastest) most = std::isnan(one) ? one : std::max(one, most);
+    for (double one : fastest)
+        most = std::isnan(one) || std::isnan(most) ? kLost : std::max(one, most);
     return step * std::sqrt(most);
 }
 
+// Of the lattice and its damping.
+void MovingBody::find_inner_forces(double step, BodyOutcome& outcome) {
+    if (!damping_.acts()) {
+        inside_out_ = lattice_.find(matter_, Flow::trial, force_);
+        return;
+    }
+    const BranchStep branches = damping_.step(lattice_.sweep(matter_), step);
+    inside_out_ = lattice_.find(matter_, Flow::trial, force_, &branches, &outcome.damped_work);
+}
+
 void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome) {
-    inside_out_ = lattice_.find(matter_, Flow::trial, force_);
-    if (damping_.acts()) outcome.damped_work += damping_.add_forces(matter_, step, force_);
+    find_inner_forces(step, outcome);
     if (drag_.acts()) outcome.drag_work += step * drag_.add_forces(matter_, force_);
     contacts_.add_forces(matter_, now, force_);
     pushes_.add_forces(matter_, now, force_);
     gravity_ = pushes_.gravity(now);
+}
+
+// What flows, softens and cracks at the present positions, whose forces were just found.
+bool MovingBody::remember(BodyOutcome& outcome) {
+    if (!remembers_) return false;
+    const Committed lost = lattice_.commit(matter_);
+    outcome.plastic_work += lost.plastic;
+    outcome.fracture_work += lost.fracture;
+    outcome.broken += lost.broken;
+    const Cracked cracked = lattice_.crack(matter_, true);
+    outcome.fracture_work += cracked.lost;
+    return lost.broken > 0 || cracked.cells > 0;
 }
 
 void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
@@ -131,15 +206,7 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
     if (lattice_.saw_crushed() || inside_out_ > 0) {
         outcome.damped_work += calm_crushed(matter_, std::exp(-kCalm * step / step_));
     }
-    if (remembers_) {
-        const Committed lost = lattice_.commit(matter_);
-        outcome.plastic_work += lost.plastic;
-        outcome.fracture_work += lost.fracture;
-        outcome.broken += lost.broken;
-        const Cracked cracked = lattice_.crack(matter_);
-        outcome.fracture_work += cracked.lost;
-        if (cracked.cells > 0) find_forces(now, 0, outcome);
-    }
+    if (remember(outcome)) find_forces(now, 0, outcome);
     outcome.friction_work += contacts_.commit(matter_, now);
     std::vector<LoadSum> load = contacts_.loads(matter_, now);
     add_work(before, now, load_, load, outcome.work);

@@ -32,6 +32,9 @@ class MovingBody {
     // A frame begins: forces where the body is now.
     void start(const Drive& from, BodyOutcome& outcome);
     void find_candidates(const Drive& now);
+    // What is done on the branches of the damping between these, and they do not store, is lost.
+    void begin_block(BodyOutcome& outcome) { outcome.damped_work += branch_energy(); }
+    void end_block(BodyOutcome& outcome) { outcome.damped_work -= branch_energy(); }
 
     // A step from the present positions and drive begins.
     void begin_step(const Drive& before) { contacts_.begin_move(matter_, before); }
@@ -99,6 +102,10 @@ class MovingBody {
     void restore(const State& state);
 
   private:
+    double branch_energy();
+    void find_inner_forces(double step, BodyOutcome& outcome);
+    bool remember(BodyOutcome& outcome);  // whether the forces have changed by it
+
     Aggregate& matter_;
     LatticeForces lattice_;
     InternalDamping damping_;

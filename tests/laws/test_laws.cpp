@@ -3,6 +3,7 @@
 
 #include "base/math.h"
 #include "laws/contact.h"
+#include "laws/inverse_root.h"
 #include "laws/spring_damper.h"
 #include "laws/yield.h"
 #include "tests/catch.h"
@@ -15,6 +16,38 @@ TEST_CASE("spring tension is the gradient of its energy") {
         const double h = 1e-6;
         const double slope = (spring_energy(c, d + h) - spring_energy(c, d - h)) / (2 * h);
         CHECK(spring_tension(c, d, 0.0) == Approx(slope).margin(1e-6));
+    }
+}
+
+TEST_CASE("the inverse root is right to its last places at any size, lane by lane as alone") {
+    for (double size : {1e-12, 1.0, 1e9}) {
+        for (double q = 1; q < 4.2; q *= 1.003) {
+            const double number[2] = {q * size, 1 / (q * size)};
+            double y[2];
+            inverse_roots(number, y);
+            for (int n = 0; n < 2; ++n) {
+                CHECK(std::abs(y[n] * std::sqrt(number[n]) - 1) < 1e-15);
+            }
+            const LanesOf<4> lanes[1] = {{number[0], number[1], 1, 2}};
+            LanesOf<4> result[1];
+            inverse_roots(lanes, result);
+            CHECK(result[0][0] == y[0]);
+            CHECK(result[0][1] == y[1]);
+        }
+    }
+    const double zero[1] = {0.0};
+    double large[1];
+    inverse_roots(zero, large);
+    CHECK(std::isfinite(large[0]));
+}
+
+TEST_CASE("slack is the tension over stiffness and distance") {
+    const SpringDamper c{350.0, 0.0, 0.7};
+    for (double d : {0.2, 0.69, 0.7, 0.9, 3.0}) {
+        const double p = 0.05, reference = c.rest_length / (1 + p), y = reference / d;
+        CHECK(c.stiffness * d * spring_slack(y, p) ==
+              Approx(spring_tension(c, d, 0.0)).margin(1e-9));
+        CHECK(spring_slack(y, p) == Approx(slack_at(d / c.rest_length - 1)).margin(1e-12));
     }
 }
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "base/parallel.h"
+#include "laws/spring_damper.h"
 #include "sim/cell_volume.h"
 #include "sim/lattice_sweep.h"
+#include "sim/vector_clones.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
 
 using namespace swage;
 
@@ -133,4 +138,105 @@ TEST_CASE("forces have the same bits at any thread count") {
         CHECK(state_hash(probe) == expected);
     }
     set_thread_count(0);
+}
+
+namespace {
+
+// A body full of gaps, over several slabs: three of ten cells are missing, some connections are
+// severed, and some have flowed.
+Aggregate sponge() {
+    std::vector<Vec3i> cells;
+    std::uint32_t state = 7;
+    const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 8; };
+    for (int k = 0; k < 26; ++k) {
+        for (int j = 0; j < 28; ++j) {
+            for (int i = 0; i < 45; ++i) {
+                const bool hollow = i > 11 && i < 16 + j % 7;
+                if (!hollow && (next() % 10 < 7 || j < 6)) cells.emplace_back(i, j, k);
+            }
+        }
+    }
+    const std::vector<float> fill(cells.size(), 1.0f);
+    Aggregate m = test::make_matter({0, 0, 0}, 0.1, {45, 28, 26}, cells, fill);
+    for (auto& c : m.connection) {
+        for (std::size_t p = 0; p < c.weight.size(); ++p) {
+            if (next() % 40 == 0) c.weight[p] = 0;
+            if (next() % 30 == 0) c.plastic[p] = 1e-3f * static_cast<float>(next() % 100);
+        }
+    }
+    deform(m, 0.01);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_velocity.set(p, 1e-3 * Vec3(next() % 100, next() % 90, next() % 80));
+    }
+    return m;
+}
+
+double farthest_apart(const Vec3Array& a, const Vec3Array& b) {
+    double most = 0;
+    for (std::size_t p = 0; p < a.size(); ++p) most = std::max(most, (a.at(p) - b.at(p)).norm());
+    return most;
+}
+
+bool same_bytes(const Vec3Array& a, const Vec3Array& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+}  // namespace
+
+TEST_CASE("each connection pulls its two ends, whatever is missing around it, at any width") {
+    Aggregate m = sponge();
+    const LatticeLaw law = lattice_law(m);
+    DampingBranches branches = damping_branches(0.1, 10, 2000);
+    const double step = 4e-4;
+    BranchStep steps{.count = branches.count, .step = step};
+    for (int j = 0; j < branches.count; ++j) steps.forward[j] = damping_step(branches, j, step);
+    for (const bool flowed : {true, false}) {
+        if (!flowed) {
+            for (auto& c : m.connection) std::fill(c.plastic.begin(), c.plastic.end(), 0.0f);
+        }
+        LatticeSweep sweep(m);
+        // Two steps without moving, connection by connection.
+        Vec3Array pulls;
+        pulls.resize(m.particle_count());
+        double largest = 0, work = 0;
+        for (const Span& span : m.lattice.span) {
+            const double length = reference_length(m.lattice, span.direction);
+            for (int n = 0; n < span.count; ++n) {
+                const ParticleId lower = span.lower + n, upper = span.upper + n;
+                const ConnectionArrays& c = m.connection[span.direction];
+                const Vec3 way = m.particle_position.at(upper) - m.particle_position.at(lower);
+                const Vec3 speed = m.particle_velocity.at(upper) - m.particle_velocity.at(lower);
+                const double k = law.stiffness * double(c.weight[lower]);
+                const double rest = length * (1 + double(c.plastic[lower]));
+                const double stretch = step * speed.dot(way) / way.norm() / length;
+                double tension = spring_tension(SpringDamper{k, 0, rest}, way.norm(), 0.0);
+                for (int j = 0; j < branches.count; ++j) {
+                    const auto [keep, gain] = steps.forward[j];
+                    tension += k * length * (keep * gain + gain) * stretch;
+                    work += k * length * length * gain * stretch * stretch;
+                }
+                const Vec3 pull = tension / way.norm() * way;
+                pulls.add(lower, pull), pulls.add(upper, -pull);
+                if (k > 0) largest = std::max(largest, way.norm() / rest - 1);
+            }
+        }
+        Vec3Array expected;
+        for (int width : {8, 4, 2}) {
+            limit_vector_width(width);
+            std::vector<float> strain(sweep.branch_floats(branches.count), 0.0f);
+            steps.strain = &strain;
+            Vec3Array f;
+            CHECK(sweep.forces(m, law, nullptr, f, &steps, 0.999 * largest) == 0);
+            CHECK(sweep.forces(m, law, nullptr, f, &steps, 0.999 * largest) ==
+                  Approx(work).epsilon(1e-5));
+            CHECK(farthest_apart(f, pulls) < 1e-6 * law.stiffness * m.lattice.spacing);
+            if (width == 8) expected = f;
+            CHECK(same_bytes(f, expected));
+            std::size_t stretched = 0;
+            for (const auto& slab : sweep.stretched_runs()) stretched += slab.size();
+            CHECK(stretched > 0);
+            CHECK(stretched < 20);
+        }
+        limit_vector_width(0);
+    }
 }

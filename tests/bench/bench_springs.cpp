@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the springs path costs a connection and a step, one thread: its forces alone, and whole
+// explicit steps with nothing else acting, where the material is elastic, loses energy in every
+// swing, can break, does both, and flows. usage: bench_springs [particles ...]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "sim/explicit_steps.h"
+#include "sim/lattice_forces.h"
+#include "sim/vector_clones.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+
+namespace {
+
+const Material kPlain{
+    .mechanics = Mechanics::springs, .young_modulus = 1e6, .density = 1000, .damping_ratio = 0};
+
+Material damped(Material m) {
+    m.damping_ratio = 0.02;
+    return m;
+}
+Material breaking(Material m) {
+    m.strength = 1e5, m.toughness = 1e4;
+    return m;
+}
+Material flowing(Material m) {
+    m.yield_stress = 1e3, m.hardening = 1e4;
+    return m;
+}
+
+// About this many particles, 2.4 : 1 : 1, slightly and smoothly out of shape.
+Aggregate bar(double particles, const Material& material) {
+    const int across = static_cast<int>(std::round(std::cbrt(particles / 2.4))) - 1;
+    Aggregate m = test::make_block(static_cast<int>(2.4 * across), across, across, 0.01, material);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p) / 0.01;
+        const Vec3 u(std::sin(0.7 * x.y() + 0.3 * x.z()), std::cos(0.5 * x.x()),
+                     std::sin(0.4 * x.y()));
+        m.particle_position.add(p, 2e-5 * u);
+    }
+    return m;
+}
+
+// Of this thread's own processor time, so that other work on the machine counts less: the least of
+// several.
+double least_seconds(int rounds, const std::function<void()>& act) {
+    double least = 1e300;
+    for (int n = 0; n < rounds; ++n) {
+        timespec start, stop;
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &start);
+        act();
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &stop);
+        least = std::min(least, double(stop.tv_sec - start.tv_sec) +
+                                    1e-9 * double(stop.tv_nsec - start.tv_nsec));
+    }
+    return least;
+}
+
+double force_ns(double particles, const Material& material) {
+    const Aggregate m = bar(particles, material);
+    LatticeForces forces(m);
+    Vec3Array f;
+    forces.find(m, Flow::trial, f);
+    const int repeats = std::max(1, static_cast<int>(1e5 / particles));
+    const double seconds = least_seconds(15, [&] {
+        for (int n = 0; n < repeats; ++n) forces.find(m, Flow::trial, f);
+    });
+    return 1e9 * seconds / repeats / static_cast<double>(m.connection_count());
+}
+
+double step_ns(double particles, const Material& material) {
+    Aggregate m = bar(particles, material);
+    const Apparatus nothing;
+    const SimSettings settings{.solver = Solver::explicit_steps};
+    ExplicitSolver solver({&m}, nothing, settings);
+    const int steps = std::max(10, static_cast<int>(1e6 / particles));
+    const double frame = (steps - 0.5) * explicit_step(m, settings);
+    Drive from, to;
+    to.time = frame;
+    long taken = solver.advance(from, to).steps;
+    const double seconds = least_seconds(5, [&] {
+        from.time = to.time;
+        to.time += frame;
+        taken = solver.advance(from, to).steps;
+    });
+    return 1e9 * seconds / static_cast<double>(taken) / static_cast<double>(m.connection_count());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::vector<double> sizes;
+    for (int n = 1; n < argc; ++n) sizes.push_back(std::atof(argv[n]));
+    if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
+    set_thread_count(1);
+    fmt::print("ns a connection{:>21}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "forces", "step", "damped",
+               "breaking", "both", "flowing");
+    for (double particles : sizes) {
+        for (int width : {8, 4}) {
+            limit_vector_width(width);
+            if (vector_width() != width) continue;
+            fmt::print(
+                "{:>9.0f} particles, {} lanes{:>10.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}"
+                "{:>9.2f}\n",
+                particles, width, force_ns(particles, kPlain), step_ns(particles, kPlain),
+                step_ns(particles, damped(kPlain)), step_ns(particles, breaking(kPlain)),
+                step_ns(particles, damped(breaking(kPlain))), step_ns(particles, flowing(kPlain)));
+        }
+        limit_vector_width(0);
+    }
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole explicit steps with one thread and with two, taken in turns, by the clock on the wall: the
+// median of the ratios. With `busy` a third thread spins on the last core meanwhile.
+// usage: bench_threads [busy] [cells ...]
+#include <fmt/format.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/parallel.h"
+#include "sim/explicit_steps.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+
+namespace {
+
+Aggregate bar(double cells, const Material& material) {
+    const int across = static_cast<int>(std::round(std::cbrt(cells / 2.4)));
+    Aggregate m = test::make_block(static_cast<int>(2.4 * across), across, across, 0.01, material);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p) / 0.01;
+        const Vec3 u(std::sin(0.7 * x.y() + 0.3 * x.z()), std::cos(0.5 * x.x()),
+                     std::sin(0.4 * x.y()));
+        m.particle_position.add(p, 2e-5 * u);
+    }
+    return m;
+}
+
+void compare(const char* name, double cells, const Material& material) {
+    Aggregate m = bar(cells, material);
+    const Apparatus nothing;
+    SimSettings settings;
+    settings.solver = Solver::explicit_steps;
+    settings.gravity = {0, 0, -9.81};
+    ExplicitSolver solver({&m}, nothing, settings);
+    const int steps = std::max(3, static_cast<int>(4e6 / cells));
+    const double frame = (steps - 0.5) * explicit_step(m, settings);
+    Drive from, to;
+    std::vector<double> one, ratio;
+    for (int n = 0; n < 15; ++n) {
+        double seconds[2];
+        for (int threads : {1, 2}) {
+            set_thread_count(threads);
+            from.time = to.time;
+            to.time += frame;
+            const auto start = std::chrono::steady_clock::now();
+            const long taken = solver.advance(from, to).steps;
+            const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+            seconds[threads - 1] = took.count() / static_cast<double>(taken);
+        }
+        if (n == 0) continue;  // warms up
+        one.push_back(seconds[0]);
+        ratio.push_back(seconds[0] / seconds[1]);
+    }
+    std::sort(one.begin(), one.end());
+    std::sort(ratio.begin(), ratio.end());
+    const std::size_t middle = ratio.size() / 2;
+    fmt::print(
+        "{:<18}{:>9} cells: {:9.3f} ms a step with one thread; {:.2f} times as fast with "
+        "two ({:.2f} to {:.2f})\n",
+        name, m.cell_fill.size(), 1e3 * one[middle], ratio[middle], ratio.front(), ratio.back());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::vector<double> sizes;
+    bool busy = false;
+    for (int n = 1; n < argc; ++n) {
+        std::string(argv[n]) == "busy" ? busy = true : (sizes.push_back(std::atof(argv[n])), true);
+    }
+    if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
+    std::atomic<bool> stop{false};
+    std::thread spinner;
+    if (busy) {
+        spinner = std::thread([&] {
+            while (!stop) {
+            }
+        });
+        cpu_set_t last;
+        CPU_ZERO(&last);
+        CPU_SET(std::thread::hardware_concurrency() - 1, &last);
+        pthread_setaffinity_np(spinner.native_handle(), sizeof last, &last);
+    }
+    const Material elastic{.young_modulus = 1e6, .poisson_ratio = 0.3, .damping_ratio = 0};
+    Material flowing = elastic, springs = elastic, damped;
+    flowing.yield_stress = 1e3, flowing.hardening = 1e4;
+    springs.mechanics = Mechanics::springs;
+    damped = springs;
+    damped.damping_ratio = 0.02;
+    for (double cells : sizes) {
+        compare("elastic", cells, elastic);
+        compare("flowing", cells, flowing);
+        compare("springs", cells, springs);
+        compare("springs, damped", cells, damped);
+    }
+    stop = true;
+    if (spinner.joinable()) spinner.join();
+}
