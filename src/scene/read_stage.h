@@ -36,7 +36,6 @@ class StageReader {
     void read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage);
     void read_loads(TableReader& table, StageSpec& stage);
     void read_solver(TableReader& table, SimSettings& sim);
-    void read_frame(TableReader& table, StageSpec& stage);
     void name_stage(TableReader& table, const std::string& machine, StageSpec& stage);
 
     Reading& reading_;
@@ -52,5 +51,8 @@ class StageReader {
 
 // Whether a text can be the name of a file or folder in a run directory; else why not.
 std::optional<std::string> why_no_file_name(const std::string& text);
+
+// The keys axis and up, of a stage and of a machine.
+void read_frame_words(TableReader& table, std::string& axis, std::string& up);
 
 }  // namespace swage
