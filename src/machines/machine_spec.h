@@ -100,6 +100,8 @@ struct MachineSpec {
     std::string name;
     std::string help;
     std::filesystem::path file;
+    // The work frame's x and y, as place_work_frame takes them, where a stage leaves them "auto".
+    std::string axis = "auto", up = "auto";
     std::vector<ParameterSpec> parameter;
     std::vector<ToolSpec> tool;
     std::vector<GripSpec> grip;

@@ -8,6 +8,7 @@
 #include "scene/expressions.h"
 #include "scene/file_text.h"
 #include "scene/read_load.h"
+#include "scene/read_stage.h"
 #include "scene/stage_keys.h"
 
 namespace swage {
@@ -34,6 +35,7 @@ class MachineReader {
         reading_.is_complete = document.is_complete;
         TableReader root(document.root, "the machine file", reading_);
         root.text("help", machine.help);
+        read_frame_words(root, machine.axis, machine.up);
         read_parameters(root.table("parameter"), machine);
         for (const Node* node : root.tables("tool", "[[tool]]")) read_tool(*node, machine);
         // From here on the places of all tools are known, and motions also see the time.

@@ -200,17 +200,17 @@ void StageReader::read_loads(TableReader& table, StageSpec& stage) {
     }
 }
 
-void StageReader::read_frame(TableReader& table, StageSpec& stage) {
+void read_frame_words(TableReader& table, std::string& axis, std::string& up) {
     const auto same = [](std::vector<std::string> names) {
         std::vector<std::pair<std::string, std::string>> pairs;
         for (const std::string& name : names) pairs.emplace_back(name, name);
         return pairs;
     };
-    table.choice("axis", same({"auto", "x", "y", "z"}), stage.axis);
-    table.choice("up", same({"auto", "x", "-x", "y", "-y", "z", "-z"}), stage.up);
-    if (stage.axis != "auto" && stage.up != "auto" && stage.axis.back() == stage.up.back()) {
+    table.choice("axis", same({"auto", "x", "y", "z"}), axis);
+    table.choice("up", same({"auto", "x", "-x", "y", "-y", "z", "-z"}), up);
+    if (axis != "auto" && up != "auto" && axis.back() == up.back()) {
         table.mistake("up", fmt::format("up = \"{}\" lies along axis = \"{}\"; choose another",
-                                        stage.up, stage.axis));
+                                        up, axis));
     }
 }
 
@@ -246,10 +246,14 @@ StageSpec StageReader::read(const Node& node) {
     }
     table.quantity("duration", Quantity::time, above(0), stage.duration);
     table.truth("remold", stage.remold);
-    read_frame(table, stage);
+    read_frame_words(table, stage.axis, stage.up);
     read_solver(table, scene_, stage.sim);
     if (loaded != nullptr && loaded->machine) {
         stage.machine = *loaded->machine;
+        if (stage.axis == "auto" && stage.up == "auto") {
+            stage.axis = stage.machine.axis;
+            stage.up = stage.machine.up;
+        }
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
         read_parameters(table, *loaded, stage);
         read_loads(table, stage);

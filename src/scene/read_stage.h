@@ -37,7 +37,6 @@ class StageReader {
     const Loaded* load(const std::filesystem::path& file);
     void read_parameters(TableReader& table, const Loaded& loaded, StageSpec& stage);
     void read_loads(TableReader& table, StageSpec& stage);
-    void read_frame(TableReader& table, StageSpec& stage);
     void name_stage(TableReader& table, const std::string& machine, StageSpec& stage);
 
     Reading& reading_;
@@ -54,5 +53,8 @@ class StageReader {
 
 // Whether a text can be the name of a file or folder in a run directory; else why not.
 std::optional<std::string> why_no_file_name(const std::string& text);
+
+// The keys axis and up, of a stage and of a machine.
+void read_frame_words(TableReader& table, std::string& axis, std::string& up);
 
 }  // namespace swage
