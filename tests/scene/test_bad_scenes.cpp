@@ -390,20 +390,20 @@ TEST_CASE("a solver that cannot move the scene's matter is refused where it is n
         parts.material = "[material]\nname = \"rubber\"\n" + material;
         return parts;
     };
+    Parts cracks = with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\nsolver = \"implicit\"\n");
+    cracks.material = "[material]\nname = \"ice\"\ndamping_ratio = 0\n";
     check_all({
         {"misspelt", solver("", "solver = \"implcit\"\n"), {"did you mean \"implicit\"?"}},
         {"Euler without damping",
          solver("damping_ratio = 0\n", "solver = \"euler\"\n"),
          {"10:10: solver = \"euler\" gains energy at any step"}},
         {"implicit springs",
-         solver("mechanics = \"springs\"\n", "solver = \"implicit\"\n"),
-         {"10:10: solver = \"implicit\" needs mechanics = \"cells\""}},
-        {"implicit cracks",
-         solver("strength = \"1 MPa\"\ntoughness = \"100 J/m2\"\n", "solver = \"implicit\"\n"),
-         {"11:10: solver = \"implicit\" does not follow cracks"}},
+         solver("damping_ratio = 0\nmechanics = \"springs\"\n", "solver = \"implicit\"\n"),
+         {"11:10: solver = \"implicit\" needs mechanics = \"cells\""}},
+        {"implicit cracks", cracks, {"10:10: solver = \"implicit\" does not follow cracks"}},
         {"implicit drag",
-         solver("", "solver = \"implicit\"\nmedium_density = 1.2\n"),
-         {"10:18: warning: medium_density has no effect with solver = \"implicit\""}},
+         solver("damping_ratio = 0\n", "solver = \"implicit\"\nmedium_density = 1.2\n"),
+         {"11:18: warning: medium_density has no effect with solver = \"implicit\""}},
         {"retries at rest",
          solver("", "retry_limit = 3\n"),
          {"9:15: warning: retry_limit has no effect with solver = \"quasistatic\""}},
