@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two surfaces that meet in motion: a push that never pulls and gives back a set share of the speed
+// (S0.4; Hunt and Crossley, J. Appl. Mech. 42, 1975), friction whose static coefficient is above
+// the kinetic one (S0.5), and tension up to a limit where they stick (S2.8).
+//
+//     N = k d + c d',   c = beta k |d| / v        d depth [m], k [N/m], v [m/s] when met
+//
+// For a mass that meets at v, dw / dd with w = d'/v gives beta from the restitution e alone,
+//
+//     0 = int_{-e}^{1} w / (1 + beta w) dw,   or   beta (1 + e) = ln((1 + beta) / (1 - beta e)),
+//
+// whatever its size and k. It never pulls: d' >= -e v > -v / beta. c grows with d, so the force
+// does not jump at the first touch.
+// NOTE: what a deformable body gives back is also what its inside does: e is that of the contact,
+// met where the contact gives way more than the bodies behind it.
+//
+// v is the highest speed of approach in the touch. NOTE: what approaches anew without having parted
+// rests or swings, and has met nothing: from then on c = 2 zeta sqrt(k m) with the point's own
+// mass, zeta = -ln e / sqrt(pi^2 + ln^2 e). With a v of its own each time, the small swings of what
+// rests had N jump between k d (1 + beta) and nothing. The same c acts along the surface and in
+// tension.
+//
+// NOTE: c is at most 20 beta sqrt(k m), which bodies of up to 400 times the point's own mass do not
+// reach: what is let down slowly would hang in its dashpots, and N would shake with every tremor.
+//
+// NOTE: kinetic friction begins at a speed, a tenth of what the point would swing along the surface
+// with, mu N / k sqrt(k / m), and ends at half of it. Edges of what rests creep a little under any
+// pull; were that sliding already, bodies would slide as wholes at the kinetic coefficient.
+//
+// Dashpots are taken at the end of the step, one contact after the other, each with its own mass m:
+//
+//     F = c d'(end),   d'(end) = d'(*) - dt (k d + F) / m,   d'(*) with all other forces' push
+//
+// x(n+1) - 2 x(n) + x(n-1) + dt M^-1 C (x(n+1) - x(n)) + dt^2 M^-1 K x(n) = 0 has for each mode
+// m (l - 1)^2 + dt c l (l - 1) + dt^2 k l = 0, whose roots stay within the unit circle while
+// dt^2 k < 4 m + 2 dt c: a dashpot of any size only widens the bound.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/math.h"
+
+namespace swage {
+
+inline constexpr double kSlow = 0.1;  // of the speed of a swing along the surface: does not slide
+
+inline constexpr double kMostDamping = 20;
+
+// beta; 0 for e = 1. Below 0.005 e is taken as that, since beta goes as 1 / e.
+inline double restitution_loss(double restitution) {
+    const double e = std::max(restitution, 0.005);
+    if (e >= 1) return 0;
+    if (e < 0.05) return 1 / e;  // to 1e-9
+    double low = 0, high = 1 / e;
+    for (int n = 0; n < 60; ++n) {
+        const double beta = 0.5 * (low + high);
+        const bool above = beta * (1 + e) < std::log((1 + beta) / (1 - beta * e));
+        (above ? high : low) = beta;
+    }
+    return 0.5 * (low + high);
+}
+
+// The damping ratio of a swing of which e is left after half a turn.
+inline double restitution_damping(double restitution) {
+    const double e = std::max(restitution, 0.005), turn = std::numbers::pi;
+    return e >= 1 ? 0 : -std::log(e) / std::hypot(turn, std::log(e));
+}
+
+// Of two materials from theirs: what each gives back of the energy that its part of the give k_1,
+// k_2 in series takes up.
+inline double shared_restitution(double e1, double k1, double e2, double k2) {
+    return std::sqrt((e1 * e1 * k2 + e2 * e2 * k1) / (k1 + k2));
+}
+
+struct ImpactLaw {
+    double stiffness;    // k, also across [N/m]
+    double restitution;  // e
+    double loss;         // beta
+    double damping;      // ratio, of swings along the surface and in tension
+    double friction;     // kinetic
+    double holding;      // static friction, >= friction
+    double hold;         // tension that it holds once it has touched [N], >= 0
+};
+
+// What a contact remembers, committed once a step. Zero where nothing touches.
+struct ImpactHistory {
+    double speed = 0;  // v [m/s]
+    bool touches = false, parts = false, rests = false, slides = false;
+};
+
+// One contact in one step. All vectors of the point relative to the other side.
+struct ImpactState {
+    double depth;   // [m]
+    Vec3 normal;    // outward of the other side, unit
+    Vec3 now;       // velocity [m/s]
+    Vec3 velocity;  // at the end of the step without this contact [m/s]
+    Vec3 reach;     // from the point to where it sticks [m]
+    double give;    // 1 / m: speed that a unit of impulse on both sides makes [1/kg]
+    double step;    // [s]
+};
+
+struct ImpactForce {
+    Vec3 force = Vec3::Zero();        // on the point [N]
+    double normal = 0;                // N [N], less than zero where it pulls
+    Vec3 reach = Vec3::Zero();        // to keep: across the normal, along the friction [m]
+    double stored = 0;                // before the step [J]
+    double damped = 0, friction = 0;  // taken in the step [J]
+    ImpactHistory history;            // to commit
+};
+
+inline ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
+                                const ImpactHistory& last) {
+    ImpactForce result;
+    const double k = law.stiffness;
+    if (at.depth <= 0 && !(last.touches && law.hold > 0 && k * at.depth >= -law.hold))
+        return result;
+    ImpactHistory& next = result.history;
+    next = last;
+    const double rate = -at.normal.dot(at.now), approach = -at.normal.dot(at.velocity);
+    next.rests = last.rests || (rate > 0 && last.parts) || (rate <= 0 && !last.touches);
+    next.speed = std::max({next.speed, rate, approach});
+    next.parts = rate <= 0;
+    next.touches = true;
+
+    // Along the surface and in tension the mass is the point's own share.
+    const double swing = 2 * law.damping * std::sqrt(k / at.give);
+    const double most = kMostDamping * law.loss * std::sqrt(k / at.give);
+    const double met = next.speed > 0 ? std::min(most, law.loss * k * at.depth / next.speed) : 0;
+    const double c = at.depth > 0 && !next.rests ? met : swing, along = std::max(c, swing);
+    const double elastic = k * at.depth, m = at.step * at.give;
+    const double push = elastic + c * (approach - m * elastic) / (1 + c * m);
+    const double N = result.normal = std::max(push, -law.hold);
+    result.damped = (N - elastic) * (approach - m * N) * at.step;
+
+    const Vec3 reach = at.reach - at.normal * at.normal.dot(at.reach);
+    const Vec3 across = at.velocity + approach * at.normal;
+    Vec3 T = (k * reach - along * across) / (1 + along * m);
+    const double size = T.norm(), bears = N + law.hold;
+    const double speed = (at.now + rate * at.normal).norm();
+    const double slow = kSlow * law.holding * bears / k * std::sqrt(k * at.give);
+    if (speed < 0.5 * slow || !(bears > 0)) next.slides = false;
+    result.reach = reach;
+    const double limit = (next.slides ? law.friction : law.holding) * bears;
+    if (size > limit) {
+        next.slides = next.slides || speed > slow;
+        T *= (next.slides ? law.friction : law.holding) * bears / size;
+        const double kept = T.norm() / k, was = reach.norm();
+        if (kept < was) {
+            result.reach = T / k;
+            result.friction = k * kept * (was - kept);
+        }
+    }
+    // What the tangential dashpot took, and what friction took of the way itself.
+    const Vec3 way = at.step * (across + m * T);
+    result.damped += std::max(0.0, (k * result.reach - T).dot(way));
+    result.stored = 0.5 * k * (at.depth * at.depth + reach.squaredNorm());
+    result.force = N * at.normal + T;
+    return result;
+}
+
+}  // namespace swage

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
+
+#include "laws/impact.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+ImpactLaw law_of(double k, double e, double friction = 0, double holding = 0, double hold = 0) {
+    return {
+        k,   e, restitution_loss(e), restitution_damping(e), friction, std::max(friction, holding),
+        hold};
+}
+
+// A mass on the plane y = 0, in steps.
+struct Stone {
+    double mass, step;
+    Vec3 x, v, anchor = Vec3::Zero(), gravity = Vec3::Zero(), pull = Vec3::Zero();
+    ImpactHistory history{};
+    double damped = 0, friction = 0, stored = 0;
+    double normal = 0;
+
+    void go(const ImpactLaw& law) {
+        const Vec3 kicked = v + step * (gravity + pull / mass);
+        if (!history.touches) anchor = x;
+        const ImpactForce f = impact_force(
+            law, {-x.y(), Vec3::UnitY(), v, kicked, anchor - x, 1 / mass, step}, history);
+        v = kicked + step / mass * f.force;
+        anchor = x + f.reach;
+        x += step * v;
+        history = f.history;
+        damped += f.damped;
+        friction += f.friction;
+        stored = f.stored;
+        normal = f.normal;
+    }
+    double energy() const { return 0.5 * mass * v.squaredNorm(); }
+};
+
+double rebound(double e, double mass, double k, double speed) {
+    const double step = 1e-4 * std::sqrt(mass / k);
+    Stone stone{mass, step, Vec3::Zero(), Vec3(0, -speed, 0)};
+    stone.x.y() = 1e-3 * step * speed;
+    for (int n = 0; n < 2'000'000 && (n < 1000 || stone.x.y() <= 0); ++n) stone.go(law_of(k, e));
+    return stone.v.y() / speed;
+}
+
+}  // namespace
+
+TEST_CASE("a mass keeps the asked share of its speed, whatever its size, speed and stiffness") {
+    for (double e : {0.2, 0.5, 0.8, 1.0}) {
+        for (const auto& [m, k, v] :
+             {std::array{1.0, 1e4, 1.0}, std::array{1e-3, 1e2, 30.0}, std::array{1e3, 1e8, 1e-3}}) {
+            INFO(e << ' ' << m << ' ' << k << ' ' << v);
+            CHECK(std::abs(rebound(e, m, k, v) - e) < 0.01 * e);
+        }
+    }
+    CHECK(rebound(0, 1, 1e4, 1) < 0.01);
+    CHECK(rebound(0, 1, 1e4, 1) >= 0);
+}
+
+TEST_CASE("the loss is the root of its relation") {
+    for (double e : {0.005, 0.03, 0.2, 0.5, 0.8, 0.99}) {
+        const double beta = restitution_loss(e);
+        if (e < 0.1) {
+            CHECK(beta * e == Approx(1).epsilon(1e-2));
+            continue;
+        }
+        CHECK(beta * (1 + e) == Approx(std::log((1 + beta) / (1 - beta * e))).epsilon(1e-9));
+    }
+    CHECK(restitution_loss(1) == 0);
+}
+
+TEST_CASE("a contact never pulls unless it sticks, and never gives energy") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (int run = 0; run < 60; ++run) {
+        const double e = 0.5 * (1 + any(random)), hold = run % 3 == 0 ? 3.0 : 0.0;
+        const double mu = 0.4 * (1 + any(random));
+        const ImpactLaw law = law_of(1e3, e, mu, 1.3 * mu, hold);
+        // A pulling force goes to and fro: all that the stone holds it was given.
+        Stone stone{1, 1e-4, Vec3(0, 0.01 * any(random), 0),
+                    Vec3(any(random), any(random), any(random))};
+        const double depth = std::max(0.0, -stone.x.y());
+        const double start = stone.energy() + 0.5 * law.stiffness * depth * depth;
+        double given = 0, least = 0;
+        for (int n = 0; n < 60'000; ++n) {
+            if (n % 3000 == 0) stone.pull = 8 * Vec3(any(random), any(random) - 0.4, any(random));
+            const Vec3 before = stone.x;
+            stone.go(law);
+            given += stone.pull.dot(stone.x - before);
+            least = std::min(least, stone.normal);
+            REQUIRE(stone.damped > -1e-9);
+            // A step may hold half a step's work of the spring back or before.
+            REQUIRE(stone.energy() <= start + given + 0.02 * (start + std::abs(given)) + 5e-3);
+        }
+        CHECK(least >= -hold);
+    }
+}
+
+TEST_CASE("a stone stays below the static limit, slides at the kinetic one, and rests again") {
+    const double g = 10, k = 1e4;
+    const auto pushed = [&](double pull) {
+        Stone stone{1, 1e-3, Vec3(0, -g / k, 0), Vec3::Zero()};
+        stone.gravity = Vec3(0, -g, 0);
+        const ImpactLaw law = law_of(k, 0.3, 0.3, 0.5);
+        for (int n = 0; n < 400; ++n) {
+            stone.pull = Vec3(pull * std::min(1.0, n / 300.0), 0, 0);
+            stone.go(law);
+        }
+        const double speed = stone.v.x();
+        for (int n = 0; n < 1000; ++n) stone.go(law);
+        return std::pair(stone, (stone.v.x() - speed) / 1.0);
+    };
+    CHECK(std::abs(pushed(0.47 * g).first.v.x()) < 1e-6);
+    CHECK(pushed(0.53 * g).second == Approx(0.23 * g).epsilon(0.01));
+    // Without the pull it comes to rest, and then bears more than what it slid at.
+    Stone stone = pushed(0.53 * g).first;
+    const ImpactLaw law = law_of(k, 0.3, 0.3, 0.5);
+    stone.pull.setZero();
+    for (int n = 0; n < 4000; ++n) stone.go(law);
+    CHECK(std::abs(stone.v.x()) < 1e-9);
+    const double at = stone.x.x();
+    for (int n = 0; n < 3000; ++n) {
+        stone.pull = Vec3(0.45 * g * std::min(1.0, n / 1000.0), 0, 0);
+        stone.go(law);
+    }
+    CHECK(std::abs(stone.x.x() - at) < 2 * 0.5 * g / k);
+}
+
+TEST_CASE("what sticks holds up to its tension and then lets go for good") {
+    const double k = 1e4, hold = 5;
+    const auto pulled = [&](double pull) {
+        Stone stone{1, 1e-3, Vec3(0, -1e-4, 0), Vec3::Zero()};
+        const ImpactLaw law = law_of(k, 0.2, 0.3, 0.3, hold);
+        for (int n = 0; n < 4000; ++n) {
+            stone.pull = Vec3(0, pull * std::min(1.0, n / 2000.0), 0);
+            stone.go(law);
+        }
+        return stone;
+    };
+    CHECK(pulled(0.97 * hold).x.y() == Approx(0.97 * hold / k).epsilon(0.02));
+    const Stone gone = pulled(1.03 * hold);
+    CHECK_FALSE(gone.history.touches);
+    CHECK(gone.x.y() > 0.1);
+}
+
+TEST_CASE("dashpots of any size are stable in steps that the spring alone allows") {
+    for (double loss : {0.0, 1.0, 1e3, 1e6}) {
+        ImpactLaw law = law_of(1, 1, 0, 0, 1e9);  // never lets go
+        law.loss = law.damping = loss;
+        Stone stone{1, 1.9, Vec3(0, -1e-3, 0), Vec3(0, -1e-3, 0)};
+        stone.gravity = Vec3(0, -0.05, 0);
+        double highest = 0;
+        for (int n = 0; n < 1000; ++n) stone.go(law), highest = std::max(highest, stone.x.y());
+        CHECK(highest < 1);
+    }
+}
