@@ -44,7 +44,8 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
     if ((inset.from.array() >= inset.to.array()).any()) {
         table.mistake(has_to ? "to" : "from", "the box is empty: from must be less than to");
     }
-    for (const char* key : {"mechanics", "friction", "damping_ratio"}) {
+    for (const char* key : {"mechanics", "friction", "static_friction", "restitution", "stickiness",
+                            "damping_ratio"}) {
         if (table.find(key) == nullptr) continue;
         table.mistake(key, fmt::format("{} is the whole body's: say it in [material]", key));
     }

@@ -64,6 +64,20 @@ void read_fracture(TableReader& table, Material& material) {
     }
 }
 
+// What its surface does where it meets another in motion.
+void read_surface(TableReader& table, Material& material) {
+    table.quantity("restitution", Quantity::number, between(0, 1), material.restitution);
+    table.quantity("stickiness", Quantity::stress, at_least(0), material.stickiness);
+    if (table.quantity("static_friction", Quantity::number, at_least(0),
+                       material.static_friction) &&
+        material.static_friction < material.friction) {
+        table.mistake("static_friction",
+                      fmt::format("static_friction = {:g} is less than friction = {:g}: what "
+                                  "rests holds at least as well as what slides",
+                                  material.static_friction, material.friction));
+    }
+}
+
 }  // namespace
 
 void read_material_numbers(TableReader& table, bool needs_all, Material& material) {
@@ -91,6 +105,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
                                "has; 0.1 to 1 is usual",
                                material.friction));
     }
+    read_surface(table, material);
     if (!needs_all) return;
     if (!has_modulus) table.missing("young_modulus", "a stress, such as \"2 GPa\"");
     if (!has_density) table.missing("density", "such as \"1200 kg/m3\"");

@@ -4,13 +4,14 @@
 //     [mesh]      file, length
 //     [material]  name; mechanics ("cells", "springs"), elasticity ("hencky", "neo-hookean"),
 //                 young_modulus, poisson_ratio, density, yield_stress, hardening, strength,
-//                 toughness, damping_ratio, friction
+//                 toughness, damping_ratio, friction, static_friction, restitution, stickiness
 //     [mold]      across or spacing, kind ("shape", "block"), cell_limit
 //     [skin]      kind ("mount", "frame4", "boundary")
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",
 //                 "explicit", "euler", "energy-stepped", "implicit"), gravity,
-//                 gravity_strength; tolerance, iteration_limit, halving_limit,
-//                 contact_stiffness, grip_stiffness, step_safety, retry_limit (see sim/settings.h); and the machine's parameters
+//                 gravity_strength; tolerance, iteration_limit, halving_limit, contact_stiffness,
+//                 grip_stiffness, step_safety, retry_limit, self_contact (see sim/settings.h); and
+//                 the machine's parameters
 //     [[stage.load]]  name, force or pressure, on, from, to, strength (see scene/read_load.h)
 //     [render]    size, fps, film, tools, ground, gl ("auto", "osmesa", "egl"), field_of_view
 //     [render.camera]  azimuth, elevation, zoom, or eye and target; orbit; or keys = [{at, ...}]

@@ -62,7 +62,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, SimSettings& sim) {
     only_for("iteration_limit", table.whole("iteration_limit", 100, 1'000'000, sim.iteration_limit),
              relaxes);
     only_for("halving_limit", table.whole("halving_limit", 0, 8, sim.halving_limit), relaxes);
-    number("contact_stiffness", 0.5, 100, sim.contact_stiffness);
+    number("contact_stiffness", is_explicit ? 0.01 : 0.5, 100, sim.contact_stiffness);
     number("grip_stiffness", 1, 100, sim.grip_stiffness);
     only_for("step_safety",
              table.quantity("step_safety", Quantity::number,
@@ -70,6 +70,13 @@ void read_solver(TableReader& table, const SceneSpec& scene, SimSettings& sim) {
              is_explicit);
     only_for("retry_limit", table.whole("retry_limit", 0, 20, sim.retry_limit),
              is_explicit || is_implicit);
+    only_for("self_contact", table.truth("self_contact", sim.self_contact), is_explicit);
+    if (!is_explicit) sim.self_contact = false;
+    if (sim.solver == Solver::energy_stepped && scene.body.size() > 1) {
+        table.warn("solver",
+                   "with solver = \"energy-stepped\" bodies pass through each other; with "
+                   "\"explicit\" they meet");
+    }
     only_for("medium_density",
              table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
              drags);

@@ -43,7 +43,8 @@ const std::vector<std::string> kStageKeys = {"machine",
                                              "contact_stiffness",
                                              "grip_stiffness",
                                              "step_safety",
-                                             "retry_limit"};
+                                             "retry_limit",
+                                             "self_contact"};
 
 bool is_path(const std::string& machine) {
     return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";

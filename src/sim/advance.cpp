@@ -172,9 +172,9 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         const BodyOutcome& part = outcome.body[b];
         Books& books = body[b].books;
         books.plastic += part.plastic_work;
-        books.damped += part.damped_work;
+        books.damped += part.damped_work + part.met.damped;
         books.fracture += part.fracture_work;
-        books.friction += part.friction_work;
+        books.friction += part.friction_work + part.met.friction;
         books.drag += part.drag_work;
         books.set_free += part.set_free;
         for (double done : part.work) books.work += done;

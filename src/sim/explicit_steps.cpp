@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "sim/vector_sums.h"
@@ -32,6 +33,8 @@ double euler_step(const Aggregate& matter, const MovingBody& body) {
     return body.stable_step() * zeta / (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
+bool meets(Solver solver) { return solver == Solver::explicit_steps || solver == Solver::euler; }
+
 }  // namespace
 
 ExplicitSolver::ExplicitSolver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
@@ -39,6 +42,7 @@ ExplicitSolver::ExplicitSolver(const std::vector<Aggregate*>& bodies, const Appa
     : apparatus_(apparatus),
       settings_(settings),
       state_(bodies.size()),
+      contact_(meets(settings.solver) ? bodies : std::vector<Aggregate*>{}, settings),
       step_(std::numeric_limits<double>::infinity()),
       inside_out_(bodies.size(), 0),
       implicit_(bodies.size()) {
@@ -50,11 +54,21 @@ ExplicitSolver::ExplicitSolver(const std::vector<Aggregate*>& bodies, const Appa
     }
     if (settings.solver == Solver::implicit_steps) return;
     for (MovingBody& body : body_) body.limit_stiffness(step_);
+    contact_.limit_stiffness(step_);
 }
 
 void ExplicitSolver::connections_changed(std::size_t body) {
     body_[body].connections_changed();  // fewer are never faster, so the step stays
     implicit_[body] = {};
+    contact_.connections_changed(body);
+}
+
+void ExplicitSolver::meet(double dt) {
+    if (!contact_.acts()) return;
+    contact_.renew();
+    std::vector<Vec3Array*> force;
+    for (MovingBody& body : body_) force.push_back(&body.force());
+    contact_.add_forces(force, dt, met_);
 }
 
 // What the state of the bodies and what the guard has asked for allow.
@@ -73,6 +87,7 @@ double ExplicitSolver::longest_step(double frame) {
 std::vector<Stored> ExplicitSolver::stored(const Drive& now, double dt) {
     std::vector<Stored> held;
     for (MovingBody& body : body_) held.push_back(body.stored(now, dt));
+    for (std::size_t b = 0; b < met_.size(); ++b) held[b].contact += met_[b].stored;
     return held;
 }
 
@@ -95,8 +110,8 @@ double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
 
 bool ExplicitSolver::can_be_rescued() const {
     return settings_.solver == Solver::explicit_steps && rescued_blocks_ == 0 &&
-           body_.size() == 1 && ImplicitStep::cannot(body_[0].matter()) == nullptr &&
-           body_[0].cells_alone() != nullptr;
+           body_.size() == 1 && !contact_.acts() &&
+           ImplicitStep::cannot(body_[0].matter()) == nullptr && body_[0].cells_alone() != nullptr;
 }
 
 // `count` steps of dt from a drive on, the last of which ends at the time `end`.
@@ -127,8 +142,15 @@ Finding ExplicitSolver::block(const Way& way, const Drive& begin, double end, lo
             return found;
         }
         for (std::size_t b = 0; b < body_.size(); ++b) {
+            const int broken = outcome.body[b].broken;
             body_[b].finish_step(before, now, dt, outcome.body[b]);
+            if (outcome.body[b].broken > broken) contact_.connections_changed(b);
             body_[b].renew_candidates(before, now, gone[b]);
+        }
+        if (contact_.acts()) {
+            meet(dt);
+            for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].met.add(met_[b]);
+            contact_.commit();
         }
         before = now;
     }
@@ -147,6 +169,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     for (std::size_t b = 0; b < body_.size(); ++b) {
         body_[b].start(from, outcome.body[b]);
     }
+    meet(share_ * step_);
     std::vector<Stored> held;
     Drive begin = from;
     int halvings = 0;  // of this block
@@ -178,6 +201,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
                 halvings >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);
             inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
         }
+        const auto contact_before = contact_.save();
         const std::vector<BodyOutcome> so_far = outcome.body;
         for (std::size_t b = 0; b < body_.size(); ++b) body_[b].begin_block(outcome.body[b]);
         Finding found = block(way, begin, end, count, dt, outcome);
@@ -230,12 +254,15 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         const bool gives_up = fails && !rescue;
         const std::string why =
             gives_up ? sentence_of(found, body_[found.body], apparatus_.name, dt) : std::string();
-        outcome.body = so_far;
+        const std::vector<BodyOutcome> gone_wrong = std::exchange(outcome.body, so_far);
         for (std::size_t b = 0; b < body_.size(); ++b) {
             body_[b].restore(state_[b]);
             body_[b].begin_step(begin);
             body_[b].find_forces(begin, 0, outcome.body[b]);
+            if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);
         }
+        contact_.restore(*contact_before);
+        meet(dt);
         if (gives_up) fail(ExitCode::stopped, "{}", why);
         share_ *= 0.5;
         good_blocks_ = 0;

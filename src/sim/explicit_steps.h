@@ -27,6 +27,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/body_contact.h"
 #include "sim/implicit_step.h"
 #include "sim/motion_guard.h"
 #include "sim/move_outcome.h"
@@ -65,11 +66,15 @@ class ExplicitSolver {
                   MoveOutcome& outcome);
     std::vector<Stored> stored(const Drive& now, double dt);
     bool can_be_rescued() const;
+    // Adds what bodies in contact do to each other in a step of this length [s] from here.
+    void meet(double dt);
 
     const Apparatus& apparatus_;
     SimSettings settings_;
     std::vector<MovingBody> body_;
     std::vector<MovingBody::State> state_;
+    BodyContact contact_;
+    std::vector<ContactSums> met_;
     EnergyGuard energy_;
     bool started_ = false;
     double step_;                  // [s]

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/contact_set.h"
+#include "sim/contact_sums.h"
 
 namespace swage {
 
@@ -32,6 +33,7 @@ struct BodyOutcome {
     std::vector<double> work;       // by tool, then grip [J]
     std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
+    ContactSums met;                // with other bodies and itself; explicit steps only
 
     BodyOutcome(const Apparatus& apparatus, std::size_t pushes)
         : work(apparatus.tool.size() + apparatus.grip.size(), 0.0), push_work(pushes, 0.0) {}
@@ -42,7 +44,8 @@ struct BodyOutcome {
                std::accumulate(push_work.begin(), push_work.end(), 0.0);
     }
     double lost() const {  // [J]
-        return plastic_work + fracture_work + friction_work + damped_work + drag_work;
+        return plastic_work + fracture_work + friction_work + damped_work + drag_work + met.damped +
+               met.friction;
     }
 };
 

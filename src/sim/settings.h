@@ -43,8 +43,9 @@ struct SimSettings {
     double grip_stiffness = 20;    // the same for gripped points; 1 to 100
 
     // Explicit steps.
-    double step_safety = 0.8;  // share of the stable step, 0 to 1
-    int retry_limit = 10;      // halvings of a step that goes wrong (sim/motion_guard.h); 0 to 20
+    double step_safety = 0.8;   // share of the stable step, 0 to 1
+    int retry_limit = 10;       // halvings of a step that goes wrong (sim/motion_guard.h); 0 to 20
+    bool self_contact = false;  // a body's surface meets what is not its neighbourhood in the body
 
     // What the medium around does to the surface (laws/ambient_drag.h, laws/directional_drag.h);
     // explicit steps only.

@@ -18,13 +18,18 @@ inline Vec3 surface_area_vector(const Aggregate& matter, int point) {
 }
 
 // Mass of the lightest particle that carries a good share of the point [kg].
-inline double lightest_carrier(const Aggregate& matter, std::size_t point) {
+inline double lightest_carrier(const Aggregate& matter, const SurfacePoints& points,
+                               std::size_t point) {
     double lightest = std::numeric_limits<double>::infinity();
     for (int c = 0; c < 8; ++c) {
-        if (matter.surface.weight[point][c] <= 0.05f) continue;
-        lightest = std::min(lightest, matter.particle_mass[matter.surface.corner[point][c]]);
+        if (points.weight[point][c] <= 0.05f) continue;
+        lightest = std::min(lightest, matter.particle_mass[points.corner[point][c]]);
     }
     return lightest;
+}
+
+inline double lightest_carrier(const Aggregate& matter, std::size_t point) {
+    return lightest_carrier(matter, matter.surface, point);
 }
 
 // Adds a force on the point to the particles that carry it; force and moment are kept exactly.

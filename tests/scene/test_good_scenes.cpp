@@ -86,6 +86,9 @@ strength = "4 MPa"
 toughness = "2 kJ/m^2"
 damping_ratio = 0.1
 friction = 0.4
+static_friction = 0.5
+restitution = 0.3
+stickiness = "2 kPa"
 [mold]
 spacing = "5 mm"
 kind = "block"
@@ -122,6 +125,7 @@ pressure = "-2 kPa"
 machine = "bend"
 solver = "explicit"
 step_safety = 0.5
+self_contact = true
 medium_density = "1.2 kg/m3"
 drag_coefficient = 0.47
 directional_drag = "2 kPa s/m"
@@ -156,6 +160,9 @@ meshes_per_frame = true
     CHECK(scene.work_piece().material.toughness == 2e3);
     CHECK(scene.work_piece().material.damping_ratio == 0.1);
     CHECK(scene.work_piece().material.friction == 0.4);
+    CHECK(scene.work_piece().material.static_friction == 0.5);
+    CHECK(scene.work_piece().material.restitution == 0.3);
+    CHECK(scene.work_piece().material.stickiness == 2000);
     CHECK(scene.work_piece().mold.spacing.value() == Approx(0.005));
     CHECK_FALSE(scene.work_piece().mold.across.has_value());
     CHECK(scene.work_piece().mold.kind == MoldKind::block);
@@ -196,6 +203,7 @@ meshes_per_frame = true
     CHECK(scene.stage.at(1).name == "2-bend");
     CHECK(scene.stage.at(1).sim.solver == Solver::explicit_steps);
     CHECK(scene.stage.at(1).sim.step_safety == 0.5);
+    CHECK(scene.stage.at(1).sim.self_contact);
     CHECK(scene.stage.at(1).sim.medium_density == 1.2);
     CHECK(scene.stage.at(1).sim.drag_coefficient == 0.47);
     CHECK(scene.stage.at(1).sim.directional_drag == 2000);

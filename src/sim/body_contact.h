@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact of bodies with each other, and of a body with itself where it folds.
+//
+// Each surface point of one body meets the volume of the other's cells: the cell that holds it is
+// found by the inverse of its trilinear map, and there the depth below the surface that the body
+// was molded with (sim/rest_surface.h), turned and stretched as the cell is:
+//
+//     d = -D a / |J^-T grad D|,   n = J^-T grad D / |J^-T grad D|,   J = dx / dg at the place g.
+//
+// The point pushes back with its own weights, the cell with the trilinear weights of the same place
+// in space, so that force and moment are kept to round-off. Both bodies' points meet the other,
+// each with half the stiffness, which is that of both bodies' tools' in series:
+//
+//     1/k = 1/k_1 + 1/k_2,   k_i = contact_stiffness E_i A / a_i        A the point's area.
+//
+// A point is never stiffer than a quarter of what its lightest carrier can follow in one step.
+// Friction's anchors are material points of the other body. Of two materials friction, static
+// friction and stickiness are the means (S2.8), restitution is shared by laws/impact.h.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "laws/impact.h"
+#include "matter/aggregate.h"
+#include "sim/contact_side.h"
+#include "sim/contact_sums.h"
+#include "sim/settings.h"
+
+namespace swage {
+
+class BodyContact {
+  public:
+    // The bodies must outlive it.
+    BodyContact(const std::vector<Aggregate*>& bodies, const SimSettings& settings);
+
+    bool acts() const { return !way_.empty(); }
+    void limit_stiffness(double step);  // for steps of this length [s]
+
+    // Finds what has come near, if anything can have since the last time.
+    void renew();
+    void renew_all();
+
+    // Adds the forces at the present positions, toward which `step` [s] goes on with the forces and
+    // gravity so far. By body; sums likewise, set anew.
+    void add_forces(const std::vector<Vec3Array*>& force, double step,
+                    std::vector<ContactSums>& sums);
+    // The step is kept: remembers where points stick and how they met.
+    void commit();
+
+    // All that a step changes.
+    struct State;
+    std::shared_ptr<const State> save() const;
+    void restore(const State& state);
+
+    // A blade or a crack has changed which cells are whole.
+    void connections_changed(std::size_t body);
+
+    std::size_t candidates() const;
+
+  private:
+    // A point and the cell of the other side that holds it, or the last that did.
+    struct Contact {
+        int point;
+        CellId cell;
+        Vec3i site;
+        std::array<ParticleId, 8> corner;
+        Vec3 place = Vec3::Constant(0.5);  // in the cell
+        Vec3 anchor = Vec3::Zero();        // in cells from the other's origin
+        ImpactHistory history{};
+        ImpactHistory next{};  // of the present forces
+        Vec3 next_anchor = Vec3::Zero();
+    };
+    // The points of one body against the cells of another, or of its own.
+    struct Way {
+        int from, onto;
+        ImpactLaw law;  // stiffness and hold: of each point
+        std::vector<double> stiffness, hold;
+        std::vector<Contact> contact;  // sorted by point
+    };
+    struct Meeting {
+        bool meets = false;
+        double depth;
+        Vec3 normal;
+        Mat3 gradient;  // J [m]
+    };
+    void find_pairs(Way& way, double margin);
+    bool locate(const ContactSide& onto, const Vec3& x, Contact& contact, Mat3& gradient) const;
+    Meeting meet(const Way& way, Contact& contact) const;
+    void respond(Way& way, const std::vector<Meeting>& meeting,
+                 const std::vector<Vec3Array*>& force, double step, std::vector<ContactSums>& sums);
+    void set_stiffness(Way& way);
+
+    SimSettings settings_;
+    std::vector<ContactSide> side_;
+    std::vector<std::vector<Vec3>> listed_;  // of each side, where its skin was
+    std::vector<Way> way_;
+    double least_spacing_ = 0;  // [m]
+    double step_ = 0;           // that stiffness is held to; 0: any [s]
+    double allowance_ = -1;     // that any particle may go until renew() finds anew [m]
+};
+
+}  // namespace swage

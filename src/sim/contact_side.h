@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A body as contact with other bodies, and with itself, sees it: the points of its surface, the
+// cells that they may meet, and which of them belong together.
+//
+// Where cells are no longer whole, cut or broken, a new surface runs half-way through them: a point
+// before each face of a whole cell that looks at one, half a spacing out, which the whole cell
+// carries. Points that a cell no longer whole carries meet nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "sim/rest_surface.h"
+
+namespace swage {
+
+class ContactSide {
+  public:
+    // `itself`: whether it may meet itself. The body must outlive it.
+    ContactSide(Aggregate& matter, bool itself);
+
+    // A blade or a crack has changed which cells are whole. The body's own points keep their
+    // numbers; those of new surface come after them, in any order.
+    void connections_changed();
+
+    Aggregate& matter() const { return *matter_; }
+    const SurfacePoints& points() const { return points_; }
+    std::size_t own_points() const { return matter_->surface.size(); }
+    bool meets(int point) const { return meets_[point] != 0; }
+    Vec3 position(int point) const {
+        Vec3 x = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) {
+            const double w = points_.weight[point][c];
+            if (w != 0) x += w * matter_->particle_position.at(points_.corner[point][c]);
+        }
+        return x;
+    }
+    const RestSurface& surface() const { return *surface_; }
+    // A whole cell not deep inside, which a point may meet.
+    bool may_hold(CellId cell) const { return cell >= 0 && whole_[cell] && surface_->is_rim(cell); }
+    bool is_whole(CellId cell) const { return whole_[cell] != 0; }
+    // Particles of cells near the surface.
+    const std::vector<ParticleId>& skin() const { return skin_; }
+
+    // Whether the point is within three cells of this one and connected to it within that distance.
+    bool is_neighbour(int point, const Vec3i& site) const;
+    // Whether the point and this place, in cells, are the faces of one crack, not yet apart. A
+    // closed crack is the fracture law's.
+    bool is_closed_crack(int point, const Vec3& place) const;
+
+  private:
+    void find_whole();
+    void find_points();
+    void find_near();
+
+    Aggregate* matter_;
+    bool itself_;
+    SurfacePoints points_;
+    std::vector<Vec3i> home_;  // of each point, the cell that it lies in or just outside of
+    std::vector<char> meets_;
+    std::shared_ptr<const RestSurface> surface_;
+    std::vector<char> whole_;  // of each cell
+    std::vector<ParticleId> skin_;
+    // Of each point a set, of each set a bit for each cell of the box around its home.
+    std::vector<int> near_set_;
+    std::vector<std::array<std::uint64_t, 6>> near_;
+};
+
+}  // namespace swage
