@@ -145,19 +145,4 @@ void BodyReader::read(const Node& node, SceneSpec& scene) {
     scene.body.push_back(std::move(body));
 }
 
-void refuse_without_motion(TableReader& root, const SceneSpec& scene) {
-    const bool moves = std::any_of(scene.body.begin(), scene.body.end(),
-                                   [](const BodySpec& body) { return body.start.moves(); });
-    if (scene.body.size() == 1 && !moves) return;
-    for (const StageSpec& stage : scene.stage) {
-        if (stage.sim.solver != Solver::quasistatic) continue;
-        root.mistake(
-            scene.body.size() > 1 ? "body" : "mesh",
-            fmt::format("stage \"{}\" goes from equilibrium to equilibrium, which knows {}: "
-                        "use solver = \"explicit\"",
-                        stage.name,
-                        scene.body.size() > 1 ? "one body" : "no velocity and no spin"));
-    }
-}
-
 }  // namespace swage

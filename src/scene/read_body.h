@@ -34,7 +34,4 @@ class BodyReader {
     std::filesystem::path scene_folder_;
 };
 
-// Several bodies, or one that moves at first, ask for stages with inertia.
-void refuse_without_motion(TableReader& root, const SceneSpec& scene);
-
 }  // namespace swage

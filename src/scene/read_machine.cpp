@@ -35,6 +35,7 @@ class MachineReader {
         reading_.is_complete = document.is_complete;
         TableReader root(document.root, "the machine file", reading_);
         root.text("help", machine.help);
+        root.truth("moves", machine.moves);
         read_frame_words(root, machine.axis, machine.up);
         read_parameters(root.table("parameter"), machine);
         for (const Node* node : root.tables("tool", "[[tool]]")) read_tool(*node, machine);
@@ -157,8 +158,7 @@ class MachineReader {
             expression_.read(table, "rounding", tool.rounding);
         }
         if (tool.shape == "mesh") read_tool_mesh(table, tool.mesh);
-        if (expression_.read(table, "axis", tool.axis) &&
-            tool.axis == Expression3{"0", "0", "0"}) {
+        if (expression_.read(table, "axis", tool.axis) && tool.axis == Expression3{"0", "0", "0"}) {
             table.mistake("axis", kNoDirection);
         }
         if (!expression_.read(table, "at", tool.at)) {

@@ -81,7 +81,6 @@ void read_document_into(const Document& document, const AssetPaths& assets, Read
     }
     scene.inputs.insert(scene.inputs.end(), stages.inputs().begin(), stages.inputs().end());
     refuse_with_insets(root, scene);
-    refuse_without_motion(root, scene);
     if (root.find("stage") == nullptr && reading.is_complete) {
         reading.mistakes.add(absent.place,
                              "nothing to do: the scene has no [[stage]], such as\n"

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace swage {
 
 namespace {
@@ -35,15 +37,25 @@ void refuse(TableReader& table, const Material& material, Solver solver) {
 
 }  // namespace
 
-void read_solver(TableReader& table, const SceneSpec& scene, SimSettings& sim) {
+void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves, SimSettings& sim) {
+    const bool several = scene.body.size() > 1;
+    const bool starts = std::any_of(scene.body.begin(), scene.body.end(),
+                                    [](const BodySpec& body) { return body.start.moves(); });
+    if (several || starts || machine_moves) sim.solver = Solver::explicit_steps;
     std::vector<std::pair<std::string, Solver>> solvers;
     for (const Solver solver : {Solver::quasistatic, Solver::explicit_steps, Solver::euler,
                                 Solver::energy_stepped, Solver::implicit_steps}) {
         solvers.emplace_back(name_of(solver), solver);
     }
     table.choice<Solver>("solver", solvers, sim.solver);
+    if (sim.solver == Solver::quasistatic && (several || starts)) {
+        table.mistake("solver",
+                      fmt::format("solver = \"quasistatic\" goes from equilibrium to equilibrium, "
+                                  "which knows {}: leave it out, or use solver = \"explicit\"",
+                                  several ? "one body" : "no velocity and no spin"));
+    }
     for (const BodySpec& body : scene.body) refuse(table, body.material, sim.solver);
-    if (sim.solver == Solver::implicit_steps && scene.body.size() > 1) {
+    if (sim.solver == Solver::implicit_steps && several) {
         table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
     }
     const bool relaxes = sim.solver == Solver::quasistatic;

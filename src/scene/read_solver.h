@@ -8,6 +8,8 @@ namespace swage {
 
 // The keys of a [[stage]] that say how its matter moves; the scene's materials have been read. What
 // a solver cannot do with them is a mistake at `solver`, a key that it does not ask a warning.
-void read_solver(TableReader& table, const SceneSpec& scene, SimSettings& sim);
+// `machine_moves`: its machine is one for bodies in motion. The solver left out is then explicit,
+// as it is for several bodies and for one that has a speed at the start; else quasi-static.
+void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves, SimSettings& sim);
 
 }  // namespace swage

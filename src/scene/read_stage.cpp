@@ -210,8 +210,8 @@ void read_frame_words(TableReader& table, std::string& axis, std::string& up) {
     table.choice("axis", same({"auto", "x", "y", "z"}), axis);
     table.choice("up", same({"auto", "x", "-x", "y", "-y", "z", "-z"}), up);
     if (axis != "auto" && up != "auto" && axis.back() == up.back()) {
-        table.mistake("up", fmt::format("up = \"{}\" lies along axis = \"{}\"; choose another",
-                                        up, axis));
+        table.mistake(
+            "up", fmt::format("up = \"{}\" lies along axis = \"{}\"; choose another", up, axis));
     }
 }
 
@@ -248,7 +248,8 @@ StageSpec StageReader::read(const Node& node) {
     table.quantity("duration", Quantity::time, above(0), stage.duration);
     table.truth("remold", stage.remold);
     read_frame_words(table, stage.axis, stage.up);
-    read_solver(table, scene_, stage.sim);
+    read_solver(table, scene_, loaded != nullptr && loaded->machine && loaded->machine->moves,
+                stage.sim);
     if (loaded != nullptr && loaded->machine) {
         stage.machine = *loaded->machine;
         if (stage.axis == "auto" && stage.up == "auto") {

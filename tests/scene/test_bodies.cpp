@@ -64,10 +64,32 @@ friction = 0.4
     CHECK(body[3].mold.across.value() == 3);
 }
 
+TEST_CASE("a solver left out is explicit where something is to move, else quasi-static") {
+    const Scratch scratch;
+    const auto solver = [&](const Parts& parts) {
+        const SceneReading reading =
+            read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+        INFO(told(reading.mistakes, scratch.folder()));
+        REQUIRE(reading.scene);
+        return reading.scene->stage[0].sim.solver;
+    };
+    const std::string bend = "[[stage]]\nmachine = \"bend\"\n";
+    CHECK(solver({}) == Solver::quasistatic);
+    CHECK(solver(with(&Parts::stage, "[[stage]]\nmachine = \"floor\"\n")) ==
+          Solver::explicit_steps);
+    Parts several = beside("file = \"bar.obj\"\n");
+    several.stage = bend;
+    CHECK(solver(several) == Solver::explicit_steps);
+    const std::string head = "[mesh]\nfile = \"bar.obj\"\n";
+    CHECK(solver(with(&Parts::mesh, head + "spin = [1, 0, 0]\n")) == Solver::explicit_steps);
+    CHECK(solver(with(&Parts::mesh, head + "turn = [1, 0, 0]\n")) == Solver::quasistatic);
+}
+
 TEST_CASE("mistakes in bodies are found") {
     Parts still = beside("file = \"bar.obj\"\n");
-    still.stage = "[[stage]]\nmachine = \"bend\"\nangle = \"60 deg\"\n";
+    still.stage = "[[stage]]\nmachine = \"bend\"\nsolver = \"quasistatic\"\n";
     Parts thrown = with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nvelocity = [1, 0, 0]\n");
+    thrown.stage = still.stage;
     check_all({
         {"no mesh",
          beside("name = \"egg\"\n"),
@@ -88,9 +110,13 @@ TEST_CASE("mistakes in bodies are found") {
         {"typo",
          beside("file = \"bar.obj\"\nvelocty = [0, 0, 0]\n"),
          {"did you mean \"velocity\"?"}},
-        {"unit", beside("file = \"bar.obj\"\nspin = [0, 0, \"3 m\"]\n"), {"14:18: spin: \"3 m\" is a length; a spin is wanted"}},
+        {"unit",
+         beside("file = \"bar.obj\"\nspin = [0, 0, \"3 m\"]\n"),
+         {"14:18: spin: \"3 m\" is a length; a spin is wanted"}},
         {"colour", beside("file = \"bar.obj\"\ncolor = [2, 0, 0]\n"), {"14:9: color = [2, 0, 0]"}},
-        {"two in equilibrium", still, {"stage \"1-bend\" goes from equilibrium to equilibrium"}},
+        {"two in equilibrium",
+         still,
+         {"9:10: solver = \"quasistatic\" goes from equilibrium to equilibrium"}},
         {"a speed in equilibrium", thrown, {"which knows no velocity and no spin"}},
     });
 }
