@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scene files. Quantities carry units ("18 cm"); a bare number is SI.
 //
-//     [mesh]      file, length
+//     [mesh]      file, length; where the body starts: at, turn, velocity, spin; color
 //     [material]  name; mechanics ("cells", "springs"), elasticity ("hencky", "neo-hookean"),
 //                 young_modulus, poisson_ratio, density, yield_stress, hardening, strength,
 //                 toughness, damping_ratio, friction, static_friction, restitution, stickiness
 //     [mold]      across or spacing, kind ("shape", "block"), cell_limit
+//     [[body]]    another body: the keys of [mesh]; name; across or spacing; material, a name or a
+//                 section [body.material]; what it leaves out is as the work-piece has it
 //     [skin]      kind ("mount", "frame4", "boundary")
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",
 //                 "explicit", "euler", "energy-stepped", "implicit"), gravity,
