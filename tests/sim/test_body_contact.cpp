@@ -5,6 +5,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/motion.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -13,18 +14,6 @@ namespace {
 
 Material soft() {
     return {.young_modulus = 1e6, .poisson_ratio = 0.25, .density = 1000, .damping_ratio = 0};
-}
-
-SimSettings in_motion() {
-    SimSettings s;
-    s.solver = Solver::explicit_steps;
-    return s;
-}
-
-Drive at(double time) {
-    Drive d;
-    d.time = time;
-    return d;
 }
 
 void place(Aggregate& m, const Pose& pose) {
@@ -73,7 +62,7 @@ struct Pressed {
     }
 };
 
-Pressed pressed(const std::vector<Aggregate*>& bodies, SimSettings settings = in_motion()) {
+Pressed pressed(const std::vector<Aggregate*>& bodies, SimSettings settings = motion_settings()) {
     BodyContact contact(bodies, settings);
     contact.renew();
     Pressed result;
@@ -158,11 +147,11 @@ TEST_CASE("a tumbling collision keeps momentum and angular momentum") {
         return sum;
     }();
     const Apparatus nothing;
-    Simulation simulation({&a, &b}, nothing, in_motion());
+    Simulation simulation({&a, &b}, nothing, motion_settings());
     FrameReport r;
     long steps = 0;
     for (int f = 0; steps < 10'000; ++f) {
-        r = simulation.advance(at(0.1 * f), at(0.1 * (f + 1)));
+        r = simulation.advance(still(0.1 * f), still(0.1 * (f + 1)));
         steps += r.steps;
         CHECK(r.kinetic + r.elastic < 1.001 * energy);
     }
@@ -183,10 +172,10 @@ TEST_CASE("bodies that collide part, and neither passes through the other") {
             b.particle_velocity.set(p, Vec3(0, -2, 0));
         }
         const Apparatus nothing;
-        Simulation simulation({&a, &b}, nothing, in_motion());
+        Simulation simulation({&a, &b}, nothing, motion_settings());
         double nearest = 1;
         for (int f = 0; f < 60; ++f) {
-            simulation.advance(at(0.002 * f), at(0.002 * (f + 1)));
+            simulation.advance(still(0.002 * f), still(0.002 * (f + 1)));
             nearest = std::min(nearest, middle(b).y() - middle(a).y());
         }
         const double parting = speed(b).y() - speed(a).y();
@@ -203,7 +192,7 @@ namespace {
 struct Floor {
     Aggregate plate, block;
     Apparatus apparatus;
-    SimSettings settings = in_motion();
+    SimSettings settings = motion_settings();
     Pose pose{Quat::Identity(), Vec3(0, -0.1, 0)};
     double let_down = 0.3;  // [s] over which gravity sets in
 
@@ -220,7 +209,7 @@ struct Floor {
         place(block, {Quat::Identity(), Vec3(0, 0.09999, 0)});
     }
     Drive drive(double time) const {
-        Drive d = at(time);
+        Drive d = still(time);
         d.world_from_grip.push_back(pose);
         d.gravity_strength = std::min(1.0, time / let_down);
         return d;
@@ -321,7 +310,7 @@ TEST_CASE("sticking lumps hold below their tension and part above it") {
 
 TEST_CASE("nothing pushes inside a body, however it is bent") {
     Aggregate strip = make_block(40, 3, 4, 0.05, soft());
-    SimSettings settings = in_motion();
+    SimSettings settings = motion_settings();
     settings.self_contact = true;
     for (double turn : {0.0, 3.0, 5.5}) {
         deform(strip, [&](const Vec3& x) -> Vec3 {
@@ -343,7 +332,7 @@ TEST_CASE("a strip that folds onto itself does not pass through itself") {
     m.young_modulus = 2e5;
     for (bool meets : {true, false}) {
         Aggregate strip = make_block(48, 2, 4, 0.05, m);
-        SimSettings settings = in_motion();
+        SimSettings settings = motion_settings();
         settings.self_contact = meets;
         // A U whose legs, 0.3 apart, go for each other.
         const double bend = 0.2, arc = std::numbers::pi * bend;
@@ -364,7 +353,7 @@ TEST_CASE("a strip that folds onto itself does not pass through itself") {
         Simulation simulation(strip, nothing, settings);
         double nearest = 1;
         for (int f = 0; f < 40; ++f) {
-            simulation.advance(at(0.006 * f), at(0.006 * (f + 1)));
+            simulation.advance(still(0.006 * f), still(0.006 * (f + 1)));
             double low = 0, high = 0;  // of the last quarter of each leg
             int count = 0;
             for (std::size_t p = 0; p < strip.particle_count(); ++p) {
@@ -386,7 +375,7 @@ TEST_CASE("pieces after a cut do not pass through each other") {
         Aggregate block = make_block(5, 8, 5, 0.1, m);
         sever_plane(block, Vec3(0, 0.05, 0), Vec3::UnitY());
         REQUIRE(find_pieces(block).count == 2);
-        SimSettings settings = in_motion();
+        SimSettings settings = motion_settings();
         settings.self_contact = meets;
         for (std::size_t p = 0; p < block.particle_count(); ++p) {
             if (block.particle_reference.y[p] > 0.05) {
@@ -405,7 +394,7 @@ TEST_CASE("pieces after a cut do not pass through each other") {
         double nearest = 1;
         FrameReport r;
         for (int f = 0; f < 50; ++f) {
-            r = simulation.advance(at(0.004 * f), at(0.004 * (f + 1)));
+            r = simulation.advance(still(0.004 * f), still(0.004 * (f + 1)));
             double top = 0, foot = 0;
             int tops = 0, feet = 0;
             for (std::size_t p = 0; p < block.particle_count(); ++p) {
@@ -431,11 +420,11 @@ TEST_CASE("contact gives equal bytes with one and two threads") {
         for (std::size_t p = 0; p < b.particle_count(); ++p) {
             b.particle_velocity.set(p, Vec3(0.4, -3, 0));
         }
-        SimSettings settings = in_motion();
+        SimSettings settings = motion_settings();
         settings.self_contact = true;
         const Apparatus nothing;
         Simulation simulation({&a, &b}, nothing, settings);
-        simulation.advance(at(0), at(0.03));
+        simulation.advance(still(0), still(0.03));
         const std::uint64_t hash = state_hash(a) ^ (state_hash(b) << 1);
         if (threads == 1) first = hash;
         CHECK(hash == first);

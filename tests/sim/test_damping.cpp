@@ -6,6 +6,7 @@
 #include "sim/advance.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/motion.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -17,18 +18,6 @@ Material springy(double damping_ratio) {
             .poisson_ratio = 0.25,
             .density = 1000,
             .damping_ratio = damping_ratio};
-}
-
-SimSettings explicit_settings() {
-    SimSettings s;
-    s.solver = Solver::explicit_steps;
-    return s;
-}
-
-Drive at(double time) {
-    Drive d;
-    d.time = time;
-    return d;
 }
 
 Vec3 mean_velocity(const Aggregate& m) {
@@ -44,14 +33,14 @@ Vec3 mean_velocity(const Aggregate& m) {
 double decay_ratio(Aggregate& m, const std::function<double(const Aggregate&)>& swing,
                    double about_period, int periods) {
     const Apparatus nothing;
-    SimSettings settings = explicit_settings();
+    SimSettings settings = motion_settings();
     settings.step_safety = 0.3;
     Simulation simulation(m, nothing, settings);
     const double dt = about_period / 40;
     double time = 0, last = swing(m), first_zero = 0, zero = 0, first_energy = 0, energy = 0;
     int zeros = 0;
     while (zeros < 2 * periods + 1) {
-        const FrameReport r = simulation.advance(at(time), at(time + dt));
+        const FrameReport r = simulation.advance(still(time), still(time + dt));
         const double now = swing(m);
         if (time > 0 && (now > 0) != (last > 0)) {
             zero = time + dt * last / (last - now);
@@ -122,8 +111,8 @@ TEST_CASE("internal damping neither slows nor turns a body that flies and spins"
     };
     const auto before = momenta();
     const Apparatus nothing;
-    Simulation simulation(m, nothing, explicit_settings());
-    simulation.advance(at(0), at(0.3));
+    Simulation simulation(m, nothing, motion_settings());
+    simulation.advance(still(0), still(0.3));
     const auto after = momenta();
     CHECK((after.first - before.first).norm() < 1e-11 * before.first.norm());
     CHECK((after.second - before.second).norm() < 1e-10 * before.first.norm());
@@ -134,7 +123,7 @@ TEST_CASE("a body falling through air follows the tanh of quadratic drag") {
     Aggregate m = make_block(3, 3, 3, 0.1, springy(0.1));
     double area = 0;
     for (double a : m.surface.area) area += a;
-    SimSettings settings = explicit_settings();
+    SimSettings settings = motion_settings();
     settings.gravity = {0, -9.81, 0};
     settings.step_safety = 0.2;
     settings.drag_coefficient = 0.8;
@@ -147,7 +136,7 @@ TEST_CASE("a body falling through air follows the tanh of quadratic drag") {
     for (const auto& [t, v, fall] :
          {std::array{0.1, .977865, .0489715}, std::array{0.5, 4.54613, 1.18002},
           std::array{1.0, 7.53498, 4.27510}, std::array{2.0, 9.61242, 13.1338}}) {
-        r = simulation.advance(at(time), at(t));
+        r = simulation.advance(still(time), still(t));
         time = t;
         CHECK(-mean_velocity(m).y() == Approx(v).epsilon(0.005));
         CHECK(start - m.particle_position.at(0).y() == Approx(fall).epsilon(0.01));
@@ -174,14 +163,14 @@ TEST_CASE("a plate sinks flat as fast as its weight over drag and area, and slow
     constexpr double kDrag = 5000, kSide = 0.4, kHeight = 0.05;
     for (const bool on_edge : {false, true}) {
         Aggregate m = plate(on_edge ? 0.5 * kPi : 0);
-        SimSettings settings = explicit_settings();
+        SimSettings settings = motion_settings();
         settings.gravity = {0, -9.81, 0};
         settings.directional_drag = kDrag;
         const Apparatus nothing;
         Simulation simulation(m, nothing, settings);
         const double area = kSide * (on_edge ? kHeight : kSide);
         const double terminal = m.mass() * 9.81 / (kDrag * area), rate = 9.81 / terminal;
-        const FrameReport r = simulation.advance(at(0), at(0.05));
+        const FrameReport r = simulation.advance(still(0), still(0.05));
         CHECK(-mean_velocity(m).y() ==
               Approx(terminal * (1 - std::exp(-0.05 * rate))).epsilon(0.02));
         CHECK(r.drag == Approx(r.gravity_work - r.kinetic - r.elastic).epsilon(0.03));
@@ -194,13 +183,13 @@ TEST_CASE(
     constexpr double kTilt = 0.4;
     for (const DragAlong along : {DragAlong::motion, DragAlong::normal}) {
         Aggregate m = plate(kTilt);
-        SimSettings settings = explicit_settings();
+        SimSettings settings = motion_settings();
         settings.gravity = {0, -9.81, 0};
         settings.directional_drag = 5000;
         settings.directional_drag_along = along;
         const Apparatus nothing;
         Simulation simulation(m, nothing, settings);
-        simulation.advance(at(0), at(0.02));
+        simulation.advance(still(0), still(0.02));
         const Vec3 v = mean_velocity(m);
         CHECK(v.y() < -0.05);
         if (along == DragAlong::motion) {

@@ -4,31 +4,14 @@
 #include "sim/lattice_sweep.h"
 #include "tests/catch.h"
 #include "tests/sim/machines.h"
+#include "tests/sim/motion.h"
 
 using namespace swage;
 using namespace swage::test;
 
-namespace {
-
-const Material kSpringy{.young_modulus = 1e6, .density = 1000, .damping_ratio = 0};
-
-SimSettings explicit_settings() {
-    SimSettings s;
-    s.solver = Solver::explicit_steps;
-    return s;
-}
-
-Drive still(double time) {
-    Drive d;
-    d.time = time;
-    return d;
-}
-
-}  // namespace
-
 TEST_CASE("a free body falls as Galileo says") {
     Aggregate m = make_block(3, 2, 2, 0.1, kSpringy);
-    SimSettings settings = explicit_settings();
+    SimSettings settings = motion_settings();
     settings.gravity = Vec3(0, -9.81, 0);
     const Apparatus nothing;
     Simulation simulation(m, nothing, settings);
@@ -57,7 +40,7 @@ TEST_CASE("momentum, angular momentum and nearly energy are kept in free vibrati
         return sum;
     };
     const auto before = momenta();
-    SimSettings settings = explicit_settings();
+    SimSettings settings = motion_settings();
     settings.step_safety = 0.2;  // the energy of symplectic Euler swings with the step
     const Apparatus nothing;
     Simulation simulation(m, nothing, settings);
@@ -81,7 +64,7 @@ TEST_CASE("the step is stable up to its bound and not far beyond it") {
         for (std::size_t p = 0; p < m.particle_count(); ++p) {
             m.particle_velocity.set(p, 1e-6 * Vec3(p % 2 ? 1 : -1, p % 3 ? 1 : -1, p % 5 ? 1 : -1));
         }
-        SimSettings settings = explicit_settings();
+        SimSettings settings = motion_settings();
         settings.step_safety = safety;
         settings.retry_limit = 0;
         const Apparatus nothing;
@@ -109,7 +92,7 @@ TEST_CASE("dashpots take exactly the energy that is missing") {
         m.particle_velocity.set(p, Vec3(0.2 * m.particle_reference.x[p], 0, 0));
         start += 0.5 * m.particle_mass[p] * m.particle_velocity.at(p).squaredNorm();
     }
-    SimSettings settings = explicit_settings();
+    SimSettings settings = motion_settings();
     settings.step_safety = 0.02;  // the sum over steps is of first order
     const Apparatus nothing;
     Simulation simulation(m, nothing, settings);
@@ -126,7 +109,7 @@ TEST_CASE("an explicit twist, slow and damped, needs the torque of the relaxed o
     for (bool stepped : {false, true}) {
         Aggregate bar = make_block(16, 4, 4, 0.025, material);
         const Twister twister(bar, 0.2, 0.05);
-        SimSettings settings = stepped ? explicit_settings() : SimSettings{};
+        SimSettings settings = stepped ? motion_settings() : SimSettings{};
         settings.grip_stiffness = 2;
         settings.tolerance = 1e-3;
         Simulation simulation(bar, twister.apparatus, settings);
