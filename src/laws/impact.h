@@ -100,14 +100,23 @@ struct ImpactState {
     double step;    // [s]
 };
 
+// What its dashpots take is -(force - elastic) . v, with the speed that all forces together leave.
 struct ImpactForce {
-    Vec3 force = Vec3::Zero();        // on the point [N]
-    double normal = 0;                // N [N], less than zero where it pulls
-    Vec3 reach = Vec3::Zero();        // to keep: across the normal, along the friction [m]
-    double stored = 0;                // before the step [J]
-    double damped = 0, friction = 0;  // taken in the step [J]
-    ImpactHistory history;            // to commit
+    Vec3 force = Vec3::Zero();    // on the point [N]
+    Vec3 elastic = Vec3::Zero();  // of the springs alone, that hold `stored` [N]
+    Vec3 bond = Vec3::Zero();     // of that, what breaks when the contact ends [N]
+    double normal = 0;            // N [N], less than zero where it pulls
+    Vec3 reach = Vec3::Zero();    // to keep: across the normal, along the friction [m]
+    double stored = 0;            // in the springs [J]
+    double friction = 0;          // taken by it [J]
+    ImpactHistory history;        // to commit
 };
+
+// What is lost where a contact has ended in a step [s]: what its bond holds, less what it no longer
+// does on the way, from the velocity then, of the point relative to the other side [J].
+inline double parting_loss(double stiffness, const Vec3& bond, const Vec3& velocity, double step) {
+    return 0.5 * bond.dot(bond / stiffness - step * velocity);
+}
 
 inline ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
                                 const ImpactHistory& last) {
@@ -131,7 +140,6 @@ inline ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
     const double elastic = k * at.depth, m = at.step * at.give;
     const double push = elastic + c * (approach - m * elastic) / (1 + c * m);
     const double N = result.normal = std::max(push, -law.hold);
-    result.damped = (N - elastic) * (approach - m * N) * at.step;
 
     const Vec3 reach = at.reach - at.normal * at.normal.dot(at.reach);
     const Vec3 across = at.velocity + approach * at.normal;
@@ -145,17 +153,18 @@ inline ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
     if (size > limit) {
         next.slides = next.slides || speed > slow;
         T *= (next.slides ? law.friction : law.holding) * bears / size;
-        const double kept = T.norm() / k, was = reach.norm();
-        if (kept < was) {
+        if (T.norm() < k * reach.norm()) {
             result.reach = T / k;
-            result.friction = k * kept * (was - kept);
+            // Of the spring as far as it was stretched, less what it had not pulled yet on the way.
+            const Vec3 slip = reach - result.reach;
+            result.friction =
+                0.5 * k * (slip.dot(reach + result.reach) + at.step * slip.dot(at.now));
         }
     }
-    // What the tangential dashpot took, and what friction took of the way itself.
-    const Vec3 way = at.step * (across + m * T);
-    result.damped += std::max(0.0, (k * result.reach - T).dot(way));
-    result.stored = 0.5 * k * (at.depth * at.depth + reach.squaredNorm());
+    result.stored = 0.5 * k * (at.depth * at.depth + result.reach.squaredNorm());
     result.force = N * at.normal + T;
+    result.bond = k * result.reach + std::min(elastic, 0.0) * at.normal;
+    result.elastic = k * result.reach + elastic * at.normal;
     return result;
 }
 

@@ -97,13 +97,21 @@ Json parameters_json(const Machine& machine) {
 }
 
 Json energies_json(const Books& last) {
-    return {{"machine_work", last.work},         {"load_work", last.load_work},
-            {"gravity_work", last.gravity_work}, {"kinetic", last.kinetic},
-            {"elastic", last.elastic},           {"contact", last.contact},
-            {"plastic", last.plastic},           {"damped", last.damped},
-            {"friction", last.friction},         {"drag", last.drag},
-            {"severed", last.severed_energy},    {"fracture", last.fracture},
-            {"set_free", last.set_free},         {"remainder", last.remainder}};
+    return {{"machine_work", last.work},
+            {"load_work", last.load_work},
+            {"gravity_work", last.gravity_work},
+            {"kinetic", last.kinetic},
+            {"elastic", last.elastic},
+            {"contact", last.contact},
+            {"passed", last.passed},
+            {"plastic", last.plastic},
+            {"damped", last.damped},
+            {"friction", last.friction},
+            {"drag", last.drag},
+            {"severed", last.severed_energy},
+            {"fracture", last.fracture},
+            {"set_free", last.set_free},
+            {"remainder", last.remainder}};
 }
 
 void write_curves(const StageCurves& curves, const StageContext& context) {

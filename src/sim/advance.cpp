@@ -75,6 +75,7 @@ void Books::add(const Books& other) {
     load_work += other.load_work;
     gravity_work += other.gravity_work;
     contact += other.contact;
+    passed += other.passed;
     plastic += other.plastic;
     friction += other.friction;
     drag += other.drag;
@@ -182,6 +183,10 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
             const bool gravity = n == apparatus.load.size();
             (gravity ? books.gravity_work : books.load_work) += part.push_work[n];
         }
+        // Half of what a contact holds and takes is on its books; the rest of its work is passed
+        // on.
+        books.passed += part.met.work + part.met.damped + part.met.friction + part.met.stored -
+                        part.met.held;
         books.kinetic = part.after.kinetic;
         books.elastic = part.after.elastic;
         books.contact = part.after.contact;
@@ -190,13 +195,16 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
             body[b].stored_at_start = part.before.sum() + books.severed_energy;
             body[b].begun = true;
         }
-        books.remainder = books.work + books.load_work + books.gravity_work -
+        books.remainder = books.work + books.load_work + books.gravity_work + books.passed -
                           (part.after.sum() - body[b].stored_at_start) - books.plastic -
                           books.damped - books.friction - books.drag - books.severed_energy -
                           books.fracture - books.set_free;
         report.body.push_back(books);
         report.add(books);
     }
+    // What one passes the other gets: what is left is an error as any other.
+    report.remainder -= report.passed;
+    report.passed = 0;
 }
 
 Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,

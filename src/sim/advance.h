@@ -30,10 +30,11 @@ struct Books {
     double contact = 0;                                // in contacts and grips, now [J]
     double work = 0, load_work = 0, gravity_work = 0;  // done on it since the stage began [J], by
                                                        // tools and grips, loads, gravity
-    double plastic = 0, damped = 0;                    // taken since the stage began [J]
-    double friction = 0, drag = 0;                     // likewise; drag of the medium
-    double severed_energy = 0;  // elastic energy lost with severed connections, likewise [J]
-    double fracture = 0;        // energy that breaking took, likewise [J]
+    double passed = 0;  // to it by bodies that it touches, likewise; nothing in the sum of all
+    double plastic = 0, damped = 0;  // taken since the stage began [J]
+    double friction = 0, drag = 0;   // likewise; drag of the medium
+    double severed_energy = 0;       // elastic energy lost with severed connections, likewise [J]
+    double fracture = 0;             // energy that breaking took, likewise [J]
     // By cracks that ran on while the drive stood, likewise [J]: what an equilibrium loses of a
     // snap. Quasi-static only.
     double set_free = 0;

@@ -17,34 +17,6 @@ constexpr std::size_t kChunk = 1024;  // contacts
 constexpr double kWay = 0.45;         // spacings that anything may go between searches
 constexpr int kSheet = 3;  // cells nearer than this to each other are one place of contact
 
-std::array<double, 8> weights_at(const Vec3& p) {
-    const double x[2] = {1 - p.x(), p.x()}, y[2] = {1 - p.y(), p.y()}, z[2] = {1 - p.z(), p.z()};
-    std::array<double, 8> w;
-    for (int c = 0; c < 8; ++c) w[c] = x[c & 1] * y[c >> 1 & 1] * z[c >> 2];
-    return w;
-}
-
-// The cell's trilinear map.
-struct CellMap {
-    std::array<Vec3, 8> x;
-
-    CellMap(const Vec3Array& position, const std::array<ParticleId, 8>& corner) {
-        for (int c = 0; c < 8; ++c) x[c] = position.at(corner[c]);
-    }
-    Vec3 at(const Vec3& p, Mat3& gradient) const {
-        const double qx = 1 - p.x(), qy = 1 - p.y(), qz = 1 - p.z();
-        const Vec3 e0 = x[1] - x[0], e1 = x[3] - x[2], e2 = x[5] - x[4], e3 = x[7] - x[6];
-        const Vec3 a0 = x[0] + p.x() * e0, a1 = x[2] + p.x() * e1, a2 = x[4] + p.x() * e2,
-                   a3 = x[6] + p.x() * e3;
-        const Vec3 b0 = qy * a0 + p.y() * a1, b1 = qy * a2 + p.y() * a3;
-        gradient.col(0) = qz * (qy * e0 + p.y() * e1) + p.z() * (qy * e2 + p.y() * e3);
-        gradient.col(1) = qz * (a1 - a0) + p.z() * (a3 - a2);
-        gradient.col(2) = b1 - b0;
-        (void)qx;
-        return qz * b0 + p.z() * b1;
-    }
-};
-
 Box box_of_cell(const Vec3Array& position, const std::array<ParticleId, 8>& corner) {
     Box box;
     for (ParticleId p : corner) box.grow(position.at(p));
@@ -70,7 +42,7 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
             const Material &m = bodies[a]->material, &n = bodies[b]->material;
             const double soft = m.young_modulus / bodies[a]->lattice.spacing,
                          other = n.young_modulus / bodies[b]->lattice.spacing;
-            Way way{static_cast<int>(a), static_cast<int>(b), {}, {}, {}, {}};
+            Way way{static_cast<int>(a), static_cast<int>(b), {}, {}, {}, {}, {}, {}};
             const double e = shared_restitution(m.restitution, soft, n.restitution, other);
             way.law = {.stiffness = 0,
                        .restitution = e,
@@ -254,7 +226,7 @@ void BodyContact::find_pairs(Way& way, double margin) {
                 found[m].corner = corner[b];
             }
             if (!is_new) continue;
-            found.push_back({.point = p, .cell = cell[b], .site = site[b], .corner = corner[b]});
+            found.push_back({{cell[b], site[b], corner[b]}, p});
             nearest.push_back(far);
         }
     }
@@ -264,71 +236,12 @@ void BodyContact::find_pairs(Way& way, double margin) {
     way.contact = std::move(found);
 }
 
-// Walks from cell to cell to the one that holds x; false where there is none.
-bool BodyContact::locate(const ContactSide& onto, const Vec3& x, Contact& contact,
-                         Mat3& gradient) const {
-    constexpr double kSlack = 1e-9;
-    const Vec3Array& position = onto.matter().particle_position;
-    const double a = onto.matter().lattice.spacing;
-    for (int hop = 0; hop < 6; ++hop) {
-        const CellMap map(position, contact.corner);
-        Vec3& p = contact.place;
-        bool found = false;
-        for (int n = 0; n < 12 && !found; ++n) {
-            const Vec3 left = x - map.at(p, gradient);
-            const double volume = gradient.determinant();
-            if (!(volume > 1e-6 * a * a * a)) return false;
-            Vec3 way = gradient.inverse() * left;
-            const double size = way.cwiseAbs().maxCoeff();
-            if (size > 1) way /= size;
-            p += way;
-            found = size < 1e-8;
-            // Far off: the cell there is a better place to go on from.
-            if (n > 0 && ((p.array() < -0.5).any() || (p.array() > 1.5).any())) break;
-        }
-        const Vec3i out =
-            Vec3i((p.array() > 1 + kSlack).cast<int>()) - Vec3i((p.array() < -kSlack).cast<int>());
-        if (out.isZero()) return found;
-        CellId next = -1;
-        Vec3i step = out;
-        bool opens =
-            false;  // onto a cell that is cut or broken, half of which is still this side's
-        const auto try_step = [&](const Vec3i& s) {
-            const Vec3i site = contact.site + s;
-            const CellId cell = onto.matter().lattice.cell_at(site.x(), site.y(), site.z());
-            opens = opens || (cell >= 0 && !onto.is_whole(cell));
-            if (!onto.may_hold(cell)) return false;
-            next = cell;
-            step = s;
-            return true;
-        };
-        if (!try_step(out)) {
-            const Vec3 excess = (p.array() - 0.5).abs() - 0.5;
-            int most;
-            excess.maxCoeff(&most);
-            for (int d = 0; d < 3 && next < 0; ++d) {
-                const int axis = (most + d) % 3;
-                if (out[axis] != 0) try_step(Vec3i::Unit(axis) * out[axis]);
-            }
-        }
-        if (next < 0) {
-            return opens && found && (p.array() >= -0.5).all() && (p.array() <= 1.5).all();
-        }
-        contact.cell = next;
-        contact.site += step;
-        contact.corner = onto.matter().lattice.cell_corners(next);
-        p -= step.cast<double>();
-        p = p.cwiseMax(-0.5).cwiseMin(1.5);
-    }
-    return false;
-}
-
 BodyContact::Meeting BodyContact::meet(const Way& way, Contact& contact) const {
     Meeting meeting;
     const ContactSide& onto = side_[way.onto];
     const Vec3 x = side_[way.from].position(contact.point);
     const Vec3 was = contact.place;
-    if (!locate(onto, x, contact, meeting.gradient)) {
+    if (!find_place(onto, x, contact, meeting.gradient)) {
         const Vec3 p = contact.place;
         // Outside, but what sticks may still hold it.
         const bool held = contact.history.touches && way.law.hold >= 0 &&
@@ -354,99 +267,184 @@ BodyContact::Meeting BodyContact::meet(const Way& way, Contact& contact) const {
     return meeting;
 }
 
-void BodyContact::respond(Way& way, const std::vector<Meeting>& meeting,
-                          const std::vector<Vec3Array*>& force, double step,
+// All that does not depend on forces.
+void BodyContact::prepare(const Way& way, const Contact& contact, Meeting& at) const {
+    const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
+    const SurfacePoints& points = side_[way.from].points();
+    const auto& carrier = points.corner[contact.point];
+    const auto& share = points.weight[contact.point];
+    at.weight = trilinear_weights(contact.place);
+    at.now.setZero();
+    at.give = 0;
+    for (int c = 0; c < 8; ++c) {
+        const double w = share[c], u = at.weight[c];
+        if (w != 0) {
+            at.now += w * a.particle_velocity.at(carrier[c]);
+            at.give += w * w / a.particle_mass[carrier[c]];
+        }
+        at.now -= u * b.particle_velocity.at(contact.corner[c]);
+        at.give += u * u / b.particle_mass[contact.corner[c]];
+    }
+    if (!at.meets) return;
+    at.reach.setZero();
+    const double k = way.stiffness[contact.point];
+    at.spring = std::max(k * at.depth, -way.hold[contact.point]) * at.normal;
+    if (!contact.history.touches) return;
+    at.reach = at.gradient * (contact.anchor - contact.site.cast<double>() - contact.place);
+    const Vec3 along = k * (at.reach - at.normal * at.normal.dot(at.reach));
+    const double limit = (contact.history.slides ? way.law.friction : way.law.holding) *
+                         (at.spring.dot(at.normal) + way.hold[contact.point]);
+    const double size = along.norm();
+    at.spring += size > limit ? limit / size * along : along;
+}
+
+// Adds a force on contact n's point and its opposite on the cell that holds it.
+void BodyContact::spread(const Way& way, std::size_t n, const Vec3& f,
+                         const std::vector<Vec3Array*>& force) const {
+    const SurfacePoints& points = side_[way.from].points();
+    const Contact& contact = way.contact[n];
+    const auto& share = points.weight[contact.point];
+    for (int c = 0; c < 8; ++c) {
+        if (share[c] != 0) force[way.from]->add(points.corner[contact.point][c], share[c] * f);
+        force[way.onto]->add(contact.corner[c], -way.meeting[n].weight[c] * f);
+    }
+}
+
+// Dashpots and friction, one contact after the other, given what all springs do.
+void BodyContact::respond(Way& way, const std::vector<Vec3Array*>& force, double step,
                           std::vector<ContactSums>& sums) {
     const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
     const SurfacePoints& points = side_[way.from].points();
-    Vec3Array &on_a = *force[way.from], &on_b = *force[way.onto];
+    const Vec3Array &on_a = *force[way.from], &on_b = *force[way.onto];
     ContactSums &sum_a = sums[way.from], &sum_b = sums[way.onto];
+    way.push.assign(way.contact.size(), {});
     for (std::size_t n = 0; n < way.contact.size(); ++n) {
-        Contact& contact = way.contact[n];
-        contact.next = {};
-        const Meeting& at = meeting[n];
-        if (!at.meets) continue;
+        const Contact& contact = way.contact[n];
+        const Meeting& at = way.meeting[n];
         const int point = contact.point;
-        const auto& carrier = points.corner[point];
-        const auto& share = points.weight[point];
-        const std::array<double, 8> weight = weights_at(contact.place);
-        Vec3 va = Vec3::Zero(), vb = va, pa = va, pb = va;  // v now; push f / m
-        double give = 0;
-        for (int c = 0; c < 8; ++c) {
-            const double w = share[c];
-            if (w == 0) continue;
-            const double lightness = w / a.particle_mass[carrier[c]];
-            va += w * a.particle_velocity.at(carrier[c]);
-            pa += lightness * on_a.at(carrier[c]);
-            give += w * lightness;
+        ImpactForce& f = way.push[n].made;
+        if (at.meets) {
+            const auto& carrier = points.corner[point];
+            const auto& share = points.weight[point];
+            Vec3 push = -at.give * at.spring;  // of all others, over the mass
+            for (int c = 0; c < 8; ++c) {
+                if (share[c] != 0) {
+                    push += share[c] / a.particle_mass[carrier[c]] * on_a.at(carrier[c]);
+                }
+                const ParticleId q = contact.corner[c];
+                push -= at.weight[c] / b.particle_mass[q] * on_b.at(q);
+            }
+            ImpactLaw law = way.law;
+            law.stiffness = way.stiffness[point];
+            law.hold = way.hold[point];
+            f = impact_force(law,
+                             {.depth = at.depth,
+                              .normal = at.normal,
+                              .now = at.now,
+                              .velocity = at.now + step * push,
+                              .reach = at.reach,
+                              .give = at.give,
+                              .step = step},
+                             contact.history);
+            spread(way, n, f.force - at.spring, force);
         }
-        for (int c = 0; c < 8; ++c) {
-            const double w = weight[c], lightness = w / b.particle_mass[contact.corner[c]];
-            vb += w * b.particle_velocity.at(contact.corner[c]);
-            pb += lightness * on_b.at(contact.corner[c]);
-            give += w * lightness;
-        }
-        ImpactLaw law = way.law;
-        law.stiffness = way.stiffness[point];
-        law.hold = way.hold[point];
-        const Vec3 here = contact.site.cast<double>() + contact.place;
-        const Vec3 anchor = contact.history.touches ? contact.anchor : here;
-        const Vec3 now = va - vb;
-        const ImpactForce f = impact_force(law,
-                                           {.depth = at.depth,
-                                            .normal = at.normal,
-                                            .now = now,
-                                            .velocity = now + step * (pa - pb),
-                                            .reach = at.gradient * (anchor - here),
-                                            .give = give,
-                                            .step = step},
-                                           contact.history);
-        contact.next = f.history;
-        if (!f.history.touches) continue;
-        contact.next_anchor = here + at.gradient.inverse() * f.reach;
-        double give_a = 0, give_b = 0;
-        for (int c = 0; c < 8; ++c) {
-            const double w = share[c];
-            if (w == 0) continue;
-            on_a.add(carrier[c], w * f.force);
-            give_a += w * w / a.particle_mass[carrier[c]];
-        }
-        for (int c = 0; c < 8; ++c) on_b.add(contact.corner[c], -weight[c] * f.force);
-        give_b = give - give_a;
-        sum_a.work += step * f.force.dot(va + step * (pa + give_a * f.force));
-        sum_b.work -= step * f.force.dot(vb + step * (pb - give_b * f.force));
-        for (ContactSums* sum : {&sum_a, &sum_b}) {
-            sum->stored += 0.5 * f.stored;
-            sum->damped += 0.5 * f.damped;
-            sum->friction += 0.5 * f.friction;
-            sum->penetration = std::max(sum->penetration, at.depth);
-            ++sum->contacts;
-            sum->sliding += f.history.slides;
+        if (f.history.touches) {
+            const Vec3 here = contact.site.cast<double>() + contact.place;
+            way.push[n].anchor = here + at.gradient.inverse() * f.reach;
+            for (ContactSums* sum : {&sum_a, &sum_b}) {
+                sum->stored += 0.5 * f.stored;
+                sum->friction += 0.5 * f.friction;
+                sum->penetration = std::max(sum->penetration, at.depth);
+                ++sum->contacts;
+                sum->sliding += f.history.slides;
+            }
+        } else if (contact.history.touches) {
+            const double lost = parting_loss(way.stiffness[point], contact.bond, at.now, step);
+            sum_a.damped += 0.5 * lost;
+            sum_b.damped += 0.5 * lost;
         }
     }
 }
 
-void BodyContact::add_forces(const std::vector<Vec3Array*>& force, double step,
+// What the contacts do while the bodies move, now that all forces are known.
+void BodyContact::book(const Way& way, const std::vector<Vec3Array*>& force, const Vec3& gravity,
+                       double step, std::vector<ContactSums>& sums) const {
+    const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
+    const SurfacePoints& points = side_[way.from].points();
+    const Vec3Array &on_a = *force[way.from], &on_b = *force[way.onto];
+    struct Power {
+        double came[2] = {0, 0}, goes[2] = {0, 0};  // on the one body and on the other
+        double took = 0, takes = 0;
+    };
+    std::vector<Power> power((way.contact.size() + kChunk - 1) / kChunk);
+    parallel_for(power.size(), [&](std::size_t chunk) {
+        Power& sum = power[chunk];
+        const std::size_t stop = std::min(way.contact.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
+            const Contact& contact = way.contact[n];
+            const ImpactForce& f = way.push[n].made;
+            if (!f.history.touches) continue;
+            const auto& carrier = points.corner[contact.point];
+            const auto& share = points.weight[contact.point];
+            const std::array<double, 8>& weight = way.meeting[n].weight;
+            Vec3 va = Vec3::Zero(), vb = va, pa = gravity, pb = gravity;
+            for (int c = 0; c < 8; ++c) {
+                if (share[c] != 0) {
+                    va += double(share[c]) * a.particle_velocity.at(carrier[c]);
+                    pa += share[c] / a.particle_mass[carrier[c]] * on_a.at(carrier[c]);
+                }
+                vb += weight[c] * b.particle_velocity.at(contact.corner[c]);
+                pb += weight[c] / b.particle_mass[contact.corner[c]] * on_b.at(contact.corner[c]);
+            }
+            const Vec3 dashed = f.force - f.elastic;
+            sum.came[0] += f.force.dot(va);
+            sum.came[1] -= f.force.dot(vb);
+            sum.took -= dashed.dot(va - vb);
+            va += step * pa, vb += step * pb;
+            sum.goes[0] += f.force.dot(va);
+            sum.goes[1] -= f.force.dot(vb);
+            sum.takes -= dashed.dot(va - vb);
+        }
+    });
+    const int side[2] = {way.from, way.onto};
+    for (const Power& sum : power) {
+        for (int s = 0; s < 2; ++s) {
+            sums[side[s]].came += sum.came[s];
+            sums[side[s]].goes += sum.goes[s];
+            sums[side[s]].took += 0.5 * sum.took;
+            sums[side[s]].takes += 0.5 * sum.takes;
+        }
+    }
+}
+
+void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
                              std::vector<ContactSums>& sums) {
     sums.assign(side_.size(), {});
     for (Way& way : way_) {
         const std::size_t count = way.contact.size();
-        std::vector<Meeting> meeting(count);
+        way.meeting.resize(count);
         parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
             const std::size_t stop = std::min(count, (chunk + 1) * kChunk);
             for (std::size_t n = chunk * kChunk; n < stop; ++n) {
-                meeting[n] = meet(way, way.contact[n]);
+                way.meeting[n] = meet(way, way.contact[n]);
+                prepare(way, way.contact[n], way.meeting[n]);
             }
         });
-        respond(way, meeting, force, step, sums);
+        for (std::size_t n = 0; n < count; ++n) {
+            if (way.meeting[n].meets) spread(way, n, way.meeting[n].spring, force);
+        }
     }
+    for (Way& way : way_) respond(way, force, step, sums);
+    for (const Way& way : way_) book(way, force, gravity, step, sums);
 }
 
 void BodyContact::commit() {
     for (Way& way : way_) {
-        for (Contact& contact : way.contact) {
-            contact.history = contact.next;
-            contact.anchor = contact.next_anchor;
+        for (std::size_t n = 0; n < way.contact.size(); ++n) {
+            Contact& contact = way.contact[n];
+            contact.history = way.push[n].made.history;
+            contact.anchor = way.push[n].anchor;
+            contact.bond = way.push[n].made.bond;
         }
     }
 }

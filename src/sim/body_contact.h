@@ -23,6 +23,7 @@
 
 #include "laws/impact.h"
 #include "matter/aggregate.h"
+#include "sim/cell_place.h"
 #include "sim/contact_side.h"
 #include "sim/contact_sums.h"
 #include "sim/settings.h"
@@ -41,9 +42,9 @@ class BodyContact {
     void renew();
     void renew_all();
 
-    // Adds the forces at the present positions, toward which `step` [s] goes on with the forces and
-    // gravity so far. By body; sums likewise, set anew.
-    void add_forces(const std::vector<Vec3Array*>& force, double step,
+    // Adds the forces at the present positions, from which `step` [s] goes on with the forces so
+    // far, which must be all others, and gravity [m/s2]. By body; sums likewise, set anew.
+    void add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
                     std::vector<ContactSums>& sums);
     // The step is kept: remembers where points stick and how they met.
     void commit();
@@ -60,16 +61,27 @@ class BodyContact {
 
   private:
     // A point and the cell of the other side that holds it, or the last that did.
-    struct Contact {
+    struct Contact : CellPlace {
         int point;
-        CellId cell;
-        Vec3i site;
-        std::array<ParticleId, 8> corner;
-        Vec3 place = Vec3::Constant(0.5);  // in the cell
-        Vec3 anchor = Vec3::Zero();        // in cells from the other's origin
+        Vec3 anchor = Vec3::Zero();  // in cells from the other's origin
         ImpactHistory history{};
-        ImpactHistory next{};  // of the present forces
-        Vec3 next_anchor = Vec3::Zero();
+        Vec3 bond = Vec3::Zero();  // ImpactForce::bond [N]
+    };
+    // What it does at the present positions.
+    struct Push {
+        ImpactForce made;
+        Vec3 anchor;
+    };
+    // How a point meets the cell that holds it.
+    struct Meeting {
+        bool meets = false;
+        double depth = 0;
+        Vec3 normal, reach;  // reach: from the point to where it sticks [m]
+        Mat3 gradient;       // J [m]
+        std::array<double, 8> weight;
+        Vec3 now;     // speed of the point over the other side [m/s]
+        double give;  // ImpactState::give [1/kg]
+        Vec3 spring;  // what its springs do [N]
     };
     // The points of one body against the cells of another, or of its own.
     struct Way {
@@ -77,18 +89,18 @@ class BodyContact {
         ImpactLaw law;  // stiffness and hold: of each point
         std::vector<double> stiffness, hold;
         std::vector<Contact> contact;  // sorted by point
-    };
-    struct Meeting {
-        bool meets = false;
-        double depth;
-        Vec3 normal;
-        Mat3 gradient;  // J [m]
+        std::vector<Meeting> meeting;  // of each, at the present positions
+        std::vector<Push> push;        // likewise
     };
     void find_pairs(Way& way, double margin);
-    bool locate(const ContactSide& onto, const Vec3& x, Contact& contact, Mat3& gradient) const;
     Meeting meet(const Way& way, Contact& contact) const;
-    void respond(Way& way, const std::vector<Meeting>& meeting,
-                 const std::vector<Vec3Array*>& force, double step, std::vector<ContactSums>& sums);
+    void prepare(const Way& way, const Contact& contact, Meeting& meeting) const;
+    void spread(const Way& way, std::size_t n, const Vec3& f,
+                const std::vector<Vec3Array*>& force) const;
+    void respond(Way& way, const std::vector<Vec3Array*>& force, double step,
+                 std::vector<ContactSums>& sums);
+    void book(const Way& way, const std::vector<Vec3Array*>& force, const Vec3& gravity,
+              double step, std::vector<ContactSums>& sums) const;
     void set_stiffness(Way& way);
 
     SimSettings settings_;

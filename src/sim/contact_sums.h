@@ -6,21 +6,33 @@
 
 namespace swage {
 
-// Of one body; what two share is halved between them.
+// Of one body; what two share is halved between them. A force does half of its work on the way to
+// where it was found and half on the way from there.
 struct ContactSums {
-    double stored = 0;                // in contacts, before the step [J]
-    double damped = 0, friction = 0;  // taken in the step [J]
-    double work = 0;                  // done on the body in the step [J]
-    double penetration = 0;           // of the deepest point in contact [m]
+    double stored = 0, held = 0;  // in contacts, now and at the start [J]
+    double friction = 0;          // taken [J]
+    double damped = 0;            // taken by dashpots and by parting [J]
+    double work = 0;              // done on the body [J]
+    double came = 0, goes = 0;    // power on the body before and after now [W]
+    double took = 0, takes = 0;   // power of dashpots likewise [W]
+    double penetration = 0;       // of the deepest point in contact [m]
     int contacts = 0, sliding = 0;
 
-    // Those of the next step.
-    void add(const ContactSums& next) {
-        damped += next.damped;
+    // Nothing is taken yet where `now` holds.
+    void start(const ContactSums& now) {
+        *this = now;
+        held = now.stored;
+        friction = damped = work = 0;
+    }
+    // Those found at the end of the next step [s].
+    void add(const ContactSums& next, double step) {
+        work += 0.5 * step * (goes + next.came);
+        damped += 0.5 * step * (takes + next.took) + next.damped;
         friction += next.friction;
-        work += next.work;
         penetration = std::max(penetration, next.penetration);
         stored = next.stored;
+        goes = next.goes;
+        takes = next.takes;
         contacts = next.contacts;
         sliding = next.sliding;
     }

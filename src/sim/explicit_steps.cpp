@@ -68,7 +68,7 @@ void ExplicitSolver::meet(double dt) {
     contact_.renew();
     std::vector<Vec3Array*> force;
     for (MovingBody& body : body_) force.push_back(&body.force());
-    contact_.add_forces(force, dt, met_);
+    contact_.add_forces(force, body_[0].gravity(), dt, met_);
 }
 
 // What the state of the bodies and what the guard has asked for allow.
@@ -149,7 +149,7 @@ Finding ExplicitSolver::block(const Way& way, const Drive& begin, double end, lo
         }
         if (contact_.acts()) {
             meet(dt);
-            for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].met.add(met_[b]);
+            for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].met.add(met_[b], dt);
             contact_.commit();
         }
         before = now;
@@ -169,7 +169,8 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     for (std::size_t b = 0; b < body_.size(); ++b) {
         body_[b].start(from, outcome.body[b]);
     }
-    meet(share_ * step_);
+    meet(first_step(share_ * step_));
+    for (std::size_t b = 0; b < met_.size(); ++b) outcome.body[b].met.start(met_[b]);
     std::vector<Stored> held;
     Drive begin = from;
     int halvings = 0;  // of this block
@@ -262,7 +263,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
             if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);
         }
         contact_.restore(*contact_before);
-        meet(dt);
+        meet(first_step(dt));
         if (gives_up) fail(ExitCode::stopped, "{}", why);
         share_ *= 0.5;
         good_blocks_ = 0;

@@ -60,6 +60,8 @@ class ExplicitSolver {
     bool has_half_kicks() const {
         return settings_.solver == Solver::explicit_steps && rescued_blocks_ == 0;
     }
+    // That the speeds go on by from where places and speeds stand at one time [s].
+    double first_step(double dt) const { return has_half_kicks() ? 0.5 * dt : dt; }
     // Moves one body on by step n of a block; returns the longest way of any particle [m].
     double move(std::size_t body, const Drive& now, double dt, long n, MoveOutcome& outcome);
     Finding block(const Way& way, const Drive& begin, double end, long count, double dt,

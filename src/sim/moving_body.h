@@ -79,6 +79,7 @@ class MovingBody {
     Aggregate& matter() { return matter_; }
     const Aggregate& matter() const { return matter_; }
     Vec3Array& force() { return force_; }
+    const Vec3& gravity() const { return gravity_; }  // [m/s2]
     const LoadSet& pushes() const { return pushes_; }
     const std::vector<LoadSum>& load() const { return load_; }  // by tool, then grip
     bool drag_is_held() const { return drag_.is_held(); }

@@ -45,7 +45,7 @@ int main() {
     std::vector<Vec3Array> force(2, low.particle_velocity);
     std::vector<ContactSums> sums;
     const double step = least_ms(9, [&] {
-        contact.add_forces({&force[0], &force[1]}, 1e-5, sums);
+        contact.add_forces({&force[0], &force[1]}, Vec3::Zero(), 1e-5, sums);
         contact.commit();
         contact.renew();
     });

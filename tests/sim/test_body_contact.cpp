@@ -73,11 +73,36 @@ Pressed pressed(const std::vector<Aggregate*>& bodies, SimSettings settings = mo
         result.force.push_back(std::move(f));
     }
     for (Vec3Array& f : result.force) force.push_back(&f);
-    contact.add_forces(force, 1e-10, result.sums);
+    contact.add_forces(force, Vec3::Zero(), 1e-10, result.sums);
     return result;
 }
 
 }  // namespace
+
+TEST_CASE("what is in balance stays so: dashpots bear nothing of what rests") {
+    Material dull = soft();
+    dull.restitution = 0.2;
+    Aggregate a = make_block(3, 3, 3, 0.1, dull), b = make_block(4, 4, 4, 0.09, dull);
+    place(a, {Quat(Eigen::AngleAxisd(0.03, Vec3(1, 0, 2).normalized())), Vec3(0.02, 0.323, 0)});
+    BodyContact contact({&a, &b}, motion_settings());
+    contact.renew();
+    const auto forces = [&](std::vector<Vec3Array> others) {
+        std::vector<Vec3Array*> force{&others[0], &others[1]};
+        std::vector<ContactSums> sums;
+        contact.add_forces(force, Vec3::Zero(), 1e-3, sums);
+        CHECK(sums[0].contacts > 3);
+        return others;
+    };
+    // At rest nothing but the springs act once all that they do is borne.
+    Pressed springs = pressed({&a, &b});
+    const double size = springs.total(0).norm();
+    for (Vec3Array& f : springs.force) {
+        for (std::size_t p = 0; p < f.size(); ++p) f.set(p, -f.at(p));
+    }
+    for (const Vec3Array& left : forces(springs.force)) {
+        for (std::size_t p = 0; p < left.size(); ++p) CHECK(left.at(p).norm() < 1e-4 * size);
+    }
+}
 
 TEST_CASE("two blocks press on each other as both tools' springs in series") {
     for (double stiffer : {1.0, 10.0}) {
@@ -160,6 +185,36 @@ TEST_CASE("a tumbling collision keeps momentum and angular momentum") {
     CHECK(r.kinetic + r.elastic < 0.95 * energy);
     CHECK((after.linear - before.linear).norm() < 1e-9 * before.size);
     CHECK((after.angular - before.angular).norm() < 1e-9 * before.turn);
+}
+
+TEST_CASE("the books of each of two bodies that collide balance by what they pass to each other") {
+    const auto worst = [](double safety) {
+        Material dull = soft();
+        dull.restitution = 0.5;
+        dull.friction = 0.4;
+        Aggregate a = make_block(3, 3, 3, 0.1, dull), b = make_block(2, 2, 2, 0.1, dull);
+        place(b, {Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())), Vec3(0.42, 0.1, 0.05)});
+        for (std::size_t p = 0; p < b.particle_count(); ++p) b.particle_velocity.x[p] = -2;
+        const double energy = 0.5 * b.mass() * 4;
+        SimSettings settings = motion_settings();
+        settings.step_safety = safety;
+        const Apparatus nothing;
+        Simulation simulation({&a, &b}, nothing, settings);
+        FrameReport r;
+        double most = 0;
+        for (int n = 0; n < 10; ++n) {
+            r = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
+            for (const Books& books : r.body) most = std::max(most, std::abs(books.remainder));
+        }
+        REQUIRE(r.body[0].passed > 0.05 * energy);  // they did meet
+        return std::array{most / energy, std::abs(r.remainder) / energy};
+    };
+    const auto coarse = worst(0.8), fine = worst(0.2);
+    for (int n = 0; n < 2; ++n) {
+        INFO(n << ": " << coarse[n] << ' ' << fine[n]);
+        CHECK(coarse[n] < 0.01);
+        CHECK(fine[n] < 0.5 * coarse[n]);
+    }
 }
 
 TEST_CASE("bodies that collide part, and neither passes through the other") {
@@ -254,9 +309,11 @@ TEST_CASE("a block on another body stays below static friction and slides above"
     m.friction = 0.3;
     m.static_friction = 0.45;
     const double g = 9.81;
-    // Where it presses less it lets go first, so that as a whole it holds less than 0.45.
-    for (const auto& [share, slides] : {std::pair(0.37, false), std::pair(0.50, true)}) {
+    // Where it bears more across than it presses it lets go first, and the slip runs on from there:
+    // as a whole a soft block holds less than 0.45. With soft contacts all bear alike.
+    for (const auto& [share, slides] : {std::pair(0.42, false), std::pair(0.47, true)}) {
         Floor floor(m, Vec3(0, -g, 0));
+        floor.settings.contact_stiffness *= 0.1;
         // Pushed along the face that touches, so that it does not topple.
         Load push;
         push.name = "push";
@@ -281,8 +338,8 @@ TEST_CASE("a block on another body stays below static friction and slides above"
         if (slides) {
             CHECK((speed(floor.block).x() - v) / 0.1 == Approx(g * (share - 0.3)).epsilon(0.05));
         } else {
-            CHECK(std::abs(middle(floor.block).x() - rest) < 1e-3);
-            CHECK(std::abs(v) < 1e-3);
+            CHECK(std::abs(middle(floor.block).x() - rest) < 1.2e-3);  // of its springs
+            CHECK(std::abs(speed(floor.block).x()) < 2e-3);
         }
     }
 }
