@@ -114,9 +114,27 @@ bool ExplicitSolver::can_be_rescued() const {
            ImplicitStep::cannot(body_[0].matter()) == nullptr && body_[0].cells_alone() != nullptr;
 }
 
-// `count` steps of dt from a drive on, the last of which ends at the time `end`.
-Finding ExplicitSolver::block(const Way& way, const Drive& begin, double end, long count, double dt,
-                              MoveOutcome& outcome) {
+// Steps from `begin` to `end`, which are at most kBlock and end at a frame's end or before it.
+struct ExplicitSolver::Block {
+    Drive begin;
+    double end, dt;
+    long count;
+};
+
+void ExplicitSolver::start_books(const std::vector<Stored>& held, MoveOutcome& outcome) {
+    double sum = 0;
+    for (std::size_t b = 0; b < body_.size(); ++b) {
+        outcome.body[b].before = held[b];
+        sum += held[b].sum();
+    }
+    if (!started_) energy_.start(sum);
+    started_ = true;
+}
+
+// The block's steps, up to the first with which something is wrong.
+Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& outcome) {
+    const auto& [begin, end, dt, count] = block;
+    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].begin_block(outcome.body[b]);
     Drive before = begin;
     for (long n = 1; n <= count; ++n) {
         const double time = n == count ? end : begin.time + double(n) * dt;
@@ -157,120 +175,132 @@ Finding ExplicitSolver::block(const Way& way, const Drive& begin, double end, lo
     if (has_half_kicks()) {
         for (MovingBody& body : body_) body.kick(0.5 * dt);
     }
+    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].end_block(outcome.body[b]);
     return {};
+}
+
+ExplicitSolver::Block ExplicitSolver::next_block(const Way& way, const Drive& begin) {
+    const double left = way.to.time - begin.time;
+    const double longest = longest_step(way.to.time - way.from.time);
+    const double parts = std::max(1.0, std::ceil(left / longest * (1 - 1e-9)));
+    if (!(parts < 1e15)) {
+        fail(ExitCode::stopped, "{}: step {} at {:.6g} s would be shorter than {:.3g} s",
+             apparatus_.name, steps_ + 1, begin.time, left / 1e15);
+    }
+    const double dt = left / parts;
+    const long count = std::min(kBlock, static_cast<long>(parts));
+    return {begin, double(count) == parts ? way.to.time : begin.time + double(count) * dt, dt,
+            count};
+}
+
+void ExplicitSolver::save() {
+    for (std::size_t b = 0; b < body_.size(); ++b) {
+        body_[b].save(state_[b]);
+        const bool may =
+            halvings_ >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);
+        inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
+    }
+    contact_state_ = contact_.save();
+}
+
+// Whether the energy of a block that went right is right too.
+bool ExplicitSolver::energy_holds(const std::vector<Stored>& held, const std::vector<Stored>& after,
+                                  const std::vector<BodyOutcome>& so_far,
+                                  const std::vector<BodyOutcome>& now) {
+    double turned = 0, done = 0, lost = 0, gain = 0;
+    for (std::size_t b = 0; b < body_.size(); ++b) {
+        turned += turned_over(so_far[b].work, now[b].work) +
+                  turned_over(so_far[b].push_work, now[b].push_work);
+        done += now[b].done() - so_far[b].done();
+        lost += now[b].lost() - so_far[b].lost();
+        gain += after[b].sum() - held[b].sum();
+    }
+    return energy_.accepts(turned, done, lost, gain);
+}
+
+void ExplicitSolver::keep(const Block& block, MoveOutcome& outcome) {
+    if (share_ <= std::ldexp(1.0, -kInsideOutHalvings)) {
+        for (MovingBody& body : body_) outcome.inside_out += body.inside_out();
+    }
+    steps_ += block.count;
+    outcome.steps += block.count;
+    outcome.shortest_step = std::min(outcome.shortest_step, block.dt);
+    if (rescued_blocks_ > 0) {
+        outcome.rescued += block.count;
+        if (--rescued_blocks_ == 0) share_ = 1;
+    }
+    halvings_ = 0;
+    if (share_ < 1 && ++good_blocks_ == kPatience) {
+        share_ *= 2;
+        good_blocks_ = 0;
+    }
+}
+
+// Goes back to the block's start and chooses shorter or other steps; throws where none are left.
+void ExplicitSolver::take_back(const Block& block, const Finding& found,
+                               const std::vector<BodyOutcome>& so_far, MoveOutcome& outcome) {
+    ++halvings_;
+    ++outcome.halvings;
+    outcome.rejected += found.step - steps_;
+    const int limit = rescued_blocks_ > 0 ? kRescueHalvings : settings_.retry_limit;
+    const bool fails = halvings_ > limit || share_ < std::ldexp(1.0, -limit);
+    const bool rescue = fails && can_be_rescued();
+    std::string why;
+    if (fails && !rescue) {
+        why = sentence_of(found, body_[found.body], apparatus_.name, block.dt);
+    }
+    const std::vector<BodyOutcome> gone_wrong = std::exchange(outcome.body, so_far);
+    for (std::size_t b = 0; b < body_.size(); ++b) {
+        body_[b].restore(state_[b]);
+        body_[b].begin_step(block.begin);
+        body_[b].find_forces(block.begin, 0, outcome.body[b]);
+        if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);
+    }
+    contact_.restore(*contact_state_);
+    meet(first_step(block.dt));
+    if (!why.empty()) fail(ExitCode::stopped, "{}", why);
+    share_ *= 0.5;
+    good_blocks_ = 0;
+    if (rescue) {
+        share_ = 1;
+        rescued_blocks_ = kRescue;
+        halvings_ = 0;
+    }
 }
 
 MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     outcome.body.assign(body_.size(), BodyOutcome(apparatus_, body_[0].pushes().count()));
+    outcome.shortest_step = to.time - from.time;
     const Way way{from, to};
-    const double frame = to.time - from.time;
-    double dt = step_;
-    for (std::size_t b = 0; b < body_.size(); ++b) {
-        body_[b].start(from, outcome.body[b]);
-    }
+    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].start(from, outcome.body[b]);
     meet(first_step(share_ * step_));
     for (std::size_t b = 0; b < met_.size(); ++b) outcome.body[b].met.start(met_[b]);
-    std::vector<Stored> held;
-    Drive begin = from;
-    int halvings = 0;  // of this block
-    outcome.shortest_step = frame;
-    while (begin.time < to.time) {
-        const double left = to.time - begin.time;
-        const double parts = std::ceil(left / longest_step(frame) * (1 - 1e-9));
-        if (!(parts < 1e15)) {
-            fail(ExitCode::stopped, "{}: step {} at {:.6g} s would be shorter than {:.3g} s",
-                 apparatus_.name, steps_ + 1, begin.time, left / 1e15);
-        }
-        dt = left / std::max(parts, 1.0);
-        const long count = std::min(kBlock, static_cast<long>(std::max(parts, 1.0)));
-        const double end = double(count) == parts ? to.time : begin.time + double(count) * dt;
-        const double lag = has_half_kicks() ? dt : 0;
-        held = stored(begin, lag);
-        if (begin.time == from.time) {
-            double sum = 0;
-            for (std::size_t b = 0; b < body_.size(); ++b) {
-                outcome.body[b].before = held[b];
-                sum += held[b].sum();
-            }
-            if (!started_) energy_.start(sum);
-            started_ = true;
-        }
-        for (std::size_t b = 0; b < body_.size(); ++b) {
-            body_[b].save(state_[b]);
-            const bool may =
-                halvings >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);
-            inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
-        }
-        const auto contact_before = contact_.save();
+    halvings_ = 0;
+    for (Drive begin = from; begin.time < to.time;) {
+        const Block block = next_block(way, begin);
+        const double lag = has_half_kicks() ? block.dt : 0;
+        const std::vector<Stored> held = stored(begin, lag);
+        if (begin.time == from.time) start_books(held, outcome);
+        save();
         const std::vector<BodyOutcome> so_far = outcome.body;
-        for (std::size_t b = 0; b < body_.size(); ++b) body_[b].begin_block(outcome.body[b]);
-        Finding found = block(way, begin, end, count, dt, outcome);
-        const Drive now = end >= to.time ? to : drive_between(from, to, way.at(end));
+        Finding found = take(way, block, outcome);
+        const Drive now = block.end >= to.time ? to : drive_between(from, to, way.at(block.end));
         if (!found) {
             const std::vector<Stored> after = stored(now, lag);
-            for (std::size_t b = 0; b < body_.size(); ++b) body_[b].end_block(outcome.body[b]);
-            double turned = 0, done = 0, lost = 0, gain = 0;
-            for (std::size_t b = 0; b < body_.size(); ++b) {
-                const BodyOutcome& was = so_far[b];
-                BodyOutcome& is = outcome.body[b];
-                turned += turned_over(was.work, is.work) + turned_over(was.push_work, is.push_work);
-                done += is.done() - was.done();
-                lost += is.lost() - was.lost();
-                gain += after[b].sum() - held[b].sum();
-                is.after = after[b];
-            }
-            if (!energy_.accepts(turned, done, lost, gain)) {
+            for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].after = after[b];
+            if (!energy_holds(held, after, so_far, outcome.body)) {
                 found.fault = Fault::gains;
                 found.gain = energy_.excess_share();
-                found.step = steps_ + count;
-                found.time = end;
+                found.step = steps_ + block.count;
+                found.time = block.end;
             }
         }
-        if (!found) {
-            if (share_ <= std::ldexp(1.0, -kInsideOutHalvings)) {
-                for (MovingBody& body : body_) outcome.inside_out += body.inside_out();
-            }
+        if (found) {
+            take_back(block, found, so_far, outcome);
+        } else {
+            keep(block, outcome);
             begin = now;
-            steps_ += count;
-            outcome.steps += count;
-            outcome.shortest_step = std::min(outcome.shortest_step, dt);
-            if (rescued_blocks_ > 0) {
-                outcome.rescued += count;
-                if (--rescued_blocks_ == 0) share_ = 1;
-            }
-            halvings = 0;
-            if (share_ < 1 && ++good_blocks_ == kPatience) {
-                share_ *= 2;
-                good_blocks_ = 0;
-            }
-            continue;
-        }
-        ++halvings;
-        ++outcome.halvings;
-        outcome.rejected += found.step - steps_;
-        const int limit = rescued_blocks_ > 0 ? kRescueHalvings : settings_.retry_limit;
-        const bool fails = halvings > limit || share_ < std::ldexp(1.0, -limit);
-        const bool rescue = fails && can_be_rescued();
-        const bool gives_up = fails && !rescue;
-        const std::string why =
-            gives_up ? sentence_of(found, body_[found.body], apparatus_.name, dt) : std::string();
-        const std::vector<BodyOutcome> gone_wrong = std::exchange(outcome.body, so_far);
-        for (std::size_t b = 0; b < body_.size(); ++b) {
-            body_[b].restore(state_[b]);
-            body_[b].begin_step(begin);
-            body_[b].find_forces(begin, 0, outcome.body[b]);
-            if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);
-        }
-        contact_.restore(*contact_before);
-        meet(first_step(dt));
-        if (gives_up) fail(ExitCode::stopped, "{}", why);
-        share_ *= 0.5;
-        good_blocks_ = 0;
-        if (rescue) {
-            share_ = 1;
-            rescued_blocks_ = kRescue;
-            halvings = 0;
         }
     }
     for (std::size_t b = 0; b < body_.size(); ++b) {

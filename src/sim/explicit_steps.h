@@ -64,8 +64,16 @@ class ExplicitSolver {
     double first_step(double dt) const { return has_half_kicks() ? 0.5 * dt : dt; }
     // Moves one body on by step n of a block; returns the longest way of any particle [m].
     double move(std::size_t body, const Drive& now, double dt, long n, MoveOutcome& outcome);
-    Finding block(const Way& way, const Drive& begin, double end, long count, double dt,
-                  MoveOutcome& outcome);
+    struct Block;
+    Block next_block(const Way& way, const Drive& begin);
+    void start_books(const std::vector<Stored>& held, MoveOutcome& outcome);
+    void save();
+    Finding take(const Way& way, const Block& block, MoveOutcome& outcome);
+    bool energy_holds(const std::vector<Stored>& held, const std::vector<Stored>& after,
+                      const std::vector<BodyOutcome>& so_far, const std::vector<BodyOutcome>& now);
+    void keep(const Block& block, MoveOutcome& outcome);
+    void take_back(const Block& block, const Finding& found, const std::vector<BodyOutcome>& so_far,
+                   MoveOutcome& outcome);
     std::vector<Stored> stored(const Drive& now, double dt);
     bool can_be_rescued() const;
     // Adds what bodies in contact do to each other in a step of this length [s] from here.
@@ -76,12 +84,14 @@ class ExplicitSolver {
     std::vector<MovingBody> body_;
     std::vector<MovingBody::State> state_;
     BodyContact contact_;
+    std::shared_ptr<const BodyContact::State> contact_state_;
     std::vector<ContactSums> met_;
     EnergyGuard energy_;
     bool started_ = false;
     double step_;                  // [s]
     double share_ = 1;             // of the step that is taken now: halved where the guard asked
     int good_blocks_ = 0;          // since then
+    int halvings_ = 0;             // of this block
     long steps_ = 0;               // of the stage
     std::vector<int> inside_out_;  // cells that may be, by body
     std::vector<ImplicitStep> implicit_;
