@@ -128,7 +128,7 @@ struct SpringKernel {
                     before += m;
                     after += next;
                 }
-                V given = (c < kEdgeCount ? 1.0 : 2.0) * (before * stretch);
+                V given = (c < kEdgeCount ? 0.5 : 1.0) * ((before + after) * stretch);
                 if constexpr (kKind != BatchKind::plain) given = weight[n] * given;
                 work += given;
                 pulled[n] += after * y[n];

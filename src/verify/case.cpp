@@ -67,6 +67,7 @@ std::vector<Case> verification_cases() {
     add_plastic_cases(cases);
     add_fracture_cases(cases);
     add_motion_cases(cases);
+    add_flight_cases(cases);
     return cases;
 }
 

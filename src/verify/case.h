@@ -83,5 +83,6 @@ void add_two_material_cases(std::vector<Case>& cases);
 void add_plastic_cases(std::vector<Case>& cases);
 void add_fracture_cases(std::vector<Case>& cases);
 void add_motion_cases(std::vector<Case>& cases);
+void add_flight_cases(std::vector<Case>& cases);
 
 }  // namespace swage

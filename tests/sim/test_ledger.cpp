@@ -93,6 +93,24 @@ TEST_CASE("the remainder is what the books leave over, and falls with the square
     }
 }
 
+TEST_CASE("what damping takes stands in the books, at any step") {
+    for (const double safety : {0.8, 0.2}) {
+        Material material = kSpringy;
+        material.damping_ratio = 0.1;
+        Aggregate m = swinging_bar(0.02, material);
+        SimSettings settings = motion_settings();
+        settings.step_safety = safety;
+        const Apparatus nothing;
+        Simulation simulation(m, nothing, settings);
+        const double energy = 0.25 * m.mass() * 0.02 * 0.02;
+        const FrameReport r = simulation.advance(still(0), still(0.2));
+        INFO("safety " << safety);
+        CHECK(r.kinetic + r.elastic < 0.01 * energy);
+        CHECK(r.damped == Approx(energy).epsilon(0.01));
+        CHECK(std::abs(r.remainder) < 1e-4 * energy);
+    }
+}
+
 TEST_CASE("what slides to rest gives its energy to friction, after the way that Coulomb says") {
     constexpr double kFriction = 0.3, kSpeed = 1;
     Material material = kSpringy;
