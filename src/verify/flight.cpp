@@ -202,7 +202,7 @@ void momentum(bool brief, Values& values) {
                         std::max(0.0, (report.kinetic + report.elastic) / before.kinetic - 1),
                         1e-3));
     const double parting = apart.normalized().dot(velocity(b) - velocity(a));
-    values.add(absolute("they met (1: they part)", 0, 1, parting > 0.1 * -apart.norm(), 0.5));
+    values.add(absolute("they met (1: they part)", 0, 1, parting < 0, 0.5));
 }
 
 // A slender bar, free at both ends, swings along its axis: c = sqrt(E / rho), T = 2 L / c.
