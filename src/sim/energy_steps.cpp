@@ -40,7 +40,7 @@ Box reach_of(const MovingBody& body, double time) {
 }
 
 // Of its energy, by what places are rounded to [J].
-double round_off(const MovingBody& body) {
+double round_off(MovingBody& body) {
     const Vec3Array& x = body.matter().particle_position;
     return std::numeric_limits<double>::epsilon() * chunked_sum(x.size(), [&](std::size_t p) {
                return body.force().at(p).cwiseAbs().dot(x.at(p).cwiseAbs());

@@ -80,7 +80,6 @@ class MovingBody {
     const Aggregate& matter() const { return matter_; }
     Vec3Array& force() { return force_; }
     const Vec3& gravity() const { return gravity_; }  // [m/s2]
-    const Vec3Array& force() const { return force_; }
     const LoadSet& pushes() const { return pushes_; }
     const std::vector<LoadSum>& load() const { return load_; }  // by tool, then grip
     bool drag_is_held() const { return drag_.is_held(); }
