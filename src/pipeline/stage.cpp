@@ -276,6 +276,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         {"steps", totals.steps},
         {"steps_implicit_instead", totals.rescued},
         {"steps_rejected", totals.rejected},
+        {"bodies_asleep", last.asleep},
         {"shortest_step_s", totals.shortest_step},
         {"largest_residual", totals.residual},
         {"deepest_penetration_m", totals.penetration},

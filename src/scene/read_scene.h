@@ -12,7 +12,7 @@
 //     [[stage]]   machine, name, frames, duration, axis, up, remold; solver ("quasistatic",
 //                 "explicit", "euler", "energy-stepped", "implicit"), gravity,
 //                 gravity_strength; tolerance, iteration_limit, halving_limit, contact_stiffness,
-//                 grip_stiffness, step_safety, retry_limit, self_contact (see sim/settings.h); and
+//                 grip_stiffness, step_safety, retry_limit, self_contact, sleep (see sim/settings.h); and
 //                 the machine's parameters
 //     [[stage.load]]  name, force or pressure, on, from, to, strength (see scene/read_load.h)
 //     [render]    size, fps, film, tools, ground, gl ("auto", "osmesa", "egl"), field_of_view

@@ -84,6 +84,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
              is_explicit || is_implicit);
     only_for("self_contact", table.truth("self_contact", sim.self_contact), is_explicit);
     if (!is_explicit) sim.self_contact = false;
+    only_for("sleep", table.truth("sleep", sim.sleep), is_explicit || is_implicit);
     if (sim.solver == Solver::energy_stepped && scene.body.size() > 1) {
         table.warn("solver",
                    "with solver = \"energy-stepped\" bodies pass through each other; with "

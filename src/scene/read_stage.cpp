@@ -44,7 +44,8 @@ const std::vector<std::string> kStageKeys = {"machine",
                                              "grip_stiffness",
                                              "step_safety",
                                              "retry_limit",
-                                             "self_contact"};
+                                             "self_contact",
+                                             "sleep"};
 
 bool is_path(const std::string& machine) {
     return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";

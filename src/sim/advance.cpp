@@ -185,8 +185,8 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         }
         // Half of what a contact holds and takes is on its books; the rest of its work is passed
         // on.
-        books.passed += part.met.work + part.met.damped + part.met.friction + part.met.stored -
-                        part.met.held;
+        books.passed +=
+            part.met.work + part.met.damped + part.met.friction + part.met.stored - part.met.held;
         books.kinetic = part.after.kinetic;
         books.elastic = part.after.elastic;
         books.contact = part.after.contact;
@@ -301,6 +301,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     report.halvings = outcome.halvings;
     report.steps = outcome.steps;
     report.rescued = outcome.rescued;
+    report.asleep = outcome.asleep;
     report.rejected = outcome.rejected;
     report.shortest_step = outcome.shortest_step;
     report.residual = outcome.residual;

@@ -51,6 +51,7 @@ struct FrameReport : Books {  // of all bodies
     int iterations = 0, increments = 0, halvings = 0;
     long steps = 0, rejected = 0;  // in motion: kept, and taken back
     double shortest_step = 0;      // likewise [s]
+    int asleep = 0;                // bodies at rest at the end of it
     long rescued = 0;              // of those kept: implicit ones where explicit ones went wrong
     double residual = 0;           // over the largest push; quasi-static only
     std::vector<ToolLoad> load;    // tools, then grips, then blades, then loads, then gravity

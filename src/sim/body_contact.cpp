@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "geometry/near_pairs.h"
@@ -115,33 +116,36 @@ std::size_t BodyContact::candidates() const {
     return count;
 }
 
-void BodyContact::renew() {
+void BodyContact::renew(const std::vector<char>& asleep) {
     if (!acts()) return;
     double farthest = 0;
     for (std::size_t b = 0; b < listed_.size(); ++b) {
+        if (asleep[b]) continue;
         const Vec3Array& x = side_[b].matter().particle_position;
         const std::vector<ParticleId>& skin = side_[b].skin();
         for (std::size_t n = 0; n < skin.size() && allowance_ >= 0; ++n) {
             farthest = std::max(farthest, (x.at(skin[n]) - listed_[b][n]).squaredNorm());
         }
     }
-    if (!(farthest <= allowance_ * allowance_) || allowance_ < 0) renew_all();
+    if (!(farthest <= allowance_ * allowance_) || allowance_ < 0) renew_all(asleep);
 }
 
-void BodyContact::renew_all() {
+void BodyContact::renew_all(const std::vector<char>& asleep) {
     if (!acts()) return;
     std::vector<Box> box(side_.size());
     listed_.resize(side_.size());
     for (std::size_t b = 0; b < side_.size(); ++b) {
+        const Vec3Array& x = side_[b].matter().particle_position;
+        for (ParticleId p : side_[b].skin()) box[b].grow(x.at(p));
+        // What lies still is found where it was when it was listed.
+        if (asleep[b] && !listed_[b].empty()) continue;
         listed_[b].clear();
-        for (ParticleId p : side_[b].skin()) {
-            listed_[b].push_back(side_[b].matter().particle_position.at(p));
-            box[b].grow(listed_[b].back());
-        }
+        for (ParticleId p : side_[b].skin()) listed_[b].push_back(x.at(p));
     }
     const double step = kWay * least_spacing_;
     allowance_ = std::numeric_limits<double>::infinity();
     for (Way& way : way_) {
+        if (asleep[way.from] && asleep[way.onto]) continue;
         const double gap = box_gap(box[way.from], box[way.onto]);
         const bool near = way.from == way.onto || gap <= 2 * step;
         allowance_ = std::min(allowance_, near ? step : 0.5 * gap);
@@ -151,6 +155,20 @@ void BodyContact::renew_all() {
             way.contact.clear();
         }
     }
+}
+
+std::vector<std::size_t> BodyContact::groups() const {
+    std::vector<std::size_t> group(side_.size());
+    std::iota(group.begin(), group.end(), std::size_t{0});
+    const auto root = [&](std::size_t b) {
+        while (group[b] != b) b = group[b];
+        return b;
+    };
+    for (const Way& way : way_) {
+        if (!way.contact.empty()) group[root(way.from)] = root(way.onto);
+    }
+    for (std::size_t b = 0; b < group.size(); ++b) group[b] = root(b);
+    return group;
 }
 
 void BodyContact::find_pairs(Way& way, double margin) {
@@ -311,12 +329,11 @@ void BodyContact::spread(const Way& way, std::size_t n, const Vec3& f,
 }
 
 // Dashpots and friction, one contact after the other, given what all springs do.
-void BodyContact::respond(Way& way, const std::vector<Vec3Array*>& force, double step,
-                          std::vector<ContactSums>& sums) {
+void BodyContact::respond(Way& way, const std::vector<Vec3Array*>& force, double step) {
     const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
     const SurfacePoints& points = side_[way.from].points();
     const Vec3Array &on_a = *force[way.from], &on_b = *force[way.onto];
-    ContactSums &sum_a = sums[way.from], &sum_b = sums[way.onto];
+    auto& [sum_a, sum_b] = way.sum = {};
     way.push.assign(way.contact.size(), {});
     for (std::size_t n = 0; n < way.contact.size(); ++n) {
         const Contact& contact = way.contact[n];
@@ -367,8 +384,8 @@ void BodyContact::respond(Way& way, const std::vector<Vec3Array*>& force, double
 }
 
 // What the contacts do while the bodies move, now that all forces are known.
-void BodyContact::book(const Way& way, const std::vector<Vec3Array*>& force, const Vec3& gravity,
-                       double step, std::vector<ContactSums>& sums) const {
+void BodyContact::book(Way& way, const std::vector<Vec3Array*>& force, const Vec3& gravity,
+                       double step) const {
     const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
     const SurfacePoints& points = side_[way.from].points();
     const Vec3Array &on_a = *force[way.from], &on_b = *force[way.onto];
@@ -406,21 +423,21 @@ void BodyContact::book(const Way& way, const std::vector<Vec3Array*>& force, con
             sum.takes -= dashed.dot(va - vb);
         }
     });
-    const int side[2] = {way.from, way.onto};
     for (const Power& sum : power) {
         for (int s = 0; s < 2; ++s) {
-            sums[side[s]].came += sum.came[s];
-            sums[side[s]].goes += sum.goes[s];
-            sums[side[s]].took += 0.5 * sum.took;
-            sums[side[s]].takes += 0.5 * sum.takes;
+            way.sum[s].came += sum.came[s];
+            way.sum[s].goes += sum.goes[s];
+            way.sum[s].took += 0.5 * sum.took;
+            way.sum[s].takes += 0.5 * sum.takes;
         }
     }
 }
 
 void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
-                             std::vector<ContactSums>& sums) {
-    sums.assign(side_.size(), {});
+                             const std::vector<char>& asleep, std::vector<ContactSums>& sums) {
+    const auto sleeps = [&](const Way& way) { return asleep[way.from] && asleep[way.onto]; };
     for (Way& way : way_) {
+        if (sleeps(way)) continue;
         const std::size_t count = way.contact.size();
         way.meeting.resize(count);
         parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
@@ -434,8 +451,19 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
             if (way.meeting[n].meets) spread(way, n, way.meeting[n].spring, force);
         }
     }
-    for (Way& way : way_) respond(way, force, step, sums);
-    for (const Way& way : way_) book(way, force, gravity, step, sums);
+    for (Way& way : way_) {
+        if (!sleeps(way)) respond(way, force, step);
+    }
+    sums.assign(side_.size(), {});
+    for (Way& way : way_) {
+        if (sleeps(way)) {
+            for (ContactSums& sum : way.sum) sum.freeze();
+        } else {
+            book(way, force, gravity, step);
+        }
+        sums[way.from].join(way.sum[0]);
+        sums[way.onto].join(way.sum[1]);
+    }
 }
 
 void BodyContact::commit() {

@@ -38,14 +38,19 @@ class BodyContact {
     bool acts() const { return !way_.empty(); }
     void limit_stiffness(double step);  // for steps of this length [s]
 
-    // Finds what has come near, if anything can have since the last time.
-    void renew();
-    void renew_all();
+    // Finds what has come near, if anything can have since the last time. Bodies that sleep have
+    // not moved since they fell asleep.
+    void renew(const std::vector<char>& asleep);
+    void renew_all(const std::vector<char>& asleep);
+
+    // Groups of bodies of which each is near the next, by the number of one of them.
+    std::vector<std::size_t> groups() const;
 
     // Adds the forces at the present positions, from which `step` [s] goes on with the forces so
-    // far, which must be all others, and gravity [m/s2]. By body; sums likewise, set anew.
+    // far, which must be all others, and gravity [m/s2]. By body; sums likewise, set anew. Between
+    // bodies that sleep nothing changes.
     void add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
-                    std::vector<ContactSums>& sums);
+                    const std::vector<char>& asleep, std::vector<ContactSums>& sums);
     // The step is kept: remembers where points stick and how they met.
     void commit();
 
@@ -88,19 +93,19 @@ class BodyContact {
         int from, onto;
         ImpactLaw law;  // stiffness and hold: of each point
         std::vector<double> stiffness, hold;
-        std::vector<Contact> contact;  // sorted by point
-        std::vector<Meeting> meeting;  // of each, at the present positions
-        std::vector<Push> push;        // likewise
+        std::vector<Contact> contact;      // sorted by point
+        std::vector<Meeting> meeting;      // of each, at the present positions
+        std::vector<Push> push;            // likewise
+        std::array<ContactSums, 2> sum{};  // of the one side and of the other
     };
     void find_pairs(Way& way, double margin);
     Meeting meet(const Way& way, Contact& contact) const;
     void prepare(const Way& way, const Contact& contact, Meeting& meeting) const;
     void spread(const Way& way, std::size_t n, const Vec3& f,
                 const std::vector<Vec3Array*>& force) const;
-    void respond(Way& way, const std::vector<Vec3Array*>& force, double step,
-                 std::vector<ContactSums>& sums);
-    void book(const Way& way, const std::vector<Vec3Array*>& force, const Vec3& gravity,
-              double step, std::vector<ContactSums>& sums) const;
+    void respond(Way& way, const std::vector<Vec3Array*>& force, double step);
+    void book(Way& way, const std::vector<Vec3Array*>& force, const Vec3& gravity,
+              double step) const;
     void set_stiffness(Way& way);
 
     SimSettings settings_;

@@ -315,6 +315,28 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
     return farthest;
 }
 
+bool ContactSet::is_stirred(const Drive& since, const Drive& now) const {
+    const double least = 1e-6 * spacing_;
+    for (std::size_t t = 0; t < apparatus_->tool.size(); ++t) {
+        const int tool = static_cast<int>(t);
+        const bool is_near =
+            std::binary_search(pair_.begin(), pair_.end(), Pair{tool, 0, false, {}},
+                               [](const Pair& a, const Pair& b) { return a.tool < b.tool; });
+        if (is_near && bounds_travel(apparatus_->tool[t], since.world_from_tool[t],
+                                     now.world_from_tool[t]) > least) {
+            return true;
+        }
+    }
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        for (const Vec3& anchor : apparatus_->grip[g].anchor) {
+            const Vec3 way = now.world_from_grip[g] * anchor - since.world_from_grip[g] * anchor;
+            if (way.norm() > least) return true;
+        }
+    }
+    return false;
+}
+
 std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {
     double hardest = -1;
     std::string text = "no tool in contact";

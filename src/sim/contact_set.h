@@ -62,6 +62,9 @@ class ContactSet {
     // that friction took on the way that they slipped [J].
     double commit(const Aggregate& matter, const Drive& now);
 
+    // Whether a tool that is near or a grip has moved.
+    bool is_stirred(const Drive& since, const Drive& now) const;
+
     // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
 

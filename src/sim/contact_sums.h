@@ -18,6 +18,21 @@ struct ContactSums {
     double penetration = 0;       // of the deepest point in contact [m]
     int contacts = 0, sliding = 0;
 
+    // Those of other contacts at the same time.
+    void join(const ContactSums& other) {
+        stored += other.stored;
+        friction += other.friction;
+        damped += other.damped;
+        came += other.came;
+        goes += other.goes;
+        took += other.took;
+        takes += other.takes;
+        penetration = std::max(penetration, other.penetration);
+        contacts += other.contacts;
+        sliding += other.sliding;
+    }
+    // The same contacts while nothing moves.
+    void freeze() { friction = damped = came = goes = took = takes = 0; }
     // Nothing is taken yet where `now` holds.
     void start(const ContactSums& now) {
         *this = now;

@@ -43,6 +43,9 @@ ExplicitSolver::ExplicitSolver(const std::vector<Aggregate*>& bodies, const Appa
       settings_(settings),
       state_(bodies.size()),
       contact_(meets(settings.solver) ? bodies : std::vector<Aggregate*>{}, settings),
+      sleeping_(bodies, settings),
+      asleep_since_(bodies.size()),
+      held_(bodies.size()),
       step_(std::numeric_limits<double>::infinity()),
       inside_out_(bodies.size(), 0),
       implicit_(bodies.size()) {
@@ -61,34 +64,92 @@ void ExplicitSolver::connections_changed(std::size_t body) {
     body_[body].connections_changed();  // fewer are never faster, so the step stays
     implicit_[body] = {};
     contact_.connections_changed(body);
+    sleeping_.wake(body);
 }
 
-void ExplicitSolver::meet(double dt) {
+void ExplicitSolver::meet(const Drive& now, double dt, MoveOutcome& outcome) {
     if (!contact_.acts()) return;
-    contact_.renew();
+    contact_.renew(sleeping_.asleep());
+    const std::vector<std::size_t> group = contact_.groups();
+    std::vector<char> awake(group.size(), 0);
+    for_each_awake([&](std::size_t b) { awake[group[b]] = 1; });
+    for (std::size_t b = 0; b < body_.size(); ++b) {
+        if (!sleeping_.is_asleep(b) || !awake[group[b]]) continue;
+        wake(b, outcome);
+        body_[b].begin_step(now);
+        body_[b].find_forces(now, 0, outcome.body[b]);
+    }
     std::vector<Vec3Array*> force;
     for (MovingBody& body : body_) force.push_back(&body.force());
-    contact_.add_forces(force, body_[0].gravity(), dt, met_);
+    contact_.add_forces(force, body_[0].gravity(), dt, sleeping_.asleep(), met_);
+}
+
+void ExplicitSolver::wake(std::size_t b, MoveOutcome& outcome) {
+    sleeping_.wake(b);
+    if (!in_block_) return;
+    body_[b].save(state_[b]);  // it lies as it did when the block began
+    body_[b].begin_block(outcome.body[b]);
+}
+
+// What something has come to move since it fell asleep.
+void ExplicitSolver::wake_stirred(const Drive& before, const Drive& now, double dt,
+                                  MoveOutcome& outcome) {
+    bool any = false;
+    for (std::size_t b = 0; b < body_.size(); ++b) {
+        if (!sleeping_.is_asleep(b)) continue;
+        body_[b].renew_candidates(before, now, 0);
+        if (!body_[b].is_stirred(asleep_since_[b], now)) continue;
+        wake(b, outcome);
+        any = true;
+    }
+    if (!any) return;
+    for_each_awake([&](std::size_t b) {
+        body_[b].begin_step(before);
+        body_[b].find_forces(before, 0, outcome.body[b]);
+    });
+    meet(before, dt, outcome);
+}
+
+// Bodies that lie still, as far as all that are near them do.
+void ExplicitSolver::put_to_sleep(const Drive& now, MoveOutcome& outcome) {
+    std::vector<char> rests(body_.size(), 1);
+    for_each_awake([&](std::size_t b) {
+        rests[b] = sleeping_.rests(b, now.time, outcome.body[b].after.kinetic);
+    });
+    std::vector<std::size_t> group = contact_.groups();
+    for (std::size_t b = group.size(); b < body_.size(); ++b) group.push_back(b);
+    std::vector<char> all(body_.size(), 1);
+    for (std::size_t b = 0; b < body_.size(); ++b) all[group[b]] = all[group[b]] && rests[b];
+    for_each_awake([&](std::size_t b) {
+        if (!all[group[b]]) return;
+        sleeping_.put_to_sleep(b);
+        asleep_since_[b] = now;
+        outcome.body[b].damped_work += outcome.body[b].after.kinetic;
+        outcome.body[b].after.kinetic = held_[b].kinetic = 0;
+        body_[b].stop();
+    });
 }
 
 // What the state of the bodies and what the guard has asked for allow.
 double ExplicitSolver::longest_step(double frame) {
     const bool is_free = is_implicit();
     double dt = !is_free ? step_ : rescued_blocks_ > 0 ? kRescueStep * step_ : kFrameShare * frame;
-    for (MovingBody& body : body_) {
+    for_each_awake([&](std::size_t b) {
+        MovingBody& body = body_[b];
         if (!is_free && body.inside_out() > 0) dt = std::min(dt, body.present_step());
         const double speed = body.top_speed();
         if (speed > 0 && (!is_free || body.meets_tools()))
             dt = std::min(dt, kWayAhead * body.matter().lattice.spacing / speed);
-    }
+    });
     return share_ * dt;
 }
 
 std::vector<Stored> ExplicitSolver::stored(const Drive& now, double dt) {
-    std::vector<Stored> held;
-    for (MovingBody& body : body_) held.push_back(body.stored(now, dt));
-    for (std::size_t b = 0; b < met_.size(); ++b) held[b].contact += met_[b].stored;
-    return held;
+    for_each_awake([&](std::size_t b) {
+        held_[b] = body_[b].stored(now, dt);
+        if (b < met_.size()) held_[b].contact += met_[b].stored;
+    });
+    return held_;
 }
 
 double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
@@ -134,20 +195,22 @@ void ExplicitSolver::start_books(const std::vector<Stored>& held, MoveOutcome& o
 // The block's steps, up to the first with which something is wrong.
 Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& outcome) {
     const auto& [begin, end, dt, count] = block;
-    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].begin_block(outcome.body[b]);
+    in_block_ = true;
+    for_each_awake([&](std::size_t b) { body_[b].begin_block(outcome.body[b]); });
     Drive before = begin;
     for (long n = 1; n <= count; ++n) {
         const double time = n == count ? end : begin.time + double(n) * dt;
         const Drive now =
             time >= way.to.time ? way.to : drive_between(way.from, way.to, way.at(time));
+        wake_stirred(before, now, dt, outcome);
         std::vector<double> gone(body_.size());
-        for (std::size_t b = 0; b < body_.size(); ++b) {
+        for_each_awake([&](std::size_t b) {
             body_[b].begin_step(before);
             gone[b] = move(b, now, dt, n, outcome);
-        }
+        });
         for (std::size_t b = 0; b < body_.size(); ++b) {
-            Finding found;
-            found = look_at(body_[b], gone[b], std::numeric_limits<int>::max());
+            if (sleeping_.is_asleep(b)) continue;
+            Finding found = look_at(body_[b], gone[b], std::numeric_limits<int>::max());
             if (!found) {
                 body_[b].find_forces(now, is_implicit() ? 0 : dt, outcome.body[b]);
                 if (n == count) body_[b].count_inside_out();
@@ -159,23 +222,24 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
             found.time = time;
             return found;
         }
-        for (std::size_t b = 0; b < body_.size(); ++b) {
+        for_each_awake([&](std::size_t b) {
             const int broken = outcome.body[b].broken;
             body_[b].finish_step(before, now, dt, outcome.body[b]);
             if (outcome.body[b].broken > broken) contact_.connections_changed(b);
             body_[b].renew_candidates(before, now, gone[b]);
-        }
+        });
         if (contact_.acts()) {
-            meet(dt);
+            meet(now, dt, outcome);
             for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].met.add(met_[b], dt);
             contact_.commit();
         }
         before = now;
     }
-    if (has_half_kicks()) {
-        for (MovingBody& body : body_) body.kick(0.5 * dt);
-    }
-    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].end_block(outcome.body[b]);
+    for_each_awake([&](std::size_t b) {
+        if (has_half_kicks()) body_[b].kick(0.5 * dt);
+        body_[b].end_block(outcome.body[b]);
+    });
+    in_block_ = false;
     return {};
 }
 
@@ -194,12 +258,12 @@ ExplicitSolver::Block ExplicitSolver::next_block(const Way& way, const Drive& be
 }
 
 void ExplicitSolver::save() {
-    for (std::size_t b = 0; b < body_.size(); ++b) {
+    for_each_awake([&](std::size_t b) {
         body_[b].save(state_[b]);
         const bool may =
             halvings_ >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);
         inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
-    }
+    });
     contact_state_ = contact_.save();
 }
 
@@ -250,14 +314,15 @@ void ExplicitSolver::take_back(const Block& block, const Finding& found,
         why = sentence_of(found, body_[found.body], apparatus_.name, block.dt);
     }
     const std::vector<BodyOutcome> gone_wrong = std::exchange(outcome.body, so_far);
-    for (std::size_t b = 0; b < body_.size(); ++b) {
+    in_block_ = false;
+    for_each_awake([&](std::size_t b) {
         body_[b].restore(state_[b]);
         body_[b].begin_step(block.begin);
         body_[b].find_forces(block.begin, 0, outcome.body[b]);
         if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);
-    }
+    });
     contact_.restore(*contact_state_);
-    meet(first_step(block.dt));
+    meet(block.begin, first_step(block.dt), outcome);
     if (!why.empty()) fail(ExitCode::stopped, "{}", why);
     share_ *= 0.5;
     good_blocks_ = 0;
@@ -273,8 +338,8 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     outcome.body.assign(body_.size(), BodyOutcome(apparatus_, body_[0].pushes().count()));
     outcome.shortest_step = to.time - from.time;
     const Way way{from, to};
-    for (std::size_t b = 0; b < body_.size(); ++b) body_[b].start(from, outcome.body[b]);
-    meet(first_step(share_ * step_));
+    for_each_awake([&](std::size_t b) { body_[b].start(from, outcome.body[b]); });
+    meet(from, first_step(share_ * step_), outcome);
     for (std::size_t b = 0; b < met_.size(); ++b) outcome.body[b].met.start(met_[b]);
     halvings_ = 0;
     for (Drive begin = from; begin.time < to.time;) {
@@ -300,12 +365,14 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
             take_back(block, found, so_far, outcome);
         } else {
             keep(block, outcome);
+            put_to_sleep(now, outcome);
             begin = now;
         }
     }
     for (std::size_t b = 0; b < body_.size(); ++b) {
         outcome.body[b].load = body_[b].load();
         outcome.drag_held = outcome.drag_held || body_[b].drag_is_held();
+        outcome.asleep += sleeping_.is_asleep(b);
     }
     return outcome;
 }

@@ -33,6 +33,7 @@
 #include "sim/move_outcome.h"
 #include "sim/moving_body.h"
 #include "sim/settings.h"
+#include "sim/sleeping.h"
 
 namespace swage {
 
@@ -77,7 +78,16 @@ class ExplicitSolver {
     std::vector<Stored> stored(const Drive& now, double dt);
     bool can_be_rescued() const;
     // Adds what bodies in contact do to each other in a step of this length [s] from here.
-    void meet(double dt);
+    void meet(const Drive& now, double dt, MoveOutcome& outcome);
+    template <typename Act>
+    void for_each_awake(const Act& act) {
+        for (std::size_t b = 0; b < body_.size(); ++b) {
+            if (!sleeping_.is_asleep(b)) act(b);
+        }
+    }
+    void wake(std::size_t body, MoveOutcome& outcome);
+    void wake_stirred(const Drive& before, const Drive& now, double dt, MoveOutcome& outcome);
+    void put_to_sleep(const Drive& now, MoveOutcome& outcome);
 
     const Apparatus& apparatus_;
     SimSettings settings_;
@@ -86,8 +96,12 @@ class ExplicitSolver {
     BodyContact contact_;
     std::shared_ptr<const BodyContact::State> contact_state_;
     std::vector<ContactSums> met_;
+    Sleeping sleeping_;
+    std::vector<Drive> asleep_since_;
+    std::vector<Stored> held_;  // by body, when it was last looked at
     EnergyGuard energy_;
     bool started_ = false;
+    bool in_block_ = false;
     double step_;                  // [s]
     double share_ = 1;             // of the step that is taken now: halved where the guard asked
     int good_blocks_ = 0;          // since then

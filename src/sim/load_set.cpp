@@ -136,6 +136,16 @@ bool LoadSet::eases(const Drive& from, const Drive& to) const {
     return eases;
 }
 
+bool LoadSet::is_stirred(const Drive& since, const Drive& now) const {
+    constexpr double kLeast = 1e-6;
+    bool stirred = (gravity(now) - gravity(since)).norm() > kLeast * gravity_.norm();
+    for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
+        if (!pushes(apparatus_->load[l])) continue;
+        stirred = stirred || std::abs(now.load_strength[l] - since.load_strength[l]) > kLeast;
+    }
+    return stirred;
+}
+
 LoadSet::Settled LoadSet::settled(const Aggregate& matter, const Drive& now) const {
     Settled state;
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {

@@ -34,6 +34,9 @@ class LoadSet {
     // Whether any of them grows less.
     bool eases(const Drive& from, const Drive& to) const;
 
+    // Whether any of them, or gravity, has changed.
+    bool is_stirred(const Drive& since, const Drive& now) const;
+
     // The stage begins here; only the first call counts.
     void start(const Aggregate& matter, const Drive& now);
     // The state is settled. Adds to `work` [J], by load and then gravity, what each did on the way

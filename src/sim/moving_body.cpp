@@ -214,6 +214,12 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
     load_ = std::move(load);
 }
 
+bool MovingBody::is_stirred(const Drive& since, const Drive& now) const {
+    return contacts_.is_stirred(since, now) || pushes_.is_stirred(since, now);
+}
+
+void MovingBody::stop() { set_zero(matter_.particle_count(), matter_.particle_velocity); }
+
 Stored MovingBody::stored(const Drive& now, double step) {
     const Vec3Array& v = matter_.particle_velocity;
     Stored held;

@@ -49,6 +49,10 @@ class MovingBody {
     // Finds the candidates anew if anything could have come near since.
     void renew_candidates(const Drive& before, const Drive& now, double way);
 
+    // Whether anything that acts on it has changed or moved since then.
+    bool is_stirred(const Drive& since, const Drive& now) const;
+    void stop();
+
     // What it holds at the present positions and forces, between steps of this length [s]. The
     // kinetic energy is that of the steps themselves, 1/2 m v(-) v(+) with the velocities half a
     // step before and after: what the forces' work by the trapezoid rule adds up to exactly.

@@ -46,6 +46,7 @@ struct SimSettings {
     double step_safety = 0.8;   // share of the stable step, 0 to 1
     int retry_limit = 10;       // halvings of a step that goes wrong (sim/motion_guard.h); 0 to 20
     bool self_contact = false;  // a body's surface meets what is not its neighbourhood in the body
+    bool sleep = true;          // bodies that have come to rest cost nothing (sim/sleeping.h)
 
     // What the medium around does to the surface (laws/ambient_drag.h, laws/directional_drag.h);
     // explicit steps only.

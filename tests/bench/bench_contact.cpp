@@ -41,13 +41,14 @@ int main() {
     SimSettings settings;
     settings.solver = Solver::explicit_steps;
     BodyContact contact({&low, &high}, settings);
-    const double search = least_ms(3, [&] { contact.renew_all(); });
+    const std::vector<char> asleep(2, 0);
+    const double search = least_ms(3, [&] { contact.renew_all(asleep); });
     std::vector<Vec3Array> force(2, low.particle_velocity);
     std::vector<ContactSums> sums;
     const double step = least_ms(9, [&] {
-        contact.add_forces({&force[0], &force[1]}, Vec3::Zero(), 1e-5, sums);
+        contact.add_forces({&force[0], &force[1]}, Vec3::Zero(), 1e-5, asleep, sums);
         contact.commit();
-        contact.renew();
+        contact.renew(asleep);
     });
     fmt::print("{} points in contact: {:.1f} ms a step (bar 15), {:.1f} ms a search\n",
                sums[0].contacts, step, search);

@@ -64,7 +64,8 @@ struct Pressed {
 
 Pressed pressed(const std::vector<Aggregate*>& bodies, SimSettings settings = motion_settings()) {
     BodyContact contact(bodies, settings);
-    contact.renew();
+    const std::vector<char> asleep(bodies.size(), 0);
+    contact.renew(asleep);
     Pressed result;
     std::vector<Vec3Array*> force;
     for (Aggregate* m : bodies) {
@@ -73,7 +74,7 @@ Pressed pressed(const std::vector<Aggregate*>& bodies, SimSettings settings = mo
         result.force.push_back(std::move(f));
     }
     for (Vec3Array& f : result.force) force.push_back(&f);
-    contact.add_forces(force, Vec3::Zero(), 1e-10, result.sums);
+    contact.add_forces(force, Vec3::Zero(), 1e-10, asleep, result.sums);
     return result;
 }
 
@@ -85,11 +86,12 @@ TEST_CASE("what is in balance stays so: dashpots bear nothing of what rests") {
     Aggregate a = make_block(3, 3, 3, 0.1, dull), b = make_block(4, 4, 4, 0.09, dull);
     place(a, {Quat(Eigen::AngleAxisd(0.03, Vec3(1, 0, 2).normalized())), Vec3(0.02, 0.323, 0)});
     BodyContact contact({&a, &b}, motion_settings());
-    contact.renew();
+    const std::vector<char> asleep(2, 0);
+    contact.renew(asleep);
     const auto forces = [&](std::vector<Vec3Array> others) {
         std::vector<Vec3Array*> force{&others[0], &others[1]};
         std::vector<ContactSums> sums;
-        contact.add_forces(force, Vec3::Zero(), 1e-3, sums);
+        contact.add_forces(force, Vec3::Zero(), 1e-3, asleep, sums);
         CHECK(sums[0].contacts > 3);
         return others;
     };

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/sleeping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/internal_damping.h"
+#include "sim/vector_sums.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kTimes = 10;      // the slowest that it could do
+constexpr double kWay = 1e-3;      // spacings
+constexpr double kKinetic = 1e-6;  // of m g a
+
+}  // namespace
+
+Sleeping::Sleeping(const std::vector<Aggregate*>& bodies, const SimSettings& settings)
+    : asleep_(bodies.size(), 0) {
+    const double g = settings.gravity.norm();
+    can_ = settings.sleep && g > 0;
+    if (!can_) return;
+    for (const Aggregate* matter : bodies) {
+        const double a = matter->lattice.spacing;
+        const double fall = std::sqrt(2 * a / g);
+        const double swing = 2 * std::numbers::pi / slowest_frequency(*matter);
+        body_.push_back({.matter = matter,
+                         .still = kTimes * std::max(fall, swing),
+                         .farthest = kWay * a,
+                         .most = kKinetic * matter->mass() * g * a,
+                         .from = {}});
+    }
+}
+
+bool Sleeping::rests(std::size_t body, double now, double kinetic) {
+    if (!can_) return false;
+    Watched& at = body_[body];
+    if (!(kinetic < at.most)) {
+        at.lies = false;
+        return false;
+    }
+    const Vec3Array& x = at.matter->particle_position;
+    if (at.lies && farthest_move(at.from, x) <= at.farthest) return now - at.since >= at.still;
+    at.lies = true;
+    at.since = now;
+    at.from = x;
+    return false;
+}
+
+void Sleeping::wake(std::size_t body) {
+    asleep_[body] = 0;
+    if (can_) body_[body].lies = false;
+}
+
+}  // namespace swage

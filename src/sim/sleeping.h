@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which bodies have come to rest. One rests when gravity holds it down and, for ten times as long
+// as a fall over one spacing or its slowest swing takes, whichever is longer,
+//
+//     no particle goes farther than a thousandth of a spacing from where it was,
+//     its kinetic energy stays below a millionth of m g a.
+//
+// What rolls or slides slower than a 7000th of sqrt(g a) is taken as at rest; what is thrown and
+// stands at the top of its way, or swings, is not. Without gravity nothing ever rests.
+#pragma once
+
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "sim/settings.h"
+
+namespace swage {
+
+class Sleeping {
+  public:
+    Sleeping(const std::vector<Aggregate*>& bodies, const SimSettings& settings);
+
+    const std::vector<char>& asleep() const { return asleep_; }
+    bool is_asleep(std::size_t body) const { return asleep_[body] != 0; }
+
+    // A body that holds this kinetic energy [J] is watched; returns whether it has been at rest for
+    // long enough by now [s].
+    bool rests(std::size_t body, double now, double kinetic);
+    void put_to_sleep(std::size_t body) { asleep_[body] = 1; }
+    void wake(std::size_t body);
+
+  private:
+    struct Watched {
+        const Aggregate* matter;
+        double still;     // it has to lie still for [s]
+        double farthest;  // that it may go in that [m]
+        double most;      // kinetic energy [J]
+        double since = 0;
+        bool lies = false;
+        Vec3Array from;  // where its particles were then
+    };
+    std::vector<Watched> body_;
+    std::vector<char> asleep_;
+    bool can_ = false;
+};
+
+}  // namespace swage
