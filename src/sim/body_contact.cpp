@@ -292,17 +292,20 @@ void BodyContact::prepare(const Way& way, const Contact& contact, Meeting& at) c
     const auto& carrier = points.corner[contact.point];
     const auto& share = points.weight[contact.point];
     at.weight = trilinear_weights(contact.place);
-    at.now.setZero();
+    at.own.setZero();
+    Vec3 other = Vec3::Zero();
     at.give = 0;
     for (int c = 0; c < 8; ++c) {
         const double w = share[c], u = at.weight[c];
+        const ParticleId p = carrier[c], q = contact.corner[c];
         if (w != 0) {
-            at.now += w * a.particle_velocity.at(carrier[c]);
-            at.give += w * w / a.particle_mass[carrier[c]];
+            at.own += w * a.particle_velocity.at(p);
+            at.give += w * w * side_[way.from].lightness()[p];
         }
-        at.now -= u * b.particle_velocity.at(contact.corner[c]);
-        at.give += u * u / b.particle_mass[contact.corner[c]];
+        other += u * b.particle_velocity.at(q);
+        at.give += u * u * side_[way.onto].lightness()[q];
     }
+    at.now = at.own - other;
     if (!at.meets) return;
     at.reach.setZero();
     const double k = way.stiffness[contact.point];
@@ -330,7 +333,8 @@ void BodyContact::spread(const Way& way, std::size_t n, const Vec3& f,
 
 // Dashpots and friction, one contact after the other, given what all springs do.
 void BodyContact::respond(Way& way, const std::vector<Vec3Array*>& force, double step) {
-    const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
+    const std::vector<double>&light_a = side_[way.from].lightness(),
+          &light_b = side_[way.onto].lightness();
     const SurfacePoints& points = side_[way.from].points();
     const Vec3Array &on_a = *force[way.from], &on_b = *force[way.onto];
     auto& [sum_a, sum_b] = way.sum = {};
@@ -345,11 +349,9 @@ void BodyContact::respond(Way& way, const std::vector<Vec3Array*>& force, double
             const auto& share = points.weight[point];
             Vec3 push = -at.give * at.spring;  // of all others, over the mass
             for (int c = 0; c < 8; ++c) {
-                if (share[c] != 0) {
-                    push += share[c] / a.particle_mass[carrier[c]] * on_a.at(carrier[c]);
-                }
-                const ParticleId q = contact.corner[c];
-                push -= at.weight[c] / b.particle_mass[q] * on_b.at(q);
+                const ParticleId p = carrier[c], q = contact.corner[c];
+                if (share[c] != 0) push += share[c] * light_a[p] * on_a.at(p);
+                push -= at.weight[c] * light_b[q] * on_b.at(q);
             }
             ImpactLaw law = way.law;
             law.stiffness = way.stiffness[point];
@@ -386,7 +388,8 @@ void BodyContact::respond(Way& way, const std::vector<Vec3Array*>& force, double
 // What the contacts do while the bodies move, now that all forces are known.
 void BodyContact::book(Way& way, const std::vector<Vec3Array*>& force, const Vec3& gravity,
                        double step) const {
-    const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
+    const std::vector<double>&light_a = side_[way.from].lightness(),
+          &light_b = side_[way.onto].lightness();
     const SurfacePoints& points = side_[way.from].points();
     const Vec3Array &on_a = *force[way.from], &on_b = *force[way.onto];
     struct Power {
@@ -404,14 +407,11 @@ void BodyContact::book(Way& way, const std::vector<Vec3Array*>& force, const Vec
             const auto& carrier = points.corner[contact.point];
             const auto& share = points.weight[contact.point];
             const std::array<double, 8>& weight = way.meeting[n].weight;
-            Vec3 va = Vec3::Zero(), vb = va, pa = gravity, pb = gravity;
+            Vec3 va = way.meeting[n].own, vb = va - way.meeting[n].now, pa = gravity, pb = gravity;
             for (int c = 0; c < 8; ++c) {
-                if (share[c] != 0) {
-                    va += double(share[c]) * a.particle_velocity.at(carrier[c]);
-                    pa += share[c] / a.particle_mass[carrier[c]] * on_a.at(carrier[c]);
-                }
-                vb += weight[c] * b.particle_velocity.at(contact.corner[c]);
-                pb += weight[c] / b.particle_mass[contact.corner[c]] * on_b.at(contact.corner[c]);
+                const ParticleId p = carrier[c], q = contact.corner[c];
+                if (share[c] != 0) pa += share[c] * light_a[p] * on_a.at(p);
+                pb += weight[c] * light_b[q] * on_b.at(q);
             }
             const Vec3 dashed = f.force - f.elastic;
             sum.came[0] += f.force.dot(va);

@@ -84,6 +84,7 @@ class BodyContact {
         Vec3 normal, reach;  // reach: from the point to where it sticks [m]
         Mat3 gradient;       // J [m]
         std::array<double, 8> weight;
+        Vec3 own;     // of the point [m/s]
         Vec3 now;     // speed of the point over the other side [m/s]
         double give;  // ImpactState::give [1/kg]
         Vec3 spring;  // what its springs do [N]

@@ -22,6 +22,7 @@ bool in_box(const Vec3i& at) { return (at.array().abs() <= kNear).all(); }
 }  // namespace
 
 ContactSide::ContactSide(Aggregate& matter, bool itself) : matter_(&matter), itself_(itself) {
+    for (double mass : matter.particle_mass) lightness_.push_back(1 / mass);
     connections_changed();
 }
 

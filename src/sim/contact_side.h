@@ -37,6 +37,7 @@ class ContactSide {
         }
         return x;
     }
+    const std::vector<double>& lightness() const { return lightness_; }  // 1 / mass [1/kg]
     const RestSurface& surface() const { return *surface_; }
     // A whole cell not deep inside, which a point may meet.
     bool may_hold(CellId cell) const { return cell >= 0 && whole_[cell] && surface_->is_rim(cell); }
@@ -56,6 +57,7 @@ class ContactSide {
     void find_near();
 
     Aggregate* matter_;
+    std::vector<double> lightness_;
     bool itself_;
     SurfacePoints points_;
     std::vector<Vec3i> home_;  // of each point, the cell that it lies in or just outside of
