@@ -77,6 +77,14 @@ void carry_on(MovingBody& body, double step, double last, Vec3Array& before) {
     });
 }
 
+void find_forces_of_step(MovingBody& body, const Drive& now, const Vec3Array& from, double step,
+                         BodyOutcome& outcome) {
+    Vec3Array speed = mean_speed(from, body.matter().particle_position, step);
+    std::swap(speed, body.matter().particle_velocity);
+    body.find_forces(now, step, outcome);
+    std::swap(speed, body.matter().particle_velocity);
+}
+
 EnergySteps::EnergySteps(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                          const SimSettings& settings)
     : apparatus_(apparatus) {
@@ -157,12 +165,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
             m.body.begin_block(outcome.body[b]);
             const Vec3Array was = m.body.matter().particle_position;
             carry_on(m.body, step, m.last_step, m.before);
-            // Forces that depend on speed are told the mean one of the step, as of symplectic
-            // steps.
-            Vec3Array speed = mean_speed(was, m.body.matter().particle_position, step);
-            std::swap(speed, m.body.matter().particle_velocity);
-            m.body.find_forces(now, step, outcome.body[b]);
-            std::swap(speed, m.body.matter().particle_velocity);
+            find_forces_of_step(m.body, now, was, step, outcome.body[b]);
             m.body.finish_step(begin, now, step, outcome.body[b]);
             m.body.end_block(outcome.body[b]);
             m.body.renew_candidates(
@@ -195,7 +198,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
         };
         const bool keeps = within(gain, kTolerance) &&
                            (within(std::abs(gain + lost), kMistake) || step < kFinest * shortest);
-        if (tried_ != nullptr) tried_->push_back({begin.time, step, keeps});
+        if (tried_ != nullptr) tried_->push_back({begin.time, step, gain + lost, keeps});
         if (keeps) {
             n = 0;
             for (std::size_t b : group) {

@@ -37,11 +37,15 @@ namespace swage {
 // The formula: goes on by a step from forces that were found. `before`: the accelerations a step of
 // `last` [s] earlier, if there are any; afterwards those of now.
 void carry_on(MovingBody& body, double step, double last, Vec3Array& before);
+// The forces there, after a step from those places.
+void find_forces_of_step(MovingBody& body, const Drive& now, const Vec3Array& from, double step,
+                         BodyOutcome& outcome);
 
 class EnergySteps {
   public:
     struct Tried {
         double time, step;  // that it began at, and its length [s]
+        double astray;      // energy that came from nowhere [J]
         bool kept;
     };
 

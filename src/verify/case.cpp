@@ -46,6 +46,10 @@ Value absolute(std::string what, int across, double expected, double got, double
     return {std::move(what), across, expected, got, std::abs(got - expected), bound, 0};
 }
 
+Value at_least(std::string what, int across, double least, double got) {
+    return {std::move(what), across, least, got, std::max(0.0, 1 - got / least), 0.01, 0};
+}
+
 Value told(std::string what, int across, double expected, double got) {
     return relative(std::move(what), across, expected, got,
                     std::numeric_limits<double>::infinity());
@@ -68,6 +72,7 @@ std::vector<Case> verification_cases() {
     add_fracture_cases(cases);
     add_motion_cases(cases);
     add_flight_cases(cases);
+    add_chosen_step_cases(cases);
     return cases;
 }
 
@@ -84,6 +89,7 @@ Result run_case(const Case& verification, bool brief) {
     }
     result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     result.value = values.all();
+    result.plot = values.plots();
     result.series = series_of(result.value);
     result.missed = !result.failure.empty();
     for (const Value& v : result.value) result.missed = result.missed || v.missed();

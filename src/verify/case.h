@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace swage {
@@ -28,16 +29,33 @@ Value absolute(std::string what, int across, double expected, double got, double
 // Only told: there is nothing that it must be, or nothing sure enough.
 Value told(std::string what, int across, double expected, double got);
 
+// No less than this; the error is what lacks of it, as a share: a hundredth may.
+Value at_least(std::string what, int across, double least, double got);
+
+// For the page: lines of points, the ordinate logarithmic.
+struct Plot {
+    struct Line {
+        std::string name;
+        std::vector<std::pair<double, double>> point;
+        bool dashed = false;
+    };
+    std::string title, abscissa, ordinate;
+    std::vector<Line> line;
+};
+
 // Each takes the seconds since the one before.
 class Values {
   public:
     void add(Value value);
     const std::vector<Value>& all() const { return value_; }
+    void draw(Plot plot) { plot_.push_back(std::move(plot)); }
+    const std::vector<Plot>& plots() const { return plot_; }
 
   private:
     using Clock = std::chrono::steady_clock;
     Clock::time_point last_ = Clock::now();
     std::vector<Value> value_;
+    std::vector<Plot> plot_;
 };
 
 // Values of one `what` at two resolutions or more: error ~ across^-order.
@@ -50,6 +68,7 @@ struct Series {
 struct Result {
     std::vector<Value> value;
     std::vector<Series> series;
+    std::vector<Plot> plot;
     std::string failure;  // why the case ended early, empty: it did not
     double seconds = 0;
     bool missed = false;  // a bound, the order, or the end
@@ -84,5 +103,6 @@ void add_plastic_cases(std::vector<Case>& cases);
 void add_fracture_cases(std::vector<Case>& cases);
 void add_motion_cases(std::vector<Case>& cases);
 void add_flight_cases(std::vector<Case>& cases);
+void add_chosen_step_cases(std::vector<Case>& cases);
 
 }  // namespace swage

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "verify/plot_svg.h"
+
 namespace swage {
 
 namespace {
@@ -51,61 +53,6 @@ std::vector<Row> rows_of(const Verified& one) {
                         true});
     }
     return rows;
-}
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (char c : text) {
-        out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-    }
-    return out;
-}
-
-// Error against cells across, both logarithmic; dashed: the bounds.
-std::string plot_svg(const std::string& title, const Series& series) {
-    constexpr double kWidth = 300, kHeight = 220, kLeft = 52, kBottom = 34, kTop = 26, kRight = 12;
-    double low = 1e300, high = 0;
-    for (const Value& v : series.value) {
-        const double error = std::max(v.error, 1e-16);
-        low = std::min({low, error, v.bound});
-        high = std::max({high, error, v.bound});
-    }
-    const double first = series.value.front().across / 1.25,
-                 last = 1.25 * series.value.back().across;
-    const double floor = std::floor(std::log10(low)), ceiling = std::ceil(std::log10(high) + 1e-9);
-    const auto x_at = [&](double across) {
-        return kLeft +
-               (kWidth - kLeft - kRight) * std::log(across / first) / std::log(last / first);
-    };
-    const auto y_at = [&](double error) {
-        const double share = (std::log10(std::max(error, 1e-16)) - floor) / (ceiling - floor);
-        return kHeight - kBottom - (kHeight - kBottom - kTop) * share;
-    };
-    std::string svg = fmt::format("<svg viewBox='0 0 {} {}' role='img' aria-label='{}'>", kWidth,
-                                  kHeight, escaped(title));
-    svg += fmt::format("<text x='{}' y='16' class='t'>{}, order {:.2f}</text>", 8, escaped(title),
-                       series.order);
-    for (double decade = floor; decade <= ceiling; ++decade) {
-        const double y = y_at(std::pow(10, decade));
-        svg += fmt::format(
-            "<path d='M{} {:.1f}H{}' class='g'/><text x='{}' y='{:.1f}' class='n'>1e{:.0f}</text>",
-            kLeft, y, kWidth - kRight, kLeft - 6, y + 4, decade);
-    }
-    std::string line, bound;
-    for (const Value& v : series.value) {
-        const char* act = line.empty() ? "M" : "L";
-        line += fmt::format("{}{:.1f} {:.1f}", act, x_at(v.across), y_at(v.error));
-        bound += fmt::format("{}{:.1f} {:.1f}", act, x_at(v.across), y_at(v.bound));
-        svg += fmt::format("<text x='{:.1f}' y='{}' class='m'>{}</text>", x_at(v.across),
-                           kHeight - 16, v.across);
-    }
-    svg += fmt::format("<path d='{}' class='b'/><path d='{}' class='e'/>", bound, line);
-    for (const Value& v : series.value) {
-        svg +=
-            fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3'/>", x_at(v.across), y_at(v.error));
-    }
-    return svg + fmt::format("<text x='{}' y='{}' class='m'>cells across</text></svg>\n",
-                             (kLeft + kWidth) / 2, kHeight - 3);
 }
 
 constexpr const char* kPageHead = R"(<!doctype html>
@@ -198,8 +145,12 @@ std::string verified_page(const std::vector<Verified>& all) {
     page += "</table>\n<h2>Error against cells across (dashed: bound)</h2>\n<div>\n";
     for (const Verified& one : all) {
         for (const Series& series : one.result.series) {
-            page += plot_svg(one.verification.name + ": " + series.what, series);
+            page += series_svg(one.verification.name + ": " + series.what, series);
         }
+    }
+    page += "</div>\n<h2>What happened (logarithmic)</h2>\n<div>\n";
+    for (const Verified& one : all) {
+        for (const Plot& plot : one.result.plot) page += plot_svg(plot);
     }
     return page + "</div></body></html>\n";
 }

@@ -40,6 +40,22 @@ TEST_CASE("a case beyond its bound, of too low an order or stopped early is miss
     CHECK(!with(0, {told("x", 2, 1, 7)}).missed);
 }
 
+TEST_CASE("what falls short of a least value is missed, and the page has its plots") {
+    CHECK(!at_least("x", 0, 5, 7).missed());
+    CHECK(at_least("x", 0, 5, 4.9).missed());
+    CHECK(at_least("x", 0, 5, std::nan("")).missed());
+    Case c{"made-up", "", "", 0, true, {}};
+    c.run = [](bool, Values& values) {
+        values.draw({"history", "time [s]", "step [s]", {{"a < b", {{0, 1e-3}, {1, 1e-5}}}}});
+        values.draw({"nothing", "time [s]", "step [s]", {}});
+    };
+    const std::string page = verified_page({{c, run_case(c, false)}});
+    CHECK(page.find("history: step [s]") != std::string::npos);
+    CHECK(page.find("<title>a &lt; b</title>") != std::string::npos);
+    CHECK(page.find("nothing: ") == std::string::npos);
+    CHECK(page.find("nan") == std::string::npos);
+}
+
 TEST_CASE("the README's table has a row for every case, and the command writes such rows") {
     std::ifstream file(std::string(SWAGE_SOURCE_DIR) + "/README.md");
     std::stringstream text;
