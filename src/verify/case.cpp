@@ -47,7 +47,7 @@ Value absolute(std::string what, int across, double expected, double got, double
 }
 
 Value at_least(std::string what, int across, double least, double got) {
-    return {std::move(what), across, least, got, std::max(0.0, 1 - got / least), 0.01, 0};
+    return {std::move(what), across, least, got, got >= least ? 0 : 1 - got / least, 0.01, 0};
 }
 
 Value told(std::string what, int across, double expected, double got) {
