@@ -23,9 +23,10 @@
 // NOTE: c is at most 20 beta sqrt(k m), which bodies of up to 400 times the point's own mass do not
 // reach: what is let down slowly would hang in its dashpots, and N would shake with every tremor.
 //
-// NOTE: kinetic friction begins at a speed, a tenth of what the point would swing along the surface
-// with, mu N / k sqrt(k / m), and ends at half of it. Edges of what rests creep a little under any
-// pull; were that sliding already, bodies would slide as wholes at the kinetic coefficient.
+// NOTE: kinetic friction begins at a speed, half of what the point would swing along the surface
+// with, mu N / k sqrt(k / m), and ends at half of that. Edges of what rests creep a little under
+// any pull, and tremble; were that sliding already, bodies would slide as wholes below the static
+// coefficient (at a tenth, a block on a slope did at 0.85 to 0.95 of it; so none does below 0.99).
 //
 // Dashpots are taken at the end of the step, one contact after the other, each with its own mass m:
 //
@@ -43,7 +44,7 @@
 
 namespace swage {
 
-inline constexpr double kSlow = 0.1;  // of the speed of a swing along the surface: does not slide
+inline constexpr double kSlow = 0.5;  // of the speed of a swing along the surface: does not slide
 
 inline constexpr double kMostDamping = 20;
 

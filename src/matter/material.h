@@ -36,11 +36,12 @@ struct Material {
     double damping_ratio =
         0.05;               // of every swing, 0 to 0.3: half its loss factor; explicit steps only
     double friction = 0.3;  // Coulomb, against tools that do not say otherwise, >= 0
-    // Where nothing slides yet, >= friction; less counts as friction. Explicit steps only.
+    // Where nothing slides yet, >= friction; less counts as friction. On tools whose friction is
+    // another, in its proportion. Explicit steps only.
     double static_friction = 0;
     // Speed after over speed before, where its surface meets another, 0 to 1; explicit steps only.
     double restitution = 0.5;
-    // Tension that it holds once it touches other matter [Pa], >= 0; explicit steps only.
+    // Tension that it holds once it touches other matter or a tool [Pa], >= 0; explicit steps only.
     double stickiness = 0;
 
     double holding_friction() const {

@@ -36,6 +36,17 @@ double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
     return farthest;
 }
 
+// Tools are rigid, so that all of the give is the matter's.
+ImpactLaw law_on_tools(const Material& material) {
+    const double e = material.restitution;
+    ImpactLaw law{};
+    law.restitution = e;
+    law.loss = restitution_loss(e);
+    law.damping = restitution_damping(e);
+    law.friction = material.friction;
+    return law;
+}
+
 }  // namespace
 
 ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
@@ -44,7 +55,13 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       body_(body),
       settings_(settings),
       spacing_(matter.lattice.spacing),
-      young_modulus_(matter.material.young_modulus) {
+      young_modulus_(matter.material.young_modulus),
+      law_(law_on_tools(matter.material)),
+      holding_(matter.material.holding_friction()),
+      ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
+      stickiness_(matter.material.stickiness),
+      tool_way_(apparatus.tool.size()),
+      motion_load_(apparatus.tool.size() + apparatus.grip.size()) {
     if (matter.inset.empty()) return;
     // A point is as stiff as the cell that carries it.
     std::vector<CellId> cell(matter.particle_count(), -1);  // by its lowest corner
@@ -67,6 +84,7 @@ void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
     for (std::size_t p = 0; p < stiffness_limit_.size(); ++p) {
         stiffness_limit_[p] = 0.25 * lightest_carrier(matter, p) / (step * step);
     }
+    last_step_ = step;
 }
 
 void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
@@ -121,6 +139,7 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                     found.push_back(*old++);
                 } else {
                     found.push_back({tool_id, p, false, Vec3::Zero()});
+                    found.back().next.local = tool_from_world * matter.surface_position(p);
                 }
             }
         }
@@ -283,7 +302,16 @@ double ContactSet::commit(const Aggregate& matter, const Drive& now) {
                        }
                        pair.anchor = pose.inverse() * anchor;
                    });
-    for (std::size_t n = 0; n < pair_.size(); ++n) pair_[n].stuck = touches[n];
+    // Explicit steps that may follow find what rests.
+    for (std::size_t n = 0; n < pair_.size(); ++n) {
+        Pair& pair = pair_[n];
+        const Vec3 x = matter.surface_position(pair.point);
+        pair.stuck = touches[n];
+        pair.history = {.touches = pair.stuck, .rests = pair.stuck};
+        pair.next = {.local = now.world_from_tool[pair.tool].inverse() * x,
+                     .history = pair.history,
+                     .anchor = pair.anchor};
+    }
     return lost;
 }
 

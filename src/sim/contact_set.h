@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Points of the body's true surface against tools and in grips. Forces act on the particles that
 // carry a point, with the point's own weights, so that force and moment are kept exactly.
+//
+// Equilibria, and the implicit step, which has no use for rates, take the law of laws/contact.h.
+// Explicit steps take that of laws/impact.h, the tool rigid and as heavy as can be: a step first
+// finds the springs of all points that touch, then each one's dashpot from the speed that it would
+// end the step with. Were dashpots taken one after the other, those of what rests would bear
+// against each other, and the first would slip before the last. Points share carriers, so that the
+// dashpots together would overshoot; each is therefore taken as if all that touch worked as it
+// does:
+//
+//     S_i = sum_p w_ip sum_j w_jp / m_p,   P_i = c_i dt v_i / (1 + c_i dt S_i)
+//
+// No row of the matrix from the impulses P to what they change of v sums up to more than S, so its
+// product with c dt / (1 + c dt S) has eigenvalues from 0 to 1: dashpots never turn a speed round,
+// and only widen the bound of the step, as laws/impact.h says.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "laws/impact.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/held_point.h"
@@ -21,6 +36,11 @@ struct LoadSum {
     double penetration = 0;      // deepest [m]
     int contacts = 0;
     int sliding = 0;
+};
+
+// What contact with tools took in a step [J].
+struct ToolLosses {
+    double damped = 0, friction = 0;
 };
 
 class ContactSet {
@@ -65,6 +85,20 @@ class ContactSet {
     // Whether a tool that is near or a grip has moved.
     bool is_stirred(const Drive& since, const Drive& now) const;
 
+    // Explicit steps. One begins from this drive, with the forces that were found last.
+    void begin_step(const Drive& from);
+    // Adds all contact and grip forces at the present positions, toward which a step of this length
+    // [s] goes on with the forces so far and gravity [m/s2]; 0: found anew where the last one
+    // ended.
+    void add_motion_forces(const Aggregate& matter, const Drive& now, double step,
+                           const Vec3& gravity, Vec3Array& force);
+    // Of these: by tool, then by grip; and the energy in springs [J].
+    const std::vector<LoadSum>& motion_loads() const { return motion_load_; }
+    double motion_energy() const { return motion_energy_; }
+    // The step is kept: remembers where each point sticks and how it met its tool. Returns what
+    // dashpots and friction took in it.
+    ToolLosses commit_motion(const Drive& now);
+
     // The farthest that the surface of any tool near the body, or any gripped point, moves [m].
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
 
@@ -72,11 +106,32 @@ class ContactSet {
     std::string hardest_point(const Aggregate& matter, const Drive& now) const;
 
   private:
+    // What a point did in explicit steps, at the end of one.
+    struct Touch {
+        Vec3 local = Vec3::Zero();    // in the tool's frame
+        Vec3 speed = Vec3::Zero();    // against the tool, of those that touch [m/s]
+        Vec3 dashpot = Vec3::Zero();  // its force [N]
+        Vec3 bond = Vec3::Zero();     // ImpactForce::bond [N]
+        double stiffness = 0;         // [N/m]
+        double friction = 0;          // taken in the step [J]
+        ImpactHistory history{};      // to commit
+        Vec3 anchor = Vec3::Zero();   // likewise, in the tool's frame
+    };
     struct Pair {
         int tool, point;
         bool stuck;   // has a committed anchor
         Vec3 anchor;  // in the tool's frame
+        ImpactHistory history{};
+        Touch last{}, next{};  // before the present step and after it
     };
+    // How a tool went in the last step.
+    struct ToolWay {
+        Pose from, to;
+    };
+    struct Meeting;
+    std::vector<Meeting> find_meetings(const Aggregate& matter, const Drive& now, bool anew);
+    void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
+              Vec3Array& force);
     double point_stiffness(const Aggregate& matter, int point, double factor) const;  // [N/m]
     // That grip g exerts on its point n [N].
     Vec3 grip_force(const Aggregate& matter, const Drive& now, std::size_t g, std::size_t n) const;
@@ -86,6 +141,7 @@ class ContactSet {
     void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const;
 
     bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
+    void hold_by_grips(const Aggregate& matter, const Drive& now, Vec3Array& force);
 
     const Apparatus* apparatus_;
     int body_;
@@ -96,6 +152,19 @@ class ContactSet {
     std::vector<Pair> pair_;               // sorted by tool, then point
     std::vector<Vec3> start_position_;     // of every surface point when the move began
     std::vector<Pose> tool_from_world_at_start_;
+
+    // Of explicit steps.
+    ImpactLaw law_;         // of the matter on rigid tools; what is each point's is not in it
+    double holding_;        // static friction where the tool's own is the matter's
+    double ratio_;          // of static friction to kinetic, where it is not
+    double stickiness_;     // [Pa]
+    double last_step_ = 0;  // [s]
+    double way_step_ = 0;   // that tool_way_ took; 0: none yet [s]
+    std::vector<ToolWay> tool_way_;
+    std::vector<Pose> world_from_tool_at_start_;
+    std::vector<double> bears_;  // of each particle, the shares of points that touch; 0 between
+    std::vector<LoadSum> motion_load_;
+    double motion_energy_ = 0;
 };
 
 }  // namespace swage

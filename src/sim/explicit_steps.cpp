@@ -198,6 +198,7 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
     in_block_ = true;
     for_each_awake([&](std::size_t b) { body_[b].begin_block(outcome.body[b]); });
     Drive before = begin;
+    for (MovingBody& body : body_) body.set_implicit(is_implicit());
     for (long n = 1; n <= count; ++n) {
         const double time = n == count ? end : begin.time + double(n) * dt;
         const Drive now =

@@ -118,7 +118,8 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       drag_(matter, settings, step_),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       touches_(!apparatus.tool.empty()),
-      remembers_(false) {
+      remembers_(false),
+      implicit_(settings.solver == Solver::implicit_steps) {
     for (std::size_t m = 0; m < matter.material_count(); ++m) {
         const Material& material = matter.material_at(m);
         remembers_ = remembers_ || material.breaks() || std::isfinite(material.yield_stress);
@@ -136,7 +137,15 @@ void MovingBody::start(const Drive& from, BodyOutcome& outcome) {
     find_candidates(from);
     begin_step(from);
     find_forces(from, 0, outcome);
-    load_ = contacts_.loads(matter_, from);
+    load_ = implicit_ ? contacts_.loads(matter_, from) : contacts_.motion_loads();
+}
+
+void MovingBody::begin_step(const Drive& before) {
+    if (implicit_) {
+        contacts_.begin_move(matter_, before);
+    } else {
+        contacts_.begin_step(before);
+    }
 }
 
 void MovingBody::find_candidates(const Drive& now) {
@@ -184,9 +193,14 @@ void MovingBody::find_inner_forces(double step, BodyOutcome& outcome) {
 void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome) {
     find_inner_forces(step, outcome);
     if (drag_.acts()) outcome.drag_work += step * drag_.add_forces(matter_, force_);
-    contacts_.add_forces(matter_, now, force_);
     pushes_.add_forces(matter_, now, force_);
     gravity_ = pushes_.gravity(now);
+    // Last: dashpots go by the speed that all else makes.
+    if (implicit_) {
+        contacts_.add_forces(matter_, now, force_);
+    } else {
+        contacts_.add_motion_forces(matter_, now, step, gravity_, force_);
+    }
 }
 
 // What flows, softens and cracks at the present positions, whose forces were just found.
@@ -207,8 +221,15 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
         outcome.damped_work += calm_crushed(matter_, std::exp(-kCalm * step / step_));
     }
     if (remember(outcome)) find_forces(now, 0, outcome);
-    outcome.friction_work += contacts_.commit(matter_, now);
-    std::vector<LoadSum> load = contacts_.loads(matter_, now);
+    if (implicit_) {
+        outcome.friction_work += contacts_.commit(matter_, now);
+    } else {
+        const ToolLosses taken = contacts_.commit_motion(now);
+        outcome.damped_work += taken.damped;
+        outcome.friction_work += taken.friction;
+    }
+    std::vector<LoadSum> load =
+        implicit_ ? contacts_.loads(matter_, now) : contacts_.motion_loads();
     add_work(before, now, load_, load, outcome.work);
     pushes_.commit(matter_, now, outcome.push_work);
     load_ = std::move(load);
@@ -224,7 +245,7 @@ Stored MovingBody::stored(const Drive& now, double step) {
     const Vec3Array& v = matter_.particle_velocity;
     Stored held;
     held.elastic = elastic_energy();
-    held.contact = contacts_.stored_energy(matter_, now);
+    held.contact = implicit_ ? contacts_.stored_energy(matter_, now) : contacts_.motion_energy();
     const double half = 0.5 * step;
     held.kinetic = chunked_sum(v.size(), [&](std::size_t p) {
         return 0.5 * matter_.particle_mass[p] *

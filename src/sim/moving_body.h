@@ -36,8 +36,11 @@ class MovingBody {
     void begin_block(BodyOutcome& outcome) { outcome.damped_work += branch_energy(); }
     void end_block(BodyOutcome& outcome) { outcome.damped_work -= branch_energy(); }
 
+    // Whether the steps that follow are implicit: tools then act without rates.
+    void set_implicit(bool implicit) { implicit_ = implicit; }
+
     // A step from the present positions and drive begins.
-    void begin_step(const Drive& before) { contacts_.begin_move(matter_, before); }
+    void begin_step(const Drive& before);
     // v += kick (f / m + g), x += step v. Returns the longest way of any particle, not a number
     // where one is lost [m].
     double move(double kick, double step);
@@ -123,6 +126,7 @@ class MovingBody {
     double gone_ = 0;  // no particle has gone farther since then [m]
     bool touches_;     // a tool could
     bool remembers_;   // its matter yields or breaks
+    bool implicit_;
     Vec3 gravity_ = Vec3::Zero();
     int inside_out_ = 0;
 };

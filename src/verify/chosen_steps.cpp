@@ -33,6 +33,7 @@ struct Drop {
         material.young_modulus = kModulus;
         material.density = kDensity;
         material.damping_ratio = damping;
+        material.restitution = 1;  // a spring, as in the paper
         MoldSettings mold_settings;
         mold_settings.spacing = kSide;
         matter = mold(make_shape("bar", {{"length", kSide},

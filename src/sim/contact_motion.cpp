@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact with tools and grips in explicit steps: the other half of sim/contact_set.h.
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "sim/contact_set.h"
+#include "sim/surface_forces.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 1024;  // points
+
+}  // namespace
+
+// A point that touches, or is still held.
+struct ContactSet::Meeting {
+    std::size_t pair;
+    // Speeds of explicit steps stand half a step before the forces. Where these are found anew, at
+    // the start of a frame, they have moved on; those of then give the same forces again.
+    bool has_speed;
+    Vec3 speed;
+    double depth;
+    Vec3 place, normal;
+    Vec3 reach;   // to where it sticks
+    Vec3 spring;  // force that it would have without a speed [N]
+    ImpactLaw law;
+    ImpactForce result;
+};
+
+void ContactSet::begin_step(const Drive& from) {
+    world_from_tool_at_start_ = from.world_from_tool;
+    for (Pair& pair : pair_) pair.last = pair.next;
+}
+
+std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matter,
+                                                           const Drive& now, bool anew) {
+    std::vector<std::vector<Meeting>> part((pair_.size() + kChunk - 1) / kChunk);
+    std::vector<Pose> tool_from_world;
+    for (const Pose& pose : now.world_from_tool) tool_from_world.push_back(pose.inverse());
+    parallel_for(part.size(), [&](std::size_t chunk) {
+        const std::size_t end = std::min(pair_.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < end; ++n) {
+            Pair& pair = pair_[n];
+            const Tool& tool = apparatus_->tool[pair.tool];
+            const Pose& pose = now.world_from_tool[pair.tool];
+            const Vec3 x = matter.surface_position(pair.point);
+            const Touch found = pair.next;
+            pair.next = {.local = tool_from_world[pair.tool] * x};
+            const double hold = stickiness_ * matter.surface.area[pair.point];
+            const Distance d = distance_to(tool.shape, pair.next.local);
+            if (d.value >= 0 && !(pair.history.touches && hold > 0)) continue;
+            Meeting m;
+            m.pair = n;
+            m.has_speed = anew && found.history.touches;
+            m.speed = found.speed;
+            m.depth = -d.value;
+            m.place = x;
+            m.normal = pose.turn(d.normal);
+            m.law = law_;
+            m.law.stiffness = point_stiffness(matter, pair.point, settings_.contact_stiffness);
+            m.law.friction = tool.friction;
+            m.law.holding = tool.friction == law_.friction ? holding_ : ratio_ * tool.friction;
+            m.law.hold = hold;
+            const double k = m.law.stiffness, N = k * m.depth, bears = N + hold;
+            if (bears < 0) continue;  // torn off
+            const Vec3 way = pair.history.touches ? Vec3(pose * pair.anchor - x) : Vec3::Zero();
+            m.reach = way - m.normal * m.normal.dot(way);
+            const double limit = (pair.history.slides ? m.law.friction : m.law.holding) * bears / k;
+            const double size = m.reach.norm();
+            m.spring = N * m.normal + k * std::min(1.0, size > 0 ? limit / size : 1.0) * m.reach;
+            part[chunk].push_back(m);
+        }
+    });
+    std::vector<Meeting> all;
+    for (const std::vector<Meeting>& p : part) all.insert(all.end(), p.begin(), p.end());
+    return all;
+}
+
+void ContactSet::hold_by_grips(const Aggregate& matter, const Drive& now, Vec3Array& force) {
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        const Grip& grip = apparatus_->grip[g];
+        LoadSum& sum = motion_load_[apparatus_->tool.size() + g];
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const Vec3 f = grip_force(matter, now, g, n);
+            const Vec3 x = matter.surface_position(grip.point[n]);
+            const double k = point_stiffness(matter, grip.point[n], settings_.grip_stiffness);
+            spread(matter.surface, grip.point[n], f, force);
+            sum.force += f;
+            sum.torque += (x - now.world_from_grip[g].translation).cross(f);
+            sum.size += f.norm();
+            ++sum.contacts;
+            motion_energy_ += 0.5 * f.squaredNorm() / k;
+        }
+    }
+}
+
+void ContactSet::add_motion_forces(const Aggregate& matter, const Drive& now, double step,
+                                   const Vec3& gravity, Vec3Array& force) {
+    if (step > 0) {
+        last_step_ = way_step_ = step;
+        for (std::size_t t = 0; t < tool_way_.size(); ++t) {
+            tool_way_[t] = {world_from_tool_at_start_[t], now.world_from_tool[t]};
+        }
+    }
+    motion_load_.assign(motion_load_.size(), {});
+    motion_energy_ = 0;
+    hold_by_grips(matter, now, force);
+    if (!pair_.empty()) meet(matter, now, step == 0, gravity, force);
+}
+
+void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
+                      Vec3Array& force) {
+    std::vector<Meeting> meeting = find_meetings(matter, now, anew);
+    if (meeting.empty()) return;
+    const double step = last_step_;
+    const SurfacePoints& surface = matter.surface;
+    bears_.resize(matter.particle_count(), 0.0);
+    for (const Meeting& m : meeting) {
+        const int point = pair_[m.pair].point;
+        spread(surface, point, m.spring, force);
+        for (int c = 0; c < 8; ++c) {
+            bears_[surface.corner[point][c]] += std::abs(surface.weight[point][c]);
+        }
+    }
+    parallel_for((meeting.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(meeting.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < end; ++n) {
+            Meeting& m = meeting[n];
+            const Pair& pair = pair_[m.pair];
+            Vec3 v = Vec3::Zero(), push = gravity;
+            double give = 0;  // S
+            for (int c = 0; c < 8; ++c) {
+                const double w = surface.weight[pair.point][c];
+                if (w == 0) continue;
+                const ParticleId p = surface.corner[pair.point][c];
+                const double lightness = w / matter.particle_mass[p];
+                v += w * matter.particle_velocity.at(p);
+                push += lightness * force.at(p);
+                give += std::abs(lightness) * bears_[p];
+            }
+            if (way_step_ > 0) {
+                const ToolWay& way = tool_way_[pair.tool];
+                v -= (way.to * pair.next.local - way.from * pair.next.local) / way_step_;
+            }
+            if (!m.has_speed) m.speed = v;
+            // The law takes its own spring off again.
+            m.result = impact_force(m.law,
+                                    {.depth = m.depth,
+                                     .normal = m.normal,
+                                     .now = m.speed,
+                                     .velocity = m.speed + step * (push - give * m.spring),
+                                     .reach = m.reach,
+                                     .give = give,
+                                     .step = step},
+                                    pair.history);
+        }
+    });
+    for (const Meeting& m : meeting) {
+        Pair& pair = pair_[m.pair];
+        const ImpactForce& f = m.result;
+        for (ParticleId p : surface.corner[pair.point]) bears_[p] = 0;
+        spread(surface, pair.point, f.force - m.spring, force);
+        if (!f.history.touches) continue;
+        const Pose& pose = now.world_from_tool[pair.tool];
+        Touch& next = pair.next;
+        next.speed = m.speed;
+        next.dashpot = f.force - f.elastic;
+        next.bond = f.bond;
+        next.stiffness = m.law.stiffness;
+        next.friction = f.friction;
+        next.history = f.history;
+        next.anchor = pose.inverse() * (m.place + f.reach);
+        motion_energy_ += f.stored;
+        LoadSum& sum = motion_load_[pair.tool];
+        sum.force += f.force;
+        sum.torque += (m.place - pose.translation).cross(f.force);
+        sum.size += f.force.norm();
+        sum.penetration = std::max(sum.penetration, m.depth);
+        ++sum.contacts;
+        sum.sliding += f.history.slides;
+    }
+}
+
+// Forces that were found at both ends of the way work on it by the trapezoid rule, as those of the
+// matter do (sim/moving_body.h, stored()).
+ToolLosses ContactSet::commit_motion(const Drive& now) {
+    ToolLosses lost;
+    for (Pair& pair : pair_) {
+        const Touch &last = pair.last, &next = pair.next;
+        if (last.history.touches || next.history.touches) {
+            const Vec3 way = now.world_from_tool[pair.tool].turn(next.local - last.local);
+            lost.damped -= 0.5 * (last.dashpot + next.dashpot).dot(way);
+            lost.friction += next.friction;
+            if (last.history.touches && !next.history.touches) {
+                lost.damped +=
+                    parting_loss(last.stiffness, last.bond, way / last_step_, last_step_);
+            }
+        }
+        pair.history = next.history;
+        pair.anchor = next.anchor;
+        pair.stuck = next.history.touches;
+    }
+    return lost;
+}
+
+}  // namespace swage

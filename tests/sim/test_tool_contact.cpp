@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tools in explicit steps: restitution, static and kinetic friction, stickiness, and their books.
+#include "base/parallel.h"
+#include "tests/catch.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kG = 9.81;
+
+// A block on a wide floor whose upper side is at y = 0.
+struct OnFloor {
+    Aggregate block;
+    Apparatus apparatus;
+    SimSettings settings;
+    double rise = 0;  // [s] over which gravity and loads set in
+
+    OnFloor(Aggregate matter, double friction, Solver solver = Solver::explicit_steps)
+        : block(std::move(matter)), settings(motion_settings(solver)) {
+        apparatus.name = "floor";
+        apparatus.tool.push_back({"floor", BoxShape{Vec3(50, 2, 50), 0}, friction});
+        settings.gravity = Vec3(0, -kG, 0);
+    }
+    void lift(double by) {
+        for (double& y : block.particle_position.y) y += by;
+    }
+    void throw_at(const Vec3& v) {
+        for (std::size_t p = 0; p < block.particle_count(); ++p) block.particle_velocity.set(p, v);
+    }
+    Drive drive(double time) const {
+        Drive d = still(time);
+        d.world_from_tool.push_back({Quat::Identity(), Vec3(0, -1, 0)});
+        d.gravity_strength = rise > 0 ? std::min(1.0, time / rise) : 1.0;
+        d.load_strength.assign(apparatus.load.size(), 1.0);
+        return d;
+    }
+    Vec3 middle() const {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            sum += block.particle_mass[p] * block.particle_position.at(p);
+        }
+        return sum / block.mass();
+    }
+    Vec3 speed() const {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            sum += block.particle_mass[p] * block.particle_velocity.at(p);
+        }
+        return sum / block.mass();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a block comes back from a floor with the asked share of its speed") {
+    for (const auto& [solver, e] :
+         {std::pair(Solver::explicit_steps, 0.2), std::pair(Solver::explicit_steps, 0.5),
+          std::pair(Solver::explicit_steps, 0.8), std::pair(Solver::explicit_steps, 1.0),
+          std::pair(Solver::euler, 0.5), std::pair(Solver::energy_stepped, 0.5)}) {
+        Material material = kSpringy;
+        material.restitution = e;
+        material.damping_ratio = solver == Solver::euler ? 0.05 : 0;
+        OnFloor floor(make_block(3, 3, 3, 0.1, material), 0, solver);
+        floor.settings.gravity.setZero();
+        floor.settings.contact_stiffness = 0.01;  // gives way more than the block
+        floor.lift(0.151);
+        floor.throw_at(Vec3(0, -1, 0));
+        Simulation simulation(floor.block, floor.apparatus, floor.settings);
+        const FrameReport r = simulation.advance(floor.drive(0), floor.drive(0.6));
+        const double energy = 0.5 * floor.block.mass();
+        INFO(name_of(solver) << ", restitution " << e << ": " << floor.speed().y());
+        const bool is_explicit = solver == Solver::explicit_steps;
+        CHECK(floor.speed().y() == Approx(e).epsilon(is_explicit ? 0.03 : 0.06));
+        CHECK(r.damped / energy == Approx(1 - e * e).margin(is_explicit ? 0.02 : 0.04));
+        CHECK(r.contact == 0);
+        if (is_explicit) CHECK(std::abs(r.remainder) < 1e-3 * energy);
+    }
+}
+
+TEST_CASE("the books of a block thrown onto a floor close with the step") {
+    for (const double stiffness : {0.1, 2.0}) {
+        double before = 0;
+        for (const double safety : {0.8, 0.2}) {
+            Material material = kSpringy;
+            material.restitution = 0.5;
+            material.friction = 0.3;
+            material.static_friction = 0.4;
+            OnFloor floor(make_block(4, 3, 3, 0.1, material), 0.3);
+            floor.settings.step_safety = safety;
+            floor.settings.contact_stiffness = stiffness;
+            floor.lift(0.3);
+            floor.throw_at(Vec3(2, -1, 0));
+            Simulation simulation(floor.block, floor.apparatus, floor.settings);
+            const double energy = floor.block.mass() * (0.5 * 5 + kG * 0.15);
+            double most = 0;
+            FrameReport r;
+            for (int f = 0; f < 60; ++f) {
+                r = simulation.advance(floor.drive(0.02 * f), floor.drive(0.02 * (f + 1)));
+                most = std::max(most, std::abs(r.remainder) / energy);
+            }
+            INFO("contact stiffness " << stiffness << ", safety " << safety << ": " << most);
+            CHECK(most < 0.01);
+            if (before > 0) CHECK(most < 0.5 * before);
+            before = most;
+            // None of it is where it does not belong.
+            CHECK(r.friction > 0.2 * energy);
+            CHECK(r.damped > 0.1 * energy);
+            CHECK(r.work == 0);
+        }
+    }
+}
+
+TEST_CASE("a block on a floor holds up to static friction and slides at the kinetic one") {
+    constexpr double kKinetic = 0.3, kStatic = 0.45;
+    Material material = kSpringy;
+    material.damping_ratio = 0.1;
+    material.friction = kKinetic;
+    material.static_friction = kStatic;
+    // Pushed along, then on a slope, which is a level where gravity leans.
+    for (const bool leans : {false, true}) {
+        for (const double share : {0.98, 1.02}) {
+            const double ratio = share * kStatic;
+            OnFloor floor(make_block(4, 2, 4, 0.1, material), kKinetic);
+            floor.lift(0.1);
+            double along = ratio * kG, down = kG;
+            if (leans) {
+                down = kG / std::hypot(1, ratio);
+                along = ratio * down;
+                floor.settings.gravity = Vec3(0, -down, 0);
+            }
+            Load push;
+            push.name = "push";
+            if (leans) {
+                for (int p = 0; p < static_cast<int>(floor.block.surface.size()); ++p) {
+                    push.point.push_back(p);
+                }
+            } else {
+                push.point =
+                    points_where(floor.block, [](const Vec3& x) { return x.y() < -0.0999; });
+            }
+            const Vec3 each(along * floor.block.mass() / double(push.point.size()), 0, 0);
+            push.force.assign(push.point.size(), each);
+            floor.apparatus.load.push_back(push);
+            const auto drive = [&](double time) {
+                Drive d = floor.drive(time);
+                d.gravity_strength = std::min(1.0, time / 0.3);
+                d.load_strength = {std::clamp((time - 0.4) / 0.3, 0.0, 1.0)};
+                return d;
+            };
+            Simulation simulation(floor.block, floor.apparatus, floor.settings);
+            simulation.advance(drive(0), drive(0.3));
+            simulation.advance(drive(0.3), drive(0.4));
+            const double rest = floor.middle().x();
+            simulation.advance(drive(0.4), drive(0.7));
+            simulation.advance(drive(0.7), drive(1.0));
+            const double v = floor.speed().x();
+            const FrameReport r = simulation.advance(drive(1.0), drive(1.2));
+            const double gained = (floor.speed().x() - v) / 0.2;
+            INFO("leans " << leans << ", " << share << " of static friction: gone "
+                          << floor.middle().x() - rest << ", acceleration " << gained);
+            if (share > 1) {
+                CHECK(gained == Approx(along - kKinetic * down).epsilon(0.01));
+            } else {
+                CHECK(std::abs(floor.middle().x() - rest) < 5e-4);
+                CHECK(std::abs(floor.speed().x()) < 1e-3);
+            }
+            CHECK(r.load[0].contacts > 0);
+        }
+    }
+}
+
+TEST_CASE("a tool's own friction stands for the material's, static friction in its proportion") {
+    Material material = kSpringy;
+    material.damping_ratio = 0.1;
+    material.friction = 0.3;
+    material.static_friction = 0.45;
+    // Smooth; 0.2 and 0.3.
+    for (const auto& [friction, pull, slides] :
+         {std::array{0.0, 0.01, 1.0}, std::array{0.2, 0.28, 0.0}, std::array{0.2, 0.32, 1.0}}) {
+        OnFloor floor(make_block(4, 2, 4, 0.1, material), friction);
+        floor.lift(0.1);
+        floor.rise = 0.3;
+        const double g = kG * pull;
+        Load push;
+        push.name = "push";
+        push.point = points_where(floor.block, [](const Vec3& x) { return x.y() < -0.0999; });
+        const Vec3 each(g * floor.block.mass() / double(push.point.size()), 0, 0);
+        push.force.assign(push.point.size(), each);
+        floor.apparatus.load.push_back(push);
+        const auto drive = [&](double time) {
+            Drive d = floor.drive(time);
+            d.load_strength = {std::clamp((time - 0.4) / 0.3, 0.0, 1.0)};
+            return d;
+        };
+        Simulation simulation(floor.block, floor.apparatus, floor.settings);
+        simulation.advance(drive(0), drive(0.3));
+        simulation.advance(drive(0.3), drive(0.4));
+        simulation.advance(drive(0.4), drive(0.7));
+        simulation.advance(drive(0.7), drive(1.0));
+        const double v = floor.speed().x();
+        simulation.advance(drive(1.0), drive(1.2));
+        INFO("friction " << friction << ", pulled by " << pull);
+        CHECK((floor.speed().x() - v) / 0.2 ==
+              Approx(slides > 0 ? g - friction * kG : 0).epsilon(0.01).margin(0.005));
+    }
+}
+
+TEST_CASE("a block hangs from a tool that it sticks to, up to its tension") {
+    // 2 kPa of weight.
+    for (const auto& [tension, holds] : {std::pair(2200.0, true), std::pair(1800.0, false)}) {
+        Material material = kSpringy;
+        material.damping_ratio = 0.2;
+        material.stickiness = tension;
+        OnFloor floor(make_block(4, 2, 4, 0.1, material), 0.3);
+        floor.settings.gravity = Vec3(0, kG, 0);
+        floor.rise = 0.4;
+        floor.lift(0.09999);
+        Simulation simulation(floor.block, floor.apparatus, floor.settings);
+        FrameReport r;
+        for (int f = 0; f < 12; ++f) {
+            r = simulation.advance(floor.drive(0.05 * f), floor.drive(0.05 * (f + 1)));
+        }
+        INFO("tension " << tension << ": at " << floor.middle().y());
+        CHECK((floor.middle().y() < 0.11) == holds);
+        if (holds) {
+            CHECK(r.load[0].force.y() == Approx(-floor.block.mass() * kG).epsilon(0.01));
+        } else {
+            CHECK(r.contact == 0);
+        }
+        CHECK(std::abs(r.remainder) < 0.01 * (r.gravity_work + 0.01));
+    }
+}
+
+TEST_CASE("a belt drags a block along: its work is motion and friction") {
+    Material material = kSpringy;
+    material.damping_ratio = 0.1;
+    material.friction = 0.3;
+    OnFloor floor(make_block(4, 2, 4, 0.1, material), 0.3);
+    floor.lift(0.1);
+    const auto drive = [&](double time) {
+        Drive d = floor.drive(time);
+        d.gravity_strength = std::min(1.0, time / 0.3);
+        d.world_from_tool[0].translation.x() = std::max(0.0, time - 0.4);
+        return d;
+    };
+    Simulation simulation(floor.block, floor.apparatus, floor.settings);
+    const FrameReport rest = [&] {
+        simulation.advance(drive(0), drive(0.3));
+        return simulation.advance(drive(0.3), drive(0.4));
+    }();
+    FrameReport r;
+    for (int f = 0; f < 30; ++f) {
+        r = simulation.advance(drive(0.4 + 0.02 * f), drive(0.4 + 0.02 * (f + 1)));
+        // At 0.3 g it has caught up after 0.34 s, half of the belt's way behind.
+        const double t = 0.02 * (f + 1);
+        const double expected = std::min(1.0, 0.3 * kG * t);
+        INFO("after " << t << " s");
+        CHECK(floor.speed().x() == Approx(expected).epsilon(0.03));
+    }
+    const double energy = 0.5 * floor.block.mass();
+    CHECK(r.kinetic == Approx(energy).epsilon(0.01));
+    CHECK(r.work - rest.work == Approx(2 * energy).epsilon(0.01));
+    CHECK(r.friction + r.damped - rest.damped == Approx(energy).epsilon(0.02));
+    CHECK(std::abs(r.remainder - rest.remainder) < 0.01 * energy);
+}
+
+TEST_CASE("contact with tools gives equal bytes with one and two threads") {
+    std::uint64_t first = 0;
+    for (int threads : {1, 2}) {
+        set_thread_count(threads);
+        Material material = kSpringy;
+        material.stickiness = 100;
+        OnFloor floor(make_block(24, 3, 24, 0.1, material), 0.3);
+        floor.lift(0.16);
+        floor.throw_at(Vec3(1, -2, 0.5));
+        Simulation simulation(floor.block, floor.apparatus, floor.settings);
+        simulation.advance(floor.drive(0), floor.drive(0.05));
+        const std::uint64_t hash = state_hash(floor.block);
+        if (threads == 1) first = hash;
+        CHECK(hash == first);
+    }
+    set_thread_count(0);
+}
