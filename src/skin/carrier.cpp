@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "base/vector_targets.h"
 
 namespace swage {
 
@@ -128,6 +131,34 @@ CellFrames half_frames(const CellFrames& cell) {
         }
     }
     return half;
+}
+
+SWAGE_VECTOR_CLONES
+void whole_displacements(const CellFrames& half, const Carrier* carrier, int count, Vec3* moved) {
+    typedef double Four __attribute__((vector_size(32)));
+    constexpr int kParts = 3;  // of a frame's twelve numbers
+    for (int n = 0; n < count; ++n) {
+        const Carrier& at = carrier[n];
+        const double x1 = at.local[0], y1 = at.local[1], z1 = at.local[2];
+        const double x0 = 1 - x1, y0 = 1 - y1, z0 = 1 - z1;
+        const double a = y0 * z0, b = y1 * z0, c = y0 * z1, d = y1 * z1;
+        const double weight[8] = {x0 * a, x1 * a, x0 * b, x1 * b, x0 * c, x1 * c, x0 * d, x1 * d};
+        Four sum[kParts];
+        for (int corner = 0; corner < 8; ++corner) {
+            const double* const frame = half.corner.data() + 4 * kParts * corner;
+            for (int part = 0; part < kParts; ++part) {
+                Four numbers;
+                std::memcpy(&numbers, frame + 4 * part, sizeof numbers);
+                const Four share = weight[corner] * numbers;
+                sum[part] = corner == 0 ? share : sum[part] + share;
+            }
+        }
+        double s[4 * kParts];
+        std::memcpy(s, sum, sizeof s);
+        for (int i = 0; i < 3; ++i) {
+            moved[n][i] = s[i] * at.arm[0] + s[3 + i] * at.arm[1] + s[6 + i] * at.arm[2] + s[9 + i];
+        }
+    }
 }
 
 Vec3 part_displacement(const CellFrames& cell, const Carrier& carrier, CornerMask followed) {

@@ -50,12 +50,11 @@ CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const V
 // Displacement [m] in a whole cell: sum N_c (u_c + 1/2 G_c (X - X_c)), exact for quadratic fields
 // when the frames are. `half` is made once a cell.
 CellFrames half_frames(const CellFrames& cell);
+void whole_displacements(const CellFrames& half, const Carrier* carrier, int count, Vec3* moved);
 inline Vec3 whole_displacement(const CellFrames& half, const Carrier& carrier) {
-    const std::array<double, 8> weight = corner_weights(carrier.local);
-    ParticleFrame sum = weight[0] * half.corner.col(0);
-    for (int c = 1; c < 8; ++c) sum += weight[c] * half.corner.col(c);
-    return sum.segment<3>(0) * carrier.arm[0] + sum.segment<3>(3) * carrier.arm[1] +
-           sum.segment<3>(6) * carrier.arm[2] + sum.tail<3>();
+    Vec3 moved;
+    whole_displacements(half, &carrier, 1, &moved);
+    return moved;
 }
 
 // In a severed cell: the weighted mean of what each followed corner's affine frame says.

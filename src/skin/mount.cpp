@@ -113,6 +113,7 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
     position.resize(mount.reference.size());
     parallel_for((mount.group.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
         const std::size_t end = std::min(mount.group.size(), (chunk + 1) * kChunk);
+        std::vector<Vec3> moved;
         for (std::size_t g = chunk * kChunk; g < end; ++g) {
             const Mount::CellGroup& group = mount.group[g];
             std::array<ParticleId, 8> corner;
@@ -124,7 +125,16 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
             cell.size =
                 matter.particle_reference.at(corner[7]) - matter.particle_reference.at(corner[0]);
             const bool whole = is_whole(matter, corner);
-            const CellFrames half = half_frames(cell);
+            if (whole && mount.kind == SkinKind::mount) {
+                moved.resize(static_cast<std::size_t>(group.count));
+                whole_displacements(half_frames(cell), &mount.carrier[group.first], group.count,
+                                    moved.data());
+                for (int n = 0; n < group.count; ++n) {
+                    const int v = mount.vertex[group.first + n];
+                    position[v] = moved_by(mount.reference[v], moved[n]);
+                }
+                continue;
+            }
             CornerGroups groups;
             groups.fill(kAllCorners);
             if (!whole) groups = corner_groups(matter, corner);
@@ -136,8 +146,6 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
                 Vec3 u;
                 if (mount.kind == SkinKind::frame4) {
                     u = frame4_displacement(matter, corner, cell, carrier, followed);
-                } else if (whole) {
-                    u = whole_displacement(half, carrier);
                 } else {
                     u = part_displacement(cell, carrier, followed);
                 }
