@@ -152,6 +152,11 @@ std::vector<Stored> ExplicitSolver::stored(const Drive& now, double dt) {
     return held_;
 }
 
+std::vector<Stored> ExplicitSolver::still_stored(double dt) {
+    for_each_awake([&](std::size_t b) { held_[b].kinetic = body_[b].kinetic_energy(dt); });
+    return held_;
+}
+
 double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
                             MoveOutcome& outcome) {
     MovingBody& body = body_[b];
@@ -343,10 +348,11 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     meet(from, first_step(share_ * step_), outcome);
     for (std::size_t b = 0; b < met_.size(); ++b) outcome.body[b].met.start(met_[b]);
     halvings_ = 0;
+    bool goes_on = false;  // from the end of a block that was kept
     for (Drive begin = from; begin.time < to.time;) {
         const Block block = next_block(way, begin);
         const double lag = has_half_kicks() ? block.dt : 0;
-        const std::vector<Stored> held = stored(begin, lag);
+        const std::vector<Stored> held = goes_on ? still_stored(lag) : stored(begin, lag);
         if (begin.time == from.time) start_books(held, outcome);
         save();
         const std::vector<BodyOutcome> so_far = outcome.body;
@@ -362,6 +368,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
                 found.time = block.end;
             }
         }
+        goes_on = !found;
         if (found) {
             take_back(block, found, so_far, outcome);
         } else {

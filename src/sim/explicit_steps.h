@@ -76,6 +76,8 @@ class ExplicitSolver {
     void take_back(const Block& block, const Finding& found, const std::vector<BodyOutcome>& so_far,
                    MoveOutcome& outcome);
     std::vector<Stored> stored(const Drive& now, double dt);
+    // The same where nothing has moved since, but for a step of another length.
+    std::vector<Stored> still_stored(double dt);
     bool can_be_rescued() const;
     // Adds what bodies in contact do to each other in a step of this length [s] from here.
     void meet(const Drive& now, double dt, MoveOutcome& outcome);

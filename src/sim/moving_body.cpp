@@ -241,16 +241,20 @@ bool MovingBody::is_stirred(const Drive& since, const Drive& now) const {
 
 void MovingBody::stop() { set_zero(matter_.particle_count(), matter_.particle_velocity); }
 
-Stored MovingBody::stored(const Drive& now, double step) {
+double MovingBody::kinetic_energy(double step) const {
     const Vec3Array& v = matter_.particle_velocity;
-    Stored held;
-    held.elastic = elastic_energy();
-    held.contact = implicit_ ? contacts_.stored_energy(matter_, now) : contacts_.motion_energy();
     const double half = 0.5 * step;
-    held.kinetic = chunked_sum(v.size(), [&](std::size_t p) {
+    return chunked_sum(v.size(), [&](std::size_t p) {
         return 0.5 * matter_.particle_mass[p] *
                (v.at(p).squaredNorm() - (half * acceleration(p)).squaredNorm());
     });
+}
+
+Stored MovingBody::stored(const Drive& now, double step) {
+    Stored held;
+    held.elastic = elastic_energy();
+    held.contact = implicit_ ? contacts_.stored_energy(matter_, now) : contacts_.motion_energy();
+    held.kinetic = kinetic_energy(step);
     return held;
 }
 

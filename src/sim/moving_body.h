@@ -60,6 +60,7 @@ class MovingBody {
     // kinetic energy is that of the steps themselves, 1/2 m v(-) v(+) with the velocities half a
     // step before and after: what the forces' work by the trapezoid rule adds up to exactly.
     Stored stored(const Drive& now, double step);
+    double kinetic_energy(double step) const;  // alone [J]
 
     // What a solution by the tangent asks for.
     const std::vector<float>* cells_alone() const { return lattice_.cells_alone(); }
