@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools in explicit steps: restitution, static and kinetic friction, stickiness, and their books.
+// Tools, and blocks that meet, in explicit steps: restitution, static and kinetic friction,
+// stickiness, and their books.
 #include "base/parallel.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
@@ -283,4 +284,33 @@ TEST_CASE("contact with tools gives equal bytes with one and two threads") {
         CHECK(hash == first);
     }
     set_thread_count(0);
+}
+
+TEST_CASE("two blocks that meet part with the asked share of their speed") {
+    // Slowly, so that their contacts give way by little beside a cell: deeper, points of their
+    // sides are inside the other too, and pushed out sideways.
+    constexpr double kSpeed = 0.1;
+    for (const double e : {0.5, 0.8, 1.0}) {
+        Material material = kSpringy;
+        material.restitution = e;
+        Aggregate low = make_block(3, 3, 3, 0.1, material), high = low;
+        for (double& y : high.particle_position.y) y += 0.3005;
+        for (double& v : high.particle_velocity.y) v = -kSpeed;
+        SimSettings settings = motion_settings();
+        settings.contact_stiffness = 0.01;
+        const Apparatus nothing;
+        Simulation simulation({&low, &high}, nothing, settings);
+        const FrameReport r = simulation.advance(still(0), still(1));
+        const auto speed = [](const Aggregate& m) {
+            double sum = 0;
+            for (std::size_t p = 0; p < m.particle_count(); ++p) {
+                sum += m.particle_mass[p] * m.particle_velocity.y[p];
+            }
+            return sum / m.mass();
+        };
+        INFO("restitution " << e << ": " << speed(low) << " and " << speed(high));
+        CHECK((speed(high) - speed(low)) / kSpeed == Approx(e).epsilon(0.03));
+        CHECK((speed(high) + speed(low)) / kSpeed == Approx(-1).epsilon(1e-9));
+        CHECK(r.contact == 0);
+    }
 }
