@@ -17,6 +17,9 @@
 // less, and at the highest ratio 19 % less to 30 % more. At rest the branches carry nothing, so
 // Young's modulus is that of slow loading; what swings is stiffer, as matter that loses energy is.
 //
+// The branches of a connection that softens (laws/fracture.h) soften with it: else slow ones would
+// hold a crack together long after its springs have let go.
+//
 // Sources: S2.4 has one dashpot a connection, which damps each mode in proportion to its frequency:
 // right for one mode, and next to nothing for a slender body's slow ones. H.-P. Liu, D. L.
 // Anderson, H. Kanamori, Geophys. J. R. astr. Soc. 47, 41 (1976); H. Emmerich, M. Korn, Geophysics

@@ -18,10 +18,15 @@ constexpr std::size_t kRunsPerChunk = 64;
 constexpr double kTogether = 0.98;
 // Particles far from the material of their cell do not tell its strain.
 constexpr float kOffCentre = 0.15f;  // of the cell
+constexpr double kSpared = 1.5;      // times onset
+constexpr double kNear = 2.3;        // cells
+constexpr double kInLine = 0.8;      // least cosine between the pull and the way to a neighbour
 
 struct Strained {
     CellId cell;
     double strain;
+    Vec3i site = Vec3i::Zero();
+    Vec3 pull = Vec3::Zero();
 };
 
 // Largest principal strain of the cell's mean, less what has flowed.
@@ -48,6 +53,51 @@ double mean_strain(const Aggregate& matter, const CellRun& run, int n, double le
     }
     return std::expm1(
         Eigen::SelfAdjointEigenSolver<Mat3>(log, Eigen::EigenvaluesOnly).eigenvalues()[2]);
+}
+
+// The direction in which the cell is pulled most.
+Vec3 pull_of(const Aggregate& matter, const CellRun& run, int n) {
+    const Mat3 f = cell_gradient(matter, run, n);
+    return Eigen::SelfAdjointEigenSolver<Mat3>(f.transpose() * f).eigenvectors().col(2);
+}
+
+// Whether a cell this many sites away is in line with the pull.
+bool is_in_line(const Vec3i& way, const Vec3& pull) {
+    const double length = way.cast<double>().norm();
+    return length > 0 && length < kNear &&
+           std::abs(way.cast<double>().dot(pull)) > kInLine * length;
+}
+
+// Whether a cell in line with this one has cracked.
+bool is_spared(const Aggregate& matter, const CellRun& run, int n) {
+    if (matter.cell_cracked.empty()) return false;
+    const Vec3 pull = pull_of(matter, run, n);
+    for (int k = -2; k <= 2; ++k) {
+        for (int j = -2; j <= 2; ++j) {
+            for (int i = -2; i <= 2; ++i) {
+                if (!is_in_line({i, j, k}, pull)) continue;
+                const CellId cell = matter.lattice.cell_at(run.i + n + i, run.j + j, run.k + k);
+                if (cell >= 0 && matter.cell_cracked[cell]) return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Of cells in line with each other the most strained is left.
+void spare_each_other(std::vector<Strained>& cells) {
+    std::vector<Strained> order = cells, taken;
+    std::stable_sort(order.begin(), order.end(),
+                     [](const Strained& a, const Strained& b) { return a.strain > b.strain; });
+    for (const Strained& s : order) {
+        const bool spared = std::any_of(taken.begin(), taken.end(), [&](const Strained& t) {
+            return is_in_line(t.site - s.site, s.pull);
+        });
+        if (!spared) taken.push_back(s);
+    }
+    std::sort(taken.begin(), taken.end(),
+              [](const Strained& a, const Strained& b) { return a.cell < b.cell; });
+    cells = std::move(taken);
 }
 
 double largest_connection_strain(const Aggregate& matter, const std::array<ParticleId, 4>& row) {
@@ -91,7 +141,7 @@ std::vector<std::size_t> cells_beside(const Aggregate& matter,
 }
 
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
-                                          const std::vector<std::size_t>* only) {
+                                          bool in_motion, const std::vector<std::size_t>* only) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const std::size_t count = only ? only->size() : runs.size();
     const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
@@ -112,8 +162,12 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
-                if (strain >= law.onset && cell_is_sound(matter, cell, row)) {
+                if (strain >= law.onset && cell_is_sound(matter, cell, row) &&
+                    !(in_motion && strain < kSpared * law.onset && is_spared(matter, run, n))) {
                     part[chunk].push_back({cell, strain});
+                    if (!in_motion) continue;
+                    part[chunk].back().site = {run.i + n, run.j, run.k};
+                    part[chunk].back().pull = pull_of(matter, run, n);
                 }
             }
         }
@@ -122,12 +176,15 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
     for (const auto& p : part) {
         for (const Strained& s : p) largest = std::max(largest, s.strain);
     }
-    std::vector<CellId> cells;
+    std::vector<Strained> next;
     for (const auto& p : part) {
         for (const Strained& s : p) {
-            if (s.strain >= kTogether * largest) cells.push_back(s.cell);
+            if (s.strain >= kTogether * largest) next.push_back(s);
         }
     }
+    if (in_motion) spare_each_other(next);
+    std::vector<CellId> cells;
+    for (const Strained& s : next) cells.push_back(s.cell);
     return cells;
 }
 

@@ -34,7 +34,7 @@ double InternalDamping::stored_energy(const Aggregate& matter, const LatticeSwee
     sweep.for_each_branched(strain_, branches_.count, [&](ParticleId p, const float* strain) {
         for (int d = 0; d < kForwardCount; ++d) {
             const double length = reference_length(matter.lattice, d);
-            const double scale = k * length * length * matter.connection[d].weight[p];
+            const double scale = k * length * length * sweep.branch_weight(matter, d)[p];
             for (int j = 0; j < branches_.count; ++j) {
                 const double m = strain[(d * branches_.count + j) * kLanes];
                 sum += scale * m * m / (2 * branches_.share[j]);

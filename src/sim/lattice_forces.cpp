@@ -29,12 +29,15 @@ LatticeForces::LatticeForces(const Aggregate& matter)
 
 void LatticeForces::connections_changed(const Aggregate& matter) {
     if (cells_) cells_->cells_changed(matter);
-    if (spring_sweep_) spring_sweep_->connections_changed(matter);
     loose_.connections_changed(matter);
+    if (spring_sweep_) spring_sweep_->connections_changed(matter, loose_.softening_ends(matter));
 }
 
 const LatticeSweep& LatticeForces::sweep(const Aggregate& matter) {
-    if (!spring_sweep_) spring_sweep_ = std::make_unique<LatticeSweep>(matter);
+    if (!spring_sweep_) {
+        spring_sweep_ = std::make_unique<LatticeSweep>(matter);
+        spring_sweep_->connections_changed(matter, loose_.softening_ends(matter));
+    }
     return *spring_sweep_;
 }
 
@@ -49,7 +52,10 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
     const bool flows = spring_flow_ && flow == Flow::trial;
     const RestStrains* const rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
     const double limit = loose_.law().onset > 0 ? kNearOnset * loose_.law().onset : 1e100;
-    const double work = spring_sweep_->forces(matter, spring_law_, rest, force, branches, limit);
+    const bool apart = branches && spring_sweep_->branches_soften();
+    double work =
+        spring_sweep_->forces(matter, spring_law_, rest, force, apart ? nullptr : branches, limit);
+    if (apart) work = spring_sweep_->add_branches(matter, spring_law_, *branches, force);
     if (branches) *given += work;
     loose_.add_forces(matter, flow, rest, force);
     const int mirrored = add_guard_forces(matter, force);
@@ -72,18 +78,22 @@ Committed LatticeForces::commit(Aggregate& matter) {
     const Broken broken = loose_.commit(matter, nullptr);
     result.fracture = broken.lost;
     result.broken = broken.count;
-    if (broken.count > 0) connections_changed(matter);
+    if (broken.count > 0) {
+        connections_changed(matter);
+    } else if (spring_sweep_) {
+        spring_sweep_->soften(matter);
+    }
     return result;
 }
 
-Cracked LatticeForces::crack(Aggregate& matter, bool just_found) {
+Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
     if (!matter.material.breaks()) return {};
-    const bool told = just_found && !cells_;
+    const bool told = in_motion && !cells_;
     const std::vector<std::size_t> runs =
         told ? cells_beside(matter, spring_sweep_->stretched_runs()) : std::vector<std::size_t>{};
     if (told && runs.empty()) return {};
     const std::vector<CellId> cells =
-        cells_beyond_strength(matter, loose_.law(), told ? &runs : nullptr);
+        cells_beyond_strength(matter, loose_.law(), in_motion, told ? &runs : nullptr);
     if (cells.empty()) return {};
     const double before = elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);

@@ -56,8 +56,8 @@ class LatticeForces {
 
     // Cells of a converged and committed state that have reached their strength act as springs from
     // now on; the most strained go first. The state has to be brought to rest again.
-    // just_found: find() was last called at these positions, and what it saw is all that matters.
-    Cracked crack(Aggregate& matter, bool just_found = false);
+    // In motion find() was last called at these positions, and what it saw is all that matters.
+    Cracked crack(Aggregate& matter, bool in_motion = false);
 
     double elastic_energy(const Aggregate& matter);  // [J]
 

@@ -228,7 +228,7 @@ LatticeSweep::LatticeSweep(const Aggregate& matter)
     connections_changed(matter);
 }
 
-void LatticeSweep::connections_changed(const Aggregate& matter) {
+void LatticeSweep::connections_changed(const Aggregate& matter, const std::vector<char>& softens) {
     const auto& all = matter.connection;
     flowed_ = std::isfinite(matter.material.yield_stress);
     flowed_ =
@@ -243,8 +243,27 @@ void LatticeSweep::connections_changed(const Aggregate& matter) {
                 const float* const weight = c.weight.data() + run.first + begin;
                 for (int l = 0; l < kLanes && whole; ++l) whole = weight[l] == 1;
             }
+            for (int l = 0; l < kLanes && whole && !softens.empty(); ++l) {
+                whole = !softens[run.first + begin + l];
+            }
             *plain++ = whole;
         }
+    }
+    softens_.clear();
+    for (std::size_t p = 0; p < softens.size(); ++p) {
+        if (softens[p]) softens_.push_back(static_cast<ParticleId>(p));
+    }
+    for (int d = 0; d < kForwardCount; ++d) {
+        softened_[d] = softens_.empty() ? std::vector<float>{} : all[d].weight;
+    }
+    soften(matter);
+}
+
+void LatticeSweep::soften(const Aggregate& matter) {
+    if (softens_.empty() || matter.connection[0].damage.empty()) return;
+    for (int d = 0; d < kForwardCount; ++d) {
+        const ConnectionArrays& own = matter.connection[d];
+        for (ParticleId p : softens_) softened_[d][p] = own.weight[p] * (1 - own.damage[p]);
     }
 }
 
@@ -260,7 +279,7 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
     }
     for (int d = 0; d < kForwardCount; ++d) {
         const ConnectionArrays& own = matter.connection[d];
-        whole.weight[d] = own.weight.data();
+        whole.weight[d] = (wanted.springs ? own.weight : branch_weight(matter, d)).data();
         whole.rest[d] = (wanted.rest ? (*wanted.rest)[d] : own.plastic).data();
     }
     whole.stiffness = law.stiffness;

@@ -35,8 +35,16 @@ class LatticeSweep {
   public:
     explicit LatticeSweep(const Aggregate& matter);
 
-    // Connections were severed or broken.
-    void connections_changed(const Aggregate& matter);
+    // Connections were severed or broken. `softens`: of each particle, whether connections that it
+    // is the lower end of may soften; empty: none.
+    void connections_changed(const Aggregate& matter, const std::vector<char>& softens = {});
+    // Connections have softened: the branches beside them do too.
+    void soften(const Aggregate& matter);
+    bool branches_soften() const { return !softened_[0].empty(); }
+    // Share of the full connection's section whose branches are whole, by lower particle.
+    const std::vector<float>& branch_weight(const Aggregate& matter, int direction) const {
+        return branches_soften() ? softened_[direction] : matter.connection[direction].weight;
+    }
 
     // force = sum of the connections' forces on each particle [N], with the given rest strains or
     // else the committed ones. A strain above `limit` is told by stretched_runs(). With branches,
@@ -73,6 +81,8 @@ class LatticeSweep {
     std::vector<std::size_t> slab_batch_;  // first batch of eight of each slab
     std::vector<std::uint8_t> plain_;      // of each batch: all its connections are there and whole
     bool flowed_ = false;                  // some rest strain may not be zero
+    std::vector<ParticleId> softens_;      // lower ends of connections that may soften
+    RestStrains softened_;                 // branch_weight() where these are; else empty
     std::vector<std::vector<const SpringRun*>> stretched_;
     std::vector<double> work_;  // a slab [J]
 

@@ -100,6 +100,16 @@ void LooseSprings::connections_changed(const Aggregate& matter) {
     }
 }
 
+std::vector<char> LooseSprings::softening_ends(const Aggregate& matter) const {
+    std::vector<char> ends;
+    for (const Spring& s : spring_) {
+        if (s.kind != Kind::softening) continue;
+        ends.resize(matter.particle_count(), 0);
+        ends[s.lower] = 1;
+    }
+    return ends;
+}
+
 void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest) {
     const Vec3Array& x = matter.particle_position;
     now_.resize(spring_.size());

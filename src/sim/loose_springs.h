@@ -31,6 +31,9 @@ class LooseSprings {
     // Connections were severed or broken, or cells cracked.
     void connections_changed(const Aggregate& matter);
 
+    // Of each particle, whether it is the lower end of any that softens; empty: none is.
+    std::vector<char> softening_ends(const Aggregate& matter) const;
+
     // Adds the springs' forces. `rest`: as for LatticeSweep; read with mechanics "springs" only,
     // whose sweep carries every connection as if sound: what it carries too much is taken off.
     void add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest, Vec3Array& force);

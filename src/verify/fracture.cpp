@@ -6,69 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/make_shape.h"
-#include "mold/mold.h"
-#include "sim/sever.h"
 #include "verify/case.h"
+#include "verify/crack_strip.h"
 #include "verify/stand.h"
 
 namespace swage {
 
 namespace {
 
-constexpr double kNu = 0.25, kStrength = 1e-3;  // over E
 constexpr double kTolerance = 1e-3;
 constexpr double kStep = 0.02;  // by which the energy release rate grows from frame to frame
-
-// l_c = reach.
-Material breaking(double reach) {
-    Material material = unit_material(kNu);
-    material.strength = kStrength;
-    material.toughness = reach * kStrength * kStrength;
-    return material;
-}
-
-Aggregate slice(double length, double height, double angle, const Material& material) {
-    const TriMesh mesh = make_shape("bar", {{"length", length},
-                                            {"height", height},
-                                            {"width", 1},
-                                            {"rounding", 0},
-                                            {"division", 1}})
-                             .mesh;
-    MoldSettings settings;
-    settings.spacing = 1;
-    return mold(turned(mesh, Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ()))), material, settings);
-}
-
-// Severs what crosses the line from far left to `end`, a little above the middle so that it meets
-// no particle.
-void notch(Aggregate& matter, const Vec3& along, const Vec3& across, double end) {
-    const auto at = [&](double x, double z) {
-        return Vec3(1e-4 * across + x * along + z * Vec3::UnitZ());
-    };
-    const double far = -1e3;
-    sever(matter, {{at(far, -9), at(end, -9), at(end, 9)}, {at(far, -9), at(end, 9), at(far, 9)}});
-}
-
-struct Tip {
-    double ahead = -1e3;  // of the middle
-    double off = 0;       // largest distance of a broken edge from the line
-};
-Tip tip_of(const Aggregate& m, const Vec3& along, const Vec3& across) {
-    Tip tip;
-    for (const Span& span : m.lattice.span) {
-        const std::vector<float>& damage = m.connection[span.direction].damage;
-        if (damage.empty() || span.direction >= kEdgeCount) continue;
-        for (int n = 0; n < span.count; ++n) {
-            if (damage[span.lower + n] < 1) continue;
-            const Vec3 middle = 0.5 * (m.particle_reference.at(span.lower + n) +
-                                       m.particle_reference.at(span.upper + n));
-            tip.ahead = std::max(tip.ahead, along.dot(middle));
-            tip.off = std::max(tip.off, std::abs(across.dot(middle)));
-        }
-    }
-    return tip;
-}
 
 // Moves both grips apart until the tip has passed `goal`; returns the opening half a step before.
 double open_until(Stand& stand, const Vec3& along, const Vec3& across, double goal,
@@ -108,17 +55,9 @@ void strip(bool brief, Values& values) {
             const double end = -0.8 * half;
             notch(stand.matter, along, across, end);
             for (int side : {-1, 1}) {
-                std::vector<int> points;
-                for (std::size_t p = 0; p < stand.matter.surface.size(); ++p) {
-                    const Vec3& x = stand.matter.surface.reference_position[p];
-                    if (side * across.dot(x) > half) points.push_back(static_cast<int>(p));
-                }
-                stand.grip(points);
+                stand.grip(clamped(stand.matter, across, side, half));
             }
-            // E / (1 - nu^2) opening^2 / (4 half) = share G_c
-            const auto opening = [&](double share) {
-                return 2 * std::sqrt(share * material.toughness * (1 - kNu * kNu) * half);
-            };
+            const auto opening = [&](double share) { return strip_opening(share, half, material); };
             Tip tip;
             const double asked =
                 open_until(stand, along, across, end + 0.7 * half, opening, 0.8, tip);

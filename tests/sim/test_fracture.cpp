@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
 #include "sim/advance.h"
+#include "sim/cracking.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 
@@ -179,4 +180,59 @@ TEST_CASE("explicit steps break a bar too, and keep the books") {
     CHECK(std::abs(pull(r)) < 0.05 * largest);
     CHECK(r.kinetic + r.elastic + r.damped + r.fracture ==
           Approx(r.work).margin(0.05 * kToughness * bar.section));
+}
+
+TEST_CASE("damping that is slow to yield does not hold a crack together") {
+    for (const Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
+        const auto work_to_part = [&](double damping) {
+            Material material = brittle(mechanics);
+            material.damping_ratio = damping;
+            Bar bar(material, 2);
+            bar.settings.solver = Solver::explicit_steps;
+            bar.simulation = std::make_unique<Simulation>(bar.matter, bar.apparatus, bar.settings);
+            FrameReport r;
+            for (int n = 1; n <= 80 && (n < 2 || r.pieces < 2); ++n) {
+                Drive to = bar.drive;
+                to.time += 2e-5;
+                to.world_from_grip[1].translation.x() = kOpening * n / 40;
+                r = bar.simulation->advance(bar.drive, to);
+                bar.drive = to;
+            }
+            REQUIRE(r.pieces == 2);
+            return r.work;
+        };
+        const double free = work_to_part(0.01), damped = work_to_part(0.1);
+        INFO("work " << free << " and damped " << damped);
+        CHECK(damped < 1.35 * free);
+    }
+}
+
+TEST_CASE("cells in line with a cracked one are spared in motion, those ahead of it are not") {
+    Aggregate m = make_block(5, 5, 1, 1, brittle(Mechanics::cells));
+    for (std::size_t p = 0; p < m.particle_count(); ++p) m.particle_position.y[p] *= 1.01;
+    const Fracture law = fracture_law(1, 0.9e-2, 1, 1);
+    const auto at = [&](int i, int j) { return m.lattice.cell_at(i, j, 0); };
+    Fracture soft = law;
+    soft.onset = 0.9e-2;
+    CHECK(cells_beyond_strength(m, soft, false).size() == 25);
+    // Of those that crack at once none is in line with another.
+    const std::vector<CellId> first = cells_beyond_strength(m, soft, true);
+    CHECK(first.size() >= 5);
+    CHECK(first.size() <= 10);
+    m.cell_cracked.assign(m.cell_fill.size(), 0);
+    m.cell_cracked[at(1, 2)] = 1;
+    const std::vector<CellId> next = cells_beyond_strength(m, soft, true);
+    CHECK(next.size() >= 4);
+    for (CellId cell : next) CHECK(m.lattice.cell_site(cell).x() != 1);
+    // But not for ever.
+    soft.onset = 0.5e-2;
+    CHECK(cells_beyond_strength(m, soft, false).size() == 24);
+    m.cell_cracked.assign(m.cell_fill.size(), 0);
+    m.cell_cracked[at(2, 2)] = 1;
+    soft.onset = 0.01 / 1.6;
+    bool in_line = false;
+    for (CellId cell : cells_beyond_strength(m, soft, true)) {
+        in_line = in_line || m.lattice.cell_site(cell).x() == 2;
+    }
+    CHECK(in_line);
 }
