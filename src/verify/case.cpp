@@ -72,6 +72,7 @@ std::vector<Case> verification_cases() {
     add_fracture_cases(cases);
     add_fast_fracture_cases(cases);
     add_motion_cases(cases);
+    add_contact_cases(cases);
     add_flight_cases(cases);
     add_chosen_step_cases(cases);
     return cases;

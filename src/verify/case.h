@@ -103,6 +103,7 @@ void add_plastic_cases(std::vector<Case>& cases);
 void add_fracture_cases(std::vector<Case>& cases);
 void add_fast_fracture_cases(std::vector<Case>& cases);
 void add_motion_cases(std::vector<Case>& cases);
+void add_contact_cases(std::vector<Case>& cases);
 void add_flight_cases(std::vector<Case>& cases);
 void add_chosen_step_cases(std::vector<Case>& cases);
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A ball on a rigid plane: dropped, and pressed.
-#include "verify/contact.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
+#include "verify/case.h"
 #include "verify/stand.h"
 
 namespace swage {

@@ -136,14 +136,14 @@ void fast_crack(bool brief, Values& values) {
         if (brief) return;
     }
     const Ran slow = run_crack(1.3, 8, 0), fast = run_crack(3, 4, 0);
-    values.add(absolute("rows broken at 1.3 G_c", 0, 1, slow.most_rows, 0));
+    values.add(absolute("rows broken at 1.3 G_c", 0, 1, slow.most_rows, 0.5));
     Value speed = told("speed at 3 G_c / Rayleigh's", 0, 1, fast.fastest);
     speed.error = std::max(0.0, fast.fastest - 1);
-    speed.bound = 0;
+    speed.bound = 0.01;
     values.add(speed);
     Value branches = told("rows broken at 3 G_c, at least", 0, 2, fast.most_rows);
     branches.error = std::max(0, 2 - fast.most_rows);
-    branches.bound = 0;
+    branches.bound = 0.5;
     values.add(branches);
 }
 

@@ -7,7 +7,6 @@
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
 #include "verify/case.h"
-#include "verify/contact.h"
 #include "verify/stand.h"
 
 namespace swage {
@@ -226,7 +225,6 @@ void add_motion_cases(std::vector<Case>& cases) {
                      slide_to_rest});
     cases.push_back({"swings", "bending frequencies of a bar held at one end", "CalculiX C3D20R", 0,
                      false, bending_swings});
-    add_contact_cases(cases);
 }
 
 }  // namespace swage
