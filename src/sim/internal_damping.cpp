@@ -2,6 +2,7 @@
 #include "sim/internal_damping.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace swage {
 
@@ -29,19 +30,28 @@ BranchStep InternalDamping::step(const LatticeSweep& sweep, double duration) {
 
 double InternalDamping::stored_energy(const Aggregate& matter, const LatticeSweep& sweep) const {
     if (strain_.empty()) return 0;
-    double sum = 0;
     const double k = lattice_law(matter).stiffness;
-    sweep.for_each_branched(strain_, branches_.count, [&](ParticleId p, const float* strain) {
-        for (int d = 0; d < kForwardCount; ++d) {
-            const double length = reference_length(matter.lattice, d);
-            const double scale = k * length * length * sweep.branch_weight(matter, d)[p];
-            for (int j = 0; j < branches_.count; ++j) {
-                const double m = strain[(d * branches_.count + j) * kLanes];
-                sum += scale * m * m / (2 * branches_.share[j]);
+    double scale[kForwardCount], share[kMostBranches];
+    for (int d = 0; d < kForwardCount; ++d) {
+        const double length = reference_length(matter.lattice, d);
+        scale[d] = 0.5 * k * length * length;
+    }
+    for (int j = 0; j < branches_.count; ++j) share[j] = 1 / branches_.share[j];
+    double sum[kLanes] = {};
+    sweep.for_each_branched(
+        strain_, branches_.count, [&](ParticleId first, int count, const float* strain) {
+            for (int d = 0; d < kForwardCount; ++d) {
+                double square[kLanes] = {};
+                for (int j = 0; j < branches_.count; ++j, strain += kLanes) {
+                    for (int l = 0; l < kLanes; ++l) {
+                        square[l] += share[j] * (double(strain[l]) * double(strain[l]));
+                    }
+                }
+                const float* const weight = sweep.branch_weight(matter, d).data() + first;
+                for (int l = 0; l < count; ++l) sum[l] += scale[d] * double(weight[l]) * square[l];
             }
-        }
-    });
-    return sum;
+        });
+    return std::accumulate(sum, sum + kLanes, 0.0);
 }
 
 }  // namespace swage

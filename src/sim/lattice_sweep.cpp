@@ -41,7 +41,7 @@ SWAGE_INLINE RunRows rows_of(const SpringTask& task, const SpringRun& run) {
     return rows;
 }
 
-// At the end of the arrays: what a batch reads, as far as there is anything.
+// At the end of the arrays: what a batch reads beyond them, as far as there is anything.
 template <int kWidth>
 struct EndCopy {
     double x[2][5][3][kWidth + 2];
@@ -52,6 +52,7 @@ template <int kWidth, bool kDamped>
                                 EndCopy<kWidth>& copy, SpringPlaces& at) {
     for (int q = 0; q < 5; ++q) {
         const ParticleId row = (q > 0 && run.above[q - 1] >= 0 ? run.above[q - 1] : run.first);
+        if (row + begin > 0 && row + begin + kWidth + 1 <= task.particles) continue;
         for (int i = 0; i < 3; ++i) {
             for (int n = 0; n < kWidth + 2; ++n) {
                 const int p = std::clamp(row + begin - 1 + n, 0, task.particles - 1);
@@ -62,6 +63,7 @@ template <int kWidth, bool kDamped>
             at.v[q][i] = copy.x[1][q][i] + 1;
         }
     }
+    if (run.first + begin + kWidth <= task.particles) return;
     for (int d = 0; d < kForwardCount; ++d) {
         for (int n = 0; n < kWidth; ++n) {
             const int p = std::min(run.first + begin + n, task.particles - 1);

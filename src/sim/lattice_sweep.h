@@ -3,6 +3,7 @@
 // of the branches that damp them (laws/internal_damping.h).
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "laws/internal_damping.h"
@@ -58,17 +59,16 @@ class LatticeSweep {
     std::size_t branch_floats(int count) const {
         return plain_.size() * kForwardCount * static_cast<std::size_t>(count) * kLanes;
     }
-    // Calls act(run, n, strain) with branch_floats() of the run's n-th particle: [direction *
-    // count + branch] at strain[that * kLanes].
+    // Calls act(first, count, strain) with branch_floats() of `count` particles side by side,
+    // kLanes at most: [direction * branches + branch] of the n-th at strain[that * kLanes + n].
     template <typename Act>
-    void for_each_branched(const std::vector<float>& strain, int count, const Act& act) const {
+    void for_each_branched(const std::vector<float>& strain, int branches, const Act& act) const {
         const float* batch = strain.data();
         for (const SpringRun& run : run_) {
-            for (int n = 0; n < run.count; ++n) {
-                act(run.first + n,
-                    batch + n / kLanes * kForwardCount * count * kLanes + n % kLanes);
+            for (int n = 0; n < run.count; n += kLanes) {
+                act(run.first + n, std::min(kLanes, run.count - n), batch);
+                batch += kForwardCount * branches * kLanes;
             }
-            batch += (run.count + kLanes - 1) / kLanes * kForwardCount * count * kLanes;
         }
     }
 
