@@ -280,3 +280,39 @@ TEST_CASE("extremes: explicit steps that nothing helps pass on to implicit ones"
     }
     CHECK(moving < 1.05 * start);
 }
+
+TEST_CASE("extremes: ten thousand contacts at once") {
+    Material material = kSpringy;
+    material.damping_ratio = 0.1;
+    material.restitution = 0.5;
+    material.friction = 0.3;
+    constexpr int kSide = 36;  // four points a cell on either side
+    const auto fall = [](Aggregate& m, double height) {
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            m.particle_position.y[p] += height;
+            m.particle_velocity.set(p, Vec3(0, -1, 0));
+        }
+    };
+    SECTION("on a floor") {
+        for (const Solver solver : kAll) {
+            Aggregate m = make_block(2 * kSide, 1, kSide, kSpacing, material);
+            fall(m, 0.5 * kSpacing + 1e-3);
+            Floor floor;
+            floor.apparatus.tool[0].friction = 0.3;
+            INFO(name_of(solver));
+            CHECK(survive({&m}, motion_settings(solver), 0.004, 1, &floor).last.load[0].contacts >
+                  10'000);
+            survive({&m}, motion_settings(solver), 0.06, 3, &floor);
+            CHECK(smallest_cell_volume(m) > 0.5);
+        }
+    }
+    SECTION("of two bodies") {
+        Aggregate low = make_block(kSide, 1, kSide, kSpacing, material);
+        Aggregate high = make_block(kSide, 1, kSide, kSpacing, material);
+        fall(high, kSpacing + 1e-3);
+        const Survivor s = survive({&low, &high}, motion_settings(), 0.06, 3);
+        CHECK(smallest_cell_volume(low) > 0.5);
+        CHECK(smallest_cell_volume(high) > 0.5);
+        CHECK(s.last.body[0].passed > 0.1 * 0.5 * low.mass() * 1);
+    }
+}
