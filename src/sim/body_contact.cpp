@@ -43,7 +43,7 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
             const Material &m = bodies[a]->material, &n = bodies[b]->material;
             const double soft = m.young_modulus / bodies[a]->lattice.spacing,
                          other = n.young_modulus / bodies[b]->lattice.spacing;
-            Way way{static_cast<int>(a), static_cast<int>(b), {}, {}, {}, {}, {}, {}};
+            Way way{static_cast<int>(a), static_cast<int>(b)};
             const double e = shared_restitution(m.restitution, soft, n.restitution, other);
             way.law = {.stiffness = 0,
                        .restitution = e,
@@ -88,6 +88,9 @@ void BodyContact::connections_changed(std::size_t body) {
     const int b = static_cast<int>(body);
     const int own = static_cast<int>(side_[body].own_points());
     for (Way& way : way_) {
+        if (way.from != b && way.onto != b) continue;
+        way.has_broken = true;
+        for (Contact& contact : way.contact) contact.is_new = true;
         if (way.from != b) continue;
         std::erase_if(way.contact, [&](const Contact& c) { return c.point >= own; });
         set_stiffness(way);
@@ -279,6 +282,7 @@ BodyContact::Meeting BodyContact::meet(const Way& way, Contact& contact) const {
         onto.is_closed_crack(contact.point, contact.site.cast<double>() + contact.place)) {
         return meeting;
     }
+    meeting.is_known = true;
     meeting.depth = -depth.distance / size;
     meeting.normal = slope / size;
     meeting.meets = meeting.depth > 0 || (contact.history.touches && way.hold[contact.point] > 0);
@@ -286,7 +290,7 @@ BodyContact::Meeting BodyContact::meet(const Way& way, Contact& contact) const {
 }
 
 // All that does not depend on forces.
-void BodyContact::prepare(const Way& way, const Contact& contact, Meeting& at) const {
+void BodyContact::prepare(const Way& way, const Contact& contact, double step, Meeting& at) const {
     const Aggregate &a = side_[way.from].matter(), &b = side_[way.onto].matter();
     const SurfacePoints& points = side_[way.from].points();
     const auto& carrier = points.corner[contact.point];
@@ -306,6 +310,14 @@ void BodyContact::prepare(const Way& way, const Contact& contact, Meeting& at) c
         at.give += u * u * side_[way.onto].lightness()[q];
     }
     at.now = at.own - other;
+    if (way.has_broken && at.is_known) {
+        const double pressed = contact.history.touches ? contact.pressed : 0;
+        const double could = contact.is_new ? 0 : 2 * step * at.now.norm();
+        const double sunk = std::max(contact.is_new ? 0 : contact.sunk, at.depth - pressed - could);
+        at.sunk = std::clamp(sunk, 0.0, std::max(0.0, at.depth));
+        at.depth -= at.sunk;
+        at.meets = at.meets && (at.depth > 0 || way.hold[contact.point] > 0);
+    }
     if (!at.meets) return;
     at.reach.setZero();
     const double k = way.stiffness[contact.point];
@@ -444,7 +456,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
             const std::size_t stop = std::min(count, (chunk + 1) * kChunk);
             for (std::size_t n = chunk * kChunk; n < stop; ++n) {
                 way.meeting[n] = meet(way, way.contact[n]);
-                prepare(way, way.contact[n], way.meeting[n]);
+                prepare(way, way.contact[n], step, way.meeting[n]);
             }
         });
         for (std::size_t n = 0; n < count; ++n) {
@@ -473,6 +485,9 @@ void BodyContact::commit() {
             contact.history = way.push[n].made.history;
             contact.anchor = way.push[n].anchor;
             contact.bond = way.push[n].made.bond;
+            contact.sunk = way.meeting[n].sunk;
+            contact.pressed = way.meeting[n].depth;
+            contact.is_new = contact.is_new && !way.meeting[n].is_known;
         }
     }
 }

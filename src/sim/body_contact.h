@@ -71,6 +71,11 @@ class BodyContact {
         Vec3 anchor = Vec3::Zero();  // in cells from the other's origin
         ImpactHistory history{};
         Vec3 bond = Vec3::Zero();  // ImpactForce::bond [N]
+        // Where matter has broken a point may be deep in what lies there at once, and deeper than
+        // it can have gone: nobody has pressed it in. That much of the depth does not count until
+        // it has come out again [m].
+        double sunk = 0, pressed = 0;  // pressed: what counted
+        bool is_new = true;            // to the surfaces as they are
     };
     // What it does at the present positions.
     struct Push {
@@ -79,10 +84,10 @@ class BodyContact {
     };
     // How a point meets the cell that holds it.
     struct Meeting {
-        bool meets = false;
-        double depth = 0;
-        Vec3 normal, reach;  // reach: from the point to where it sticks [m]
-        Mat3 gradient;       // J [m]
+        bool meets = false, is_known = false;
+        double depth = 0, sunk = 0;  // depth: that counts
+        Vec3 normal, reach;          // reach: from the point to where it sticks [m]
+        Mat3 gradient;               // J [m]
         std::array<double, 8> weight;
         Vec3 own;     // of the point [m/s]
         Vec3 now;     // speed of the point over the other side [m/s]
@@ -92,16 +97,17 @@ class BodyContact {
     // The points of one body against the cells of another, or of its own.
     struct Way {
         int from, onto;
-        ImpactLaw law;  // stiffness and hold: of each point
-        std::vector<double> stiffness, hold;
-        std::vector<Contact> contact;      // sorted by point
-        std::vector<Meeting> meeting;      // of each, at the present positions
-        std::vector<Push> push;            // likewise
+        bool has_broken = false;  // one of them
+        ImpactLaw law{};          // stiffness and hold: of each point
+        std::vector<double> stiffness{}, hold{};
+        std::vector<Contact> contact{};    // sorted by point
+        std::vector<Meeting> meeting{};    // of each, at the present positions
+        std::vector<Push> push{};          // likewise
         std::array<ContactSums, 2> sum{};  // of the one side and of the other
     };
     void find_pairs(Way& way, double margin);
     Meeting meet(const Way& way, Contact& contact) const;
-    void prepare(const Way& way, const Contact& contact, Meeting& meeting) const;
+    void prepare(const Way& way, const Contact& contact, double step, Meeting& meeting) const;
     void spread(const Way& way, std::size_t n, const Vec3& f,
                 const std::vector<Vec3Array*>& force) const;
     void respond(Way& way, const std::vector<Vec3Array*>& force, double step);

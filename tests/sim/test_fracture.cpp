@@ -236,3 +236,40 @@ TEST_CASE("cells in line with a cracked one are spared in motion, those ahead of
     }
     CHECK(in_line);
 }
+
+TEST_CASE("a board that shatters meets itself, and no energy comes of it") {
+    const Material plaster{.young_modulus = 5e8,
+                           .poisson_ratio = 0.2,
+                           .density = 1200,
+                           .strength = 1e6,
+                           .toughness = 40,
+                           .damping_ratio = 0.02,
+                           .friction = 0.5};
+    Aggregate board = make_block(40, 2, 5, 0.005, plaster);
+    const Pose pose{Quat(Eigen::AngleAxisd(0.2, Vec3(0.2, 0, 1).normalized())), Vec3(0, 0.035, 0)};
+    for (std::size_t p = 0; p < board.particle_count(); ++p) {
+        board.particle_position.set(p, pose * board.particle_reference.at(p));
+        board.particle_velocity.set(p, Vec3(0, -4, 0));
+    }
+    Apparatus floor;
+    floor.name = "floor";
+    floor.tool.push_back({"floor", BoxShape{Vec3(2, 0.2, 2), 0}, 0.5});
+    SimSettings settings;
+    settings.solver = Solver::explicit_steps;
+    settings.self_contact = true;
+    settings.gravity = Vec3(0, -9.81, 0);
+    const double energy = 0.5 * board.mass() * 16;
+    Simulation simulation(board, floor, settings);
+    Drive now;
+    now.world_from_tool = {{Quat::Identity(), Vec3(0, -0.1, 0)}};
+    FrameReport r;
+    for (int n = 1; n <= 16; ++n) {
+        Drive to = now;
+        to.time = 1e-3 * n;
+        r = simulation.advance(now, to);
+        now = to;
+    }
+    CHECK(r.pieces > 3);
+    CHECK(std::abs(r.remainder) < 0.03 * energy);
+    CHECK(r.kinetic + r.elastic + r.contact < energy);
+}
