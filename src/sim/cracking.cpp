@@ -141,7 +141,7 @@ std::vector<std::size_t> cells_beside(const Aggregate& matter,
 }
 
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
-                                          bool in_motion, const std::vector<std::size_t>* only) {
+                                          const std::vector<std::size_t>* only) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const std::size_t count = only ? only->size() : runs.size();
     const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
@@ -163,9 +163,8 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
                 if (strain >= law.onset && cell_is_sound(matter, cell, row) &&
-                    !(in_motion && strain < kSpared * law.onset && is_spared(matter, run, n))) {
+                    !(strain < kSpared * law.onset && is_spared(matter, run, n))) {
                     part[chunk].push_back({cell, strain});
-                    if (!in_motion) continue;
                     part[chunk].back().site = {run.i + n, run.j, run.k};
                     part[chunk].back().pull = pull_of(matter, run, n);
                 }
@@ -182,7 +181,7 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
             if (s.strain >= kTogether * largest) next.push_back(s);
         }
     }
-    if (in_motion) spare_each_other(next);
+    spare_each_other(next);
     std::vector<CellId> cells;
     for (const Strained& s : next) cells.push_back(s.cell);
     return cells;

@@ -14,12 +14,10 @@ namespace swage {
 // onset and near the largest of all: those that are next, in the order of the cells. What is
 // committed counts; the state should have converged. `only`: the runs of cells that are looked at.
 //
-// In motion a state has not: a cell that has cracked relieves what it is in line with only as fast
-// as it opens, and until then a whole cloud around the tip would crack, too blunt to go on. What
-// has a cracked cell within two in the direction of its pull is therefore spared up to half as
-// much again.
+// A cell that has cracked relieves what it is in line with, in motion only as fast as it opens: all
+// around the tip would crack until then, a cloud too blunt to go on. What has a cracked cell within
+// two in the direction of its pull is therefore spared up to half as much again.
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
-                                          bool in_motion,
                                           const std::vector<std::size_t>* only = nullptr);
 
 // Runs of cells with connections of these particles, in their order.

@@ -93,7 +93,7 @@ Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
         told ? cells_beside(matter, spring_sweep_->stretched_runs()) : std::vector<std::size_t>{};
     if (told && runs.empty()) return {};
     const std::vector<CellId> cells =
-        cells_beyond_strength(matter, loose_.law(), in_motion, told ? &runs : nullptr);
+        cells_beyond_strength(matter, loose_.law(), told ? &runs : nullptr);
     if (cells.empty()) return {};
     const double before = elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);

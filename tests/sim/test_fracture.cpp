@@ -207,31 +207,29 @@ TEST_CASE("damping that is slow to yield does not hold a crack together") {
     }
 }
 
-TEST_CASE("cells in line with a cracked one are spared in motion, those ahead of it are not") {
+TEST_CASE("cells in line with a cracked one are spared, those ahead of it are not") {
     Aggregate m = make_block(5, 5, 1, 1, brittle(Mechanics::cells));
     for (std::size_t p = 0; p < m.particle_count(); ++p) m.particle_position.y[p] *= 1.01;
     const Fracture law = fracture_law(1, 0.9e-2, 1, 1);
     const auto at = [&](int i, int j) { return m.lattice.cell_at(i, j, 0); };
     Fracture soft = law;
     soft.onset = 0.9e-2;
-    CHECK(cells_beyond_strength(m, soft, false).size() == 25);
     // Of those that crack at once none is in line with another.
-    const std::vector<CellId> first = cells_beyond_strength(m, soft, true);
+    const std::vector<CellId> first = cells_beyond_strength(m, soft);
     CHECK(first.size() >= 5);
     CHECK(first.size() <= 10);
     m.cell_cracked.assign(m.cell_fill.size(), 0);
     m.cell_cracked[at(1, 2)] = 1;
-    const std::vector<CellId> next = cells_beyond_strength(m, soft, true);
+    const std::vector<CellId> next = cells_beyond_strength(m, soft);
     CHECK(next.size() >= 4);
     for (CellId cell : next) CHECK(m.lattice.cell_site(cell).x() != 1);
     // But not for ever.
     soft.onset = 0.5e-2;
-    CHECK(cells_beyond_strength(m, soft, false).size() == 24);
     m.cell_cracked.assign(m.cell_fill.size(), 0);
     m.cell_cracked[at(2, 2)] = 1;
     soft.onset = 0.01 / 1.6;
     bool in_line = false;
-    for (CellId cell : cells_beyond_strength(m, soft, true)) {
+    for (CellId cell : cells_beyond_strength(m, soft)) {
         in_line = in_line || m.lattice.cell_site(cell).x() == 2;
     }
     CHECK(in_line);
