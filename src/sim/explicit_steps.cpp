@@ -70,6 +70,14 @@ void ExplicitSolver::connections_changed(std::size_t body) {
 void ExplicitSolver::meet(const Drive& now, double dt, MoveOutcome& outcome) {
     if (!contact_.acts()) return;
     contact_.renew(sleeping_.asleep());
+    if (sleeping_.any()) wake_neighbours(now, outcome);
+    std::vector<Vec3Array*> force;
+    for (MovingBody& body : body_) force.push_back(&body.force());
+    contact_.add_forces(force, body_[0].gravity(), dt, sleeping_.asleep(), met_);
+}
+
+// What sleeps near a body that is awake.
+void ExplicitSolver::wake_neighbours(const Drive& now, MoveOutcome& outcome) {
     const std::vector<std::size_t> group = contact_.groups();
     std::vector<char> awake(group.size(), 0);
     for_each_awake([&](std::size_t b) { awake[group[b]] = 1; });
@@ -79,9 +87,6 @@ void ExplicitSolver::meet(const Drive& now, double dt, MoveOutcome& outcome) {
         body_[b].begin_step(now);
         body_[b].find_forces(now, 0, outcome.body[b]);
     }
-    std::vector<Vec3Array*> force;
-    for (MovingBody& body : body_) force.push_back(&body.force());
-    contact_.add_forces(force, body_[0].gravity(), dt, sleeping_.asleep(), met_);
 }
 
 void ExplicitSolver::wake(std::size_t b, MoveOutcome& outcome) {

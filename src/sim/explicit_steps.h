@@ -88,6 +88,7 @@ class ExplicitSolver {
         }
     }
     void wake(std::size_t body, MoveOutcome& outcome);
+    void wake_neighbours(const Drive& now, MoveOutcome& outcome);
     void wake_stirred(const Drive& before, const Drive& now, double dt, MoveOutcome& outcome);
     void put_to_sleep(const Drive& now, MoveOutcome& outcome);
 

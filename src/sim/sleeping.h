@@ -9,6 +9,7 @@
 // stands at the top of its way, or swings, is not. Without gravity nothing ever rests.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -21,6 +22,7 @@ class Sleeping {
     Sleeping(const std::vector<Aggregate*>& bodies, const SimSettings& settings);
 
     const std::vector<char>& asleep() const { return asleep_; }
+    bool any() const { return std::find(asleep_.begin(), asleep_.end(), 1) != asleep_.end(); }
     bool is_asleep(std::size_t body) const { return asleep_[body] != 0; }
 
     // A body that holds this kinetic energy [J] is watched; returns whether it has been at rest for

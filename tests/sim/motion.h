@@ -24,6 +24,33 @@ inline Drive still(double time) {
     return d;
 }
 
+inline Vec3 middle(const Aggregate& m) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        sum += m.particle_mass[p] * m.particle_position.at(p);
+    }
+    return sum / m.mass();
+}
+
+inline Vec3 mean_speed(const Aggregate& m) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        sum += m.particle_mass[p] * m.particle_velocity.at(p);
+    }
+    return sum / m.mass();
+}
+
+// A force along x on all points of the block's lower side.
+inline Load push_below(const Aggregate& block, double force) {
+    Load push;
+    push.name = "push";
+    const double low =
+        *std::min_element(block.particle_reference.y.begin(), block.particle_reference.y.end());
+    push.point = points_where(block, [&](const Vec3& x) { return x.y() < low + 1e-4; });
+    push.force.assign(push.point.size(), Vec3(force / double(push.point.size()), 0, 0));
+    return push;
+}
+
 // The most that any unsevered connection differs from its length, over that.
 inline double largest_stretch(const Aggregate& m) {
     double most = 0;

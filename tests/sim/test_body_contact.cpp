@@ -41,16 +41,6 @@ Momenta momenta(const std::vector<const Aggregate*>& bodies) {
     return sum;
 }
 
-Vec3 middle(const Aggregate& m) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        sum += m.particle_mass[p] * m.particle_position.at(p);
-    }
-    return sum / m.mass();
-}
-
-Vec3 speed(const Aggregate& m) { return momenta({&m}).linear / m.mass(); }
-
 // What contact alone does at the present positions.
 struct Pressed {
     std::vector<Vec3Array> force;
@@ -183,7 +173,7 @@ TEST_CASE("a tumbling collision keeps momentum and angular momentum") {
         CHECK(r.kinetic + r.elastic < 1.001 * energy);
     }
     const Momenta after = momenta({&a, &b});
-    CHECK((speed(a) - Vec3(0, 2, 0)).norm() > 0.5);
+    CHECK((mean_speed(a) - Vec3(0, 2, 0)).norm() > 0.5);
     CHECK(r.kinetic + r.elastic < 0.95 * energy);
     CHECK((after.linear - before.linear).norm() < 1e-9 * before.size);
     CHECK((after.angular - before.angular).norm() < 1e-9 * before.turn);
@@ -235,7 +225,7 @@ TEST_CASE("bodies that collide part, and neither passes through the other") {
             simulation.advance(still(0.002 * f), still(0.002 * (f + 1)));
             nearest = std::min(nearest, middle(b).y() - middle(a).y());
         }
-        const double parting = speed(b).y() - speed(a).y();
+        const double parting = mean_speed(b).y() - mean_speed(a).y();
         INFO("e " << e << ", parting " << parting << ", nearest " << nearest);
         CHECK(nearest > 0.24);
         CHECK(parting > 0);
@@ -314,12 +304,8 @@ TEST_CASE("a block on another body stays below static friction and slides above"
     for (const auto& [share, slides] : {std::pair(0.441, false), std::pair(0.459, true)}) {
         Floor floor(m, Vec3(0, -g, 0));
         // Pushed along the face that touches, so that it does not topple.
-        Load push;
-        push.name = "push";
+        Load push = push_below(floor.block, share * floor.block.mass() * g);
         push.body = 1;
-        push.point = points_where(floor.block, [](const Vec3& x) { return x.y() < -0.0999; });
-        const Vec3 each(share * floor.block.mass() * g / double(push.point.size()), 0, 0);
-        push.force.assign(push.point.size(), each);
         floor.apparatus.load.push_back(push);
         const auto drive = [&](double time) {
             Drive d = floor.drive(time);
@@ -332,16 +318,16 @@ TEST_CASE("a block on another body stays below static friction and slides above"
         const double rest = middle(floor.block).x();
         simulation.advance(drive(0.4), drive(0.7));
         simulation.advance(drive(0.7), drive(0.8));
-        const double v = speed(floor.block).x();
+        const double v = mean_speed(floor.block).x();
         simulation.advance(drive(0.8), drive(0.9));
-        const double gained = (speed(floor.block).x() - v) / 0.1;
+        const double gained = (mean_speed(floor.block).x() - v) / 0.1;
         INFO("push " << share << ", from " << rest << " to " << middle(floor.block).x()
                      << ", gained " << gained);
         if (slides) {
             CHECK(gained == Approx(g * (share - 0.3)).epsilon(0.01));
         } else {
             CHECK(std::abs(middle(floor.block).x() - rest) < 1e-3);
-            CHECK(std::abs(speed(floor.block).x()) < 2e-3);
+            CHECK(std::abs(mean_speed(floor.block).x()) < 2e-3);
         }
     }
 }
@@ -487,7 +473,7 @@ TEST_CASE("contact gives equal bytes with one and two threads") {
         const std::uint64_t hash = state_hash(a) ^ (state_hash(b) << 1);
         if (threads == 1) first = hash;
         CHECK(hash == first);
-        CHECK(speed(a).norm() > 0.01);
+        CHECK(mean_speed(a).norm() > 0.01);
     }
     set_thread_count(0);
 }

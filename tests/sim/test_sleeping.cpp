@@ -15,14 +15,6 @@ const Material kSoft{.young_modulus = 1e5,
                      .friction = 0.4,
                      .restitution = 0.1};
 
-Vec3 middle(const Aggregate& m) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        sum += m.particle_mass[p] * m.particle_position.at(p);
-    }
-    return sum / m.mass();
-}
-
 void shift(Aggregate& m, const Vec3& by) {
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         m.particle_position.set(p, m.particle_position.at(p) + by);
