@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/contact_search.h"
+
+#include "base/parallel.h"
+#include "geometry/near_pairs.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 1024;  // points
+constexpr int kSheet = 3;  // cells nearer than this to each other are one place of contact
+
+Box box_of_cell(const Vec3Array& position, const std::array<ParticleId, 8>& corner) {
+    Box box;
+    for (ParticleId p : corner) box.grow(position.at(p));
+    return box;
+}
+
+}  // namespace
+
+std::vector<Contact> find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
+                                   const std::vector<Contact>& last) {
+    const Aggregate& other = onto.matter();
+    // New surface lies up to half a cell outside the cells that hold it.
+    margin += 0.5 * other.lattice.spacing * (onto.points().size() > onto.own_points());
+    const std::size_t points = from.points().size();
+    std::vector<Vec3> point(points);
+    parallel_for((points + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t stop = std::min(points, (chunk + 1) * kChunk);
+        for (std::size_t p = chunk * kChunk; p < stop; ++p) {
+            point[p] = from.position(static_cast<int>(p));
+        }
+    });
+    Box all = box_of(point);
+    all.low.array() -= margin;
+    all.high.array() += margin;
+    std::vector<CellId> cell;
+    std::vector<Vec3i> site;
+    std::vector<std::array<ParticleId, 8>> corner;
+    std::vector<Box> box;
+    auto run = other.lattice.cell_run.begin();
+    for (CellId id : onto.surface().skin()) {
+        if (!onto.is_whole(id)) continue;
+        while (id >= run->first + run->count) ++run;
+        const int n = id - run->first;
+        std::array<ParticleId, 8> c;
+        for (int q = 0; q < 8; ++q) c[q] = run->row[q >> 1] + n + (q & 1);
+        Box one = box_of_cell(other.particle_position, c);
+        if ((one.low.array() > all.high.array()).any() ||
+            (one.high.array() < all.low.array()).any()) {
+            continue;
+        }
+        one.low.array() -= margin;
+        one.high.array() += margin;
+        cell.push_back(id);
+        site.emplace_back(run->i + n, run->j, run->k);
+        corner.push_back(c);
+        box.push_back(one);
+    }
+    const std::vector<NearPair> pair = near_pairs(point, box);
+
+    std::vector<Contact> found;
+    auto old = last.begin();
+    const auto one_place = [](const Vec3i& a, const Vec3i& b) {
+        return ((a - b).array().abs() <= kSheet).all();
+    };
+    for (std::size_t n = 0; n < pair.size();) {
+        const int p = pair[n].point;
+        for (; old != last.end() && old->point < p; ++old) {
+            if (old->history.touches) found.push_back(*old);
+        }
+        const std::size_t first = found.size();
+        for (; old != last.end() && old->point == p; ++old) {
+            if (old->history.touches) found.push_back(*old);
+        }
+        const std::size_t kept = found.size();
+        std::vector<double> nearest;
+        for (; n < pair.size() && pair[n].point == p; ++n) {
+            const int b = pair[n].box;
+            if (!from.meets(p)) continue;
+            if (&from == &onto && from.is_neighbour(p, site[b])) continue;
+            const double far = (box[b].center() - point[p]).squaredNorm();
+            bool is_new = true;
+            for (std::size_t m = first; m < found.size() && is_new; ++m) {
+                if (!one_place(found[m].site, site[b])) continue;
+                is_new = false;
+                if (m < kept || far >= nearest[m - kept]) continue;
+                nearest[m - kept] = far;
+                found[m].cell = cell[b];
+                found[m].site = site[b];
+                found[m].corner = corner[b];
+            }
+            if (!is_new) continue;
+            found.push_back({{cell[b], site[b], corner[b]}, p});
+            nearest.push_back(far);
+        }
+    }
+    for (; old != last.end(); ++old) {
+        if (old->history.touches) found.push_back(*old);
+    }
+    return found;
+}
+
+}  // namespace swage
