@@ -53,17 +53,17 @@ void BodyContact::connections_changed(std::size_t body) {
 }
 
 struct BodyContact::State {
-    std::vector<std::vector<Contact>> contact;
+    std::vector<ContactList> contacts;
 };
 
 std::shared_ptr<const BodyContact::State> BodyContact::save() const {
     State state;
-    for (const ContactWay& way : way_) state.contact.push_back(way.contacts());
+    for (const ContactWay& way : way_) state.contacts.push_back(way.contacts());
     return std::make_shared<const State>(std::move(state));
 }
 
 void BodyContact::restore(const State& state) {
-    for (std::size_t w = 0; w < way_.size(); ++w) way_[w].set_contacts(state.contact[w]);
+    for (std::size_t w = 0; w < way_.size(); ++w) way_[w].set_contacts(state.contacts[w]);
     allowance_ = -1;
 }
 
@@ -113,6 +113,8 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
             way_[w].set_contacts({});
         }
     }
+    for (ContactSide& side : side_) side.patch().clear();
+    for (ContactWay& way : way_) way.resolve();
 }
 
 std::vector<std::size_t> BodyContact::groups() const {
@@ -123,7 +125,7 @@ std::vector<std::size_t> BodyContact::groups() const {
         return b;
     };
     for (std::size_t w = 0; w < way_.size(); ++w) {
-        if (!way_[w].contacts().empty()) group[root(pair_[w].from)] = root(pair_[w].onto);
+        if (!way_[w].contacts().contact.empty()) group[root(pair_[w].from)] = root(pair_[w].onto);
     }
     for (std::size_t b = 0; b < group.size(); ++b) group[b] = root(b);
     return group;
@@ -131,26 +133,31 @@ std::vector<std::size_t> BodyContact::groups() const {
 
 void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
                              const std::vector<char>& asleep, std::vector<ContactSums>& sums) {
-    const auto sleeps = [&](const Pair& pair) { return asleep[pair.from] && asleep[pair.onto]; };
-    for (std::size_t w = 0; w < way_.size(); ++w) {
-        if (sleeps(pair_[w])) continue;
-        way_[w].meet(step);
-        way_[w].push(*force[pair_[w].from], *force[pair_[w].onto]);
-    }
-    for (std::size_t w = 0; w < way_.size(); ++w) {
-        if (sleeps(pair_[w])) continue;
-        way_[w].respond(step, *force[pair_[w].from], *force[pair_[w].onto]);
-    }
+    std::vector<char> acts(side_.size(), 0);
+    std::vector<std::size_t> awake;
     sums.assign(side_.size(), {});
     for (std::size_t w = 0; w < way_.size(); ++w) {
-        const auto [from, onto] = pair_[w];
-        if (sleeps(pair_[w])) {
+        if (asleep[pair_[w].from] && asleep[pair_[w].onto]) {
             way_[w].freeze();
-        } else {
-            way_[w].book(step, gravity, *force[from], *force[onto]);
+            continue;
         }
-        sums[from].join(way_[w].sums()[0]);
-        sums[onto].join(way_[w].sums()[1]);
+        awake.push_back(w);
+        acts[pair_[w].from] = acts[pair_[w].onto] = 1;
+    }
+    for (std::size_t b = 0; b < side_.size(); ++b) {
+        if (acts[b]) side_[b].patch().read(*force[b]);
+    }
+    for (std::size_t w : awake) {
+        way_[w].meet(step);
+        way_[w].push();
+    }
+    for (std::size_t w : awake) way_[w].respond(step);
+    for (std::size_t b = 0; b < side_.size(); ++b) {
+        if (acts[b]) side_[b].patch().write(*force[b], gravity, step, sums[b]);
+    }
+    for (std::size_t w = 0; w < way_.size(); ++w) {
+        sums[pair_[w].from].join(way_[w].sums());
+        sums[pair_[w].onto].join(way_[w].sums());
     }
 }
 

@@ -19,8 +19,8 @@ Box box_of_cell(const Vec3Array& position, const std::array<ParticleId, 8>& corn
 
 }  // namespace
 
-std::vector<Contact> find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
-                                   const std::vector<Contact>& last) {
+ContactList find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
+                          const ContactList& last) {
     const Aggregate& other = onto.matter();
     // New surface lies up to half a cell outside the cells that hold it.
     margin += 0.5 * other.lattice.spacing * (onto.points().size() > onto.own_points());
@@ -37,7 +37,6 @@ std::vector<Contact> find_contacts(const ContactSide& from, const ContactSide& o
     all.high.array() += margin;
     std::vector<CellId> cell;
     std::vector<Vec3i> site;
-    std::vector<std::array<ParticleId, 8>> corner;
     std::vector<Box> box;
     auto run = other.lattice.cell_run.begin();
     for (CellId id : onto.surface().skin()) {
@@ -55,27 +54,28 @@ std::vector<Contact> find_contacts(const ContactSide& from, const ContactSide& o
         one.high.array() += margin;
         cell.push_back(id);
         site.emplace_back(run->i + n, run->j, run->k);
-        corner.push_back(c);
         box.push_back(one);
     }
     const std::vector<NearPair> pair = near_pairs(point, box);
 
-    std::vector<Contact> found;
-    auto old = last.begin();
+    ContactList found;
+    std::size_t old = 0;
+    const auto keep = [&] {
+        if (!last.memory[old].history.touches) return;
+        found.contact.push_back(last.contact[old]);
+        found.memory.push_back(last.memory[old]);
+    };
     const auto one_place = [](const Vec3i& a, const Vec3i& b) {
         return ((a - b).array().abs() <= kSheet).all();
     };
+    std::vector<double> nearest;  // of those found at this point
     for (std::size_t n = 0; n < pair.size();) {
         const int p = pair[n].point;
-        for (; old != last.end() && old->point < p; ++old) {
-            if (old->history.touches) found.push_back(*old);
-        }
+        for (; old < last.size() && last.contact[old].point < p; ++old) keep();
         const std::size_t first = found.size();
-        for (; old != last.end() && old->point == p; ++old) {
-            if (old->history.touches) found.push_back(*old);
-        }
+        for (; old < last.size() && last.contact[old].point == p; ++old) keep();
         const std::size_t kept = found.size();
-        std::vector<double> nearest;
+        nearest.clear();
         for (; n < pair.size() && pair[n].point == p; ++n) {
             const int b = pair[n].box;
             if (!from.meets(p)) continue;
@@ -83,22 +83,25 @@ std::vector<Contact> find_contacts(const ContactSide& from, const ContactSide& o
             const double far = (box[b].center() - point[p]).squaredNorm();
             bool is_new = true;
             for (std::size_t m = first; m < found.size() && is_new; ++m) {
-                if (!one_place(found[m].site, site[b])) continue;
+                Contact& other_place = found.contact[m];
+                if (!one_place(other_place.site, site[b])) continue;
                 is_new = false;
                 if (m < kept || far >= nearest[m - kept]) continue;
                 nearest[m - kept] = far;
-                found[m].cell = cell[b];
-                found[m].site = site[b];
-                found[m].corner = corner[b];
+                other_place.cell = cell[b];
+                other_place.site = site[b];
             }
             if (!is_new) continue;
-            found.push_back({{cell[b], site[b], corner[b]}, p});
+            Contact contact;
+            contact.cell = cell[b];
+            contact.site = site[b];
+            contact.point = p;
+            found.contact.push_back(contact);
+            found.memory.emplace_back();
             nearest.push_back(far);
         }
     }
-    for (; old != last.end(); ++old) {
-        if (old->history.touches) found.push_back(*old);
-    }
+    for (; old < last.size(); ++old) keep();
     return found;
 }
 

@@ -2,15 +2,13 @@
 // Which points of one body's surface may come to lie in which cells of another, or of its own.
 #pragma once
 
-#include <vector>
-
-#include "sim/contact_way.h"
+#include "sim/contact_list.h"
 
 namespace swage {
 
 // All points within `margin` [m] of a cell at the surface, one contact for each place where they
 // may meet it; contacts that touch are kept as they are. Sorted by point.
-std::vector<Contact> find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
-                                   const std::vector<Contact>& last);
+ContactList find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
+                          const ContactList& last);
 
 }  // namespace swage

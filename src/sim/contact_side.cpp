@@ -21,8 +21,8 @@ bool in_box(const Vec3i& at) { return (at.array().abs() <= kNear).all(); }
 
 }  // namespace
 
-ContactSide::ContactSide(Aggregate& matter, bool itself) : matter_(&matter), itself_(itself) {
-    for (double mass : matter.particle_mass) lightness_.push_back(1 / mass);
+ContactSide::ContactSide(Aggregate& matter, bool itself)
+    : matter_(&matter), patch_(matter), itself_(itself) {
     connections_changed();
 }
 

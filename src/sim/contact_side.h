@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "sim/contact_patch.h"
 #include "sim/rest_surface.h"
 
 namespace swage {
@@ -37,7 +38,9 @@ class ContactSide {
         }
         return x;
     }
-    const std::vector<double>& lightness() const { return lightness_; }  // 1 / mass [1/kg]
+    // Of all ways that this side is part of.
+    ContactPatch& patch() { return patch_; }
+    const ContactPatch& patch() const { return patch_; }
     const RestSurface& surface() const { return *surface_; }
     // A whole cell not deep inside, which a point may meet.
     bool may_hold(CellId cell) const { return cell >= 0 && whole_[cell] && surface_->is_rim(cell); }
@@ -57,7 +60,7 @@ class ContactSide {
     void find_near();
 
     Aggregate* matter_;
-    std::vector<double> lightness_;
+    ContactPatch patch_;
     bool itself_;
     SurfacePoints points_;
     std::vector<Vec3i> home_;  // of each point, the cell that it lies in or just outside of

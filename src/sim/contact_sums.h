@@ -14,7 +14,7 @@ struct ContactSums {
     double damped = 0;            // taken by dashpots and by parting [J]
     double work = 0;              // done on the body [J]
     double came = 0, goes = 0;    // power on the body before and after now [W]
-    double took = 0, takes = 0;   // power of dashpots likewise [W]
+    double took = 0;              // power of dashpots before now, and after they were last found
     double penetration = 0;       // of the deepest point in contact [m]
     int contacts = 0, sliding = 0;
 
@@ -26,13 +26,12 @@ struct ContactSums {
         came += other.came;
         goes += other.goes;
         took += other.took;
-        takes += other.takes;
         penetration = std::max(penetration, other.penetration);
         contacts += other.contacts;
         sliding += other.sliding;
     }
     // The same contacts while nothing moves.
-    void freeze() { friction = damped = came = goes = took = takes = 0; }
+    void freeze() { friction = damped = came = goes = took = 0; }
     // Nothing is taken yet where `now` holds.
     void start(const ContactSums& now) {
         *this = now;
@@ -42,12 +41,11 @@ struct ContactSums {
     // Those found at the end of the next step [s].
     void add(const ContactSums& next, double step) {
         work += 0.5 * step * (goes + next.came);
-        damped += 0.5 * step * (takes + next.took) + next.damped;
+        damped += 0.5 * step * next.took + next.damped;
         friction += next.friction;
         penetration = std::max(penetration, next.penetration);
         stored = next.stored;
         goes = next.goes;
-        takes = next.takes;
         contacts = next.contacts;
         sliding = next.sliding;
     }

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "sim/contact_search.h"
 #include "sim/surface_forces.h"
+#include "sim/vector_clones.h"
 
 namespace swage {
 
@@ -14,9 +16,11 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  // contacts
 
+std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+
 }  // namespace
 
-ContactWay::ContactWay(const ContactSide& from, const ContactSide& onto, double stiffness)
+ContactWay::ContactWay(ContactSide& from, ContactSide& onto, double stiffness)
     : from_(&from), onto_(&onto), scale_(stiffness) {
     const Material &m = from.matter().material, &n = onto.matter().material;
     const double soft = m.young_modulus / from.matter().lattice.spacing,
@@ -32,17 +36,50 @@ ContactWay::ContactWay(const ContactSide& from, const ContactSide& onto, double 
     set_stiffness(0);
 }
 
-void ContactWay::surfaces_changed(bool points_too, double step) {
-    has_broken_ = true;
-    for (Contact& contact : contact_) contact.is_new = true;
-    if (!points_too) return;
-    const int own = static_cast<int>(from_->own_points());
-    std::erase_if(contact_, [&](const Contact& c) { return c.point >= own; });
-    set_stiffness(step);
+void ContactWay::set_contacts(const ContactList& contacts) {
+    list_ = contacts;
+    is_found_ = false;
 }
 
 void ContactWay::search(double margin) {
-    contact_ = find_contacts(*from_, *onto_, margin, contact_);
+    list_ = find_contacts(*from_, *onto_, margin, list_);
+    is_found_ = false;
+}
+
+void ContactWay::resolve() {
+    const Lattice& lattice = onto_->matter().lattice;
+    const SurfacePoints& points = from_->points();
+    CellId last = -1;
+    std::array<int, 8> corner{};
+    for (Contact& contact : list_.contact) {
+        if (contact.cell != last) {
+            last = contact.cell;
+            const std::array<ParticleId, 8> particle = lattice.cell_corners(last);
+            for (int c = 0; c < 8; ++c) corner[c] = onto_->patch().slot_of(particle[c]);
+        }
+        contact.corner = corner;
+        contact.carriers = 0;
+        for (int c = 0; c < 8; ++c) {
+            const float w = points.weight[contact.point][c];
+            if (w == 0) continue;
+            contact.carrier[contact.carriers] =
+                from_->patch().slot_of(points.corner[contact.point][c]);
+            contact.share[contact.carriers++] = w;
+        }
+    }
+}
+
+void ContactWay::surfaces_changed(bool points_too, double step) {
+    has_broken_ = true;
+    for (ContactMemory& memory : list_.memory) memory.is_new = true;
+    is_found_ = false;
+    if (!points_too) return;
+    const int own = static_cast<int>(from_->own_points());
+    std::size_t kept = 0;  // new points come last
+    while (kept < list_.size() && list_.contact[kept].point < own) ++kept;
+    list_.contact.resize(kept);
+    list_.memory.resize(kept);
+    set_stiffness(step);
 }
 
 void ContactWay::set_stiffness(double step) {
@@ -64,216 +101,238 @@ void ContactWay::set_stiffness(double step) {
     }
 }
 
+// What is done with each contact, for the width of vectors that the caller is built for.
+struct ContactWay::Kernel {
+    ContactWay& way;
+    const ContactSide& onto = *way.onto_;
+    ContactPatch &a = way.from_->patch(), &b = way.onto_->patch();
+
+    static bool is_known(const Meeting& at) { return at.inverse[0][3] != 0; }
+    static bool meets(const Meeting& at) { return at.inverse[1][3] != 0; }
+
+    // Where the point lies in the other side.
+    SWAGE_INLINE void find(Contact& contact, const ContactMemory& last, CellCorners& corner,
+                           CellGradient& gradient, Meeting& at) const {
+        const double hold = way.hold_[contact.point];
+        Vec4 x{};
+        for (int c = 0; c < contact.carriers; ++c) {
+            x += double(contact.share[c]) * a.motion(contact.carrier[c]).place;
+        }
+        const Vec3 was = contact.place;
+        if (!find_place(onto, x, contact, corner, gradient)) {
+            const Vec3 p = contact.place;
+            // Outside, but what sticks may still hold it.
+            const bool held = last.history.touches && hold > 0 && (p.array() > -0.3).all() &&
+                              (p.array() < 1.3).all();
+            if (!held) {
+                contact.place = was.cwiseMax(0.0).cwiseMin(1.0);
+                return;
+            }
+        }
+        if (!onto.may_hold(contact.cell) || !(gradient.volume > 0)) return;
+        const RestSurface::Depth depth = onto.surface().at(contact.cell, contact.place);
+        const double share = 1 / gradient.volume;
+        Vec4 slope{};
+        for (int i = 0; i < 3; ++i) {
+            at.inverse[i] = share * gradient.r[i];
+            slope += depth.gradient[i] * at.inverse[i];
+            at.inverse[i][3] = 0;
+        }
+        const double size = std::sqrt(dot3(slope, slope));
+        if (!(size > 0)) return;
+        if (way.from_ == way.onto_ &&
+            onto.is_closed_crack(contact.point, contact.site.cast<double>() + contact.place)) {
+            return;
+        }
+        at.normal = slope / size;
+        at.normal[3] = -depth.distance / size;
+        at.inverse[0][3] = 1;
+        at.inverse[1][3] = at.normal[3] > 0 || (last.history.touches && hold > 0);
+    }
+
+    // All that does not depend on forces.
+    SWAGE_INLINE void prepare(const Contact& contact, const ContactMemory& last,
+                              const CellCorners& corner, const CellGradient& gradient, double step,
+                              Meeting& at, double& took) const {
+        const std::array<double, 8> weight = trilinear_weights(contact.place);
+        double give = 0;
+        at.now = Vec4{};
+        for (int c = 0; c < contact.carriers; ++c) {
+            const double w = contact.share[c];
+            const ContactPatch::Motion& motion = a.motion(contact.carrier[c]);
+            at.now += w * motion.speed;
+            give += w * w * motion.place[3];
+        }
+        for (int c = 0; c < 8; ++c) {
+            at.now -= weight[c] * corner.now[c]->speed;
+            give += weight[c] * weight[c] * corner.now[c]->place[3];
+        }
+        took -= dot3(at.now, vec4(contact.dashed));
+        const double hold = way.hold_[contact.point];
+        if (way.has_broken_ && is_known(at)) {
+            const double pressed = last.history.touches ? last.pressed : 0;
+            const double could = last.is_new ? 0 : 2 * step * std::sqrt(dot3(at.now, at.now));
+            double& depth = at.normal[3];
+            const double sunk = std::max(last.is_new ? 0 : last.sunk, depth - pressed - could);
+            at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, depth));
+            depth -= at.now[3];
+            if (!(depth > 0 || hold > 0)) at.inverse[1][3] = 0;
+        }
+        if (!meets(at)) return;
+        const double k = way.stiffness_[contact.point];
+        const double push = std::max(k * at.normal[3], -hold);
+        at.spring = push * at.normal;
+        at.reach = Vec4{};
+        if (last.history.touches) {
+            const Vec3 way_back = last.anchor - contact.site.cast<double>() - contact.place;
+            at.reach = gradient.g[0] * way_back.x() + gradient.g[1] * way_back.y() +
+                       gradient.g[2] * way_back.z();
+            const Vec4 along = k * (at.reach - dot3(at.normal, at.reach) * at.normal);
+            const double limit =
+                (last.history.slides ? way.law_.friction : way.law_.holding) * (push + hold);
+            const double size = std::sqrt(dot3(along, along));
+            at.spring += size > limit ? limit / size * along : along;
+        }
+        at.spring[3] = 0;
+        at.reach[3] = give;
+    }
+
+    SWAGE_INLINE void find_chunk(std::size_t chunk, double step) const {
+        Chunk& result = way.chunk_[chunk];
+        result.moved.clear();
+        result.took = 0;
+        const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
+            Contact& contact = way.list_.contact[n];
+            const ContactMemory& last = way.list_.memory[n];
+            Meeting& at = way.meeting_[n];
+            at.normal = at.now = at.inverse[0] = at.inverse[1] = Vec4{};
+            const CellId was = contact.cell;
+            CellCorners corner(b, contact);
+            CellGradient gradient;
+            find(contact, last, corner, gradient, at);
+            if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
+            if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
+            prepare(contact, last, corner, gradient, step, at, result.took);
+        }
+    }
+
+    // Adds a force on the point and its opposite on the cell that holds it.
+    SWAGE_INLINE void spread(const Contact& contact, const std::array<double, 8>& weight,
+                             Vec4 f) const {
+        for (int c = 0; c < contact.carriers; ++c) {
+            a.force(contact.carrier[c]) += double(contact.share[c]) * f;
+        }
+        for (int c = 0; c < 8; ++c) b.force(contact.corner[c]) -= weight[c] * f;
+    }
+
+    SWAGE_INLINE void push() const {
+        for (std::size_t n = 0; n < way.list_.size(); ++n) {
+            const Contact& contact = way.list_.contact[n];
+            if (!meets(way.meeting_[n])) continue;
+            spread(contact, trilinear_weights(contact.place), way.meeting_[n].spring);
+        }
+    }
+
+    SWAGE_INLINE ImpactForce impact(const Contact& contact, const ContactMemory& last,
+                                    const Meeting& at, double step) const {
+        const std::array<double, 8> weight = trilinear_weights(contact.place);
+        const double give = at.reach[3];
+        Vec4 push = -give * at.spring;  // of all others, over the mass
+        for (int c = 0; c < contact.carriers; ++c) {
+            const Vec4& f = a.force(contact.carrier[c]);
+            push += contact.share[c] * f[3] * f;
+        }
+        for (int c = 0; c < 8; ++c) {
+            const Vec4& f = b.force(contact.corner[c]);
+            push -= weight[c] * f[3] * f;
+        }
+        ImpactLaw law = way.law_;
+        law.stiffness = way.stiffness_[contact.point];
+        law.hold = way.hold_[contact.point];
+        const ImpactForce f = impact_force(law,
+                                           {.depth = at.normal[3],
+                                            .normal = vec3(at.normal),
+                                            .now = vec3(at.now),
+                                            .velocity = vec3(at.now + step * push),
+                                            .reach = vec3(at.reach),
+                                            .give = give,
+                                            .step = step},
+                                           last.history);
+        spread(contact, weight, vec4(f.force) - at.spring);
+        return f;
+    }
+
+    SWAGE_INLINE void respond(double step) const {
+        ContactSums& sums = way.sums_ = {};
+        for (const Chunk& chunk : way.chunk_) sums.took += 0.5 * chunk.took;
+        for (std::size_t n = 0; n < way.list_.size(); ++n) {
+            Contact& contact = way.list_.contact[n];
+            const ContactMemory& last = way.list_.memory[n];
+            const Meeting& at = way.meeting_[n];
+            ContactMemory& next = way.next_[n];
+            ImpactForce f;
+            if (meets(at)) f = impact(contact, last, at, step);
+            next.history = f.history;
+            next.bond = f.bond;
+            next.sunk = at.now[3];
+            next.pressed = at.normal[3];
+            next.is_new = last.is_new && !is_known(at);
+            contact.dashed = f.force - f.elastic;
+            if (f.history.touches) {
+                const Vec4 reach = vec4(f.reach);
+                next.anchor = contact.site.cast<double>() + contact.place +
+                              Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
+                                   dot3(at.inverse[2], reach));
+                sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
+                sums.stored += 0.5 * f.stored;
+                sums.friction += 0.5 * f.friction;
+                sums.penetration = std::max(sums.penetration, at.normal[3]);
+                ++sums.contacts;
+                sums.sliding += f.history.slides;
+            } else if (last.history.touches) {
+                const double k = way.stiffness_[contact.point];
+                sums.damped += 0.5 * parting_loss(k, last.bond, vec3(at.now), step);
+            }
+        }
+    }
+};
+
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_find_chunk(std::size_t chunk, double step) {
+    Kernel{*this}.find_chunk(chunk, step);
+}
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_push() { Kernel{*this}.push(); }
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step) { Kernel{*this}.respond(step); }
+
+void ContactWay::find_chunk(std::size_t chunk, double step) {
+    if (vector_width() >= 4) return middle_find_chunk(chunk, step);
+    Kernel{*this}.find_chunk(chunk, step);
+}
+
 void ContactWay::meet(double step) {
-    const std::size_t count = contact_.size();
-    meeting_.resize(count);
-    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t stop = std::min(count, (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
-            meeting_[n] = find(contact_[n]);
-            prepare(contact_[n], step, meeting_[n]);
-        }
-    });
-}
-
-ContactWay::Meeting ContactWay::find(Contact& contact) const {
-    const ContactSide &a = *from_, &b = *onto_;
-    Meeting meeting;
-    const Vec3 x = a.position(contact.point);
-    const Vec3 was = contact.place;
-    if (!find_place(b, x, contact, meeting.gradient)) {
-        const Vec3 p = contact.place;
-        // Outside, but what sticks may still hold it.
-        const bool held = contact.history.touches && law_.hold >= 0 && hold_[contact.point] > 0 &&
-                          (p.array() > -0.3).all() && (p.array() < 1.3).all();
-        if (!held) {
-            contact.place = was.cwiseMax(0.0).cwiseMin(1.0);
-            return meeting;
-        }
-    }
-    if (!b.may_hold(contact.cell)) return meeting;
-    const RestSurface::Depth depth = b.surface().at(contact.cell, contact.place);
-    const Vec3 slope = meeting.gradient.inverse().transpose() * depth.gradient;
-    const double size = slope.norm();
-    if (!(size > 0)) return meeting;
-    if (from_ == onto_ &&
-        b.is_closed_crack(contact.point, contact.site.cast<double>() + contact.place)) {
-        return meeting;
-    }
-    meeting.is_known = true;
-    meeting.depth = -depth.distance / size;
-    meeting.normal = slope / size;
-    meeting.meets = meeting.depth > 0 || (contact.history.touches && hold_[contact.point] > 0);
-    return meeting;
-}
-
-// All that does not depend on forces.
-void ContactWay::prepare(const Contact& contact, double step, Meeting& at) const {
-    const ContactSide &a = *from_, &b = *onto_;
-    const Vec3Array &speed_a = a.matter().particle_velocity,
-                    &speed_b = b.matter().particle_velocity;
-    const SurfacePoints& points = a.points();
-    const auto& carrier = points.corner[contact.point];
-    const auto& share = points.weight[contact.point];
-    at.weight = trilinear_weights(contact.place);
-    at.own.setZero();
-    Vec3 other = Vec3::Zero();
-    at.give = 0;
-    for (int c = 0; c < 8; ++c) {
-        const double w = share[c], u = at.weight[c];
-        const ParticleId p = carrier[c], q = contact.corner[c];
-        if (w != 0) {
-            at.own += w * speed_a.at(p);
-            at.give += w * w * a.lightness()[p];
-        }
-        other += u * speed_b.at(q);
-        at.give += u * u * b.lightness()[q];
-    }
-    at.now = at.own - other;
-    if (has_broken_ && at.is_known) {
-        const double pressed = contact.history.touches ? contact.pressed : 0;
-        const double could = contact.is_new ? 0 : 2 * step * at.now.norm();
-        const double sunk = std::max(contact.is_new ? 0 : contact.sunk, at.depth - pressed - could);
-        at.sunk = std::clamp(sunk, 0.0, std::max(0.0, at.depth));
-        at.depth -= at.sunk;
-        at.meets = at.meets && (at.depth > 0 || hold_[contact.point] > 0);
-    }
-    if (!at.meets) return;
-    at.reach.setZero();
-    const double k = stiffness_[contact.point];
-    at.spring = std::max(k * at.depth, -hold_[contact.point]) * at.normal;
-    if (!contact.history.touches) return;
-    at.reach = at.gradient * (contact.anchor - contact.site.cast<double>() - contact.place);
-    const Vec3 along = k * (at.reach - at.normal * at.normal.dot(at.reach));
-    const double limit = (contact.history.slides ? law_.friction : law_.holding) *
-                         (at.spring.dot(at.normal) + hold_[contact.point]);
-    const double size = along.norm();
-    at.spring += size > limit ? limit / size * along : along;
-}
-
-// Adds a force on contact n's point and its opposite on the cell that holds it.
-void ContactWay::spread(std::size_t n, const Vec3& f, Vec3Array& on_a, Vec3Array& on_b) const {
-    const SurfacePoints& points = from_->points();
-    const Contact& at = contact_[n];
-    const auto& share = points.weight[at.point];
-    for (int c = 0; c < 8; ++c) {
-        if (share[c] != 0) on_a.add(points.corner[at.point][c], share[c] * f);
-        on_b.add(at.corner[c], -meeting_[n].weight[c] * f);
-    }
-}
-
-void ContactWay::push(Vec3Array& on_a, Vec3Array& on_b) const {
-    for (std::size_t n = 0; n < contact_.size(); ++n) {
-        if (meeting_[n].meets) spread(n, meeting_[n].spring, on_a, on_b);
-    }
-}
-
-void ContactWay::respond(double step, Vec3Array& on_a, Vec3Array& on_b) {
-    const std::vector<double>&light_a = from_->lightness(), &light_b = onto_->lightness();
-    const SurfacePoints& points = from_->points();
-    auto& [sum_a, sum_b] = sum_ = {};
-    push_.assign(contact_.size(), {});
-    for (std::size_t n = 0; n < contact_.size(); ++n) {
-        const Contact& contact = contact_[n];
-        const Meeting& at = meeting_[n];
-        const int point = contact.point;
-        ImpactForce& f = push_[n].made;
-        if (at.meets) {
-            const auto& carrier = points.corner[point];
-            const auto& share = points.weight[point];
-            Vec3 push = -at.give * at.spring;  // of all others, over the mass
-            for (int c = 0; c < 8; ++c) {
-                const ParticleId p = carrier[c], q = contact.corner[c];
-                if (share[c] != 0) push += share[c] * light_a[p] * on_a.at(p);
-                push -= at.weight[c] * light_b[q] * on_b.at(q);
-            }
-            ImpactLaw law = law_;
-            law.stiffness = stiffness_[point];
-            law.hold = hold_[point];
-            f = impact_force(law,
-                             {.depth = at.depth,
-                              .normal = at.normal,
-                              .now = at.now,
-                              .velocity = at.now + step * push,
-                              .reach = at.reach,
-                              .give = at.give,
-                              .step = step},
-                             contact.history);
-            spread(n, f.force - at.spring, on_a, on_b);
-        }
-        if (f.history.touches) {
-            const Vec3 here = contact.site.cast<double>() + contact.place;
-            push_[n].anchor = here + at.gradient.inverse() * f.reach;
-            for (ContactSums* sum : {&sum_a, &sum_b}) {
-                sum->stored += 0.5 * f.stored;
-                sum->friction += 0.5 * f.friction;
-                sum->penetration = std::max(sum->penetration, at.depth);
-                ++sum->contacts;
-                sum->sliding += f.history.slides;
-            }
-        } else if (contact.history.touches) {
-            const double lost = parting_loss(stiffness_[point], contact.bond, at.now, step);
-            sum_a.damped += 0.5 * lost;
-            sum_b.damped += 0.5 * lost;
+    meeting_.resize(list_.size());
+    chunk_.resize(chunks(list_.size()));
+    parallel_for(chunk_.size(), [&](std::size_t chunk) { find_chunk(chunk, step); });
+    for (const Chunk& chunk : chunk_) {
+        for (int n : chunk.moved) {
+            Contact& contact = list_.contact[n];
+            const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
+            for (int c = 0; c < 8; ++c) contact.corner[c] = onto_->patch().slot_of(particle[c]);
         }
     }
 }
 
-void ContactWay::book(double step, const Vec3& gravity, const Vec3Array& on_a,
-                      const Vec3Array& on_b) {
-    const std::vector<double>&light_a = from_->lightness(), &light_b = onto_->lightness();
-    const SurfacePoints& points = from_->points();
-    struct Power {
-        double came[2] = {0, 0}, goes[2] = {0, 0};  // on the one body and on the other
-        double took = 0, takes = 0;
-    };
-    std::vector<Power> power((contact_.size() + kChunk - 1) / kChunk);
-    parallel_for(power.size(), [&](std::size_t chunk) {
-        Power& sum = power[chunk];
-        const std::size_t stop = std::min(contact_.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
-            const Contact& contact = contact_[n];
-            const ImpactForce& f = push_[n].made;
-            if (!f.history.touches) continue;
-            const auto& carrier = points.corner[contact.point];
-            const auto& share = points.weight[contact.point];
-            const std::array<double, 8>& weight = meeting_[n].weight;
-            Vec3 va = meeting_[n].own, vb = va - meeting_[n].now, pa = gravity, pb = gravity;
-            for (int c = 0; c < 8; ++c) {
-                const ParticleId p = carrier[c], q = contact.corner[c];
-                if (share[c] != 0) pa += share[c] * light_a[p] * on_a.at(p);
-                pb += weight[c] * light_b[q] * on_b.at(q);
-            }
-            const Vec3 dashed = f.force - f.elastic;
-            sum.came[0] += f.force.dot(va);
-            sum.came[1] -= f.force.dot(vb);
-            sum.took -= dashed.dot(va - vb);
-            va += step * pa, vb += step * pb;
-            sum.goes[0] += f.force.dot(va);
-            sum.goes[1] -= f.force.dot(vb);
-            sum.takes -= dashed.dot(va - vb);
-        }
-    });
-    for (const Power& sum : power) {
-        for (int s = 0; s < 2; ++s) {
-            sum_[s].came += sum.came[s];
-            sum_[s].goes += sum.goes[s];
-            sum_[s].took += 0.5 * sum.took;
-            sum_[s].takes += 0.5 * sum.takes;
-        }
-    }
+void ContactWay::push() { vector_width() >= 4 ? middle_push() : Kernel{*this}.push(); }
+
+void ContactWay::respond(double step) {
+    next_.resize(list_.size());
+    vector_width() >= 4 ? middle_respond(step) : Kernel{*this}.respond(step);
+    is_found_ = true;
 }
 
 void ContactWay::commit() {
-    for (std::size_t n = 0; n < contact_.size(); ++n) {
-        Contact& contact = contact_[n];
-        contact.history = push_[n].made.history;
-        contact.anchor = push_[n].anchor;
-        contact.bond = push_[n].made.bond;
-        contact.sunk = meeting_[n].sunk;
-        contact.pressed = meeting_[n].depth;
-        contact.is_new = contact.is_new && !meeting_[n].is_known;
-    }
+    if (is_found_) std::swap(list_.memory, next_);
+    is_found_ = false;
 }
 
 }  // namespace swage

@@ -12,41 +12,26 @@
 // of the other body. A point is never stiffer than a quarter of what its lightest carrier can
 // follow in one step.
 //
-// In each step, of all ways: meet(), push(), respond(), book(); and commit() where it is kept.
+// In each step: resolve() where contacts have been found anew; then of all ways meet(), with
+// push() after each; then of all respond(); and commit() where the step is kept. Both sides'
+// patches are read before and written after.
 #pragma once
 
-#include <array>
-#include <vector>
-
-#include "laws/impact.h"
-#include "sim/cell_place.h"
-#include "sim/contact_side.h"
-#include "sim/contact_sums.h"
+#include "sim/contact_list.h"
 
 namespace swage {
-
-// A point and the cell of the other side that holds it, or the last that did.
-struct Contact : CellPlace {
-    int point;
-    Vec3 anchor = Vec3::Zero();  // in cells from the other's origin
-    ImpactHistory history{};
-    Vec3 bond = Vec3::Zero();  // ImpactForce::bond [N]
-    // Where matter has broken a point may be deep in what lies there at once, and deeper than it
-    // can have gone: nobody has pressed it in. That much of the depth does not count until it has
-    // come out again [m].
-    double sunk = 0, pressed = 0;  // pressed: what counted
-    bool is_new = true;            // to the surfaces as they are
-};
 
 class ContactWay {
   public:
     // The sides, which may be one, must outlive it; `stiffness` is SimSettings::contact_stiffness.
-    ContactWay(const ContactSide& from, const ContactSide& onto, double stiffness);
+    ContactWay(ContactSide& from, ContactSide& onto, double stiffness);
 
-    const std::vector<Contact>& contacts() const { return contact_; }
-    void set_contacts(const std::vector<Contact>& contacts) { contact_ = contacts; }
+    const ContactList& contacts() const { return list_; }
+    void set_contacts(const ContactList& contacts);
     // Finds what is nearer than `margin` [m]; what touches stays.
     void search(double margin);
+    // Takes what its contacts touch into both sides' patches, which have been cleared.
+    void resolve();
 
     void set_stiffness(double step);  // for steps of this length [s]; 0: any
     // What is whole has changed on one side or both: the first too, whose points are others then.
@@ -54,52 +39,48 @@ class ContactWay {
 
     // How each point lies and moves now, for a step of this length [s].
     void meet(double step);
-    // Adds what springs do to the forces on the one side and on the other.
-    void push(Vec3Array& on_a, Vec3Array& on_b) const;
+    // Adds what springs do.
+    void push();
     // Dashpots and friction, one contact after the other, given what all springs do.
-    void respond(double step, Vec3Array& on_a, Vec3Array& on_b);
-    // What the contacts do while the bodies move, now that all forces are known.
-    void book(double step, const Vec3& gravity, const Vec3Array& on_a, const Vec3Array& on_b);
+    void respond(double step);
     // While nothing moves.
-    void freeze() {
-        for (ContactSums& sum : sum_) sum.freeze();
-    }
-    // Of the one side and of the other.
-    const std::array<ContactSums, 2>& sums() const { return sum_; }
+    void freeze() { sums_.freeze(); }
+    // Of each side, less the power that forces have: the patches' matter.
+    const ContactSums& sums() const { return sums_; }
     // The step is kept: remembers where points stick and how they met.
     void commit();
 
   private:
-    // What a contact does at the present positions.
-    struct Push {
-        ImpactForce made;
-        Vec3 anchor;
+    // How a point meets the cell that holds it, at the present positions. The fourth lanes hold
+    // what has no vector.
+    struct alignas(32) Meeting {
+        Vec4 normal;      // and the depth that counts [m]
+        Vec4 reach;       // from the point to where it sticks [m]; ImpactState::give [1/kg]
+        Vec4 now;         // speed of the point over the other side [m/s]; depth that does not [m]
+        Vec4 spring;      // what its springs do [N]; 1 where it meets, 0 where it does not
+        Vec4 inverse[3];  // rows of J^-1 [1/m]; 1 in the first where its depth is known
     };
-    // How a point meets the cell that holds it.
-    struct Meeting {
-        bool meets = false, is_known = false;
-        double depth = 0, sunk = 0;  // depth: that counts
-        Vec3 normal, reach;          // reach: from the point to where it sticks [m]
-        Mat3 gradient;               // J [m]
-        std::array<double, 8> weight;
-        Vec3 own;     // of the point [m/s]
-        Vec3 now;     // speed of the point over the other side [m/s]
-        double give;  // ImpactState::give [1/kg]
-        Vec3 spring;  // what its springs do [N]
+    struct Chunk {
+        std::vector<int> moved;  // contacts that have come into other cells
+        double took = 0;         // ContactSums::took, of the one half
     };
-    Meeting find(Contact& contact) const;
-    void prepare(const Contact& contact, double step, Meeting& meeting) const;
-    void spread(std::size_t n, const Vec3& f, Vec3Array& on_a, Vec3Array& on_b) const;
+    struct Kernel;
+    void find_chunk(std::size_t chunk, double step);
+    void middle_find_chunk(std::size_t chunk, double step);
+    void middle_push();
+    void middle_respond(double step);
 
-    const ContactSide *from_, *onto_;
+    ContactSide *from_, *onto_;
     double scale_;             // contact_stiffness
     bool has_broken_ = false;  // one of them
     ImpactLaw law_{};          // stiffness and hold: of each point
     std::vector<double> stiffness_{}, hold_{};
-    std::vector<Contact> contact_{};  // sorted by point
-    std::vector<Meeting> meeting_{};  // of each, at the present positions
-    std::vector<Push> push_{};        // likewise
-    std::array<ContactSums, 2> sum_{};
+    ContactList list_;
+    std::vector<Meeting> meeting_{};     // of each contact
+    std::vector<ContactMemory> next_{};  // to commit
+    bool is_found_ = false;              // since the last commit
+    std::vector<Chunk> chunk_;
+    ContactSums sums_{};
 };
 
 }  // namespace swage

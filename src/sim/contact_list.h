@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points of one body's surface and the cells of another, or of its own, that may hold them.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "laws/impact.h"
+#include "sim/cell_place.h"
+
+namespace swage {
+
+// A point and the cell that holds it, or the last that did.
+struct Contact : CellPlace {
+    int point;
+    // What carries the point, in its body's patch; first those with a share.
+    int carriers = 0;
+    std::array<int, 8> carrier;
+    std::array<float, 8> share;
+    Vec3 dashed = Vec3::Zero();  // what its dashpots did when last found [N]
+};
+
+// What it remembers, committed once a step.
+struct ContactMemory {
+    Vec3 anchor = Vec3::Zero();  // in cells from the other's origin
+    Vec3 bond = Vec3::Zero();    // ImpactForce::bond [N]
+    ImpactHistory history{};
+    // Where matter has broken a point may be deep in what lies there at once, and deeper than it
+    // can have gone: nobody has pressed it in. That much of the depth does not count until it has
+    // come out again [m].
+    double sunk = 0, pressed = 0;  // pressed: what counted
+    bool is_new = true;            // to the surfaces as they are
+};
+
+// Sorted by point.
+struct ContactList {
+    std::vector<Contact> contact;
+    std::vector<ContactMemory> memory;
+    std::size_t size() const { return contact.size(); }
+};
+
+}  // namespace swage
