@@ -41,6 +41,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "laws/lane_tensor.h"
 
 namespace swage {
 
@@ -119,8 +120,8 @@ inline double parting_loss(double stiffness, const Vec3& bond, const Vec3& veloc
     return 0.5 * bond.dot(bond / stiffness - step * velocity);
 }
 
-inline ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
-                                const ImpactHistory& last) {
+SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
+                                      const ImpactHistory& last) {
     ImpactForce result;
     const double k = law.stiffness;
     if (at.depth <= 0 && !(last.touches && law.hold > 0 && k * at.depth >= -law.hold))
@@ -146,13 +147,15 @@ inline ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
     const Vec3 across = at.velocity + approach * at.normal;
     Vec3 T = (k * reach - along * across) / (1 + along * m);
     const double size = T.norm(), bears = N + law.hold;
-    const double speed = (at.now + rate * at.normal).norm();
-    const double slow = kSlow * law.holding * bears / k * std::sqrt(k * at.give);
-    if (speed < 0.5 * slow || !(bears > 0)) next.slides = false;
+    const auto is_slow = [&](double part) __attribute__((always_inline)) {
+        const double speed = (at.now + rate * at.normal).norm();
+        return speed <= part * kSlow * law.holding * bears / k * std::sqrt(k * at.give);
+    };
+    if (!(bears > 0) || (next.slides && is_slow(0.5))) next.slides = false;
     result.reach = reach;
     const double limit = (next.slides ? law.friction : law.holding) * bears;
     if (size > limit) {
-        next.slides = next.slides || speed > slow;
+        next.slides = next.slides || !is_slow(1);
         T *= (next.slides ? law.friction : law.holding) * bears / size;
         if (T.norm() < k * reach.norm()) {
             result.reach = T / k;

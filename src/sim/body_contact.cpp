@@ -147,10 +147,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().read(*force[b]);
     }
-    for (std::size_t w : awake) {
-        way_[w].meet(step);
-        way_[w].push();
-    }
+    for (std::size_t w : awake) way_[w].meet(step);
     for (std::size_t w : awake) way_[w].respond(step);
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().write(*force[b], gravity, step, sums[b]);

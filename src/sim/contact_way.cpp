@@ -14,7 +14,7 @@ namespace swage {
 
 namespace {
 
-constexpr std::size_t kChunk = 1024;  // contacts
+constexpr std::size_t kChunk = 256;  // contacts
 
 std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
@@ -226,8 +226,9 @@ struct ContactWay::Kernel {
         for (int c = 0; c < 8; ++c) b.force(contact.corner[c]) -= weight[c] * f;
     }
 
-    SWAGE_INLINE void push() const {
-        for (std::size_t n = 0; n < way.list_.size(); ++n) {
+    SWAGE_INLINE void push_chunk(std::size_t chunk) const {
+        const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
             const Contact& contact = way.list_.contact[n];
             if (!meets(way.meeting_[n])) continue;
             spread(contact, trilinear_weights(contact.place), way.meeting_[n].spring);
@@ -301,7 +302,9 @@ struct ContactWay::Kernel {
 SWAGE_MIDDLE_VECTORS void ContactWay::middle_find_chunk(std::size_t chunk, double step) {
     Kernel{*this}.find_chunk(chunk, step);
 }
-SWAGE_MIDDLE_VECTORS void ContactWay::middle_push() { Kernel{*this}.push(); }
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk) {
+    Kernel{*this}.push_chunk(chunk);
+}
 SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step) { Kernel{*this}.respond(step); }
 
 void ContactWay::find_chunk(std::size_t chunk, double step) {
@@ -309,20 +312,27 @@ void ContactWay::find_chunk(std::size_t chunk, double step) {
     Kernel{*this}.find_chunk(chunk, step);
 }
 
+void ContactWay::push_chunk(std::size_t chunk) {
+    for (int n : chunk_[chunk].moved) {
+        Contact& contact = list_.contact[n];
+        const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
+        for (int c = 0; c < 8; ++c) contact.corner[c] = onto_->patch().slot_of(particle[c]);
+    }
+    if (vector_width() >= 4) return middle_push_chunk(chunk);
+    Kernel{*this}.push_chunk(chunk);
+}
+
+// What one thread has just found it pushes at once, while it is near.
 void ContactWay::meet(double step) {
     meeting_.resize(list_.size());
     chunk_.resize(chunks(list_.size()));
-    parallel_for(chunk_.size(), [&](std::size_t chunk) { find_chunk(chunk, step); });
-    for (const Chunk& chunk : chunk_) {
-        for (int n : chunk.moved) {
-            Contact& contact = list_.contact[n];
-            const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
-            for (int c = 0; c < 8; ++c) contact.corner[c] = onto_->patch().slot_of(particle[c]);
-        }
+    const std::size_t group = thread_count() == 1 ? 1 : chunk_.size();
+    for (std::size_t begin = 0; begin < chunk_.size(); begin += group) {
+        const std::size_t end = std::min(chunk_.size(), begin + group);
+        parallel_for(end - begin, [&](std::size_t n) { find_chunk(begin + n, step); });
+        for (std::size_t chunk = begin; chunk < end; ++chunk) push_chunk(chunk);
     }
 }
-
-void ContactWay::push() { vector_width() >= 4 ? middle_push() : Kernel{*this}.push(); }
 
 void ContactWay::respond(double step) {
     next_.resize(list_.size());

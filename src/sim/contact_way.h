@@ -12,8 +12,8 @@
 // of the other body. A point is never stiffer than a quarter of what its lightest carrier can
 // follow in one step.
 //
-// In each step: resolve() where contacts have been found anew; then of all ways meet(), with
-// push() after each; then of all respond(); and commit() where the step is kept. Both sides'
+// In each step: resolve() where contacts have been found anew; then of all ways meet(); then
+// of all respond(); and commit() where the step is kept. Both sides'
 // patches are read before and written after.
 #pragma once
 
@@ -37,10 +37,9 @@ class ContactWay {
     // What is whole has changed on one side or both: the first too, whose points are others then.
     void surfaces_changed(bool points_too, double step);
 
-    // How each point lies and moves now, for a step of this length [s].
+    // Finds how each point lies and moves now, for a step of this length [s], and adds what its
+    // springs do.
     void meet(double step);
-    // Adds what springs do.
-    void push();
     // Dashpots and friction, one contact after the other, given what all springs do.
     void respond(double step);
     // While nothing moves.
@@ -67,7 +66,8 @@ class ContactWay {
     struct Kernel;
     void find_chunk(std::size_t chunk, double step);
     void middle_find_chunk(std::size_t chunk, double step);
-    void middle_push();
+    void push_chunk(std::size_t chunk);
+    void middle_push_chunk(std::size_t chunk);
     void middle_respond(double step);
 
     ContactSide *from_, *onto_;
