@@ -1,33 +1,140 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neither springs nor a strain of C = F^T F know inside from outside: a mirrored cell is as content
-// as the cell, and on the way there the log law drives it on. Below half of its volume a cell
-// therefore also resists by its volume, and more once it is inside out:
+// What crushed cells resist with. Neither springs nor a strain of C = F^T F know inside from
+// outside: a mirrored cell is as content as the cell, and the push against being crushed fades on
+// the way there; rubber's law rests at a point too. Below half of its volume a cell therefore also
+// resists by its volume and by a strain that goes on where the law's turns back:
 //
-//     W = E (1/2 - J)^2 / 2  [J < 1/2]  +  30 E J^2 / 2  [J < 0]     per volume at molding [J/m3]
-//     P = dW/dF = W'(J) cof F                                        [Pa]
+//     W = E (1/2 - J)^2 / 2 + b(J) [H(g(s)) - H(e(s))]        per volume at molding [J/m3]
+//     H(e) = mu |dev e|^2 + K (tr e)^2 / 2        b = (1 - 2 J)^2 (1 + 4 J), 1 where J < 0
+//     e(s) = y + y^3/3 + y^5/5, y = (s^2 - 1)/(s^2 + 1)              the strain of laws/cell.h
+//     g(s) = e(s); below s_t = 1/3, where e is steepest,
+//            e(s_t) - e'(s_t) d / (1 + d/L), d = s_t - s, L = 1/2    rising for every s
 //
-// J = det F. 30 outweighs the log law's push wherever it points the wrong way. Nothing above half
-// the volume feels it, so it changes no answer that can be trusted.
+// J = det F, s the principal stretches. Where J < 0 each of the three may be the one that is
+// turned: H(g) is the mean of the three, weighed by 1/s_i^2, which next to J = 0 leaves the
+// smallest (taken alone, as by Irving, Teran, Fedkiw, "Invertible finite elements", SCA 2004, the
+// force would jump where two are equal). Cells of the cell law give up H(e), which is theirs, for
+// H(g), and so rest in their own shape alone; springs and rubber have H(g) on top.
+//
+// Nothing above half the volume feels any of this: it changes no answer that can be trusted.
+//
+// NOTE: a larger L gives more back than matter can take without being torn; with a smaller one g
+// turns too flat to win over what nearly incompressible matter has besides.
+// NOTE: the plastic strain of matter that has flowed is left out of H(g) - H(e).
 #pragma once
+
+#include <Eigen/SVD>
+
+#include "base/math.h"
 
 namespace swage {
 
 inline constexpr double kGuardedVolume = 0.5;
-inline constexpr double kMirroredStiffness = 30;
+inline constexpr double kSteepest = 1.0 / 3;  // s_t
+inline constexpr double kFlattens = 0.5;      // L
 
-inline double guard_energy(double young_modulus, double volume_ratio) {
-    const double lost = kGuardedVolume - volume_ratio;
-    if (!(lost > 0)) return 0;
-    const double mirrored = volume_ratio < 0 ? volume_ratio : 0;
-    return 0.5 * young_modulus * (lost * lost + kMirroredStiffness * mirrored * mirrored);
+struct GuardModuli {
+    double young, shear, bulk;  // E, mu, K [Pa]
+    bool replaces_strain;       // the cell's own law is H(e)
+};
+
+struct GuardedCell {
+    double energy;  // W [J/m3]
+    Mat3 stress;    // P = dW/dF [Pa]
+};
+
+// e and de/ds at one stretch.
+struct StretchStrain {
+    double value, slope;
+};
+inline StretchStrain cell_law_strain(double s) {
+    const double over = 1 / (s * s + 1), y = (s * s - 1) * over, y2 = y * y;
+    return {y * (1 + y2 / 3 + y2 * y2 / 5), 4 * s * over * over * (1 + y2 + y2 * y2)};
+}
+inline StretchStrain guarded_strain(double s) {
+    if (s >= kSteepest) return cell_law_strain(s);
+    const StretchStrain at = cell_law_strain(kSteepest);
+    const double below = kSteepest - s, part = 1 / (1 + below / kFlattens);
+    return {at.value - at.slope * below * part, at.slope * part * part};
 }
 
-// dW/dJ [Pa]: minus the pressure with which the cell holds against being crushed.
-inline double guard_slope(double young_modulus, double volume_ratio) {
-    const double lost = kGuardedVolume - volume_ratio;
-    if (!(lost > 0)) return 0;
-    const double mirrored = volume_ratio < 0 ? volume_ratio : 0;
-    return young_modulus * (kMirroredStiffness * mirrored - lost);
+inline double hencky_energy(const GuardModuli& law, const Vec3& e) {
+    const double size = e.sum();
+    return law.shear * (e.squaredNorm() - size * size / 3) + 0.5 * law.bulk * size * size;
+}
+inline Vec3 hencky_stress(const GuardModuli& law, const Vec3& e) {
+    const double size = e.sum();
+    return 2 * law.shear * e + Vec3::Constant((law.bulk - 2.0 / 3 * law.shear) * size);
+}
+
+// H(g) of a cell with stretches s, and its slope with each.
+struct CellResistance {
+    double energy;
+    Vec3 slope;
+};
+inline CellResistance resistance_of(const GuardModuli& law, const Vec3& s) {
+    Vec3 g, slope;
+    for (int i = 0; i < 3; ++i) {
+        const StretchStrain strain = guarded_strain(s[i]);
+        g[i] = strain.value, slope[i] = strain.slope;
+    }
+    return {hencky_energy(law, g), hencky_stress(law, g).cwiseProduct(slope)};
+}
+// Of a cell that is inside out; x are its stretches without signs.
+inline CellResistance inverted_resistance(const GuardModuli& law, const Vec3& x) {
+    const Vec3 square = x.cwiseAbs2();
+    const Vec3 share(square[1] * square[2], square[2] * square[0], square[0] * square[1]);
+    const double whole = share.sum();
+    if (!(whole > 0)) return resistance_of(law, {x[0], x[1], -x[2]});
+    CellResistance sum{0, Vec3::Zero()};
+    Vec3 turned_energy;
+    for (int i = 0; i < 3; ++i) {
+        Vec3 s = x;
+        s[i] = -s[i];
+        CellResistance turned = resistance_of(law, s);
+        turned.slope[i] = -turned.slope[i];
+        const double weight = share[i] / whole;
+        turned_energy[i] = turned.energy;
+        sum.energy += weight * turned.energy;
+        sum.slope += weight * turned.slope;
+    }
+    for (int k = 0; k < 3; ++k) {  // the shares change too
+        for (int i = 0; i < 3; ++i) {
+            if (i == k) continue;
+            sum.slope[k] += 2 * x[k] * square[3 - i - k] / whole * (turned_energy[i] - sum.energy);
+        }
+    }
+    return sum;
+}
+
+// W and its gradient; zero above half of the volume.
+inline GuardedCell guard_cell(const GuardModuli& law, const Mat3& gradient) {
+    const double volume = gradient.determinant(), lost = kGuardedVolume - volume;
+    if (!(lost > 0)) return {0, Mat3::Zero()};
+    const Eigen::JacobiSVD<Mat3> split(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Vec3 x = split.singularValues();
+    const bool inverted = volume < 0;
+    Vec3 e, e_slope;
+    for (int i = 0; i < 3; ++i) {
+        const StretchStrain strain = cell_law_strain(x[i]);
+        e[i] = strain.value, e_slope[i] = strain.slope;
+    }
+    const CellResistance asked = inverted ? inverted_resistance(law, x) : resistance_of(law, x);
+    const double own = law.replaces_strain ? 1 : 0;
+    const double more = asked.energy - own * hencky_energy(law, e);
+    const double share = inverted ? 1 : 4 * lost * lost * (1 + 4 * volume);
+    const double share_slope = inverted ? 0 : -48 * volume * lost;
+    const Vec3 area = (inverted ? -1 : 1) * Vec3(x[1] * x[2], x[2] * x[0], x[0] * x[1]);  // dJ/dx
+    const Vec3 push = share * (asked.slope - own * hencky_stress(law, e).cwiseProduct(e_slope)) +
+                      (share_slope * more - law.young * lost) * area;
+    return {0.5 * law.young * lost * lost + share * more,
+            split.matrixU() * push.asDiagonal() * split.matrixV().transpose()};
+}
+
+// The most that d2W/ds2 comes to in a cell that is inside out, about [Pa].
+inline double guard_stiffness(const GuardModuli& law) {
+    const double slope = guarded_strain(kSteepest).slope;
+    return 2 * (law.bulk + 4.0 / 3 * law.shear) * slope * slope;
 }
 
 }  // namespace swage

@@ -114,11 +114,9 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             const std::int32_t shares = batch[begin / kLanes];
             const int left = run->count - begin, count = left < kWidth ? left : kWidth;
             const CornerSums<V> c = gather<V>(x, begin, count, task.particles - run->row[3]);
-            if constexpr (kKind != CellKind::rubber) {
-                V size = dot(c.x, cross(c.y, c.z));
-                if (count < kWidth) size = lane < count ? size : smallest;
-                smallest = size < smallest ? size : smallest;
-            }
+            V size = dot(c.x, cross(c.y, c.z));
+            if (count < kWidth) size = lane < count ? size : smallest;
+            smallest = size < smallest ? size : smallest;
             const CellId cell = run->first + begin;
             if (kKind == CellKind::yielding && begin % kLanes == 0) flowed = has_flowed(task, cell);
             CornerSums<V> r;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "laws/cell_moduli.h"
 #include "laws/volume_guard.h"
 #include "sim/vector_clones.h"
 
@@ -78,10 +79,12 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
 
 CellId id_of(const SmallCell& cell) { return cell.run->first + cell.n; }
 
-// Rubber beside a material that has the guard looks after itself.
-bool is_guarded(const Aggregate& matter, const SmallCell& cell) {
-    return matter.inset.empty() ||
-           matter.material_of(id_of(cell)).elasticity != Elasticity::neo_hookean;
+GuardModuli guard_moduli(const Aggregate& matter, const SmallCell& cell) {
+    const Material& m = matter.material_of(id_of(cell));
+    const double nu = m.mechanics == Mechanics::springs ? 0.25 : m.poisson_ratio;
+    const CellModuli law = cell_moduli(m.young_modulus, nu, matter.lattice.spacing);
+    return {m.young_modulus, law.shear, law.bulk,
+            m.mechanics == Mechanics::cells && m.elasticity != Elasticity::neo_hookean};
 }
 
 double material_volume(const Aggregate& matter, const SmallCell& cell) {
@@ -93,14 +96,10 @@ double material_volume(const Aggregate& matter, const SmallCell& cell) {
 int resist(const Aggregate& matter, const std::vector<SmallCell>& crushed, Vec3Array& force) {
     int mirrored = 0;
     for (const SmallCell& cell : crushed) {
-        if (!is_guarded(matter, cell)) continue;
         mirrored += cell.volume < 0;
-        const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
-        Mat3 cofactor;
-        cofactor << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
         const Mat3 stress =
             material_volume(matter, cell) *
-            guard_slope(matter.material_of(id_of(cell)).young_modulus, cell.volume) * cofactor;
+            guard_cell(guard_moduli(matter, cell), cell_gradient(matter, *cell.run, cell.n)).stress;
         for (int c = 0; c < 8; ++c) {
             Vec3 slope;  // of the gradient's columns with the corner's position
             for (int axis = 0; axis < 3; ++axis) {
@@ -148,12 +147,8 @@ int add_guard_forces(const Aggregate& matter,
     return resist(matter, found, force);
 }
 
-int count_inside_out(const Aggregate& matter) {
-    return static_cast<int>(cells_below(matter, 0).size());
-}
-
-// NOTE: what the guard's law gives back to matter that was turned inside out is 16 times what would
-// tear it apart, so it is taken on the way.
+// NOTE: what the guard's law gives back to matter that was turned inside out is ten times what
+// would tear it apart, so it is taken on the way.
 double calm_crushed(Aggregate& matter, double keep) {
     double taken = 0;
     for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
@@ -198,13 +193,8 @@ CellId first_inside_out(const Aggregate& matter) {
 
 void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness) {
     for (const SmallCell& cell : cells_below(matter, 0)) {
-        if (!is_guarded(matter, cell)) continue;
-        const Mat3 f = cell_gradient(matter, *cell.run, cell.n);
-        const double cofactor = f.col(1).cross(f.col(2)).squaredNorm() +
-                                f.col(2).cross(f.col(0)).squaredNorm() +
-                                f.col(0).cross(f.col(1)).squaredNorm();
-        const double own = material_volume(matter, cell) * (1 + kMirroredStiffness) *
-                           matter.material_of(id_of(cell)).young_modulus * cofactor /
+        const double own = material_volume(matter, cell) *
+                           guard_stiffness(guard_moduli(matter, cell)) /
                            (2 * matter.lattice.spacing * matter.lattice.spacing);
         for (int c = 0; c < 8; ++c) stiffness[cell.run->row[c >> 1] + cell.n + (c & 1)] += own;
     }
@@ -213,9 +203,9 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
 double guard_energy_of(const Aggregate& matter) {
     double sum = 0;
     for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
-        if (!is_guarded(matter, cell)) continue;
-        sum += material_volume(matter, cell) *
-               guard_energy(matter.material_of(id_of(cell)).young_modulus, cell.volume);
+        sum +=
+            material_volume(matter, cell) *
+            guard_cell(guard_moduli(matter, cell), cell_gradient(matter, *cell.run, cell.n)).energy;
     }
     return sum;
 }

@@ -22,7 +22,6 @@ int add_guard_forces(const Aggregate& matter, Vec3Array& force);
 // The same when these runs are all that have such cells (CellSweep::crushed_runs).
 int add_guard_forces(const Aggregate& matter,
                      const std::vector<std::vector<const CellRun*>>& crushed, Vec3Array& force);
-int count_inside_out(const Aggregate& matter);
 // The first cell that is inside out, or -1.
 CellId first_inside_out(const Aggregate& matter);
 // Keeps only a share of the speed by which cells below half of their volume deform; momentum and

@@ -224,7 +224,6 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
             Finding found = look_at(body_[b], gone[b], std::numeric_limits<int>::max());
             if (!found) {
                 body_[b].find_forces(now, is_implicit() ? 0 : dt, outcome.body[b]);
-                if (n == count) body_[b].count_inside_out();
                 found = look_at(body_[b], gone[b], inside_out_[b]);
             }
             if (!found) continue;

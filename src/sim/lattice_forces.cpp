@@ -20,10 +20,6 @@ LatticeForces::LatticeForces(const Aggregate& matter)
     if (springs && std::isfinite(matter.material.yield_stress)) {
         spring_flow_ = std::make_unique<CellFlow>(matter);
     }
-    guarded_ = springs;
-    for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        guarded_ = guarded_ || matter.material_at(m).elasticity != Elasticity::neo_hookean;
-    }
     connections_changed(matter);
 }
 
@@ -47,7 +43,7 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
         cells_->forces(matter, flow, force);
         if (branches) *given += spring_sweep_->add_branches(matter, spring_law_, *branches, force);
         loose_.add_forces(matter, flow, nullptr, force);
-        return guarded_ ? add_guard_forces(matter, cells_->crushed_runs(), force) : 0;
+        return add_guard_forces(matter, cells_->crushed_runs(), force);
     }
     const bool flows = spring_flow_ && flow == Flow::trial;
     const RestStrains* const rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
@@ -106,7 +102,7 @@ Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
 double LatticeForces::elastic_energy(const Aggregate& matter) {
     const double lattice =
         cells_ ? cells_->elastic_energy(matter) : swage::elastic_energy(matter, spring_law_);
-    return lattice + loose_.elastic_energy(matter) + (guarded_ ? guard_energy_of(matter) : 0);
+    return lattice + loose_.elastic_energy(matter) + guard_energy_of(matter);
 }
 
 std::vector<double> LatticeForces::stiffness_bound(const Aggregate& matter) const {

@@ -43,11 +43,6 @@ class LatticeForces {
     // Whose branches find() moves on.
     const LatticeSweep& sweep(const Aggregate& matter);
 
-    // Whether find() sees every cell that is inside out; rubber's law needs no such look.
-    bool sees_inside_out(const Aggregate& matter) const {
-        return guarded_ && (!cells_ || matter.inset.empty());
-    }
-
     // Whether any cell may have been below half of its volume then.
     bool saw_crushed() const;
 
@@ -77,7 +72,6 @@ class LatticeForces {
     std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act
     std::unique_ptr<CellFlow> spring_flow_;       // springs that yield
     std::unique_ptr<CellSweep> cells_;            // null: springs
-    bool guarded_;
     bool mirrored_ = false;  // springs: some cells are inside out
     LooseSprings loose_;     // of cells that are not sound
 };

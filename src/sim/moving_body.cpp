@@ -271,10 +271,6 @@ double MovingBody::top_speed() const {
     return std::sqrt(most);
 }
 
-void MovingBody::count_inside_out() {
-    if (!lattice_.sees_inside_out(matter_)) inside_out_ = swage::count_inside_out(matter_);
-}
-
 double MovingBody::present_step() {
     if (inside_out_ == 0) return step_;
     std::vector<double> guard(matter_.particle_count(), 0.0);

@@ -73,7 +73,6 @@ class MovingBody {
     double top_speed() const;  // of any particle [m/s]
     // Cells inside out when the forces were found; of rubber, when it was last looked at.
     int inside_out() const { return inside_out_; }
-    void count_inside_out();
     // Of the present state, cells inside out included [s].
     double present_step();
     Vec3 acceleration(std::size_t p) const {
