@@ -42,8 +42,10 @@ Box reach_of(const MovingBody& body, double time) {
 // Of its energy, by what places are rounded to [J].
 double round_off(MovingBody& body) {
     const Vec3Array& x = body.matter().particle_position;
+    const Vec3 gravity = body.gravity().cwiseAbs();
     return std::numeric_limits<double>::epsilon() * chunked_sum(x.size(), [&](std::size_t p) {
-               return body.force().at(p).cwiseAbs().dot(x.at(p).cwiseAbs());
+               const Vec3 weight = body.matter().particle_mass[p] * gravity;
+               return (body.force().at(p).cwiseAbs() + weight).dot(x.at(p).cwiseAbs());
            });
 }
 
@@ -133,114 +135,135 @@ double EnergySteps::step_to_try(const Group& group, double left) const {
     return left / std::max(1.0, std::ceil(left / step * (1 - 1e-9)));
 }
 
+// A step of a group, and what is needed to take it back.
+struct EnergySteps::Try {
+    Drive begin, now;
+    double step;
+    std::vector<Stored> after{};        // by place in the group
+    std::vector<BodyOutcome> so_far{};  // before it
+    std::vector<Vec3Array> earlier{};   // Mover::before
+    double done = 0, turned = 0;        // work in it, and that with every sign made positive [J]
+    double gain = 0, astray = 0;        // energy less work, and less what the books say is lost [J]
+};
+
+EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const Drive& now,
+                                   double step, const std::vector<Stored>& held,
+                                   MoveOutcome& outcome) {
+    Try t{begin, now, step};
+    for (std::size_t b : group) {
+        Mover& m = mover_[b];
+        t.so_far.push_back(outcome.body[b]);
+        t.earlier.push_back(m.before);
+        m.body.save(m.state);
+        m.body.begin_step(begin);
+        m.body.begin_block(outcome.body[b]);
+        const Vec3Array was = m.body.matter().particle_position;
+        carry_on(m.body, t.step, m.last_step, m.before);
+        find_forces_of_step(m.body, now, was, t.step, outcome.body[b]);
+        m.body.finish_step(begin, now, t.step, outcome.body[b]);
+        m.body.end_block(outcome.body[b]);
+        m.body.renew_candidates(
+            begin, now, std::sqrt(3.0) * farthest_move(was, m.body.matter().particle_position));
+    }
+    for (std::size_t n = 0; n < group.size(); ++n) {
+        const BodyOutcome &is = outcome.body[group[n]], &was = t.so_far[n];
+        t.after.push_back(mover_[group[n]].body.stored(now, 0));
+        t.done += is.done() - was.done();
+        t.turned += std::abs(is.done() - was.done());
+        t.gain += t.after[n].sum() - held[n].sum();
+        t.astray += is.lost() - was.lost();
+    }
+    t.gain -= t.done;
+    t.astray += t.gain;
+    return t;
+}
+
+// Whether the books of a step hold against `budget`, all that was ever put in [J].
+bool EnergySteps::holds(const Group& group, const Try& t, double budget) {
+    double noise = 0;
+    const auto within = [&](double error, double share) {
+        if (error <= share * budget) return true;
+        if (noise == 0) {
+            for (std::size_t b : group) noise += round_off(mover_[b].body);
+        }
+        return error <= share * budget + noise;
+    };
+    return within(t.gain, kTolerance) &&
+           (within(std::abs(t.astray), kMistake) || t.step < kFinest * stable_step(group));
+}
+
+void EnergySteps::keep(const Group& group, const Try& t, MoveOutcome& outcome) {
+    for (std::size_t n = 0; n < group.size(); ++n) {
+        Mover& m = mover_[group[n]];
+        m.budget += std::abs(outcome.body[group[n]].done() - t.so_far[n].done());
+        m.last_step = t.step;
+        m.step = m.held ? t.step : 1.5 * t.step;
+        m.held = false;
+    }
+    ++outcome.steps;
+    ++steps_;
+    outcome.shortest_step = std::min(outcome.shortest_step, t.step);
+}
+
+void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome) {
+    ++outcome.rejected;
+    ++outcome.halvings;
+    std::string why;
+    if (!(t.step > kShortest * stable_step(group))) {
+        const Finding found{.fault = std::isfinite(t.gain) ? Fault::gains : Fault::lost,
+                            .body = group[0],
+                            .step = steps_ + 1,
+                            .time = t.now.time,
+                            .gain = t.gain / budget};
+        why = sentence_of(found, mover_[group[0]].body, apparatus_.name, t.step);
+    }
+    for (std::size_t n = 0; n < group.size(); ++n) {
+        Mover& m = mover_[group[n]];
+        outcome.body[group[n]] = t.so_far[n];
+        m.before = std::move(t.earlier[n]);
+        m.body.restore(m.state);
+        m.body.begin_step(t.begin);
+        m.body.find_forces(t.begin, 0, outcome.body[group[n]]);
+        m.step = 0.5 * t.step;
+        m.held = true;
+    }
+    if (!why.empty()) fail(ExitCode::stopped, "{}", why);
+}
+
+double EnergySteps::stable_step(const Group& group) const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t b : group) shortest = std::min(shortest, mover_[b].body.stable_step());
+    return shortest;
+}
+
 void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to,
                           MoveOutcome& outcome) {
-    Drive begin = from;
-    std::vector<Stored> held(mover_.size());
-    const auto sum_over = [&](const auto& of) {
-        double sum = 0;
-        for (std::size_t b : group) sum += of(b);
-        return sum;
-    };
+    std::vector<Stored> held;
     for (std::size_t b : group) {
-        held[b] = outcome.body[b].before = mover_[b].body.stored(from, 0);
-        if (mover_[b].step == 0) mover_[b].budget = std::max(held[b].sum(), 0.0);
+        held.push_back(mover_[b].body.stored(from, 0));
+        outcome.body[b].before = held.back();
+        if (mover_[b].step == 0) mover_[b].budget = std::max(held.back().sum(), 0.0);
     }
-    while (begin.time < to.time) {
-        const double left = to.time - begin.time;
-        const double step = step_to_try(group, left);
-        const double end = step >= left ? to.time : begin.time + step;
-        const Drive now = end >= to.time
+    for (Drive begin = from; begin.time < to.time;) {
+        const double left = to.time - begin.time, step = step_to_try(group, left);
+        const double end = begin.time + step;
+        const Drive now = step >= left || end >= to.time
                               ? to
                               : drive_between(from, to, (end - from.time) / (to.time - from.time));
-        Finding found;
-        std::vector<BodyOutcome> so_far;
-        std::vector<Vec3Array> earlier;
-        for (std::size_t b : group) {
-            Mover& m = mover_[b];
-            so_far.push_back(outcome.body[b]);
-            earlier.push_back(m.before);
-            m.body.save(m.state);
-            m.body.begin_step(begin);
-            m.body.begin_block(outcome.body[b]);
-            const Vec3Array was = m.body.matter().particle_position;
-            carry_on(m.body, step, m.last_step, m.before);
-            find_forces_of_step(m.body, now, was, step, outcome.body[b]);
-            m.body.finish_step(begin, now, step, outcome.body[b]);
-            m.body.end_block(outcome.body[b]);
-            m.body.renew_candidates(
-                begin, now, std::sqrt(3.0) * farthest_move(was, m.body.matter().particle_position));
-        }
-        std::vector<Stored> after(mover_.size());
-        for (std::size_t b : group) after[b] = mover_[b].body.stored(now, 0);
-        std::size_t n = 0;
-        double done = 0, turned = 0;
-        for (std::size_t b : group) {
-            const BodyOutcome& was = so_far[n++];
-            done += outcome.body[b].done() - was.done();
-            turned += std::abs(outcome.body[b].done() - was.done());
-        }
-        const double budget = turned + sum_over([&](std::size_t b) { return mover_[b].budget; });
-        const double gain =
-            sum_over([&](std::size_t b) { return after[b].sum() - held[b].sum(); }) - done;
-        double lost = 0, shortest = std::numeric_limits<double>::infinity();
-        n = 0;
-        for (std::size_t b : group) {
-            lost += outcome.body[b].lost() - so_far[n++].lost();
-            shortest = std::min(shortest, mover_[b].body.stable_step());
-        }
-        double noise = 0;
-        const auto within = [&](double error, double share) {
-            if (error <= share * budget) return true;
-            if (noise == 0)
-                noise = sum_over([&](std::size_t b) { return round_off(mover_[b].body); });
-            return error <= share * budget + noise;
-        };
-        const bool keeps = within(gain, kTolerance) &&
-                           (within(std::abs(gain + lost), kMistake) || step < kFinest * shortest);
-        if (tried_ != nullptr) tried_->push_back({begin.time, step, gain + lost, keeps});
-        if (keeps) {
-            n = 0;
-            for (std::size_t b : group) {
-                Mover& m = mover_[b];
-                const BodyOutcome& was = so_far[n++];
-                m.budget += std::abs(outcome.body[b].done() - was.done());
-                m.last_step = step;
-                m.step = m.held ? step : 1.5 * step;
-                m.held = false;
-            }
-            held = std::move(after);
-            begin = now;
-            ++outcome.steps;
-            ++steps_;
-            outcome.shortest_step = std::min(outcome.shortest_step, step);
+        Try t = take(group, begin, now, step, held, outcome);
+        double budget = t.turned;
+        for (std::size_t b : group) budget += mover_[b].budget;
+        const bool good = holds(group, t, budget);
+        if (tried_ != nullptr) tried_->push_back({begin.time, t.step, t.astray, good});
+        if (!good) {
+            take_back(group, t, budget, outcome);
             continue;
         }
-        ++outcome.rejected;
-        ++outcome.halvings;
-        found.fault = std::isfinite(gain) ? Fault::gains : Fault::lost;
-        found.body = group[0];
-        found.step = steps_ + 1;
-        found.time = end;
-        found.gain = gain / budget;
-        n = 0;
-        const bool gives_up = !(step > kShortest * shortest);
-        const std::string why =
-            gives_up ? sentence_of(found, mover_[group[0]].body, apparatus_.name, step)
-                     : std::string();
-        for (std::size_t b : group) {
-            Mover& m = mover_[b];
-            outcome.body[b] = so_far[n];
-            m.before = earlier[n++];
-            m.body.restore(m.state);
-            m.body.begin_step(begin);
-            m.body.find_forces(begin, 0, outcome.body[b]);
-            m.step = 0.5 * step;
-            m.held = true;
-        }
-        if (gives_up) fail(ExitCode::stopped, "{}", why);
+        keep(group, t, outcome);
+        held = std::move(t.after);
+        begin = now;
     }
-    for (std::size_t b : group) outcome.body[b].after = held[b];
+    for (std::size_t n = 0; n < group.size(); ++n) outcome.body[group[n]].after = held[n];
 }
 
 MoveOutcome EnergySteps::advance(const Drive& from, const Drive& to) {

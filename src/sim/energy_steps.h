@@ -71,9 +71,16 @@ class EnergySteps {
         double budget = 0;     // energy ever put in [J]
     };
     using Group = std::vector<std::size_t>;
+    struct Try;
     std::vector<Group> groups(const Drive& from, const Drive& to) const;
     void advance(const Group& group, const Drive& from, const Drive& to, MoveOutcome& outcome);
     double step_to_try(const Group& group, double left) const;
+    double stable_step(const Group& group) const;
+    Try take(const Group& group, const Drive& begin, const Drive& now, double step,
+             const std::vector<Stored>& held, MoveOutcome& outcome);
+    bool holds(const Group& group, const Try& t, double budget);
+    void keep(const Group& group, const Try& t, MoveOutcome& outcome);
+    void take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome);
 
     const Apparatus& apparatus_;
     std::vector<Mover> mover_;
