@@ -74,8 +74,21 @@ bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOut
     problem.diagonal = body.stiffness_bound();
     for (std::size_t p = 0; p < count; ++p) problem.diagonal[p] += inertia_[p];
     problem.drag = inertia_;
-    const Newton::Result result = newton_->solve(matter, problem);
+    Newton::Result result = newton_->solve(matter, problem);
     iterations_ += result.steps;
+    if (!result.converged) {
+        // From where the matter is not strained more than it was.
+        Vec3 drift = Vec3::Zero();
+        for (std::size_t p = 0; p < count; ++p) {
+            drift += matter.particle_mass[p] * matter.particle_velocity.at(p);
+        }
+        drift *= step / matter.mass();
+        for (std::size_t p = 0; p < count; ++p) {
+            matter.particle_position.set(p, start_.at(p) + drift);
+        }
+        result = newton_->solve(matter, problem);
+        iterations_ += result.steps;
+    }
     if (!result.converged) return false;
     for (std::size_t p = 0; p < count; ++p) {
         matter.particle_velocity.set(p, (matter.particle_position.at(p) - start_.at(p)) / step);
