@@ -260,6 +260,7 @@ struct CellFlowed {
     CellModes<N> modes;        // q - q_p before the return
     CellModes<N> mode_stress;  // of these
     N trace;
+    N over;  // stress beyond the yield surface, before the return [Pa]
     N kept;  // w
     N d_alpha;
 };
@@ -274,6 +275,7 @@ SWAGE_INLINE Symmetric<N> deviator(const Symmetric<N>& e) {
 // twice W_q.
 template <typename N>
 struct CellReturn {
+    N over;  // by how much the trial stress is [Pa]
     N d_alpha, kept;
 };
 template <typename N>
@@ -285,7 +287,7 @@ SWAGE_INLINE CellReturn<N> return_cell(const CellModuli& law, const N& distortio
         1e-300;
     const N over = stress - law.yield_stress - law.hardening * alpha;
     const N flows = larger(over, 0.0 * over);
-    return {(1 / (3 * law.shear + law.hardening)) * flows,
+    return {over, (1 / (3 * law.shear + law.hardening)) * flows,
             1.0 - (3 * law.shear / (3 * law.shear + law.hardening)) * flows / stress};
 }
 
@@ -301,6 +303,7 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
     const CellReturn<N> back =
         return_cell(law, contract(r.distortion, r.distortion),
                     mode_share(fill) * product(r.mode_stress, r.modes), history.alpha);
+    r.over = back.over;
     r.kept = back.kept;
     r.d_alpha = back.d_alpha;
     return r;

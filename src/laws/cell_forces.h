@@ -53,11 +53,11 @@ SWAGE_INLINE CornerSums<N> spread_stress(const CornerSums<N>& c, const Columns<N
 
 // Forces on the sums of the corners. kPart: the cell is partly filled; kFlowed: it has a history.
 // What does not apply is not looked at. Numbers with a slope: of what turning does to the stress's
-// force, their slope gets the share `turning`.
+// force, their slope gets the share `turning`. `over`: gets how far what can yield is beyond that.
 template <CellKind kKind, bool kPart, bool kFlowed, typename N>
 SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<N>& c,
                                        const CellShare<N>& share, const CellHistory<N>& history,
-                                       double turning = 1) {
+                                       double turning = 1, N* over = nullptr) {
     const Columns<N> d = kPart ? centroid_sums(c, share.at) : Columns<N>{c.x, c.y, c.z};
     const CellModes<N> modes = pulled_back(d, c);  // F^T Q / s
     CellModes<N> g;                                // stress of the modes
@@ -90,6 +90,7 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
         if constexpr (kFlowed) {
             const CellFlowed<N> r =
                 flow_cell(k.law, history, e.log, k.scale * modes, kPart ? share.fill : N{} + 1.0);
+            if (over != nullptr) *over = r.over;
             N mode_scale = -k.scale * r.kept;
             if constexpr (kPart) mode_scale = mode_fill(share.fill) * mode_scale;
             g = mode_scale * r.mode_stress;
@@ -102,10 +103,11 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
                 const Symmetric<N> distortion = deviator(e.log);
                 N mode_energy = -1.0 * product(g, modes);
                 if constexpr (kPart) mode_energy = mode_share(share.fill) * mode_energy;
-                const N kept =
-                    return_cell(k.law, contract(distortion, distortion), mode_energy, N{}).kept;
-                shear = shear * kept;
-                g = kept * g;
+                const CellReturn<N> back =
+                    return_cell(k.law, contract(distortion, distortion), mode_energy, N{});
+                if (over != nullptr) *over = back.over;
+                shear = shear * back.kept;
+                g = back.kept * g;
             }
             if constexpr (kPart) g = mode_fill(share.fill) * g;
             const N third = (1.0 / 3) * size;

@@ -8,17 +8,16 @@
 
 #include "base/parallel.h"
 #include "laws/cell_forces.h"
+#include "laws/strain_bound.h"
 #include "laws/volume_guard.h"
-#include "sim/cell_batch.h"
+#include "sim/cell_history.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
 
-constexpr double kNeverYields = 1e100;  // [Pa]
-constexpr int kStrains = 6, kModes = 12;
-constexpr int kShares = 4;               // fill and centroid
+constexpr double kNeverYields = 1e100;   // [Pa]
 constexpr ParticleId kZeroAhead = 2048;  // particles whose forces are zeroed at a time
 // Cells that share a particle never all move in their stiffest way at once. Of the sum over eight
 // cells the fastest motion of a block has, measured for nu = 0 to 0.49, this much of each modulus.
@@ -26,63 +25,30 @@ constexpr double kAssembledBulk = 0.47, kAssembledShear = 0.55;
 // Where the guard's own pass is asked, of the volume of a whole cell.
 constexpr double kMaybeCrushed = kGuardedVolume + 1e-6;
 
-constexpr std::int32_t kWhole = -1;
-int batches_of(const CellRun& run) { return (run.count + kLanes - 1) / kLanes; }
+// Cells this close to yielding are told: the law in lanes and the law alone differ in rounding.
+constexpr double kNearYield = 1e-6;  // of the yield stress
 
 // What a kernel is given of a slab.
 struct SlabTask {
     const CellConstants* constants = nullptr;
-    double crushed;  // det D below which a run is reported
+    double crushed;   // det D below which a run is reported
+    double strained;  // the same of strain_measure() above; none: 0
     const CellRun *run = nullptr, *run_end = nullptr;
-    const std::int32_t* batch = nullptr;  // of the first run: kWhole, or where its shares begin
+    const std::int32_t* batch = nullptr;  // of the first run
     const float* share;
-    int particles, cells;
+    int particles;
     const double* position[3];
     ForceRows to{};
     ParticleId zeroed = 0, end = 0, reach = 0;  // the slab's forces are zero up to `zeroed`
-    const float* strain[kStrains] = {};         // committed
-    const float* modes[kModes] = {};
-    const float* alpha = nullptr;  // null: nothing has flowed
-    std::vector<const CellRun*>* crushed_run = nullptr;
+    HistoryRows history;
+    std::vector<const CellRun*>*crushed_run = nullptr, *strained_run = nullptr,
+                      *yielding_run = nullptr;
 
     void zero_up_to(ParticleId stop) {
         for (double* component : to.own) std::fill(component + zeroed, component + stop, 0.0);
         zeroed = stop;
     }
 };
-
-template <typename V>
-SWAGE_INLINE CellHistory<V> load_history(const SlabTask& task, CellId cell) {
-    float copy[kStrains + kModes + 1][kLanes];
-    const float* from[kStrains + kModes + 1];
-    for (int n = 0; n < kStrains; ++n) from[n] = task.strain[n] + cell;
-    for (int n = 0; n < kModes; ++n) from[kStrains + n] = task.modes[n] + cell;
-    from[kStrains + kModes] = task.alpha + cell;
-    if (cell + kWidthOf < V >> task.cells) [[unlikely]] {
-        for (int n = 0; n < kStrains + kModes + 1; ++n) {
-            for (int l = 0; l < kWidthOf<V>; ++l) {
-                copy[n][l] = cell + l < task.cells ? from[n][l] : 0.0f;
-            }
-            from[n] = copy[n];
-        }
-    }
-    const auto triple = [&](int m) __attribute__((always_inline)) {
-        return Triple<V>{load<V>(from[m]), load<V>(from[m + 1]), load<V>(from[m + 2])};
-    };
-    return {{load<V>(from[0]), load<V>(from[1]), load<V>(from[2]), load<V>(from[3]),
-             load<V>(from[4]), load<V>(from[5])},
-            {triple(6), triple(9), triple(12), triple(15)},
-            load<V>(from[18])};
-}
-
-// Whether any cell of a batch of eight has flowed.
-SWAGE_INLINE bool has_flowed(const SlabTask& task, CellId cell) {
-    if (task.alpha == nullptr) return false;
-    std::int64_t bits[kLanes / 2] = {};
-    const std::size_t count = std::min(kLanes, task.cells - cell);
-    std::memcpy(bits, task.alpha + cell, count == kLanes ? sizeof bits : count * sizeof(float));
-    return ((bits[0] | bits[1]) | (bits[2] | bits[3])) != 0;
-}
 
 template <int kWidth, CellKind kKind>
 SWAGE_INLINE void slab_forces(SlabTask& task) {
@@ -108,8 +74,9 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             }
         }
         ForceCarry<V> carry;
-        V smallest = V{} + task.crushed;
-        bool flowed = false;
+        V smallest = V{} + task.crushed, strained{};
+        V most_over = V{} - task.constants->law.yield_stress;
+        bool flowed = false, any_flowed = false;
         for (int begin = 0; begin < run->count; begin += kWidth) {
             const std::int32_t shares = batch[begin / kLanes];
             const int left = run->count - begin, count = left < kWidth ? left : kWidth;
@@ -117,17 +84,26 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             V size = dot(c.x, cross(c.y, c.z));
             if (count < kWidth) size = lane < count ? size : smallest;
             smallest = size < smallest ? size : smallest;
+            if (task.strained > 0) {
+                V strain = strain_measure(c, task.constants->gram);
+                if (count < kWidth) strain = lane < count ? strain : V{};
+                strained = larger(strained, strain);
+            }
             const CellId cell = run->first + begin;
-            if (kKind == CellKind::yielding && begin % kLanes == 0) flowed = has_flowed(task, cell);
+            if (kKind == CellKind::yielding && begin % kLanes == 0) {
+                flowed = has_flowed(task.history, cell);
+                any_flowed = any_flowed || flowed;
+            }
             CornerSums<V> r;
-            if (shares == kWhole) {
+            V over = most_over;
+            if (shares == kWholeCells) {
                 const CellShare<V> whole{};
                 if (flowed) {
-                    r = cell_forces<kKind, false, true>(*task.constants, c, whole,
-                                                        load_history<V>(task, cell));
+                    r = cell_forces<kKind, false, true>(
+                        *task.constants, c, whole, load_history<V>(task.history, cell), 1, &over);
                 } else {
                     r = cell_forces<kKind, false, false>(*task.constants, c, whole,
-                                                         CellHistory<V>{});
+                                                         CellHistory<V>{}, 1, &over);
                 }
             } else {
                 const float* from = task.share + shares + begin % kLanes;
@@ -135,18 +111,30 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
                                         {load<V>(from + kLanes), load<V>(from + 2 * kLanes),
                                          load<V>(from + 3 * kLanes)}};
                 if (flowed) {
-                    r = cell_forces<kKind, true, true>(*task.constants, c, part,
-                                                       load_history<V>(task, cell));
+                    r = cell_forces<kKind, true, true>(
+                        *task.constants, c, part, load_history<V>(task.history, cell), 1, &over);
                 } else {
-                    r = cell_forces<kKind, true, false>(*task.constants, c, part, CellHistory<V>{});
+                    r = cell_forces<kKind, true, false>(*task.constants, c, part, CellHistory<V>{},
+                                                        1, &over);
                 }
+            }
+            if constexpr (kKind == CellKind::yielding) {
+                if (count < kWidth) over = lane < count ? over : most_over;
+                most_over = larger(most_over, over);
             }
             add_forces(r, force, room, begin, count, carry);
         }
         if (run->count % kWidth == 0) add_carried(force, run->count, carry);
-        bool crushed = false;
-        for (int l = 0; l < kWidth; ++l) crushed = crushed || smallest[l] < task.crushed;
+        bool crushed = false, yields = false, strains = any_flowed && task.strained > 0;
+        const double near = -kNearYield * task.constants->law.yield_stress;
+        for (int l = 0; l < kWidth; ++l) {
+            crushed = crushed || smallest[l] < task.crushed;
+            yields = yields || most_over[l] > near;
+            strains = strains || strained[l] > task.strained;
+        }
         if (crushed) task.crushed_run->push_back(run);
+        if (kKind == CellKind::yielding && yields) task.yielding_run->push_back(run);
+        if (task.strained > 0 && strains) task.strained_run->push_back(run);
         batch += batches_of(*run);
     }
     task.batch = batch;
@@ -191,47 +179,6 @@ void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun
     }
 }
 
-// One cell as plain numbers, for what is done once a frame.
-struct OneCell {
-    CornerSums<double> sums;
-    Columns<double> gradient;
-    CellModes<double> modes;
-};
-
-OneCell one_cell(const Aggregate& matter, const CellRun& run, int n) {
-    const CellId cell = run.first + n;
-    OneCell r;
-    CornerSums<double>& c = r.sums;
-    double corner[8];
-    const auto gather = [&](const std::vector<double>& x) {
-        for (int q = 0; q < 8; ++q) corner[q] = x[run.row[q >> 1] + n + (q & 1)];
-    };
-    const Vec3Array& x = matter.particle_position;
-    gather(x.x);
-    sum_corners(corner, c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-    gather(x.y);
-    sum_corners(corner, c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-    gather(x.z);
-    sum_corners(corner, c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    const Eigen::Vector3d at = 2 * matter.cell_centroid[cell].cast<double>();
-    r.gradient =
-        centroid_gradient(c, Triple<double>{at.x(), at.y(), at.z()}, matter.lattice.spacing);
-    r.modes = pulled_back(r.gradient, c);
-    return r;
-}
-
-CellHistory<double> history_of(const Aggregate& matter, CellId cell) {
-    if (matter.cell_plastic_strain[0].empty()) return {};
-    const auto& s = matter.cell_plastic_strain;
-    const auto& m = matter.cell_plastic_modes;
-    const auto mode = [&](int slot) {
-        return Triple<double>{m[slot][cell], m[slot + 1][cell], m[slot + 2][cell]};
-    };
-    return {{s[0][cell], s[1][cell], s[2][cell], s[3][cell], s[4][cell], s[5][cell]},
-            {mode(0), mode(3), mode(6), mode(9)},
-            matter.cell_hardening[cell]};
-}
-
 template <typename Act>
 void for_each_cell(const Aggregate& matter, std::size_t begin, std::size_t end, const Act& act) {
     for (std::size_t r = begin; r < end; ++r) {
@@ -243,7 +190,8 @@ void for_each_cell(const Aggregate& matter, std::size_t begin, std::size_t end, 
 }  // namespace
 
 CellSweep::CellSweep(const Aggregate& matter)
-    : law_(material_laws(matter)), slab_(cell_slabs(matter)), crushed_(slab_.size()) {
+    : law_(material_laws(matter)), slab_(cell_slabs(matter)) {
+    for (SlabRuns* runs : {&crushed_, &strained_, &yielding_}) runs->resize(slab_.size());
     yields_ = std::any_of(law_.begin(), law_.end(),
                           [](const MaterialLaw& law) { return law.kind == CellKind::yielding; });
     for (const RowSlab& slab : slab_) {
@@ -282,10 +230,10 @@ void CellSweep::cells_changed(const Aggregate& matter) {
                 for (CellId c = runs[r].first + begin; c < runs[r].first + begin + count; ++c) {
                     whole = whole && fill[c] == 1 && matter.cell_centroid[c].isZero(0);
                 }
-                batch_.push_back(whole ? kWhole : static_cast<std::int32_t>(share_.size()));
+                batch_.push_back(whole ? kWholeCells : static_cast<std::int32_t>(share_.size()));
                 if (whole) continue;
                 const std::size_t at = share_.size();
-                share_.resize(at + kShares * kLanes, 0.0f);
+                share_.resize(at + kCellShares * kLanes, 0.0f);
                 for (int n = 0; n < count; ++n) {
                     const CellId c = runs[r].first + begin + n;
                     share_[at + n] = fill[c];
@@ -315,23 +263,20 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     const Vec3Array& x = matter.particle_position;
     force.resize(x.size());
     SlabTask whole{.crushed = kMaybeCrushed * 64 * std::pow(matter.lattice.spacing, 3),
+                   .strained = strain_measure_at(onset_),
                    .share = share_.data(),
                    .particles = static_cast<int>(x.size()),
-                   .cells = static_cast<int>(matter.cell_fill.size()),
-                   .position = {x.x.data(), x.y.data(), x.z.data()}};
-    if (!matter.cell_hardening.empty()) {
-        for (int n = 0; n < kStrains; ++n) whole.strain[n] = matter.cell_plastic_strain[n].data();
-        for (int n = 0; n < kModes; ++n) whole.modes[n] = matter.cell_plastic_modes[n].data();
-        whole.alpha = matter.cell_hardening.data();
-    }
+                   .position = {x.x.data(), x.y.data(), x.z.data()},
+                   .history = HistoryRows(matter)};
     parallel_for(slab_.size(), [&](std::size_t index) {
         RowSlab& slab = slab_[index];
         SlabTask task = whole;
         task.to = force_rows(slab, force);
         task.batch = batch_.data() + slab_batch_[index];
         task.zeroed = slab.begin, task.end = slab.end, task.reach = slab.reach;
-        crushed_[index].clear();
-        task.crushed_run = &crushed_[index];
+        for (SlabRuns* runs : {&crushed_, &strained_, &yielding_}) (*runs)[index].clear();
+        task.crushed_run = &crushed_[index], task.strained_run = &strained_[index];
+        task.yielding_run = &yielding_[index];
         const CellRun* const end = runs.data() + slab_run_[index + 1];
         task.run_end = runs.data() + slab_run_[index];
         while (task.run_end != end) {
@@ -348,84 +293,6 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     });
     add_seams(slab_, force);
     mixed_.add_forces(matter, laws, force);
-}
-
-double CellSweep::commit(Aggregate& matter) const {
-    if (!yields_) return 0;
-    // Calls act(cell, its law, what flows) for each cell of a slab that flows.
-    const auto for_each_flowing = [&](const RowSlab& slab, const auto& act) {
-        for_each_cell(matter, slab.run_begin, slab.run_end,
-                      [&](const CellRun& run, int n, CellId cell) {
-                          const MaterialLaw& law = law_of(matter, cell);
-                          if (swept()[cell] <= 0 || law.kind != CellKind::yielding) return;
-                          const OneCell c = one_cell(matter, run, n);
-                          const CellFlowed<double> r =
-                              flow_cell(law.moduli, history_of(matter, cell),
-                                        cell_strain(c.gradient).log, c.modes, double(fill_[cell]));
-                          if (r.d_alpha > 0) act(cell, law.moduli, r);
-                      });
-    };
-    if (matter.cell_plastic_strain[0].empty()) {
-        const double flowing = ordered_sum(slab_.size(), [&](std::size_t s) {
-            double count = 0;
-            for_each_flowing(slab_[s], [&](CellId, const CellModuli&, const auto&) { ++count; });
-            return count;
-        });
-        if (flowing == 0) return mixed_.commit(matter, law_);
-        for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
-        for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
-        matter.cell_hardening.assign(fill_.size(), 0.0f);
-    }
-    const double volume = std::pow(matter.lattice.spacing, 3);
-    const double lost = ordered_sum(slab_.size(), [&](std::size_t s) {
-        double sum = 0;
-        for_each_flowing(slab_[s], [&](CellId cell, const CellModuli& law, const auto& r) {
-            // The stress that did the flow's work is the one after the return, less what hardening
-            // stores: linear hardening is booked as lost.
-            const double alpha = matter.cell_hardening[cell];
-            sum += volume * fill_[cell] * r.d_alpha *
-                   (law.yield_stress + law.hardening * (alpha + 0.5 * r.d_alpha));
-            const double flows = 1 - r.kept;
-            const double e[kStrains] = {r.distortion.xx, r.distortion.yy, r.distortion.zz,
-                                        r.distortion.xy, r.distortion.yz, r.distortion.zx};
-            const double q[kModes] = {r.modes.xy.x, r.modes.xy.y,  r.modes.xy.z,  r.modes.yz.x,
-                                      r.modes.yz.y, r.modes.yz.z,  r.modes.zx.x,  r.modes.zx.y,
-                                      r.modes.zx.z, r.modes.xyz.x, r.modes.xyz.y, r.modes.xyz.z};
-            for (int n = 0; n < kStrains; ++n) {
-                matter.cell_plastic_strain[n][cell] += static_cast<float>(flows * e[n]);
-            }
-            for (int n = 0; n < kModes; ++n) {
-                matter.cell_plastic_modes[n][cell] += static_cast<float>(flows * q[n]);
-            }
-            matter.cell_hardening[cell] += static_cast<float>(r.d_alpha);
-        });
-        return sum;
-    });
-    return lost + mixed_.commit(matter, law_);
-}
-
-double CellSweep::elastic_energy(const Aggregate& matter) const {
-    const double volume = std::pow(matter.lattice.spacing, 3);
-    const double swept = ordered_sum(slab_.size(), [&](std::size_t s) {
-        double sum = 0;
-        for_each_cell(
-            matter, slab_[s].run_begin, slab_[s].run_end,
-            [&](const CellRun& run, int n, CellId cell) {
-                const double fill = this->swept()[cell];
-                if (fill <= 0) return;
-                const auto& [law, kind] = law_of(matter, cell);
-                const OneCell c = one_cell(matter, run, n);
-                const CellHistory<double> history = history_of(matter, cell);
-                const CellModes<double> q = c.modes - history.modes;
-                const double modes = 0.5 * mode_fill(fill) * product(mode_stress(law, q), q);
-                const double mean = kind == CellKind::rubber
-                                        ? rubber_energy(law, c.gradient)
-                                        : strain_energy(law, cell_strain(c.gradient).log, history);
-                sum += volume * fill * mean + modes;
-            });
-        return sum;
-    });
-    return swept + mixed_.elastic_energy(matter, law_);
 }
 
 // Of one cell: the mean strain's share is bounded by the largest eigenvalue of Hooke's law times

@@ -13,9 +13,15 @@
 
 namespace swage {
 
+// Runs, slab by slab.
+using SlabRuns = std::vector<std::vector<const CellRun*>>;
+
 class CellSweep {
   public:
     explicit CellSweep(const Aggregate& matter);
+
+    // Cells with such a strain are told from now on: of their mean, or of a connection.
+    void watch_strain(double onset) { onset_ = onset; }
 
     // Cells that are not whole any more carry nothing from now on.
     void cells_changed(const Aggregate& matter);
@@ -25,8 +31,9 @@ class CellSweep {
     // force = sum of the cells' forces on each particle [N].
     void forces(const Aggregate& matter, Flow flow, Vec3Array& force);
 
-    // Remembers the flow of a converged state; returns the work that it took [J].
-    double commit(Aggregate& matter) const;
+    // Remembers the flow of a converged state; returns the work that it took [J]. `seen`: the last
+    // sweep was at these positions, with what flows.
+    double commit(Aggregate& matter, bool seen = false) const;
 
     double elastic_energy(const Aggregate& matter) const;  // [J]
 
@@ -34,9 +41,10 @@ class CellSweep {
     // these on their own masses.
     void add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const;
 
-    // Runs of the last sweep in which a cell may have lost half of its volume (sim/cell_volume.h),
-    // slab by slab.
-    const std::vector<std::vector<const CellRun*>>& crushed_runs() const { return crushed_; }
+    // Runs of the last sweep with cells that may have lost half of their volume
+    // (sim/cell_volume.h), and with cells that may have reached the strain that is watched.
+    const SlabRuns& crushed_runs() const { return crushed_; }
+    const SlabRuns& strained_runs() const { return strained_; }
 
   private:
     // The lattice's runs, or their pieces of one material each where there are several.
@@ -47,6 +55,9 @@ class CellSweep {
         return matter.cell_material.empty() ? law_[0] : law_[matter.cell_material[cell]];
     }
 
+    template <typename Act>
+    double sum_of_runs(const Aggregate& matter, const SlabRuns* of, const Act& act) const;
+
     std::vector<MaterialLaw> law_;  // by material
     bool yields_;                   // any
     // What the sweep itself carries: cells of two materials are beside it.
@@ -55,12 +66,13 @@ class CellSweep {
     std::vector<RowSlab> slab_;  // of the lattice's runs
     std::vector<CellRun> piece_;
     std::vector<std::size_t> slab_run_;  // first of runs() in each slab; the end
-    // By batches of eight cells of a run: whether all are full and whole, or where their fills and
-    // centroids, -1 to 1 in the cell, begin in share_.
+    // By batches of eight cells of a run: kWholeCells, or where their fills and centroids, -1 to 1
+    // in the cell, begin in share_.
     std::vector<std::int32_t> batch_;
     std::vector<float> share_;
-    std::vector<std::size_t> slab_batch_;  // first batch of each slab
-    std::vector<std::vector<const CellRun*>> crushed_;
+    std::vector<std::size_t> slab_batch_;     // first batch of each slab
+    SlabRuns crushed_, strained_, yielding_;  // yielding: may flow
+    double onset_ = 0;                        // 0: no strain is watched
     MixedCells mixed_;
 };
 

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "laws/strain_bound.h"
+#include "sim/cell_batch.h"
 #include "sim/cell_volume.h"
+#include "sim/vector_clones.h"
 
 namespace swage {
 
@@ -100,6 +103,26 @@ void spare_each_other(std::vector<Strained>& cells) {
     cells = std::move(taken);
 }
 
+// Of the cells of a run.
+SWAGE_VECTOR_CLONES
+void strain_measures(const Aggregate& matter, const CellRun& run, std::vector<double>& measure) {
+    const Vec3Array& x = matter.particle_position;
+    const double a = matter.lattice.spacing, gram = 1 / (16 * a * a);
+    CornerRows<const double> rows;
+    for (int q = 0; q < 4; ++q) {
+        rows.at[0][q] = x.x.data() + run.row[q];
+        rows.at[1][q] = x.y.data() + run.row[q];
+        rows.at[2][q] = x.z.data() + run.row[q];
+    }
+    measure.resize(static_cast<std::size_t>(run.count + kLanes));
+    const int room = static_cast<int>(x.size()) - run.row[3];
+    for (int begin = 0; begin < run.count; begin += kLanes) {
+        const int count = std::min(kLanes, run.count - begin);
+        const Lanes m = strain_measure(gather<Lanes>(rows, begin, count, room), gram);
+        std::memcpy(measure.data() + begin, &m, sizeof m);
+    }
+}
+
 double largest_connection_strain(const Aggregate& matter, const std::array<ParticleId, 4>& row) {
     const Vec3Array& x = matter.particle_position;
     double largest = 0;
@@ -117,10 +140,10 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
 
 }  // namespace
 
-std::vector<std::size_t> cells_beside(const Aggregate& matter,
-                                      const std::vector<std::vector<const SpringRun*>>& particles) {
+std::vector<const CellRun*> cells_beside(
+    const Aggregate& matter, const std::vector<std::vector<const SpringRun*>>& particles) {
     const Lattice& lattice = matter.lattice;
-    std::vector<std::size_t> runs;
+    std::vector<const CellRun*> runs;
     for (const auto& slab : particles) {
         for (const SpringRun* run : slab) {
             for (int k = std::max(0, run->k - 1); k <= run->k && k < lattice.cell_count.z(); ++k) {
@@ -129,7 +152,7 @@ std::vector<std::size_t> cells_beside(const Aggregate& matter,
                     const std::size_t row = j + std::size_t(lattice.cell_count.y()) * k;
                     for (int r = lattice.cell_row_begin[row]; r < lattice.cell_row_begin[row + 1];
                          ++r) {
-                        runs.push_back(r);
+                        runs.push_back(&lattice.cell_run[r]);
                     }
                 }
             }
@@ -141,16 +164,19 @@ std::vector<std::size_t> cells_beside(const Aggregate& matter,
 }
 
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
-                                          const std::vector<std::size_t>* only) {
+                                          const std::vector<const CellRun*>* only) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const std::size_t count = only ? only->size() : runs.size();
     const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
     const bool springs = matter.material.mechanics == Mechanics::springs;
+    const double far = strain_measure_at(law.onset);
     std::vector<std::vector<Strained>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
+        std::vector<double> measure;
         const std::size_t end = std::min(count, (chunk + 1) * kRunsPerChunk);
         for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
-            const CellRun& run = runs[only ? (*only)[r] : r];
+            const CellRun& run = only ? *(*only)[r] : runs[r];
+            if (!springs) strain_measures(matter, run, measure);
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
                 std::array<ParticleId, 4> row = run.row;
@@ -158,11 +184,13 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
                 // Where a cell has flowed its connections do not tell its elastic strain.
                 const bool flowed =
                     !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
+                if (!springs && !flowed && measure[n] < far) continue;
+                if (!cell_is_sound(matter, cell, row)) continue;
                 double strain = springs ? 0 : mean_strain(matter, run, n, law.onset);
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
-                if (strain >= law.onset && cell_is_sound(matter, cell, row) &&
+                if (strain >= law.onset &&
                     !(strain < kSpared * law.onset && is_spared(matter, run, n))) {
                     part[chunk].push_back({cell, strain});
                     part[chunk].back().site = {run.i + n, run.j, run.k};

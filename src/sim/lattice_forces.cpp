@@ -20,6 +20,7 @@ LatticeForces::LatticeForces(const Aggregate& matter)
     if (springs && std::isfinite(matter.material.yield_stress)) {
         spring_flow_ = std::make_unique<CellFlow>(matter);
     }
+    if (cells_) cells_->watch_strain(loose_.law().onset);
     connections_changed(matter);
 }
 
@@ -67,9 +68,9 @@ bool LatticeForces::saw_crushed() const {
     return false;
 }
 
-Committed LatticeForces::commit(Aggregate& matter) {
+Committed LatticeForces::commit(Aggregate& matter, bool in_motion) {
     Committed result;
-    if (cells_) result.plastic = cells_->commit(matter);
+    if (cells_) result.plastic = cells_->commit(matter, in_motion);
     if (spring_flow_) result.plastic = spring_flow_->commit(matter);
     const Broken broken = loose_.commit(matter, nullptr);
     result.fracture = broken.lost;
@@ -84,12 +85,17 @@ Committed LatticeForces::commit(Aggregate& matter) {
 
 Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
     if (!matter.material.breaks()) return {};
-    const bool told = in_motion && !cells_;
-    const std::vector<std::size_t> runs =
-        told ? cells_beside(matter, spring_sweep_->stretched_runs()) : std::vector<std::size_t>{};
-    if (told && runs.empty()) return {};
+    std::vector<const CellRun*> runs;
+    if (in_motion && cells_) {
+        for (const auto& part : cells_->strained_runs()) {
+            runs.insert(runs.end(), part.begin(), part.end());
+        }
+    } else if (in_motion) {
+        runs = cells_beside(matter, spring_sweep_->stretched_runs());
+    }
+    if (in_motion && runs.empty()) return {};
     const std::vector<CellId> cells =
-        cells_beyond_strength(matter, loose_.law(), told ? &runs : nullptr);
+        cells_beyond_strength(matter, loose_.law(), in_motion ? &runs : nullptr);
     if (cells.empty()) return {};
     const double before = elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);

@@ -46,12 +46,13 @@ class LatticeForces {
     // Whether any cell may have been below half of its volume then.
     bool saw_crushed() const;
 
-    // Remembers the flow and softening of a converged state.
-    Committed commit(Aggregate& matter);
+    // Remembers the flow and softening of a converged state. In motion find() was last called at
+    // these positions, with what flows, and what it saw is all that matters.
+    Committed commit(Aggregate& matter, bool in_motion = false);
 
     // Cells of a converged and committed state that have reached their strength act as springs from
     // now on; the most strained go first. The state has to be brought to rest again.
-    // In motion find() was last called at these positions, and what it saw is all that matters.
+    // In motion: as for commit().
     Cracked crack(Aggregate& matter, bool in_motion = false);
 
     double elastic_energy(const Aggregate& matter);  // [J]

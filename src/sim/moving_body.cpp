@@ -206,7 +206,7 @@ void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome
 // What flows, softens and cracks at the present positions, whose forces were just found.
 bool MovingBody::remember(BodyOutcome& outcome) {
     if (!remembers_) return false;
-    const Committed lost = lattice_.commit(matter_);
+    const Committed lost = lattice_.commit(matter_, true);
     outcome.plastic_work += lost.plastic;
     outcome.fracture_work += lost.fracture;
     outcome.broken += lost.broken;

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "laws/fracture.h"
+
+#include <Eigen/SVD>
+#include <array>
+#include <bit>
+#include <random>
+
+#include "base/math.h"
+#include "laws/strain_bound.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -81,4 +89,45 @@ TEST_CASE(
     CHECK(face_strain(0.2, -0.1) == face_strain(-0.1, 0.2));
     CHECK(face_strain(0.2, -0.2 - 1e-9) == Approx(face_strain(0.2, -0.2 + 1e-9)));
     CHECK(face_strain(0.2, 0) > 0.2);
+}
+
+TEST_CASE("a cell whose strain measure is small has no strain that reaches the bound") {
+    std::mt19937 engine(7);
+    std::normal_distribution<double> draw;
+    const double a = 0.3, gram = 1 / (16 * a * a);
+    double closest = 0;
+    for (int round = 0; round < 20000; ++round) {
+        // Stretched, sheared and bent to different shares, turned somehow.
+        Mat3 f = Mat3::Identity();
+        const double stretch = 0.05 * std::abs(draw(engine)), bend = 0.05 * std::abs(draw(engine));
+        for (int n = 0; n < 9; ++n) f(n / 3, n % 3) += stretch * draw(engine);
+        f = Quat(draw(engine), draw(engine), draw(engine), draw(engine)).normalized() * f;
+        std::array<Vec3, 8> x;
+        double at[3][8];
+        for (int c = 0; c < 8; ++c) {
+            x[c] = a * (f * Vec3(c & 1, c >> 1 & 1, c >> 2));
+            for (int i = 0; i < 3; ++i) x[c][i] += (round % 2) * bend * a * draw(engine);
+            for (int i = 0; i < 3; ++i) at[i][c] = x[c][i];
+        }
+        CornerSums<double> s;
+        sum_corners(at[0], s.x.x, s.y.x, s.z.x, s.xy.x, s.yz.x, s.zx.x, s.xyz.x);
+        sum_corners(at[1], s.x.y, s.y.y, s.z.y, s.xy.y, s.yz.y, s.zx.y, s.xyz.y);
+        sum_corners(at[2], s.x.z, s.y.z, s.z.z, s.xy.z, s.yz.z, s.zx.z, s.xyz.z);
+        const double measure = strain_measure(s, gram);
+        Mat3 mean;
+        mean << s.x.x, s.y.x, s.z.x, s.x.y, s.y.y, s.z.y, s.x.z, s.y.z, s.z.z;
+        mean /= 4 * a;
+        double most = mean.jacobiSvd().singularValues()[0] - 1;
+        for (int low = 0; low < 8; ++low) {
+            for (int high = low + 1; high < 8; ++high) {
+                const int axes = std::popcount(unsigned(low ^ high));
+                if (axes == 3) continue;
+                most = std::max(most, (x[high] - x[low]).norm() / (a * std::sqrt(axes)) - 1);
+            }
+        }
+        if (most <= 0) continue;
+        CHECK(measure >= strain_measure_at(most));
+        closest = std::max(closest, strain_measure_at(most) / measure);
+    }
+    CHECK(closest > 0.6);
 }

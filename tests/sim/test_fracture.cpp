@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
+
 #include "base/parallel.h"
 #include "sim/advance.h"
 #include "sim/cracking.h"
+#include "sim/lattice_forces.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 
@@ -204,6 +207,53 @@ TEST_CASE("damping that is slow to yield does not hold a crack together") {
         const double free = work_to_part(0.01), damped = work_to_part(0.1);
         INFO("work " << free << " and damped " << damped);
         CHECK(damped < 1.35 * free);
+    }
+}
+
+TEST_CASE("what the sweep tells of flow and strength is what a look at every cell finds") {
+    Material ductile{.young_modulus = 1e6, .poisson_ratio = 0.3};
+    ductile.yield_stress = 1e4, ductile.hardening = 1e4;
+    for (int kind : {0, 1, 2}) {
+        Material material = kind == 0 ? brittle(Mechanics::cells) : ductile;
+        material.strength = 0.02 * material.young_modulus;
+        material.toughness = 0.1 * material.strength;
+        Aggregate told = make_block(37, 20, 20, 0.01, material);
+        if (kind == 2) {
+            told.inset.push_back(material);
+            told.inset[0].yield_stress = std::numeric_limits<double>::infinity();
+            told.cell_material.assign(told.cell_fill.size(), 0);
+            for (std::size_t c = 0; c < told.cell_fill.size(); c += 3) told.cell_material[c] = 1;
+        }
+        Aggregate all = told;
+        LatticeForces some(told), every(all);
+        std::mt19937 engine(3);
+        std::uniform_real_distribution<double> draw(-1, 1);
+        int cracked = 0;
+        double flowed = 0;
+        for (int step = 1; step <= 4; ++step) {
+            for (std::size_t p = 0; p < told.particle_count(); ++p) {
+                const Vec3 x = told.particle_reference.at(p);
+                const double pull = 0.011 * step * (x.x() > 0 ? x.x() / 0.18 : 0);
+                const Vec3 u = x + pull * Vec3(x.x(), -0.3 * x.y(), -0.3 * x.z()) +
+                               2e-6 * step * Vec3(draw(engine), draw(engine), draw(engine));
+                told.particle_position.set(p, u);
+                all.particle_position.set(p, u);
+            }
+            Vec3Array f, g;
+            some.find(told, Flow::trial, f);
+            every.find(all, Flow::trial, g);
+            CHECK(f.x == g.x);
+            const double plastic = every.commit(all).plastic;
+            CHECK(some.commit(told, true).plastic == plastic);
+            flowed += plastic;
+            const Cracked one = some.crack(told, true), other = every.crack(all);
+            CHECK(one.cells == other.cells);
+            CHECK(one.lost == other.lost);
+            CHECK(state_hash(told) == state_hash(all));
+            cracked += one.cells;
+        }
+        CHECK(cracked > 0);
+        CHECK((flowed > 0) == (kind > 0));
     }
 }
 

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the sweep over cells does for the ledger: the energy they hold and the flow they commit,
+// eight cells of a row at a time. Each cell's numbers are added in the order of the cells.
+#include <cmath>
+#include <cstring>
+
+#include "base/parallel.h"
+#include "laws/cell.h"
+#include "sim/cell_history.h"
+#include "sim/cell_sweep.h"
+#include "sim/vector_clones.h"
+
+namespace swage {
+
+namespace {
+
+// What is asked of a run.
+struct BookTask {
+    const Aggregate* matter;
+    HistoryRows history;
+    const MaterialLaw* law = nullptr;
+    const CellRun* run = nullptr;
+    const std::int32_t* batch = nullptr;  // of the run: kWholeCells, or where its shares begin
+    const float* share;
+    Aggregate* flows = nullptr;  // whose history grows
+    double sum = 0;              // [J]; commit with nowhere to put the flow: cells that flow
+};
+
+template <typename V>
+struct BookCells {
+    CornerSums<V> sums;
+    Columns<V> gradient;
+    CellModes<V> modes;
+    V fill;
+    CellHistory<V> history;  // all zero where nothing has flowed
+};
+
+template <typename V>
+SWAGE_INLINE BookCells<V> load_cells(const BookTask& task, int begin, int count) {
+    const Aggregate& matter = *task.matter;
+    const Vec3Array& x = matter.particle_position;
+    const CellRun& run = *task.run;
+    CornerRows<const double> rows;
+    for (int q = 0; q < 4; ++q) {
+        rows.at[0][q] = x.x.data() + run.row[q];
+        rows.at[1][q] = x.y.data() + run.row[q];
+        rows.at[2][q] = x.z.data() + run.row[q];
+    }
+    BookCells<V> r{};
+    r.sums = gather<V>(rows, begin, count, static_cast<int>(x.size()) - run.row[3]);
+    Triple<V> at{};
+    const std::int32_t shares = task.batch[begin / kLanes];
+    if (shares == kWholeCells) {
+        r.fill = V{} + 1.0;
+    } else {
+        const float* from = task.share + shares + begin % kLanes;
+        r.fill = load<V>(from);
+        at = {load<V>(from + kLanes), load<V>(from + 2 * kLanes), load<V>(from + 3 * kLanes)};
+    }
+    r.gradient = centroid_gradient(r.sums, at, matter.lattice.spacing);
+    r.modes = pulled_back(r.gradient, r.sums);
+    const CellId first = run.first + begin;
+    if (has_flowed(task.history, first - begin % kLanes)) {
+        r.history = load_history<V>(task.history, first);
+    }
+    return r;
+}
+
+template <int kWidth>
+SWAGE_INLINE void add_energy(BookTask& task) {
+    typedef LanesOf<kWidth> V;
+    const double volume = std::pow(task.matter->lattice.spacing, 3);
+    const auto& [law, kind] = *task.law;
+    for (int begin = 0; begin < task.run->count; begin += kWidth) {
+        const int count = std::min(kWidth, task.run->count - begin);
+        const BookCells<V> c = load_cells<V>(task, begin, count);
+        const CellModes<V> q = c.modes - c.history.modes;
+        const V modes = 0.5 * mode_fill(c.fill) * product(mode_stress(law, q), q);
+        const V mean = kind == CellKind::rubber
+                           ? rubber_energy(law, c.gradient)
+                           : strain_energy(law, cell_strain(c.gradient).log, c.history);
+        const V energy = volume * c.fill * mean + modes;
+        for (int l = 0; l < count; ++l) {
+            if (c.fill[l] > 0) task.sum += energy[l];
+        }
+    }
+}
+
+template <typename V>
+SWAGE_INLINE void grow(float* from, const V& by, const V& flows, int count) {
+    for (int l = 0; l < count; ++l) {
+        if (flows[l] > 0) from[l] += static_cast<float>(by[l]);
+    }
+}
+
+template <int kWidth>
+SWAGE_INLINE void add_flow(BookTask& task) {
+    typedef LanesOf<kWidth> V;
+    const double volume = std::pow(task.matter->lattice.spacing, 3);
+    const CellModuli& law = task.law->moduli;
+    for (int begin = 0; begin < task.run->count; begin += kWidth) {
+        const int count = std::min(kWidth, task.run->count - begin);
+        const BookCells<V> c = load_cells<V>(task, begin, count);
+        const CellFlowed<V> r =
+            flow_cell(law, c.history, cell_strain(c.gradient).log, c.modes, c.fill);
+        V flows{};
+        bool any = false;
+        for (int l = 0; l < count; ++l) {
+            const bool does = c.fill[l] > 0 && r.d_alpha[l] > 0;
+            flows[l] = does;
+            any = any || does;
+        }
+        if (!any) continue;
+        if (task.flows == nullptr) {
+            for (int l = 0; l < count; ++l) task.sum += flows[l];
+            continue;
+        }
+        // The stress that did the flow's work is the one after the return, less what hardening
+        // stores: linear hardening is booked as lost.
+        const V lost = volume * c.fill * r.d_alpha *
+                       (law.yield_stress + law.hardening * (c.history.alpha + 0.5 * r.d_alpha));
+        for (int l = 0; l < count; ++l) {
+            if (flows[l] > 0) task.sum += lost[l];
+        }
+        const V share = 1.0 - r.kept;
+        const Symmetric<V>& d = r.distortion;
+        const CellModes<V>& m = r.modes;
+        const V strain[kCellStrains] = {d.xx, d.yy, d.zz, d.xy, d.yz, d.zx};
+        const V modes[kCellModes] = {m.xy.x, m.xy.y, m.xy.z, m.yz.x,  m.yz.y,  m.yz.z,
+                                     m.zx.x, m.zx.y, m.zx.z, m.xyz.x, m.xyz.y, m.xyz.z};
+        const CellId first = task.run->first + begin;
+        for (int n = 0; n < kCellStrains; ++n) {
+            grow(task.flows->cell_plastic_strain[n].data() + first, share * strain[n], flows,
+                 count);
+        }
+        for (int n = 0; n < kCellModes; ++n) {
+            grow(task.flows->cell_plastic_modes[n].data() + first, share * modes[n], flows, count);
+        }
+        grow(task.flows->cell_hardening.data() + first, r.d_alpha, flows, count);
+    }
+}
+
+SWAGE_WIDE_VECTORS void wide_energy(BookTask& task) { add_energy<8>(task); }
+SWAGE_MIDDLE_VECTORS void middle_energy(BookTask& task) { add_energy<4>(task); }
+void narrow_energy(BookTask& task) { add_energy<2>(task); }
+SWAGE_WIDE_VECTORS void wide_flow(BookTask& task) { add_flow<8>(task); }
+SWAGE_MIDDLE_VECTORS void middle_flow(BookTask& task) { add_flow<4>(task); }
+void narrow_flow(BookTask& task) { add_flow<2>(task); }
+
+}  // namespace
+
+// The sum over slabs of act(task) for each of the runs that `of` has, or else for all.
+template <typename Act>
+double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const Act& act) const {
+    const std::vector<CellRun>& all = runs(matter);
+    return ordered_sum(slab_.size(), [&](std::size_t s) {
+        BookTask task{.matter = &matter, .history = HistoryRows(matter), .share = share_.data()};
+        const std::int32_t* batch = batch_.data() + slab_batch_[s];
+        std::size_t next = 0;
+        for (std::size_t r = slab_run_[s]; r < slab_run_[s + 1]; ++r) {
+            task.run = &all[r];
+            task.batch = batch;
+            batch += batches_of(all[r]);
+            if (of != nullptr) {
+                if (next == (*of)[s].size()) break;
+                if ((*of)[s][next] != task.run) continue;
+                ++next;
+            }
+            task.law = &law_of(matter, task.run->first);
+            act(task);
+        }
+        return task.sum;
+    });
+}
+
+double CellSweep::commit(Aggregate& matter, bool seen) const {
+    if (!yields_) return 0;
+    const int width = vector_width();
+    const SlabRuns* const of = seen ? &yielding_ : nullptr;
+    const auto sum = [&](Aggregate* flows) {
+        return sum_of_runs(matter, of, [&](BookTask& task) {
+            if (task.law->kind != CellKind::yielding) return;
+            task.flows = flows;
+            (width == 8 ? wide_flow : width == 4 ? middle_flow : narrow_flow)(task);
+        });
+    };
+    if (matter.cell_plastic_strain[0].empty()) {
+        if (sum(nullptr) == 0) return mixed_.commit(matter, law_);
+        for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
+        for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
+        matter.cell_hardening.assign(fill_.size(), 0.0f);
+    }
+    const double lost = sum(&matter);
+    return lost + mixed_.commit(matter, law_);
+}
+
+double CellSweep::elastic_energy(const Aggregate& matter) const {
+    const int width = vector_width();
+    const double swept = sum_of_runs(matter, nullptr, [&](BookTask& task) {
+        (width == 8 ? wide_energy : width == 4 ? middle_energy : narrow_energy)(task);
+    });
+    return swept + mixed_.elastic_energy(matter, law_);
+}
+
+}  // namespace swage
