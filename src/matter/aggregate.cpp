@@ -10,7 +10,7 @@ namespace swage {
 std::size_t Aggregate::connection_count() const {
     std::size_t count = 0;
     for (const ConnectionArrays& direction : connection) {
-        for (float weight : direction.weight) count += weight > 0;
+        for (std::size_t p = 0; p < direction.weight.size(); ++p) count += direction.weight[p] > 0;
     }
     return count;
 }
@@ -99,18 +99,17 @@ std::size_t bytes_of(const Vec3Array& a) { return bytes_of(a.x) + bytes_of(a.y) 
 std::size_t Aggregate::bytes() const {
     std::size_t sum = bytes_of(lattice.particle_run) + bytes_of(lattice.span) +
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
-                      bytes_of(particle_reference) + bytes_of(particle_position) +
-                      bytes_of(particle_velocity) + bytes_of(particle_mass) + bytes_of(cell_fill) +
-                      bytes_of(cell_centroid) + bytes_of(cell_cracked) + bytes_of(cell_hardening) +
-                      bytes_of(inset) + bytes_of(cell_material) + bytes_of(mixed_cell) +
-                      bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
+                      bytes_of(particle_position) + bytes_of(particle_velocity) +
+                      bytes_of(particle_mass) + bytes_of(cell_fill) + cell_centroid.bytes() +
+                      bytes_of(cell_cracked) + bytes_of(cell_hardening) + bytes_of(inset) +
+                      bytes_of(cell_material) + bytes_of(mixed_cell) + bytes_of(surface.corner) +
+                      bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& v : cell_plastic_strain) sum += bytes_of(v);
     for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);
     for (const ConnectionArrays& direction : connection) {
-        sum +=
-            bytes_of(direction.weight) + bytes_of(direction.plastic) + bytes_of(direction.damage);
+        sum += direction.weight.bytes() + bytes_of(direction.plastic) + bytes_of(direction.damage);
     }
     return sum;
 }
@@ -138,7 +137,7 @@ Pieces find_pieces(const Aggregate& matter) {
         return p;
     };
     for (const Span& span : matter.lattice.span) {
-        const std::vector<float>& weight = matter.connection[span.direction].weight;
+        const SparseArray<float>& weight = matter.connection[span.direction].weight;
         for (int n = 0; n < span.count; ++n) {
             if (weight[span.lower + n] <= 0) continue;
             const int a = root(span.lower + n), b = root(span.upper + n);
@@ -163,13 +162,16 @@ std::uint64_t state_hash(const Aggregate& matter) {
         hasher.add(std::span<const double>(a.y));
         hasher.add(std::span<const double>(a.z));
     };
-    add(matter.particle_reference);
+    add(matter.particle_reference.all());
     add(matter.particle_position);
     add(matter.particle_velocity);
     hasher.add(std::span<const double>(matter.particle_mass));
+    const std::vector<float> none(matter.connection[0].plastic.empty() ? matter.particle_count()
+                                                                       : 0);
     for (const ConnectionArrays& direction : matter.connection) {
-        hasher.add(std::span<const float>(direction.weight));
-        hasher.add(std::span<const float>(direction.plastic));
+        hasher.add(std::span<const float>(direction.weight.all()));
+        // Empty stands for zeros.
+        hasher.add(std::span<const float>(direction.plastic.empty() ? none : direction.plastic));
         hasher.add(std::span<const float>(direction.damage));
     }
     for (const std::vector<float>& slot : matter.cell_plastic) {

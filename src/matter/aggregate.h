@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/sparse_array.h"
 #include "geometry/box.h"
 #include "matter/material.h"
 
@@ -109,10 +110,31 @@ struct Lattice {
     std::array<ParticleId, 8> cell_corners(CellId cell) const;
 };
 
+// Where the particles were at molding: on the lattice's sites, so that none need be kept.
+class ReferencePlaces {
+  public:
+    ReferencePlaces() = default;
+    // `step`: from a site to the next along x, y, z [m].
+    ReferencePlaces(const Vec3& origin, const Vec3& step, const Lattice& lattice);
+
+    std::size_t size() const { return size_; }
+    Vec3 at(std::size_t particle) const;
+    Vec3Array all() const;
+
+  private:
+    Vec3 origin_ = Vec3::Zero(), step_ = Vec3::Zero();
+    std::size_t size_ = 0;
+    std::vector<ParticleRun> run_;
+    std::vector<std::int32_t> first_;  // run of every kStride-th particle
+};
+
 // History and strength of the connections of one direction, indexed by the lower particle.
 struct ConnectionArrays {
-    std::vector<float> weight;   // share of the full connection's section, 0: none (or no longer)
-    std::vector<float> plastic;  // rest_length / reference_length - 1
+    double plastic_of(ParticleId lower) const { return plastic.empty() ? 0.0 : plastic[lower]; }
+
+    SparseArray<float> weight;  // share of the full connection's section, 0: none (or no longer)
+    // rest_length / reference_length - 1. Empty until springs flow: none has.
+    std::vector<float> plastic;
     // Share of its stiffness that is lost for being pulled (laws/fracture.h); 1: broken by load,
     // its weight is then 0 too. Empty while nothing is damaged.
     std::vector<float> damage;
@@ -144,16 +166,16 @@ struct Aggregate {
     Material material;  // its mechanics, friction and damping are the whole body's
     Lattice lattice;
 
-    Vec3Array particle_reference;       // position at molding [m]
-    Vec3Array particle_position;        // [m]
-    Vec3Array particle_velocity;        // [m/s]
-    std::vector<double> particle_mass;  // [kg]
+    ReferencePlaces particle_reference;  // position at molding [m]
+    Vec3Array particle_position;         // [m]
+    Vec3Array particle_velocity;         // [m/s]
+    std::vector<double> particle_mass;   // [kg]
 
     std::array<ConnectionArrays, kForwardCount> connection;
 
     std::vector<float> cell_fill;  // share of the cell's volume inside the mesh, > 0; slivers of a
                                    // neighbour can bring it slightly above 1
-    std::vector<Eigen::Vector3f> cell_centroid;  // of that share, in the cell, each -0.5 to 0.5
+    SparseArray<Eigen::Vector3f> cell_centroid;  // of that share, in the cell, each -0.5 to 0.5
 
     // Of a body of several materials: the others; for each cell which it is, 0 being `material` and
     // m inset[m - 1]; and the cells, in their order, that hold two, whose cell_material is the one

@@ -124,6 +124,32 @@ Lattice make_lattice(const Vec3& origin, double spacing, const Vec3i& cell_count
     return lattice;
 }
 
+namespace {
+constexpr std::size_t kStride = 64;  // particles
+}
+
+ReferencePlaces::ReferencePlaces(const Vec3& origin, const Vec3& step, const Lattice& lattice)
+    : origin_(origin), step_(step), run_(lattice.particle_run) {
+    for (std::size_t r = 0; r < run_.size(); ++r) {
+        size_ += static_cast<std::size_t>(run_[r].count);
+        while (first_.size() * kStride < size_) first_.push_back(static_cast<std::int32_t>(r));
+    }
+}
+
+Vec3 ReferencePlaces::at(std::size_t particle) const {
+    const ParticleRun* run = &run_[first_[particle / kStride]];
+    const int p = static_cast<int>(particle);
+    while (p >= run->first + run->count) ++run;
+    return origin_ + step_.cwiseProduct(Vec3(run->i + (p - run->first), run->j, run->k));
+}
+
+Vec3Array ReferencePlaces::all() const {
+    Vec3Array places;
+    places.resize(size_);
+    for (std::size_t p = 0; p < size_; ++p) places.set(p, at(p));
+    return places;
+}
+
 CellId Lattice::cell_at(int i, int j, int k) const {
     if (i < 0 || j < 0 || k < 0 || i >= cell_count.x() || j >= cell_count.y() ||
         k >= cell_count.z()) {

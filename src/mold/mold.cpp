@@ -56,13 +56,14 @@ void fill_cells(const std::vector<CellLayer>& layers, const MoldFrame& frame, Ag
     for (const CellLayer& layer : layers) count += layer.share.size();
     site.reserve(count);
     matter.cell_fill.reserve(count);
-    matter.cell_centroid.reserve(count);
+    matter.cell_centroid = SparseArray<Eigen::Vector3f>(count, Eigen::Vector3f::Zero());
     for (std::size_t k = 0; k < layers.size(); ++k) {
         for (const CellShare& s : layers[k].share) {
             site.emplace_back(s.i, s.j, static_cast<int>(k));
-            matter.cell_fill.push_back(static_cast<float>(s.fill));
             const Vec3 centroid = s.moment / s.fill;
-            matter.cell_centroid.push_back(centroid.cwiseMax(-0.5).cwiseMin(0.5).cast<float>());
+            matter.cell_centroid.set(matter.cell_fill.size(),
+                                     centroid.cwiseMax(-0.5).cwiseMin(0.5).cast<float>());
+            matter.cell_fill.push_back(static_cast<float>(s.fill));
         }
     }
     matter.lattice = make_lattice(frame.origin, frame.spacing, frame.cell_count, site);
@@ -71,21 +72,10 @@ void fill_cells(const std::vector<CellLayer>& layers, const MoldFrame& frame, Ag
 void place_particles(const MoldFrame& frame, Aggregate& matter) {
     std::size_t count = 0;
     for (const ParticleRun& run : matter.lattice.particle_run) count += run.count;
-    matter.particle_reference.resize(count);
-    for (const ParticleRun& run : matter.lattice.particle_run) {
-        for (int n = 0; n < run.count; ++n) {
-            matter.particle_reference.set(
-                run.first + n,
-                frame.origin + frame.step.cwiseProduct(Vec3(run.i + n, run.j, run.k)));
-        }
-    }
-    matter.particle_position = matter.particle_reference;
+    matter.particle_reference = ReferencePlaces(frame.origin, frame.step, matter.lattice);
+    matter.particle_position = matter.particle_reference.all();
     matter.particle_velocity.resize(count);
     matter.particle_mass.assign(count, 0.0);
-    for (ConnectionArrays& c : matter.connection) {
-        c.weight.assign(count, 0.0f);
-        c.plastic.assign(count, 0.0f);
-    }
 }
 
 // Mean of what a cell of a body of several materials holds.
@@ -109,6 +99,8 @@ double density_of(const Aggregate& matter, CellId cell) {
 void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
     const double corner_volume = frame.cell_volume() / 8;
     const double corner_mass = matter.material.density * corner_volume;
+    std::array<std::vector<float>, kForwardCount> weight;
+    for (std::vector<float>& w : weight) w.assign(matter.particle_count(), 0.0f);
     auto layer = layers.begin();
     std::size_t in_layer = 0;
     for (const CellRun& run : matter.lattice.cell_run) {
@@ -122,10 +114,12 @@ void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Agg
             for (int c = 0; c < 8; ++c) matter.particle_mass[corner(c)] += own;
             for (const auto& [direction, lower] : kCellConnection) {
                 const float share = direction < kEdgeCount ? 0.25f : 0.5f;
-                matter.connection[direction].weight[corner(lower)] +=
-                    share * static_cast<float>(fill);
+                weight[direction][corner(lower)] += share * static_cast<float>(fill);
             }
         }
+    }
+    for (int d = 0; d < kForwardCount; ++d) {
+        matter.connection[d].weight = SparseArray<float>(weight[d], 1.0f);
     }
 }
 

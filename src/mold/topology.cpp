@@ -27,9 +27,10 @@ int euler_of(const Aggregate& matter) {
     int euler =
         static_cast<int>(matter.particle_count()) - static_cast<int>(matter.cell_fill.size());
     const auto present = [&](int direction) {
-        const std::vector<float>& weight = matter.connection[direction].weight;
-        return static_cast<int>(
-            std::count_if(weight.begin(), weight.end(), [](float w) { return w > 0; }));
+        const SparseArray<float>& weight = matter.connection[direction].weight;
+        int count = 0;
+        for (std::size_t p = 0; p < weight.size(); ++p) count += weight[p] > 0;
+        return count;
     };
     for (int d = 0; d < kEdgeCount; ++d) euler -= present(d);
     // One of the two diagonals of each face.

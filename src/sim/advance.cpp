@@ -149,7 +149,7 @@ int Simulation::Rooms::sever(std::size_t b, const Drive& from, const Drive& to) 
     }
     if (events.empty()) return 0;
     const double before = elastic(b);
-    for (const SeverEvent& e : events) at.matter->connection[e.direction].weight[e.lower] = 0;
+    for (const SeverEvent& e : events) at.matter->connection[e.direction].weight.set(e.lower, 0);
     connections_changed(b);
     at.books.severed_energy += before - elastic(b);
     return static_cast<int>(events.size());
@@ -239,7 +239,7 @@ void Simulation::plan_cuts(const std::vector<Drive>& drives) {
         for (std::size_t n = 0; n + 1 < drives.size(); ++n) {
             body.plan.push_back(rooms_->crossed(ahead, drives[n], drives[n + 1]));
             for (const SeverEvent& e : body.plan.back()) {
-                ahead.connection[e.direction].weight[e.lower] = 0;
+                ahead.connection[e.direction].weight.set(e.lower, 0);
             }
         }
         // What would fall off as a crumb stays with the side that it is cut from.

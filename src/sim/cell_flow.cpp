@@ -56,7 +56,8 @@ CellFlow::CellFlow(const Aggregate& matter) {
     yield_distortion_ = yield_distortion(law_);
     for (int d = 0; d < kForwardCount; ++d) {
         rest_[d] = matter.connection[d].plastic;
-        strain_[d].resize(rest_[d].size());
+        rest_[d].resize(matter.particle_count());
+        strain_[d].resize(matter.particle_count());
     }
 }
 
@@ -83,6 +84,7 @@ void CellFlow::find_flowing(const Aggregate& matter) {
     std::vector<std::vector<FlowingCell>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
         double theta[kCellBlock], distortion[kCellBlock];
+        float weight[kCellBlock];
         const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
         for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
             const CellRun& run = runs[r];
@@ -101,9 +103,9 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                 for (int slot = 0; slot < kCellConnectionCount; ++slot) {
                     const int d = kCellConnection[slot].direction;
                     const ParticleId lower = lower_end(run.row, slot) + at;
-                    distortion_block(strain_[d].data() + lower,
-                                     matter.connection[d].weight.data() + lower, plastic(slot),
-                                     theta, share_of(slot), count, distortion);
+                    matter.connection[d].weight.copy(lower, count, weight);
+                    distortion_block(strain_[d].data() + lower, weight, plastic(slot), theta,
+                                     share_of(slot), count, distortion);
                 }
                 for (int n = 0; n < count; ++n) {
                     if (!(distortion[n] > yield_distortion_)) continue;
@@ -139,7 +141,7 @@ const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
         for (int slot = 0; slot < kCellConnectionCount; ++slot) {
             const int d = kCellConnection[slot].direction;
             const ParticleId lower = lower_end(cell.row, slot);
-            rest_[d][lower] = matter.connection[d].plastic[lower];
+            rest_[d][lower] = static_cast<float>(matter.connection[d].plastic_of(lower));
         }
     }
     find_strains(matter);
@@ -182,6 +184,7 @@ double CellFlow::commit(Aggregate& matter) {
         }
     }
     for (std::vector<float>& slot : matter.cell_plastic) slot.resize(matter.cell_fill.size());
+    for (ConnectionArrays& c : matter.connection) c.plastic.resize(matter.particle_count());
     matter.cell_hardening.resize(matter.cell_fill.size());
     for (std::size_t n = 0; n < flowing_.size(); ++n) {
         const FlowingCell& cell = flowing_[n];

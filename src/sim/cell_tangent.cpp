@@ -256,7 +256,9 @@ CellTangent::CellTangent(const Aggregate& matter, const std::vector<float>& fill
     : fill_(fill), slab_(cell_slabs(matter)) {
     fill_.resize(fill.size() + kLanes);
     for (int i = 0; i < 3; ++i) {
-        for (const Eigen::Vector3f& c : matter.cell_centroid) at_[i].push_back(2 * c[i]);
+        for (std::size_t c = 0; c < matter.cell_centroid.size(); ++c) {
+            at_[i].push_back(2 * matter.cell_centroid[c][i]);
+        }
         at_[i].resize(at_[i].size() + kLanes);
     }
     for (const CellRun& run : matter.lattice.cell_run) {

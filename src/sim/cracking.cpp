@@ -132,7 +132,7 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
         const int high = c.corner + f[0] + 2 * f[1] + 4 * f[2];
         const ParticleId upper = row[high >> 1] + (high & 1);
         const double rest = reference_length(matter.lattice, c.direction) *
-                            (1 + double(matter.connection[c.direction].plastic[lower]));
+                            (1 + matter.connection[c.direction].plastic_of(lower));
         largest = std::max(largest, (x.at(upper) - x.at(lower)).squaredNorm() / (rest * rest));
     }
     return std::sqrt(largest) - 1;

@@ -39,7 +39,8 @@ double InternalDamping::stored_energy(const Aggregate& matter, const LatticeSwee
     for (int j = 0; j < branches_.count; ++j) share[j] = 1 / branches_.share[j];
     double sum[kLanes] = {};
     sweep.for_each_branched(
-        strain_, branches_.count, [&](ParticleId first, int count, const float* strain) {
+        strain_, branches_.count,
+        [&](ParticleId, int count, const float* strain, const float* weight) {
             for (int d = 0; d < kForwardCount; ++d) {
                 double square[kLanes] = {};
                 for (int j = 0; j < branches_.count; ++j, strain += kLanes) {
@@ -47,8 +48,10 @@ double InternalDamping::stored_energy(const Aggregate& matter, const LatticeSwee
                         square[l] += share[j] * (double(strain[l]) * double(strain[l]));
                     }
                 }
-                const float* const weight = sweep.branch_weight(matter, d).data() + first;
-                for (int l = 0; l < count; ++l) sum[l] += scale[d] * double(weight[l]) * square[l];
+                for (int l = 0; l < count; ++l) {
+                    const double whole = weight == nullptr ? 1 : double(weight[d * kLanes + l]);
+                    sum[l] += scale[d] * whole * square[l];
+                }
             }
         });
     return std::accumulate(sum, sum + kLanes, 0.0);

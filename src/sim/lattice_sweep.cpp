@@ -2,6 +2,7 @@
 #include "sim/lattice_sweep.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -45,7 +46,7 @@ SWAGE_INLINE RunRows rows_of(const SpringTask& task, const SpringRun& run) {
 template <int kWidth>
 struct EndCopy {
     double x[2][5][3][kWidth + 2];
-    float f[2][kForwardCount][kWidth];
+    float rest[kForwardCount][kWidth];
 };
 template <int kWidth, bool kDamped>
 [[gnu::noinline]] void copy_end(const SpringTask& task, const SpringRun& run, int begin,
@@ -67,11 +68,9 @@ template <int kWidth, bool kDamped>
     for (int d = 0; d < kForwardCount; ++d) {
         for (int n = 0; n < kWidth; ++n) {
             const int p = std::min(run.first + begin + n, task.particles - 1);
-            copy.f[0][d][n] = task.weight[d][p];
-            copy.f[1][d][n] = task.rest[d][p];
+            if (task.flowed) copy.rest[d][n] = task.rest[d][p];
         }
-        at.weight[d] = copy.f[0][d];
-        at.rest[d] = copy.f[1][d];
+        at.rest[d] = copy.rest[d];
     }
 }
 
@@ -130,7 +129,8 @@ SWAGE_INLINE void slab_forces(SpringTask& task) {
     typedef LanesOf<kWidth> V;
     typename LaneBatch<kWidth>::Indices lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
-    const std::uint8_t* plain = task.plain;
+    static constexpr std::array<float, kLanes> kOnes = {1, 1, 1, 1, 1, 1, 1, 1};
+    const std::int32_t* batch = task.batch;
     float* strain = task.strain;
     V work[kLanes / kWidth]{};
     EndCopy<kWidth> copy;
@@ -159,8 +159,9 @@ SWAGE_INLINE void slab_forces(SpringTask& task) {
                 }
             }
             for (int d = 0; d < kForwardCount; ++d) {
-                at.weight[d] = task.weight[d] + run->first + begin;
-                at.rest[d] = task.rest[d] + run->first + begin;
+                at.weight[d] =
+                    (*batch < 0 ? kOnes.data() : task.weight + *batch + d * kLanes) + part * kWidth;
+                if (task.flowed) at.rest[d] = task.rest[d] + run->first + begin;
             }
             if (reach + begin + kWidth + 1 > task.particles) [[unlikely]] {
                 copy_end<kWidth, kDamped>(task, *run, begin, copy, at);
@@ -170,14 +171,14 @@ SWAGE_INLINE void slab_forces(SpringTask& task) {
             kernel.inside = lane < run->count - begin;
             if (task.flowed) {
                 batch_forces<BatchKind::flowed>(kernel, at, rows, begin, run->count, own, carry);
-            } else if (*plain) {
+            } else if (*batch < 0) {
                 batch_forces<BatchKind::plain>(kernel, at, rows, begin, run->count, own, carry);
             } else {
                 batch_forces<BatchKind::weighted>(kernel, at, rows, begin, run->count, own, carry);
             }
             work[part] = kernel.work;
             if (part == kLanes / kWidth - 1 || begin + kWidth >= run->count) {
-                ++plain;
+                ++batch;
                 strain += kForwardCount * task.branches * kLanes;
             }
         }
@@ -224,7 +225,7 @@ LatticeSweep::LatticeSweep(const Aggregate& matter)
         slab_batch_.push_back(batches);
         for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) batches += batches_of(run_[r]);
     }
-    plain_.resize(batches);
+    batch_.resize(batches);
     stretched_.resize(slab_.size());
     work_.resize(slab_.size());
     connections_changed(matter);
@@ -237,35 +238,40 @@ void LatticeSweep::connections_changed(const Aggregate& matter, const std::vecto
         flowed_ || std::any_of(all.begin(), all.end(), [](const ConnectionArrays& c) {
             return std::any_of(c.plastic.begin(), c.plastic.end(), [](float p) { return p != 0; });
         });
-    std::uint8_t* plain = plain_.data();
+    weight_.clear();
+    softens_.clear();
+    std::int32_t* batch = batch_.data();
     for (const SpringRun& run : run_) {
         for (int begin = 0; begin < run.count; begin += kLanes) {
-            bool whole = begin + kLanes <= run.count;
-            for (const ConnectionArrays& c : all) {
-                const float* const weight = c.weight.data() + run.first + begin;
-                for (int l = 0; l < kLanes && whole; ++l) whole = weight[l] == 1;
+            const ParticleId first = run.first + begin;
+            const int count = std::min(kLanes, run.count - begin);
+            float weight[kForwardCount][kLanes] = {};
+            bool whole = count == kLanes;
+            for (int d = 0; d < kForwardCount; ++d) {
+                all[d].weight.copy(first, count, weight[d]);
+                for (int l = 0; l < kLanes && whole; ++l) whole = weight[d][l] == 1;
             }
-            for (int l = 0; l < kLanes && whole && !softens.empty(); ++l) {
-                whole = !softens[run.first + begin + l];
+            for (int l = 0; l < count && !softens.empty(); ++l) {
+                if (!softens[first + l]) continue;
+                whole = false;
+                softens_.push_back({first + l, static_cast<std::int32_t>(weight_.size() + l)});
             }
-            *plain++ = whole;
+            *batch++ = whole ? -1 : static_cast<std::int32_t>(weight_.size());
+            if (whole) continue;
+            for (const auto& of : weight) weight_.insert(weight_.end(), of, of + kLanes);
         }
     }
-    softens_.clear();
-    for (std::size_t p = 0; p < softens.size(); ++p) {
-        if (softens[p]) softens_.push_back(static_cast<ParticleId>(p));
-    }
-    for (int d = 0; d < kForwardCount; ++d) {
-        softened_[d] = softens_.empty() ? std::vector<float>{} : all[d].weight;
-    }
+    softened_ = softens_.empty() ? std::vector<float>{} : weight_;
     soften(matter);
 }
 
 void LatticeSweep::soften(const Aggregate& matter) {
     if (softens_.empty() || matter.connection[0].damage.empty()) return;
-    for (int d = 0; d < kForwardCount; ++d) {
-        const ConnectionArrays& own = matter.connection[d];
-        for (ParticleId p : softens_) softened_[d][p] = own.weight[p] * (1 - own.damage[p]);
+    for (const SofteningEnd& end : softens_) {
+        for (int d = 0; d < kForwardCount; ++d) {
+            const ConnectionArrays& own = matter.connection[d];
+            softened_[end.at + d * kLanes] = own.weight[end.lower] * (1 - own.damage[end.lower]);
+        }
     }
 }
 
@@ -275,15 +281,17 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
     const Vec3Array &x = matter.particle_position, &v = matter.particle_velocity;
     SpringTask whole;
     whole.particles = static_cast<int>(x.size());
+    whole.flowed = wanted.springs && (wanted.rest || flowed_);
     for (int i = 0; i < 3; ++i) {
         whole.position[i] = (i == 0 ? x.x : i == 1 ? x.y : x.z).data();
         whole.velocity[i] = (i == 0 ? v.x : i == 1 ? v.y : v.z).data();
     }
     for (int d = 0; d < kForwardCount; ++d) {
         const ConnectionArrays& own = matter.connection[d];
-        whole.weight[d] = (wanted.springs ? own.weight : branch_weight(matter, d)).data();
         whole.rest[d] = (wanted.rest ? (*wanted.rest)[d] : own.plastic).data();
+        whole.flowed = whole.flowed && whole.rest[d] != nullptr;
     }
+    whole.weight = (wanted.springs || !branches_soften() ? weight_ : softened_).data();
     whole.stiffness = law.stiffness;
     whole.inverse_square[0] = 1 / (a * a), whole.inverse_square[1] = 0.5 / (a * a);
     whole.slack_limit = slack_at(wanted.limit);
@@ -297,14 +305,13 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
             whole.stretch_scale[kind] = step->step * whole.inverse_square[kind];
         }
     }
-    whole.flowed = wanted.springs && (wanted.rest || flowed_);
     force.resize(x.size());
     parallel_for(slab_.size(), [&](std::size_t index) {
         RowSlab& slab = slab_[index];
         SpringTask task = whole;
         task.to = force_rows(slab, force);
         task.run = run_.data() + slab.run_begin, task.run_end = run_.data() + slab.run_end;
-        task.plain = plain_.data() + slab_batch_[index];
+        task.batch = batch_.data() + slab_batch_[index];
         task.end = slab.end, task.reach = slab.reach, task.zeroed = slab.begin;
         stretched_[index].clear();
         task.stretched = &stretched_[index];
@@ -344,7 +351,7 @@ namespace {
 template <typename Act>
 void for_each_connection(const Aggregate& matter, const Act& act) {
     for (const Span& span : matter.lattice.span) {
-        const std::vector<float>& weight = matter.connection[span.direction].weight;
+        const SparseArray<float>& weight = matter.connection[span.direction].weight;
         const double reference = reference_length(matter.lattice, span.direction);
         for (int n = 0; n < span.count; ++n) {
             if (weight[span.lower + n] <= 0) continue;
@@ -361,8 +368,7 @@ double elastic_energy(const Aggregate& matter, const LatticeLaw& law) {
     double sum = 0;
     for_each_connection(
         matter, [&](int d, ParticleId lower, ParticleId, double reference, double distance) {
-            const double strain =
-                distance / reference - 1 - double(matter.connection[d].plastic[lower]);
+            const double strain = distance / reference - 1 - matter.connection[d].plastic_of(lower);
             sum += 0.5 * law.stiffness * matter.connection[d].weight[lower] * reference *
                    reference * strain * strain;
         });
@@ -377,7 +383,7 @@ std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& l
         const auto& f = kForward[span.direction];
         const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
         const Mat3 dyad = n * n.transpose();
-        const std::vector<float>& weight = matter.connection[span.direction].weight;
+        const SparseArray<float>& weight = matter.connection[span.direction].weight;
         for (int i = 0; i < span.count; ++i) {
             const double k = law.stiffness * weight[span.lower + i];
             block[span.lower + i] += 2 * k * dyad;

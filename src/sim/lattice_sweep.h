@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "laws/internal_damping.h"
@@ -41,11 +42,7 @@ class LatticeSweep {
     void connections_changed(const Aggregate& matter, const std::vector<char>& softens = {});
     // Connections have softened: the branches beside them do too.
     void soften(const Aggregate& matter);
-    bool branches_soften() const { return !softened_[0].empty(); }
-    // Share of the full connection's section whose branches are whole, by lower particle.
-    const std::vector<float>& branch_weight(const Aggregate& matter, int direction) const {
-        return branches_soften() ? softened_[direction] : matter.connection[direction].weight;
-    }
+    bool branches_soften() const { return !softened_.empty(); }
 
     // force = sum of the connections' forces on each particle [N], with the given rest strains or
     // else the committed ones. A strain above `limit` is told by stretched_runs(). With branches,
@@ -57,17 +54,22 @@ class LatticeSweep {
                         Vec3Array& force);
 
     std::size_t branch_floats(int count) const {
-        return plain_.size() * kForwardCount * static_cast<std::size_t>(count) * kLanes;
+        return batch_.size() * kForwardCount * static_cast<std::size_t>(count) * kLanes;
     }
-    // Calls act(first, count, strain) with branch_floats() of `count` particles side by side,
-    // kLanes at most: [direction * branches + branch] of the n-th at strain[that * kLanes + n].
+    // Calls act(first, count, strain, weight) with branch_floats() of `count` particles side by
+    // side, kLanes at most: [direction * branches + branch] of the n-th at
+    // strain[that * kLanes + n]. weight: share of the full connection's section whose branches are
+    // whole, [direction] of the n-th at weight[that * kLanes + n]; null: all are one.
     template <typename Act>
     void for_each_branched(const std::vector<float>& strain, int branches, const Act& act) const {
-        const float* batch = strain.data();
+        const float* own = strain.data();
+        const float* const weight = branches_soften() ? softened_.data() : weight_.data();
+        const std::int32_t* batch = batch_.data();
         for (const SpringRun& run : run_) {
-            for (int n = 0; n < run.count; n += kLanes) {
-                act(run.first + n, std::min(kLanes, run.count - n), batch);
-                batch += kForwardCount * branches * kLanes;
+            for (int n = 0; n < run.count; n += kLanes, ++batch) {
+                act(run.first + n, std::min(kLanes, run.count - n), own,
+                    *batch < 0 ? nullptr : weight + *batch);
+                own += kForwardCount * branches * kLanes;
             }
         }
     }
@@ -79,10 +81,17 @@ class LatticeSweep {
     std::vector<SpringRun> run_;
     std::vector<RowSlab> slab_;
     std::vector<std::size_t> slab_batch_;  // first batch of eight of each slab
-    std::vector<std::uint8_t> plain_;      // of each batch: all its connections are there and whole
-    bool flowed_ = false;                  // some rest strain may not be zero
-    std::vector<ParticleId> softens_;      // lower ends of connections that may soften
-    RestStrains softened_;                 // branch_weight() where these are; else empty
+    // Of each batch: -1 where all its connections are there and whole; or where their weights are,
+    // by direction and lane.
+    std::vector<std::int32_t> batch_;
+    std::vector<float> weight_;
+    bool flowed_ = false;  // some rest strain may not be zero
+    struct SofteningEnd {
+        ParticleId lower;
+        std::int32_t at;  // in weight_, of the first direction
+    };
+    std::vector<SofteningEnd> softens_;  // lower ends of connections that may soften
+    std::vector<float> softened_;        // weight_ of the branches where these are; else empty
     std::vector<std::vector<const SpringRun*>> stretched_;
     std::vector<double> work_;  // a slab [J]
 

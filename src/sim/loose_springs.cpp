@@ -121,8 +121,9 @@ void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest
         now.length = s.rest_length;
         if (beside_sweep_) {
             const std::size_t d = static_cast<std::size_t>(s.direction);
-            const auto& strain = rest ? (*rest)[d] : matter.connection[d].plastic;
-            now.length = reference_[d] * (1 + double(strain[s.lower]));
+            const double strain =
+                rest ? double((*rest)[d][s.lower]) : matter.connection[d].plastic_of(s.lower);
+            now.length = reference_[d] * (1 + strain);
         }
         now.strain = now.distance / now.length - 1;
     }
@@ -185,7 +186,7 @@ Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
         result.lost += loss_of(n);
         all.damage[s.lower] = std::max(all.damage[s.lower], damage);
         if (damage >= 1 && all.weight[s.lower] > 0) {
-            all.weight[s.lower] = 0;
+            all.weight.set(s.lower, 0);
             ++result.count;
         }
     }

@@ -119,9 +119,11 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       load_(apparatus.tool.size() + apparatus.grip.size()),
       touches_(!apparatus.tool.empty()),
       remembers_(false),
+      breaks_(false),
       implicit_(settings.solver == Solver::implicit_steps) {
     for (std::size_t m = 0; m < matter.material_count(); ++m) {
         const Material& material = matter.material_at(m);
+        breaks_ = breaks_ || material.breaks();
         remembers_ = remembers_ || material.breaks() || std::isfinite(material.yield_stress);
     }
 }
@@ -287,7 +289,12 @@ void MovingBody::save(State& state) const {
     state.position = m.particle_position;
     state.velocity = m.particle_velocity;
     if (remembers_) {
-        state.connection = m.connection;
+        for (int d = 0; d < kForwardCount; ++d) {
+            state.connection[d].plastic = m.connection[d].plastic;
+            if (!breaks_) continue;
+            state.connection[d].weight = m.connection[d].weight;
+            state.connection[d].damage = m.connection[d].damage;
+        }
         state.plastic = m.cell_plastic;
         state.cracked = m.cell_cracked;
         state.strain = m.cell_plastic_strain;
@@ -305,7 +312,12 @@ void MovingBody::restore(const State& state) {
     matter_.particle_position = state.position;
     matter_.particle_velocity = state.velocity;
     if (remembers_) {
-        matter_.connection = state.connection;
+        for (int d = 0; d < kForwardCount; ++d) {
+            matter_.connection[d].plastic = state.connection[d].plastic;
+            if (!breaks_) continue;
+            matter_.connection[d].weight = state.connection[d].weight;
+            matter_.connection[d].damage = state.connection[d].damage;
+        }
         matter_.cell_plastic = state.plastic;
         matter_.cell_cracked = state.cracked;
         matter_.cell_plastic_strain = state.strain;

@@ -126,6 +126,7 @@ class MovingBody {
     double gone_ = 0;  // no particle has gone farther since then [m]
     bool touches_;     // a tool could
     bool remembers_;   // its matter yields or breaks
+    bool breaks_;
     bool implicit_;
     Vec3 gravity_ = Vec3::Zero();
     int inside_out_ = 0;

@@ -79,7 +79,7 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
     }
     std::vector<SeverEvent> events;
     for (const Span& span : matter.lattice.span) {
-        const std::vector<float>& weight = matter.connection[span.direction].weight;
+        const SparseArray<float>& weight = matter.connection[span.direction].weight;
         for (int n = 0; n < span.count; ++n) {
             const ParticleId lower = span.lower + n;
             if (weight[lower] <= 0) continue;
@@ -103,7 +103,7 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
 
 std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<Triangle>& swept) {
     std::vector<SeverEvent> events = crossed_connections(matter, swept);
-    for (const SeverEvent& e : events) matter.connection[e.direction].weight[e.lower] = 0;
+    for (const SeverEvent& e : events) matter.connection[e.direction].weight.set(e.lower, 0);
     return events;
 }
 

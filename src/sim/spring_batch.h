@@ -17,13 +17,14 @@ namespace swage {
 // What a kernel is given of a slab.
 struct SpringTask {
     const SpringRun *run = nullptr, *run_end = nullptr;
-    const std::uint8_t* plain = nullptr;  // by batches of eight: all there and whole
-    bool flowed = false;                  // rest strains are read
+    const std::int32_t* batch = nullptr;  // by batches of eight: -1 or where their weights are
+    const float* weight = nullptr;
+    bool flowed = false;  // rest strains are read
     int particles = 0;
     const double *position[3] = {}, *velocity[3] = {};
     ForceRows to{};
     ParticleId end = 0, reach = 0, zeroed = 0;  // the slab's forces are zero up to `zeroed`
-    const float *weight[kForwardCount] = {}, *rest[kForwardCount] = {};
+    const float* rest[kForwardCount] = {};
     double stiffness = 0, inverse_square[2] = {};  // of the reference lengths of edge and diagonal
     double slack_limit = 0;                        // beyond, a run is reported
     std::vector<const SpringRun*>* stretched = nullptr;

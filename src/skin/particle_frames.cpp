@@ -20,7 +20,7 @@ std::array<ParticleId, 12> connected_on_axes(const Aggregate& matter, const Fram
                                              ParticleId p) {
     std::array<ParticleId, 12> axis = stencil.axis[p];
     for (int d = 0; d < kEdgeCount; ++d) {
-        const std::vector<float>& weight = matter.connection[d].weight;
+        const SparseArray<float>& weight = matter.connection[d].weight;
         ParticleId* const line = axis.data() + 4 * d;
         if (line[1] >= 0 && weight[line[1]] <= 0) line[1] = -1;
         if (line[2] >= 0 && weight[p] <= 0) line[2] = -1;
@@ -40,7 +40,7 @@ void for_each_connected(const Aggregate& matter, const FrameStencil& stencil, Pa
         if (axis[4 * d + 2] >= 0) f(axis[4 * d + 2]);
     }
     for (int d = kEdgeCount; d < kForwardCount; ++d) {
-        const std::vector<float>& weight = matter.connection[d].weight;
+        const SparseArray<float>& weight = matter.connection[d].weight;
         const ParticleId upper = stencil.diagonal[p][d - 3], lower = stencil.diagonal[p][d + 3];
         if (upper >= 0 && weight[p] > 0) f(upper);
         if (lower >= 0 && weight[lower] > 0) f(lower);
@@ -105,15 +105,13 @@ ParticleFrame particle_frame(const Aggregate& matter, const FrameStencil& stenci
     ParticleFrame frame;
     const Vec3 u = displacement(matter, p);
     frame.tail<3>() = u;
-    const std::vector<double>* const coordinate[3] = {
-        &matter.particle_reference.x, &matter.particle_reference.y, &matter.particle_reference.z};
     for (int d = 0; d < 3; ++d) {
         const ParticleId* const line = axis.data() + 4 * d;
-        const std::vector<double>& at = *coordinate[d];
+        const auto at = [&](ParticleId n) { return matter.particle_reference.at(n)[d]; };
         Vec3 slope;
         if (line[1] >= 0 && line[2] >= 0) {
             slope = (displacement(matter, line[2]) - displacement(matter, line[1])) /
-                    (at[line[2]] - at[line[1]]);
+                    (at(line[2]) - at(line[1]));
         } else if (line[1] < 0 && line[2] < 0) {
             frame.head<9>() = fitted_gradient(matter, stencil, p).reshaped();
             return frame;
@@ -122,9 +120,9 @@ ParticleFrame particle_frame(const Aggregate& matter, const FrameStencil& stenci
             const ParticleId two = line[2] >= 0 ? line[3] : line[0];
             const Vec3 first = displacement(matter, one);
             if (two >= 0) {
-                slope = (4 * first - 3 * u - displacement(matter, two)) / (at[two] - at[p]);
+                slope = (4 * first - 3 * u - displacement(matter, two)) / (at(two) - at(p));
             } else {
-                slope = (first - u) / (at[one] - at[p]);
+                slope = (first - u) / (at(one) - at(p));
             }
         }
         frame.segment<3>(3 * d) = slope;

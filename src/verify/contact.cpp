@@ -171,7 +171,7 @@ void hertz(bool brief, Values& values) {
             from = way;
             double come = way;
             for (ParticleId p : below) {
-                come -= (body.particle_position.y[p] - body.particle_reference.y[p]) /
+                come -= (body.particle_position.y[p] - body.particle_reference.at(p).y()) /
                         static_cast<double>(below.size());
             }
             double narrow = 0, wide = kRadius;

@@ -222,7 +222,7 @@ void vibration(bool brief, Values& values) {
         const auto shape = [](double x) { return std::sin(kPi * x / kLength); };
         for (std::size_t p = 0; p < bar.particle_count(); ++p) {
             bar.particle_velocity.set(
-                p, {kStrain * kSpeed * shape(bar.particle_reference.x[p]), 0, 0});
+                p, {kStrain * kSpeed * shape(bar.particle_reference.at(p).x()), 0, 0});
         }
         Simulation simulation(bar, kNothing, explicit_settings());
         FrameReport report;
@@ -235,8 +235,8 @@ void vibration(bool brief, Values& values) {
             // How far it is on its way round in the plane of place and speed.
             double place = 0, speed = 0;
             for (std::size_t p = 0; p < bar.particle_count(); ++p) {
-                const double s = bar.particle_mass[p] * shape(bar.particle_reference.x[p]);
-                place += s * (bar.particle_position.x[p] - bar.particle_reference.x[p]);
+                const double s = bar.particle_mass[p] * shape(bar.particle_reference.at(p).x());
+                place += s * (bar.particle_position.x[p] - bar.particle_reference.at(p).x());
                 speed += s * bar.particle_velocity.x[p];
             }
             const double now = std::atan2(2 * kPi / kPeriod * place, speed) / (2 * kPi);

@@ -122,10 +122,10 @@ void break_through(Aggregate& m) {
     for (ConnectionArrays& all : m.connection) all.damage.assign(all.weight.size(), 0.0f);
     for (const Span& span : m.lattice.span) {
         for (int n = 0; n < span.count; ++n) {
-            const double low = m.particle_reference.x[span.lower + n];
-            const double high = m.particle_reference.x[span.upper + n];
+            const double low = m.particle_reference.at(span.lower + n).x();
+            const double high = m.particle_reference.at(span.upper + n).x();
             if ((low < 1e-3) == (high < 1e-3)) continue;
-            m.connection[span.direction].weight[span.lower + n] = 0;
+            m.connection[span.direction].weight.set(span.lower + n, 0);
             m.connection[span.direction].damage[span.lower + n] = 1;
         }
     }

@@ -173,13 +173,13 @@ double mode_frequency(int across, int mode, int swings) {
     constexpr double kSpeed = 1e-3;  // [m/s], small
     Aggregate& m = bar.matter;
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        m.particle_velocity.set(p, {0, kSpeed * shape(m.particle_reference.x[p]), 0});
+        m.particle_velocity.set(p, {0, kSpeed * shape(m.particle_reference.at(p).x()), 0});
     }
     const auto share = [&] {
         double sum = 0;
         for (std::size_t p = 0; p < m.particle_count(); ++p) {
-            sum += m.particle_mass[p] * shape(m.particle_reference.x[p]) *
-                   (m.particle_position.y[p] - m.particle_reference.y[p]);
+            sum += m.particle_mass[p] * shape(m.particle_reference.at(p).x()) *
+                   (m.particle_position.y[p] - m.particle_reference.at(p).y());
         }
         return sum;
     };

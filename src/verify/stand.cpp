@@ -173,7 +173,8 @@ FrameReport Stand::settle() {
         const Vec3Array before = matter.particle_position;
         report = move(drive);
         Vec3Array way = difference(matter.particle_position, before);
-        const Vec3Array whole = difference(matter.particle_position, matter.particle_reference);
+        const Vec3Array whole =
+            difference(matter.particle_position, matter.particle_reference.all());
         const double square = dot(way, way);
         if (square <= kSettled * kSettled * dot(whole, whole)) break;
         // What is left shrinks by about the same share a frame: go to where that ends.

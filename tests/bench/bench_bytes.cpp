@@ -51,7 +51,7 @@ void body(const char* name, double wanted, const Material& material) {
     const double stepped = resident();
     double weight = 0, plastic = 0, history = bytes_of(m.cell_hardening);
     for (const ConnectionArrays& c : m.connection) {
-        weight += bytes_of(c.weight), plastic += bytes_of(c.plastic);
+        weight += static_cast<double>(c.weight.bytes()), plastic += bytes_of(c.plastic);
         history += bytes_of(c.damage);
     }
     for (const auto& v : m.cell_plastic_strain) history += bytes_of(v);
@@ -61,11 +61,12 @@ void body(const char* name, double wanted, const Material& material) {
     fmt::print(
         "{:<9}{:>8.0f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>10.1f}{:>9.1f}{:>10.1f}"
         "{:>10.1f}\n",
-        name, cells, bytes_of(m.particle_reference) / cells,
+        name, cells,
         (bytes_of(m.particle_position) + bytes_of(m.particle_velocity) +
          bytes_of(m.particle_mass)) /
             cells,
-        weight / cells, plastic / cells, bytes_of(m.cell_fill, m.cell_centroid) / cells,
+        weight / cells, plastic / cells,
+        (bytes_of(m.cell_fill) + static_cast<double>(m.cell_centroid.bytes())) / cells,
         history / cells,
         bytes_of(s.corner, s.weight, s.area, s.reference_position, s.reference_normal) / cells,
         (matter - empty) / cells, (stepped - empty) / cells);
@@ -76,7 +77,7 @@ void body(const char* name, double wanted, const Material& material) {
 int main(int argc, char** argv) {
     const double cells = argc > 1 ? std::atof(argv[1]) : 1e6;
     fmt::print(
-        "bytes a cell      reference   x, v, m  weight  plastic  fill, c   history  surface  "
+        "bytes a cell        x, v, m  weight  plastic  fill, c   history  surface  "
         "resident   stepped\n");
     const Material elastic{.young_modulus = 1e6, .poisson_ratio = 0.3, .damping_ratio = 0};
     Material flowing = elastic, springs = elastic;

@@ -118,7 +118,7 @@ TriMesh make_work_piece(const Case& c) {
 
 // The lengthwise direction at one end: how the outer 12 % have turned as a whole.
 Vec3 end_direction(const Aggregate& matter, bool high) {
-    const std::vector<double>& along = matter.particle_reference.x;
+    const std::vector<double> along = matter.particle_reference.all().x;
     const auto [low_end, high_end] = std::minmax_element(along.begin(), along.end());
     const double length = *high_end - *low_end;
     std::vector<std::size_t> chosen;

@@ -71,7 +71,7 @@ TEST_CASE("a body starts where it is told to, turned about its middle, with its 
 
 TEST_CASE("a body that is told no start is left as it was molded") {
     const WorkPiece piece = block({}, SkinKind::mount);
-    CHECK(piece.matter.particle_position.x == piece.matter.particle_reference.x);
+    CHECK(piece.matter.particle_position.x == piece.matter.particle_reference.all().x);
     CHECK(piece.matter.particle_velocity.x ==
           std::vector<double>(piece.matter.particle_count(), 0.0));
 }

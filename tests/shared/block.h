@@ -21,19 +21,14 @@ inline Aggregate make_block(int nx, int ny, int nz, double a, const Material& ma
     m.lattice = make_lattice(origin, a, count, cells);
     std::size_t particles = 0;
     for (const ParticleRun& run : m.lattice.particle_run) particles += run.count;
-    m.particle_reference.resize(particles);
+    m.particle_reference = ReferencePlaces(origin, Vec3::Constant(a), m.lattice);
     m.particle_velocity.resize(particles);
     m.particle_mass.assign(particles, 0.0);
-    for (const ParticleRun& run : m.lattice.particle_run) {
-        for (int n = 0; n < run.count; ++n) {
-            m.particle_reference.set(run.first + n, origin + a * Vec3(run.i + n, run.j, run.k));
-            m.particle_velocity.set(run.first + n, Vec3::Zero());
-        }
-    }
-    m.particle_position = m.particle_reference;
-    for (auto& c : m.connection) c.weight.assign(particles, 0), c.plastic.assign(particles, 0);
+    m.particle_position = m.particle_reference.all();
+    std::array<std::vector<float>, kForwardCount> weight;
+    for (auto& w : weight) w.assign(particles, 0.0f);
     m.cell_fill.assign(cells.size(), 1.0f);
-    m.cell_centroid.assign(cells.size(), Eigen::Vector3f::Zero());
+    m.cell_centroid = SparseArray<Eigen::Vector3f>(cells.size(), Eigen::Vector3f::Zero());
     for (std::size_t c = 0; c < cells.size(); ++c) {
         const auto corner = m.lattice.cell_corners(static_cast<CellId>(c));
         for (ParticleId p : corner) m.particle_mass[p] += material.density * a * a * a / 8;
@@ -47,7 +42,7 @@ inline Aggregate make_block(int nx, int ny, int nz, double a, const Material& ma
                     inside = inside && at >= 0 && at <= 1;
                     high |= (at & 1) << axis;
                 }
-                if (inside) m.connection[d].weight[corner[low]] += d < kEdgeCount ? 0.25f : 0.5f;
+                if (inside) weight[d][corner[low]] += d < kEdgeCount ? 0.25f : 0.5f;
             }
         }
         for (int axis = 0; axis < 3; ++axis) {
@@ -59,15 +54,15 @@ inline Aggregate make_block(int nx, int ny, int nz, double a, const Material& ma
                     normal[axis] = end ? 1 : -1;
                     xi[(axis + 1) % 3] = q & 1 ? 0.75 : 0.25;
                     xi[(axis + 2) % 3] = q & 2 ? 0.75 : 0.25;
-                    std::array<float, 8> weight;
+                    std::array<float, 8> shares;
                     for (int n = 0; n < 8; ++n) {
-                        weight[n] = 1;
+                        shares[n] = 1;
                         for (int s = 0; s < 3; ++s) {
-                            weight[n] *= static_cast<float>(n >> s & 1 ? xi[s] : 1 - xi[s]);
+                            shares[n] *= static_cast<float>(n >> s & 1 ? xi[s] : 1 - xi[s]);
                         }
                     }
                     m.surface.corner.push_back(corner);
-                    m.surface.weight.push_back(weight);
+                    m.surface.weight.push_back(shares);
                     m.surface.area.push_back(a * a / 4);
                     m.surface.reference_normal.push_back(normal);
                     m.surface.reference_position.push_back(origin +
@@ -75,6 +70,9 @@ inline Aggregate make_block(int nx, int ny, int nz, double a, const Material& ma
                 }
             }
         }
+    }
+    for (int d = 0; d < kForwardCount; ++d) {
+        m.connection[d].weight = SparseArray<float>(weight[d], 1.0f);
     }
     return m;
 }

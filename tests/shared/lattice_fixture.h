@@ -26,19 +26,14 @@ inline Aggregate make_matter(const Vec3& origin, double a, const Vec3i& count,
     m.lattice = make_lattice(origin, a, count, cells);
     std::size_t particles = 0;
     for (const ParticleRun& run : m.lattice.particle_run) particles += run.count;
-    m.particle_reference.resize(particles);
+    m.particle_reference = ReferencePlaces(origin, Vec3::Constant(a), m.lattice);
     m.particle_velocity.resize(particles);
     m.particle_mass.assign(particles, 0.0);
-    for (const ParticleRun& run : m.lattice.particle_run) {
-        for (int n = 0; n < run.count; ++n) {
-            m.particle_reference.set(run.first + n, origin + a * Vec3(run.i + n, run.j, run.k));
-            m.particle_velocity.set(run.first + n, Vec3::Zero());
-        }
-    }
-    m.particle_position = m.particle_reference;
-    for (auto& c : m.connection) c.weight.assign(particles, 0), c.plastic.assign(particles, 0);
+    m.particle_position = m.particle_reference.all();
+    std::array<std::vector<float>, kForwardCount> weight;
+    for (auto& w : weight) w.assign(particles, 0.0f);
     m.cell_fill = fill;
-    m.cell_centroid.assign(cells.size(), Eigen::Vector3f::Zero());
+    m.cell_centroid = SparseArray<Eigen::Vector3f>(cells.size(), Eigen::Vector3f::Zero());
     for (std::size_t c = 0; c < cells.size(); ++c) {
         const auto corner = m.lattice.cell_corners(static_cast<CellId>(c));
         for (ParticleId p : corner) {
@@ -54,10 +49,13 @@ inline Aggregate make_matter(const Vec3& origin, double a, const Vec3i& count,
                     high |= (at & 1) << axis;
                 }
                 if (inside) {
-                    m.connection[d].weight[corner[low]] += fill[c] * (d < kEdgeCount ? .25f : .5f);
+                    weight[d][corner[low]] += fill[c] * (d < kEdgeCount ? .25f : .5f);
                 }
             }
         }
+    }
+    for (int d = 0; d < kForwardCount; ++d) {
+        m.connection[d].weight = SparseArray<float>(weight[d], 1.0f);
     }
     return m;
 }
@@ -134,7 +132,7 @@ inline void sever_plane(Aggregate& m, const Vec3& point, const Vec3& normal,
             const Vec3 b = m.particle_position.at(span.upper + n);
             const bool crosses = (normal.dot(a - on_plane) >= 0) != (normal.dot(b - on_plane) >= 0);
             if (crosses && (!where || where(0.5 * (a + b)))) {
-                m.connection[span.direction].weight[span.lower + n] = 0;
+                m.connection[span.direction].weight.set(span.lower + n, 0);
             }
         }
     }

@@ -67,12 +67,12 @@ struct Twister {
 // Angle [rad] between the end sections of a bar along x, turned about z.
 inline double bend_angle(const Aggregate& m) {
     double high = 0;
-    for (double x : m.particle_reference.x) high = std::max(high, x);
+    for (double x : m.particle_reference.all().x) high = std::max(high, x);
     const auto section_turn = [&](double end) {
         Vec3 outer = Vec3::Zero(), inner = Vec3::Zero();
         const double a = m.lattice.spacing;
         for (std::size_t p = 0; p < m.particle_count(); ++p) {
-            const double x = m.particle_reference.x[p];
+            const double x = m.particle_reference.at(p).x();
             if (std::abs(x - end) < 1e-6 * a) outer += m.particle_position.at(p);
             if (std::abs(x - end + std::copysign(a, end)) < 1e-6 * a) {
                 inner += m.particle_position.at(p);

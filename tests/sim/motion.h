@@ -44,8 +44,8 @@ inline Vec3 mean_speed(const Aggregate& m) {
 inline Load push_below(const Aggregate& block, double force) {
     Load push;
     push.name = "push";
-    const double low =
-        *std::min_element(block.particle_reference.y.begin(), block.particle_reference.y.end());
+    const std::vector<double> y = block.particle_reference.all().y;
+    const double low = *std::min_element(y.begin(), y.end());
     push.point = points_where(block, [&](const Vec3& x) { return x.y() < low + 1e-4; });
     push.force.assign(push.point.size(), Vec3(force / double(push.point.size()), 0, 0));
     return push;

@@ -402,7 +402,7 @@ TEST_CASE("a strip that folds onto itself does not pass through itself") {
             double low = 0, high = 0;  // of the last quarter of each leg
             int count = 0;
             for (std::size_t p = 0; p < strip.particle_count(); ++p) {
-                const double s = strip.particle_reference.x[p];
+                const double s = strip.particle_reference.at(p).x();
                 if (std::abs(s) < 0.9) continue;
                 (s < 0 ? low : high) += strip.particle_position.y[p];
                 ++count;
@@ -423,7 +423,7 @@ TEST_CASE("pieces after a cut do not pass through each other") {
         SimSettings settings = motion_settings();
         settings.self_contact = meets;
         for (std::size_t p = 0; p < block.particle_count(); ++p) {
-            if (block.particle_reference.y[p] > 0.05) {
+            if (block.particle_reference.at(p).y() > 0.05) {
                 block.particle_velocity.set(p, Vec3(0, -3, 0));
             }
         }
@@ -443,7 +443,7 @@ TEST_CASE("pieces after a cut do not pass through each other") {
             double top = 0, foot = 0;
             int tops = 0, feet = 0;
             for (std::size_t p = 0; p < block.particle_count(); ++p) {
-                const bool up = block.particle_reference.y[p] > 0.05;
+                const bool up = block.particle_reference.at(p).y() > 0.05;
                 (up ? top : foot) += block.particle_position.y[p];
                 ++(up ? tops : feet);
             }

@@ -63,12 +63,12 @@ TEST_CASE("a free bar's first modes decay by the damping ratio, in stretch and i
         const double length = 0.6, speed = std::sqrt(1e3);
         for (std::size_t p = 0; p < bar.particle_count(); ++p) {
             bar.particle_velocity.set(
-                p, {0.01 * std::sin(kPi * bar.particle_reference.x[p] / length), 0, 0});
+                p, {0.01 * std::sin(kPi * bar.particle_reference.at(p).x() / length), 0, 0});
         }
         const auto end = [](const Aggregate& m, int axis) {
             double sum = 0;
             for (std::size_t p = 0; p < m.particle_count(); ++p) {
-                const double x = m.particle_reference.x[p];
+                const double x = m.particle_reference.at(p).x();
                 if (std::abs(x) < 0.29) continue;
                 const double way =
                     m.particle_position.at(p)[axis] - m.particle_reference.at(p)[axis];
@@ -84,7 +84,7 @@ TEST_CASE("a free bar's first modes decay by the damping ratio, in stretch and i
         bar = make_block(24, 4, 4, 0.025, springy(ratio));
         const double beta = 4.730041 / length, sigma = 0.982502;
         for (std::size_t p = 0; p < bar.particle_count(); ++p) {
-            const double s = beta * (bar.particle_reference.x[p] + 0.5 * length);
+            const double s = beta * (bar.particle_reference.at(p).x() + 0.5 * length);
             bar.particle_velocity.set(
                 p,
                 {0, 0, 0.01 * (std::cosh(s) + std::cos(s) - sigma * (std::sinh(s) + std::sin(s)))});

@@ -18,7 +18,7 @@ TEST_CASE("a free body falls as Galileo says") {
     const FrameReport r = simulation.advance(still(0), still(0.5));
     // The step is of second order: exact for what grows with the time squared.
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        const double fallen = m.particle_reference.y[p] - m.particle_position.y[p];
+        const double fallen = m.particle_reference.at(p).y() - m.particle_position.y[p];
         CHECK(fallen == Approx(9.81 * 0.5 * 0.5 / 2).epsilon(1e-9));
     }
 }
@@ -89,7 +89,7 @@ TEST_CASE("dashpots take exactly the energy that is missing") {
     Aggregate m = make_block(5, 2, 2, 0.1, damped);
     double start = 0;
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        m.particle_velocity.set(p, Vec3(0.2 * m.particle_reference.x[p], 0, 0));
+        m.particle_velocity.set(p, Vec3(0.2 * m.particle_reference.at(p).x(), 0, 0));
         start += 0.5 * m.particle_mass[p] * m.particle_velocity.at(p).squaredNorm();
     }
     SimSettings settings = motion_settings();

@@ -106,8 +106,9 @@ TEST_CASE("extremes: half of a body is a million times heavier") {
     for (const Solver solver : kAll) {
         Aggregate m = block(damping_for(solver));
         for (std::size_t p = 0; p < m.particle_count(); ++p) {
-            if (m.particle_reference.x[p] > 0.01) m.particle_mass[p] *= 1e6;
-            m.particle_velocity.set(p, Vec3(m.particle_reference.x[p] > 0.01 ? -1e-3 : 1, 0, 0));
+            if (m.particle_reference.at(p).x() > 0.01) m.particle_mass[p] *= 1e6;
+            m.particle_velocity.set(p,
+                                    Vec3(m.particle_reference.at(p).x() > 0.01 ? -1e-3 : 1, 0, 0));
         }
         survive({&m}, motion_settings(solver), 0.3 * crossing(), 4);
     }
@@ -157,7 +158,7 @@ TEST_CASE("extremes: halves that meet at ten spacings a step") {
         Aggregate m = block();
         const double fast = 10 * kSpacing / explicit_step(m, motion_settings());
         for (std::size_t p = 0; p < m.particle_count(); ++p) {
-            const double x = m.particle_reference.x[p];
+            const double x = m.particle_reference.at(p).x();
             m.particle_velocity.x[p] = x > 0.01 ? -fast : x < -0.01 ? fast : 0;
         }
         INFO(name_of(solver));
@@ -246,10 +247,10 @@ TEST_CASE("extremes: a spacing of 1 um, and a body of 100 m, move alike") {
             Aggregate m = make_block(4, 3, 3, spacing, material);
             const double time = 0.3 * 4 * spacing / std::sqrt(1e6 / 1000);
             for (std::size_t p = 0; p < m.particle_count(); ++p) {
-                m.particle_velocity.x[p] = 10 * m.particle_reference.x[p] / spacing;
+                m.particle_velocity.x[p] = 10 * m.particle_reference.at(p).x() / spacing;
             }
             survive({&m}, motion_settings(solver), time, 4);
-            fallen[n++] = (m.particle_position.x[0] - m.particle_reference.x[0]) / spacing;
+            fallen[n++] = (m.particle_position.x[0] - m.particle_reference.at(0).x()) / spacing;
         }
         INFO(name_of(solver));
         CHECK(fallen[0] == Approx(fallen[1]).epsilon(1e-3));
@@ -273,7 +274,7 @@ TEST_CASE("extremes: a needle a thousand times as long as it is thick") {
         material.damping_ratio = damping_for(solver);
         Aggregate m = make_block(1000, 1, 1, kSpacing, material);
         for (std::size_t p = 0; p < m.particle_count(); ++p) {
-            const double s = m.particle_reference.x[p] / 50;
+            const double s = m.particle_reference.at(p).x() / 50;
             m.particle_velocity.set(p, Vec3(0, 5 * s * s, 0));
         }
         INFO(name_of(solver));

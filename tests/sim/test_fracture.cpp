@@ -42,8 +42,9 @@ struct Bar {
                 const auto corner = matter.lattice.cell_corners(int(c));
                 for (const CellConnection& slot : kCellConnection) {
                     const bool edge = slot.direction < kEdgeCount;
-                    matter.connection[slot.direction].weight[corner[slot.corner]] -=
-                        edge ? 0.025f : 0.05f;
+                    SparseArray<float>& weight = matter.connection[slot.direction].weight;
+                    const ParticleId lower = corner[slot.corner];
+                    weight.set(lower, weight[lower] - (edge ? 0.025f : 0.05f));
                 }
             }
         }

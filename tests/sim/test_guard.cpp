@@ -50,7 +50,7 @@ TEST_CASE("a particle that would go far in a step makes the steps short, and non
     CHECK(r.shortest_step < 0.031 * dt);
     CHECK(r.rejected == 0);
     CHECK(r.steps >= 333);
-    CHECK(m.particle_position.x[0] - m.particle_reference.x[0] == Approx(10.0).epsilon(1e-9));
+    CHECK(m.particle_position.x[0] - m.particle_reference.at(0).x() == Approx(10.0).epsilon(1e-9));
 }
 
 TEST_CASE("a step that goes too far, or is lost, or turns a cell inside out, is found") {

@@ -22,7 +22,7 @@ Aggregate after_swing(Solver solver, double time, int frames, double safety, dou
     material.damping_ratio = damping;
     Aggregate m = make_block(8, 1, 1, 0.1, material);
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        const double x = m.particle_reference.x[p];
+        const double x = m.particle_reference.at(p).x();
         m.particle_velocity.set(p, Vec3(0.01 * std::sin(kPi * x / 0.8), 0, 0));
     }
     SimSettings settings = motion_settings(solver);
@@ -135,7 +135,7 @@ TEST_CASE("implicit steps a thousand times the stable one bring a held bar to re
     relaxed.advance(drive(0), drive(1));
     double sag = 0;
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        sag = std::max(sag, rest.particle_reference.y[p] - rest.particle_position.y[p]);
+        sag = std::max(sag, rest.particle_reference.at(p).y() - rest.particle_position.y[p]);
     }
     CHECK(sag > 0.001);
     for (std::size_t p = 0; p < m.particle_count(); ++p) {

@@ -25,7 +25,9 @@ Aggregate shaken_block(const Material& material, int seed, double by = 0.08) {
     std::uniform_real_distribution<double> draw(-1, 1);
     for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
         m.cell_fill[c] = static_cast<float>(0.55 + 0.45 * draw(engine));
-        for (int i = 0; i < 3; ++i) m.cell_centroid[c][i] = static_cast<float>(0.3 * draw(engine));
+        Eigen::Vector3f centroid;
+        for (int i = 0; i < 3; ++i) centroid[i] = static_cast<float>(0.3 * draw(engine));
+        m.cell_centroid.set(c, centroid);
     }
     for (auto* x : {&m.particle_position.x, &m.particle_position.y, &m.particle_position.z}) {
         for (double& v : *x) v += by * kSpacing * draw(engine);
@@ -111,7 +113,7 @@ TEST_CASE("a cut leaves no force between the sides, and cells away from it as th
         Vec3 left = Vec3::Zero();
         double size = 0;
         for (std::size_t p = 0; p < after.size(); ++p) {
-            const double x = m.particle_reference.x[p];
+            const double x = m.particle_reference.at(p).x();
             if (x < 0.02) left += after.at(p);
             size += after.at(p).norm();
             if (std::abs(x - 0.02) > 2 * kSpacing) {
@@ -191,7 +193,7 @@ Aggregate large_block(Material material) {
     for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
         if (c / 43 % 3 == 0 && c % 43 < 20) {
             m.cell_fill[c] = static_cast<float>(0.55 + 0.45 * draw(engine));
-            m.cell_centroid[c].x() = static_cast<float>(0.3 * draw(engine));
+            m.cell_centroid.set(c, {static_cast<float>(0.3 * draw(engine)), 0, 0});
         }
     }
     for (std::size_t p = 0; p < m.particle_count(); ++p) {

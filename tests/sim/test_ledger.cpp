@@ -13,7 +13,7 @@ namespace {
 Aggregate swinging_bar(double speed, const Material& material = kSpringy) {
     Aggregate m = make_block(8, 2, 2, 0.1, material);
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        const double x = m.particle_reference.x[p];
+        const double x = m.particle_reference.at(p).x();
         m.particle_velocity.set(p, Vec3(speed * std::sin(kPi * x / 0.8), 0, 0));
     }
     return m;
@@ -130,7 +130,7 @@ TEST_CASE("what slides to rest gives its energy to friction, after the way that 
     const double energy = 0.5 * m.mass() * kSpeed * kSpeed;
     double x = 0;
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        x += m.particle_mass[p] * (m.particle_position.x[p] - m.particle_reference.x[p]);
+        x += m.particle_mass[p] * (m.particle_position.x[p] - m.particle_reference.at(p).x());
     }
     CHECK(x / m.mass() == Approx(kSpeed * kSpeed / (2 * kFriction * 9.81)).epsilon(0.02));
     CHECK(r.friction == Approx(energy).epsilon(0.03));

@@ -212,7 +212,8 @@ TEST_CASE("a grip along one axis holds that one and leaves the others free") {
     // Three smooth planes keep nothing from Hooke's strain.
     const double strain = stress / kSoft.young_modulus;
     for (int axis = 0; axis < 3; ++axis) {
-        const Vec3Array &x = matter.particle_position, &from = matter.particle_reference;
+        const Vec3Array& x = matter.particle_position;
+        const ReferencePlaces& from = matter.particle_reference;
         const double expected = axis == 0 ? strain : -kSoft.poisson_ratio * strain;
         double stretched = 0, length = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {

@@ -66,7 +66,7 @@ TEST_CASE("half a sweep severs only what the blade has passed") {
     for (const SeverEvent& e : events) {
         CHECK(m.connection[e.direction].weight[e.lower] == 0);
         CHECK(e.weight > 0);
-        CHECK(m.particle_reference.y[e.lower] > -0.11);
+        CHECK(m.particle_reference.at(e.lower).y() > -0.11);
     }
     sever(m, swept_triangles(blade, pose(0.001), pose(-1)));
     CHECK(find_pieces(m).count == 2);
@@ -99,7 +99,7 @@ TEST_CASE("pieces part freely: a severed half follows its grip and feels no forc
     for (const ToolLoad& load : r.load) CHECK(load.force.norm() < 1e-3 * scale);
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         const Vec3 moved = m.particle_position.at(p) - m.particle_reference.at(p);
-        const double wanted = m.particle_reference.x[p] > 0.01 ? 0.25 : 0;
+        const double wanted = m.particle_reference.at(p).x() > 0.01 ? 0.25 : 0;
         CHECK((moved - Vec3(wanted, 0, 0)).norm() < 0.01);
     }
 }

@@ -81,7 +81,7 @@ TEST_CASE("uniform strain gives Hooke's stress with Young's modulus and a Poisso
         const Vec3Array f = forces_of(m);
         double end = 0;
         for (std::size_t p = 0; p < f.size(); ++p) {
-            const double x = m.particle_reference.x[p];
+            const double x = m.particle_reference.at(p).x();
             if (x > 0.19) {
                 end -= f.x[p];
             } else if (std::abs(x) < 0.15) {
@@ -94,7 +94,7 @@ TEST_CASE("uniform strain gives Hooke's stress with Young's modulus and a Poisso
 
 TEST_CASE("a severed connection carries no force") {
     Aggregate m = test::make_block(3, 2, 2, 0.1, Material{});
-    for (auto& c : m.connection) std::fill(c.weight.begin(), c.weight.end(), 0.0f);
+    for (auto& c : m.connection) c.weight = SparseArray<float>(m.particle_count(), 0.0f);
     deform(m, 0.01);
     const Vec3Array f = forces_of(m);
     for (std::size_t p = 0; p < f.size(); ++p) CHECK(f.at(p) == Vec3::Zero());
@@ -159,8 +159,9 @@ Aggregate sponge() {
     const std::vector<float> fill(cells.size(), 1.0f);
     Aggregate m = test::make_matter({0, 0, 0}, 0.1, {45, 28, 26}, cells, fill);
     for (auto& c : m.connection) {
+        c.plastic.resize(m.particle_count());
         for (std::size_t p = 0; p < c.weight.size(); ++p) {
-            if (next() % 40 == 0) c.weight[p] = 0;
+            if (next() % 40 == 0) c.weight.set(p, 0);
             if (next() % 30 == 0) c.plastic[p] = 1e-3f * static_cast<float>(next() % 100);
         }
     }
@@ -192,7 +193,7 @@ TEST_CASE("each connection pulls its two ends, whatever is missing around it, at
     for (int j = 0; j < branches.count; ++j) steps.forward[j] = damping_step(branches, j, step);
     for (const bool flowed : {true, false}) {
         if (!flowed) {
-            for (auto& c : m.connection) std::fill(c.plastic.begin(), c.plastic.end(), 0.0f);
+            for (auto& c : m.connection) c.plastic.clear();
         }
         LatticeSweep sweep(m);
         // Two steps without moving, connection by connection.
@@ -207,7 +208,7 @@ TEST_CASE("each connection pulls its two ends, whatever is missing around it, at
                 const Vec3 way = m.particle_position.at(upper) - m.particle_position.at(lower);
                 const Vec3 speed = m.particle_velocity.at(upper) - m.particle_velocity.at(lower);
                 const double k = law.stiffness * double(c.weight[lower]);
-                const double rest = length * (1 + double(c.plastic[lower]));
+                const double rest = length * (1 + c.plastic_of(lower));
                 const double stretch = step * speed.dot(way) / way.norm() / length;
                 double tension = spring_tension(SpringDamper{k, 0, rest}, way.norm(), 0.0);
                 for (int j = 0; j < branches.count; ++j) {

@@ -31,7 +31,9 @@ Aggregate shaken_block(const Material& material) {
     std::uniform_real_distribution<double> draw(-1, 1);
     for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
         m.cell_fill[c] = static_cast<float>(0.55 + 0.45 * draw(engine));
-        for (int i = 0; i < 3; ++i) m.cell_centroid[c][i] = static_cast<float>(0.3 * draw(engine));
+        Eigen::Vector3f centroid;
+        for (int i = 0; i < 3; ++i) centroid[i] = static_cast<float>(0.3 * draw(engine));
+        m.cell_centroid.set(c, centroid);
     }
     shake(m.particle_position, 3, 0.06 * kSpacing);
     return m;
@@ -134,7 +136,7 @@ TEST_CASE("restriction is the transpose of prolongation") {
 
 TEST_CASE("the slabs' factor solves what the matrix multiplies, and refuses what is indefinite") {
     Aggregate m = shaken_block(kMaterials[0]);
-    m.particle_position = m.particle_reference;
+    m.particle_position = m.particle_reference.all();
     CellTangent tangent(m, m.cell_fill);
     NodeStiffness matrix(m.lattice);
     matrix.add_cells(m.lattice, tangent.coarse_cells(m, {}, m.lattice, Vec3i::Ones()));
