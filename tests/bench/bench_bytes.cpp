@@ -59,7 +59,7 @@ void body(const char* name, double wanted, const Material& material) {
     for (const auto& v : m.cell_plastic) history += bytes_of(v);
     const SurfacePoints& s = m.surface;
     fmt::print(
-        "{:<9}{:>8.0f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>10.1f}{:>9.1f}{:>10.1f}"
+        "{:<9}{:>8.0f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>10.1f}{:>9.1f}{:>10.1f}"
         "{:>10.1f}\n",
         name, cells,
         (bytes_of(m.particle_position) + bytes_of(m.particle_velocity) +
