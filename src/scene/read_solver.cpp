@@ -82,14 +82,10 @@ void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
              is_explicit);
     only_for("retry_limit", table.whole("retry_limit", 0, 20, sim.retry_limit),
              is_explicit || is_implicit);
-    only_for("self_contact", table.truth("self_contact", sim.self_contact), is_explicit);
-    if (!is_explicit) sim.self_contact = false;
+    const bool meets = is_explicit || sim.solver == Solver::energy_stepped;
+    only_for("self_contact", table.truth("self_contact", sim.self_contact), meets);
+    if (!meets) sim.self_contact = false;
     only_for("sleep", table.truth("sleep", sim.sleep), is_explicit || is_implicit);
-    if (sim.solver == Solver::energy_stepped && scene.body.size() > 1) {
-        table.warn("solver",
-                   "with solver = \"energy-stepped\" bodies pass through each other; with "
-                   "\"explicit\" they meet");
-    }
     only_for("medium_density",
              table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
              drags);

@@ -16,6 +16,7 @@ namespace {
 constexpr double kTolerance = 1e-9;  // of all energy that was put in, that a step may gain
 constexpr double kMistake = 1e-6;    // likewise, that it may lose where no book says so
 constexpr double kFinest = 1e-6;     // of the stable step; shorter ones may lose more
+constexpr double kJump = 0.01;       // or gain that, where bodies meet
 constexpr double kWay = 0.3;         // spacings that the fastest particle may go in a step
 constexpr double kShortest = 1e-9;   // of the stable step of explicit steps
 
@@ -56,7 +57,7 @@ Vec3Array mean_speed(const Vec3Array& from, const Vec3Array& to, double step) {
     return speed;
 }
 
-bool meet(const Box& a, const Box& b) {
+bool overlap(const Box& a, const Box& b) {
     return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
@@ -89,11 +90,16 @@ void find_forces_of_step(MovingBody& body, const Drive& now, const Vec3Array& fr
 
 EnergySteps::EnergySteps(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                          const SimSettings& settings)
-    : apparatus_(apparatus) {
+    : apparatus_(apparatus), contact_(bodies, settings), met_(bodies.size()) {
     mover_.reserve(bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         mover_.push_back({MovingBody(*bodies[b], static_cast<int>(b), apparatus, settings)});
     }
+}
+
+void EnergySteps::connections_changed(std::size_t body) {
+    mover_[body].body.connections_changed();
+    contact_.connections_changed(body);
 }
 
 // Bodies whose boxes may meet within the frame, in the order of their first.
@@ -104,7 +110,7 @@ std::vector<EnergySteps::Group> EnergySteps::groups(const Drive& from, const Dri
     for (std::size_t b = 0; b < first.size(); ++b) first[b] = b;
     for (std::size_t a = 0; a < first.size(); ++a) {
         for (std::size_t b = a + 1; b < first.size(); ++b) {
-            if (first[a] == first[b] || !meet(reach[a], reach[b])) continue;
+            if (first[a] == first[b] || !overlap(reach[a], reach[b])) continue;
             const std::size_t low = std::min(first[a], first[b]),
                               high = std::max(first[a], first[b]);
             for (std::size_t& f : first) f = f == high ? low : f;
@@ -135,6 +141,30 @@ double EnergySteps::step_to_try(const Group& group, double left) const {
     return left / std::max(1.0, std::ceil(left / step * (1 - 1e-9)));
 }
 
+std::vector<char> EnergySteps::all_but(const Group& group) const {
+    std::vector<char> others(mover_.size(), 1);
+    for (std::size_t b : group) others[b] = 0;
+    return others;
+}
+
+// Adds the forces of contact within the group, where nothing else has moved since the group began.
+void EnergySteps::meet(const Group& group, double step) {
+    if (!contact_.acts()) return;
+    std::vector<Vec3Array*> force;
+    for (Mover& m : mover_) force.push_back(&m.body.force());
+    contact_.renew(all_but(group));
+    contact_.add_forces(force, mover_[0].body.gravity(), step, all_but(group), met_);
+}
+
+std::vector<Stored> EnergySteps::stored(const Group& group, const Drive& now) {
+    std::vector<Stored> held;
+    for (std::size_t b : group) {
+        held.push_back(mover_[b].body.stored(now, 0));
+        held.back().contact += met_[b].stored;
+    }
+    return held;
+}
+
 // A step of a group, and what is needed to take it back.
 struct EnergySteps::Try {
     Drive begin, now;
@@ -142,18 +172,23 @@ struct EnergySteps::Try {
     std::vector<Stored> after{};        // by place in the group
     std::vector<BodyOutcome> so_far{};  // before it
     std::vector<Vec3Array> earlier{};   // Mover::before
-    double done = 0, turned = 0;        // work in it, and that with every sign made positive [J]
-    double gain = 0, astray = 0;        // energy less work, and less what the books say is lost [J]
+    std::vector<Vec3Array> force{};
+    std::shared_ptr<const BodyContact::State> contact{};
+    double done = 0, turned = 0;  // work in it, and that with every sign made positive [J]
+    double gain = 0, astray = 0;  // energy less work, and less what the books say is lost [J]
 };
 
 EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const Drive& now,
                                    double step, const std::vector<Stored>& held,
                                    MoveOutcome& outcome) {
     Try t{begin, now, step};
+    if (contact_.acts()) t.contact = contact_.save();
+    std::vector<Vec3Array> speed;
     for (std::size_t b : group) {
         Mover& m = mover_[b];
         t.so_far.push_back(outcome.body[b]);
         t.earlier.push_back(m.before);
+        t.force.push_back(m.body.force());
         m.body.save(m.state);
         m.body.begin_step(begin);
         m.body.begin_block(outcome.body[b]);
@@ -161,13 +196,27 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
         carry_on(m.body, t.step, m.last_step, m.before);
         find_forces_of_step(m.body, now, was, t.step, outcome.body[b]);
         m.body.finish_step(begin, now, t.step, outcome.body[b]);
+        if (outcome.body[b].broken > t.so_far.back().broken) contact_.connections_changed(b);
         m.body.end_block(outcome.body[b]);
         m.body.renew_candidates(
             begin, now, std::sqrt(3.0) * farthest_move(was, m.body.matter().particle_position));
+        speed.push_back(mean_speed(was, m.body.matter().particle_position, t.step));
     }
+    if (contact_.acts()) {
+        const auto swap_speeds = [&] {
+            for (std::size_t n = 0; n < group.size(); ++n) {
+                std::swap(speed[n], mover_[group[n]].body.matter().particle_velocity);
+            }
+        };
+        swap_speeds();
+        meet(group, t.step);
+        swap_speeds();
+        for (std::size_t b : group) outcome.body[b].met.add(met_[b], t.step);
+        contact_.commit();
+    }
+    t.after = stored(group, now);
     for (std::size_t n = 0; n < group.size(); ++n) {
         const BodyOutcome &is = outcome.body[group[n]], &was = t.so_far[n];
-        t.after.push_back(mover_[group[n]].body.stored(now, 0));
         t.done += is.done() - was.done();
         t.turned += std::abs(is.done() - was.done());
         t.gain += t.after[n].sum() - held[n].sum();
@@ -188,8 +237,10 @@ bool EnergySteps::holds(const Group& group, const Try& t, double budget) {
         }
         return error <= share * budget + noise;
     };
-    return within(t.gain, kTolerance) &&
-           (within(std::abs(t.astray), kMistake) || t.step < kFinest * stable_step(group));
+    const bool finest = t.step < kFinest * stable_step(group);
+    return (within(t.gain, kTolerance) && (within(std::abs(t.astray), kMistake) || finest)) ||
+           (finest && contact_.acts() && t.gain <= kJump * budget &&
+            jumped_ + t.gain <= kMostGain * budget);
 }
 
 void EnergySteps::keep(const Group& group, const Try& t, MoveOutcome& outcome) {
@@ -200,6 +251,7 @@ void EnergySteps::keep(const Group& group, const Try& t, MoveOutcome& outcome) {
         m.step = m.held ? t.step : 1.5 * t.step;
         m.held = false;
     }
+    if (t.step < kFinest * stable_step(group)) jumped_ += std::max(t.gain, 0.0);
     ++outcome.steps;
     ++steps_;
     outcome.shortest_step = std::min(outcome.shortest_step, t.step);
@@ -219,14 +271,19 @@ void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutco
     }
     for (std::size_t n = 0; n < group.size(); ++n) {
         Mover& m = mover_[group[n]];
+        if (outcome.body[group[n]].broken > t.so_far[n].broken) {
+            contact_.connections_changed(group[n]);
+        }
         outcome.body[group[n]] = t.so_far[n];
         m.before = std::move(t.earlier[n]);
         m.body.restore(m.state);
         m.body.begin_step(t.begin);
         m.body.find_forces(t.begin, 0, outcome.body[group[n]]);
+        m.body.force() = std::move(t.force[n]);
         m.step = 0.5 * t.step;
         m.held = true;
     }
+    if (t.contact) contact_.restore(*t.contact);
     if (!why.empty()) fail(ExitCode::stopped, "{}", why);
 }
 
@@ -238,11 +295,14 @@ double EnergySteps::stable_step(const Group& group) const {
 
 void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to,
                           MoveOutcome& outcome) {
-    std::vector<Stored> held;
-    for (std::size_t b : group) {
-        held.push_back(mover_[b].body.stored(from, 0));
-        outcome.body[b].before = held.back();
-        if (mover_[b].step == 0) mover_[b].budget = std::max(held.back().sum(), 0.0);
+    contact_.renew_all(all_but(group));
+    meet(group, mover_[group[0]].last_step > 0 ? mover_[group[0]].last_step : stable_step(group));
+    std::vector<Stored> held = stored(group, from);
+    for (std::size_t n = 0; n < group.size(); ++n) {
+        const std::size_t b = group[n];
+        outcome.body[b].met.start(met_[b]);
+        outcome.body[b].before = held[n];
+        if (mover_[b].step == 0) mover_[b].budget = std::max(held[n].sum(), 0.0);
     }
     for (Drive begin = from; begin.time < to.time;) {
         const double left = to.time - begin.time, step = step_to_try(group, left);

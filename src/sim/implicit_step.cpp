@@ -83,6 +83,7 @@ bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOut
             drift += matter.particle_mass[p] * matter.particle_velocity.at(p);
         }
         drift *= step / matter.mass();
+        if (!drift.allFinite()) return false;
         for (std::size_t p = 0; p < count; ++p) {
             matter.particle_position.set(p, start_.at(p) + drift);
         }

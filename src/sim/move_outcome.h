@@ -33,7 +33,7 @@ struct BodyOutcome {
     std::vector<double> work;       // by tool, then grip [J]
     std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
-    ContactSums met;                // with other bodies and itself; explicit steps only
+    ContactSums met;                // with other bodies and itself
 
     BodyOutcome(const Apparatus& apparatus, std::size_t pushes)
         : work(apparatus.tool.size() + apparatus.grip.size(), 0.0), push_work(pushes, 0.0) {}

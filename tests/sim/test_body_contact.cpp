@@ -265,6 +265,43 @@ struct Floor {
 
 }  // namespace
 
+TEST_CASE("steps that energy chooses let bodies meet as explicit ones do") {
+    struct Met {
+        double start;  // energy [J]
+        Vec3 a{}, b{};
+        FrameReport last{};
+    };
+    const auto collide = [](Solver solver) {
+        Material dull = soft();
+        dull.restitution = 0.5;
+        dull.friction = 0.4;
+        dull.damping_ratio = 0.1;
+        Aggregate a = make_block(2, 2, 2, 0.1, dull), b = make_block(2, 2, 2, 0.1, dull);
+        place(b,
+              {Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())), Vec3(0.32, 0.06, 0.05)});
+        for (std::size_t p = 0; p < b.particle_count(); ++p) b.particle_velocity.x[p] = -2;
+        const Apparatus nothing;
+        SimSettings settings = motion_settings(solver);
+        settings.step_safety = 0.02;
+        Simulation simulation({&a, &b}, nothing, settings);
+        Met met{.start = 0.5 * b.mass() * 4};
+        for (int n = 0; n < 6; ++n) {
+            met.last = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
+        }
+        met.a = mean_speed(a), met.b = mean_speed(b);
+        return met;
+    };
+    const Met fixed = collide(Solver::explicit_steps), chosen = collide(Solver::energy_stepped);
+    CHECK((fixed.a - chosen.a).norm() < 0.01);
+    CHECK((fixed.b - chosen.b).norm() < 0.01);
+    CHECK(chosen.last.friction == Approx(fixed.last.friction).epsilon(0.02));
+    CHECK(chosen.last.damped == Approx(fixed.last.damped).epsilon(0.02));
+    CHECK(std::abs(chosen.last.remainder) < 2e-3 * chosen.start);
+    CHECK(
+        chosen.last.body[0].passed + chosen.last.body[1].passed ==
+        Approx(fixed.last.body[0].passed + fixed.last.body[1].passed).margin(0.03 * chosen.start));
+}
+
 TEST_CASE("a block slides over another's lattice without rattling") {
     // The lower body's lattice stands along the surface, then obliquely to it.
     for (double turn : {0.0, 0.35}) {

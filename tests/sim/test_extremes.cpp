@@ -332,6 +332,8 @@ TEST_CASE("extremes: ten thousand contacts at once") {
             m.particle_velocity.set(p, Vec3(0, -1, 0));
         }
     };
+    // Steps that energy chooses are a hundred times shorter.
+    const auto time = [](Solver solver) { return solver == Solver::energy_stepped ? 0.01 : 0.06; };
     SECTION("on a floor") {
         for (const Solver solver : kAll) {
             Aggregate m = make_block(2 * kSide, 1, kSide, kSpacing, material);
@@ -341,17 +343,19 @@ TEST_CASE("extremes: ten thousand contacts at once") {
             INFO(name_of(solver));
             CHECK(survive({&m}, motion_settings(solver), 0.004, 1, &floor).last.load[0].contacts >
                   10'000);
-            survive({&m}, motion_settings(solver), 0.06, 3, &floor);
+            survive({&m}, motion_settings(solver), time(solver), 3, &floor);
             CHECK(smallest_cell_volume(m) > 0.5);
         }
     }
     SECTION("of two bodies") {
+        // Energy-stepped too, but in half a minute.
+        const Solver solver = GENERATE(Solver::explicit_steps, Solver::euler);
         Aggregate low = make_block(kSide, 1, kSide, kSpacing, material);
         Aggregate high = make_block(kSide, 1, kSide, kSpacing, material);
         fall(high, kSpacing + 1e-3);
-        const Survivor s = survive({&low, &high}, motion_settings(), 0.06, 3);
+        const Survivor s = survive({&low, &high}, motion_settings(solver), time(solver), 3);
         CHECK(smallest_cell_volume(low) > 0.5);
         CHECK(smallest_cell_volume(high) > 0.5);
-        CHECK(s.last.body[0].passed > 0.1 * 0.5 * low.mass() * 1);
+        CHECK(s.last.body[0].passed > 0.1 * 0.5 * low.mass());
     }
 }

@@ -32,6 +32,7 @@ TEST_CASE("a particle without a place stops the run, and is named") {
     } catch (const Error& error) {
         CHECK(error.code() == ExitCode::stopped);
         const std::string text = error.what();
+        INFO(text);
         CHECK(text.find("particle 7 of body 1 is lost") != std::string::npos);
         CHECK(text.find("connection of particles") != std::string::npos);
         CHECK(text.find("step_safety") != std::string::npos);
