@@ -12,7 +12,22 @@ namespace swage {
 
 namespace {
 
-constexpr double kWay = 0.45;  // spacings that anything may go between searches
+constexpr double kWay = 0.45;         // spacings that anything may go between searches
+constexpr double kLeastShare = 1e-3;  // of a way, so that its points keep a stiffness
+
+// What of its own springs' doing a way has in that of both, from what either would hold alone.
+double share_of(double one, double other) {
+    const double most = std::max(one, other);
+    if (!(most > 0)) return 0.5;
+    const auto square = [](double x) { return x * x; };
+    const double part = one / most;
+    const double mean =
+        std::sqrt(std::sqrt(0.5 * (square(square(part)) + square(square(other / most)))));
+    // What differs from half by less than a millionth is half: that spares a pass.
+    constexpr double kDigits = 1 << 20;
+    const double share = 0.5 * part * square(part / mean) / mean;
+    return std::max(kLeastShare, std::round(kDigits * share) / kDigits);
+}
 
 double box_gap(const Box& a, const Box& b) {
     return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
@@ -31,7 +46,8 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
     for (std::size_t a = 0; a < bodies.size(); ++a) {
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             if (a == b && !settings.self_contact) continue;
-            pair_.push_back({a, b});
+            const std::size_t row = bodies.size() - !settings.self_contact;
+            pair_.push_back({a, b, b * row + a - (!settings.self_contact && a > b)});
             way_.emplace_back(side_[a], side_[b], settings.contact_stiffness);
         }
     }
@@ -102,7 +118,7 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
     const double step = kWay * least_spacing_;
     allowance_ = std::numeric_limits<double>::infinity();
     for (std::size_t w = 0; w < way_.size(); ++w) {
-        const auto [from, onto] = pair_[w];
+        const auto [from, onto, back] = pair_[w];
         if (asleep[from] && asleep[onto]) continue;
         const double gap = box_gap(box[from], box[onto]);
         const bool near = from == onto || gap <= 2 * step;
@@ -147,7 +163,12 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().read(*force[b]);
     }
-    for (std::size_t w : awake) way_[w].meet(step);
+    std::vector<double> stored(way_.size());
+    for (std::size_t w : awake) stored[w] = way_[w].meet(step);
+    for (std::size_t w : awake) {
+        const std::size_t back = pair_[w].back;
+        if (back != w) way_[w].set_share(share_of(stored[w], stored[back]));
+    }
     for (std::size_t w : awake) way_[w].respond(step);
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().write(*force[b], gravity, step, sums[b]);

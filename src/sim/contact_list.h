@@ -24,6 +24,7 @@ struct Contact : CellPlace {
 struct ContactMemory {
     Vec3 anchor = Vec3::Zero();  // in cells from the other's origin
     Vec3 bond = Vec3::Zero();    // ImpactForce::bond [N]
+    double stiffness = 0;        // with which it was found [N/m]
     ImpactHistory history{};
     // Where matter has broken a point may be deep in what lies there at once, and deeper than it
     // can have gone: nobody has pressed it in. That much of the depth does not count until it has

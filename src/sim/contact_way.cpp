@@ -87,16 +87,16 @@ void ContactWay::set_stiffness(double step) {
     const SurfacePoints& points = from_->points();
     const double one = a.material.young_modulus / a.lattice.spacing,
                  other = b.material.young_modulus / b.lattice.spacing;
-    const double k = 0.5 * scale_ * one * other / (one + other);
-    // Both ways share the tension as they do the stiffness.
-    const double hold = 0.25 * (a.material.stickiness + b.material.stickiness);
+    const double k = scale_ * one * other / (one + other);
+    const double hold = 0.5 * (a.material.stickiness + b.material.stickiness);
     stiffness_.clear();
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
         stiffness_.push_back(k * points.area[p]);
         hold_.push_back(hold * points.area[p]);
         if (!(step > 0)) continue;
-        const double most = 0.25 * lightest_carrier(a, points, p) / (step * step);
+        // Half of which acts where the other way does as much.
+        const double most = 0.5 * lightest_carrier(a, points, p) / (step * step);
         stiffness_[p] = std::min(stiffness_[p], most);
     }
 }
@@ -153,7 +153,7 @@ struct ContactWay::Kernel {
     // All that does not depend on forces.
     SWAGE_INLINE void prepare(const Contact& contact, const ContactMemory& last,
                               const CellCorners& corner, const CellGradient& gradient, double step,
-                              Meeting& at, double& took) const {
+                              Meeting& at, Chunk& sums) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
         double give = 0;
         at.now = Vec4{};
@@ -167,7 +167,7 @@ struct ContactWay::Kernel {
             at.now -= weight[c] * corner.now[c]->speed;
             give += weight[c] * weight[c] * corner.now[c]->place[3];
         }
-        took -= dot3(at.now, vec4(contact.dashed));
+        sums.took -= dot3(at.now, vec4(contact.dashed));
         const double hold = way.hold_[contact.point];
         if (way.has_broken_ && is_known(at)) {
             const double pressed = last.history.touches ? last.pressed : 0;
@@ -195,12 +195,13 @@ struct ContactWay::Kernel {
         }
         at.spring[3] = 0;
         at.reach[3] = give;
+        sums.stored += 0.5 / k * dot3(at.spring, at.spring);
     }
 
     SWAGE_INLINE void find_chunk(std::size_t chunk, double step) const {
         Chunk& result = way.chunk_[chunk];
         result.moved.clear();
-        result.took = 0;
+        result.took = result.stored = 0;
         const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < stop; ++n) {
             Contact& contact = way.list_.contact[n];
@@ -213,7 +214,7 @@ struct ContactWay::Kernel {
             find(contact, last, corner, gradient, at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
             if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
-            prepare(contact, last, corner, gradient, step, at, result.took);
+            prepare(contact, last, corner, gradient, step, at, result);
         }
     }
 
@@ -226,12 +227,12 @@ struct ContactWay::Kernel {
         for (int c = 0; c < 8; ++c) b.force(contact.corner[c]) -= weight[c] * f;
     }
 
-    SWAGE_INLINE void push_chunk(std::size_t chunk) const {
+    SWAGE_INLINE void push_chunk(std::size_t chunk, double share) const {
         const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < stop; ++n) {
             const Contact& contact = way.list_.contact[n];
             if (!meets(way.meeting_[n])) continue;
-            spread(contact, trilinear_weights(contact.place), way.meeting_[n].spring);
+            spread(contact, trilinear_weights(contact.place), share * way.meeting_[n].spring);
         }
     }
 
@@ -239,7 +240,8 @@ struct ContactWay::Kernel {
                                     const Meeting& at, double step) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
         const double give = at.reach[3];
-        Vec4 push = -give * at.spring;  // of all others, over the mass
+        const Vec4 spring = way.share_ * at.spring;
+        Vec4 push = -give * spring;  // of all others, over the mass
         for (int c = 0; c < contact.carriers; ++c) {
             const Vec4& f = a.force(contact.carrier[c]);
             push += contact.share[c] * f[3] * f;
@@ -249,8 +251,8 @@ struct ContactWay::Kernel {
             push -= weight[c] * f[3] * f;
         }
         ImpactLaw law = way.law_;
-        law.stiffness = way.stiffness_[contact.point];
-        law.hold = way.hold_[contact.point];
+        law.stiffness = way.share_ * way.stiffness_[contact.point];
+        law.hold = way.share_ * way.hold_[contact.point];
         const ImpactForce f = impact_force(law,
                                            {.depth = at.normal[3],
                                             .normal = vec3(at.normal),
@@ -260,7 +262,7 @@ struct ContactWay::Kernel {
                                             .give = give,
                                             .step = step},
                                            last.history);
-        spread(contact, weight, vec4(f.force) - at.spring);
+        spread(contact, weight, vec4(f.force) - spring);
         return f;
     }
 
@@ -276,6 +278,7 @@ struct ContactWay::Kernel {
             if (meets(at)) f = impact(contact, last, at, step);
             next.history = f.history;
             next.bond = f.bond;
+            next.stiffness = way.share_ * way.stiffness_[contact.point];
             next.sunk = at.now[3];
             next.pressed = at.normal[3];
             next.is_new = last.is_new && !is_known(at);
@@ -292,8 +295,7 @@ struct ContactWay::Kernel {
                 ++sums.contacts;
                 sums.sliding += f.history.slides;
             } else if (last.history.touches) {
-                const double k = way.stiffness_[contact.point];
-                sums.damped += 0.5 * parting_loss(k, last.bond, vec3(at.now), step);
+                sums.damped += 0.5 * parting_loss(last.stiffness, last.bond, vec3(at.now), step);
             }
         }
     }
@@ -302,8 +304,8 @@ struct ContactWay::Kernel {
 SWAGE_MIDDLE_VECTORS void ContactWay::middle_find_chunk(std::size_t chunk, double step) {
     Kernel{*this}.find_chunk(chunk, step);
 }
-SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk) {
-    Kernel{*this}.push_chunk(chunk);
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk, double share) {
+    Kernel{*this}.push_chunk(chunk, share);
 }
 SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step) { Kernel{*this}.respond(step); }
 
@@ -312,26 +314,38 @@ void ContactWay::find_chunk(std::size_t chunk, double step) {
     Kernel{*this}.find_chunk(chunk, step);
 }
 
-void ContactWay::push_chunk(std::size_t chunk) {
-    for (int n : chunk_[chunk].moved) {
-        Contact& contact = list_.contact[n];
-        const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
-        for (int c = 0; c < 8; ++c) contact.corner[c] = onto_->patch().slot_of(particle[c]);
-    }
-    if (vector_width() >= 4) return middle_push_chunk(chunk);
-    Kernel{*this}.push_chunk(chunk);
+void ContactWay::push_chunk(std::size_t chunk, double share) {
+    if (vector_width() >= 4) return middle_push_chunk(chunk, share);
+    Kernel{*this}.push_chunk(chunk, share);
 }
 
 // What one thread has just found it pushes at once, while it is near.
-void ContactWay::meet(double step) {
+double ContactWay::meet(double step) {
     meeting_.resize(list_.size());
     chunk_.resize(chunks(list_.size()));
+    share_ = 0.5;
+    double stored = 0;
     const std::size_t group = thread_count() == 1 ? 1 : chunk_.size();
     for (std::size_t begin = 0; begin < chunk_.size(); begin += group) {
         const std::size_t end = std::min(chunk_.size(), begin + group);
         parallel_for(end - begin, [&](std::size_t n) { find_chunk(begin + n, step); });
-        for (std::size_t chunk = begin; chunk < end; ++chunk) push_chunk(chunk);
+        for (std::size_t chunk = begin; chunk < end; ++chunk) {
+            for (int n : chunk_[chunk].moved) {
+                Contact& contact = list_.contact[n];
+                const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
+                for (int c = 0; c < 8; ++c) contact.corner[c] = onto_->patch().slot_of(particle[c]);
+            }
+            push_chunk(chunk, share_);
+            stored += chunk_[chunk].stored;
+        }
     }
+    return stored;
+}
+
+void ContactWay::set_share(double share) {
+    if (share == share_) return;
+    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) push_chunk(chunk, share - share_);
+    share_ = share;
 }
 
 void ContactWay::respond(double step) {

@@ -12,9 +12,9 @@
 // of the other body. A point is never stiffer than a quarter of what its lightest carrier can
 // follow in one step.
 //
-// In each step: resolve() where contacts have been found anew; then of all ways meet(); then
-// of all respond(); and commit() where the step is kept. Both sides'
-// patches are read before and written after.
+// In each step: resolve() where contacts have been found anew; then of all ways meet(), of all
+// set_share(), of all respond(); and commit() where the step is kept. Both sides' patches are read
+// before and written after.
 #pragma once
 
 #include "sim/contact_list.h"
@@ -37,9 +37,11 @@ class ContactWay {
     // What is whole has changed on one side or both: the first too, whose points are others then.
     void surfaces_changed(bool points_too, double step);
 
-    // Finds how each point lies and moves now, for a step of this length [s], and adds what its
-    // springs do.
-    void meet(double step);
+    // Finds how each point lies and moves now, for a step of this length [s], and adds half of what
+    // springs would do if this way were alone; returns what they would hold then [J].
+    double meet(double step);
+    // Another share than half.
+    void set_share(double share);
     // Dashpots and friction, one contact after the other, given what all springs do.
     void respond(double step);
     // While nothing moves.
@@ -56,18 +58,19 @@ class ContactWay {
         Vec4 normal;      // and the depth that counts [m]
         Vec4 reach;       // from the point to where it sticks [m]; ImpactState::give [1/kg]
         Vec4 now;         // speed of the point over the other side [m/s]; depth that does not [m]
-        Vec4 spring;      // what its springs do [N]; 1 where it meets, 0 where it does not
-        Vec4 inverse[3];  // rows of J^-1 [1/m]; 1 in the first where its depth is known
+        Vec4 spring;      // what its springs would do if this way were alone [N]
+        Vec4 inverse[3];  // rows of J^-1 [1/m]; 1 where its depth is known, where it meets
     };
     struct Chunk {
         std::vector<int> moved;  // contacts that have come into other cells
         double took = 0;         // ContactSums::took, of the one half
+        double stored = 0;       // by springs of the whole stiffness [J]
     };
     struct Kernel;
     void find_chunk(std::size_t chunk, double step);
     void middle_find_chunk(std::size_t chunk, double step);
-    void push_chunk(std::size_t chunk);
-    void middle_push_chunk(std::size_t chunk);
+    void push_chunk(std::size_t chunk, double share);
+    void middle_push_chunk(std::size_t chunk, double share);
     void middle_respond(double step);
 
     ContactSide *from_, *onto_;
@@ -75,6 +78,7 @@ class ContactWay {
     bool has_broken_ = false;  // one of them
     ImpactLaw law_{};          // stiffness and hold: of each point
     std::vector<double> stiffness_{}, hold_{};
+    double share_ = 0.5;  // of what this way would do alone
     ContactList list_;
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/advance.h"
+#include "sim/sever.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+Material soft() {
+    return {.young_modulus = 1e6, .poisson_ratio = 0.25, .density = 1000, .damping_ratio = 0};
+}
+
+}  // namespace
+
+TEST_CASE("a strip that folds onto itself does not pass through itself") {
+    Material m = soft();
+    m.young_modulus = 2e5;
+    for (bool meets : {true, false}) {
+        Aggregate strip = make_block(48, 2, 4, 0.05, m);
+        SimSettings settings = motion_settings();
+        settings.self_contact = meets;
+        // A U whose legs, 0.3 apart, go for each other.
+        const double bend = 0.2, arc = std::numbers::pi * bend;
+        deform(strip, [&](const Vec3& x) -> Vec3 {
+            const double s = x.x(), y = x.y();
+            if (std::abs(s) < arc / 2) {
+                const double angle = s / bend;
+                return Vec3((bend - y) * std::cos(angle), (bend - y) * std::sin(angle), x.z());
+            }
+            const double side = s < 0 ? -1 : 1;
+            return Vec3(-(std::abs(s) - arc / 2), side * (bend - y), x.z());
+        });
+        for (std::size_t p = 0; p < strip.particle_count(); ++p) {
+            const Vec3 x = strip.particle_position.at(p);
+            if (x.x() < -0.2) strip.particle_velocity.set(p, Vec3(0, x.y() < 0 ? 2.5 : -2.5, 0));
+        }
+        const Apparatus nothing;
+        Simulation simulation(strip, nothing, settings);
+        double nearest = 1;
+        for (int f = 0; f < 40; ++f) {
+            simulation.advance(still(0.006 * f), still(0.006 * (f + 1)));
+            double low = 0, high = 0;  // of the last quarter of each leg
+            int count = 0;
+            for (std::size_t p = 0; p < strip.particle_count(); ++p) {
+                const double s = strip.particle_reference.at(p).x();
+                if (std::abs(s) < 0.9) continue;
+                (s < 0 ? low : high) += strip.particle_position.y[p];
+                ++count;
+            }
+            nearest = std::min(nearest, 2 * (high - low) / count);
+        }
+        INFO("nearest " << nearest);
+        CHECK((nearest > 0.05) == meets);
+    }
+}
+
+TEST_CASE("pieces after a cut do not pass through each other") {
+    Material m = soft();
+    for (bool meets : {true, false}) {
+        Aggregate block = make_block(5, 8, 5, 0.1, m);
+        sever_plane(block, Vec3(0, 0.05, 0), Vec3::UnitY());
+        REQUIRE(find_pieces(block).count == 2);
+        SimSettings settings = motion_settings();
+        settings.self_contact = meets;
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            if (block.particle_reference.at(p).y() > 0.05) {
+                block.particle_velocity.set(p, Vec3(0, -3, 0));
+            }
+        }
+        const double start = [&] {
+            double sum = 0;
+            for (std::size_t p = 0; p < block.particle_count(); ++p) {
+                sum += 0.5 * block.particle_mass[p] * block.particle_velocity.at(p).squaredNorm();
+            }
+            return sum;
+        }();
+        const Apparatus nothing;
+        Simulation simulation(block, nothing, settings);
+        double nearest = 1;
+        FrameReport r;
+        for (int f = 0; f < 50; ++f) {
+            r = simulation.advance(still(0.004 * f), still(0.004 * (f + 1)));
+            double top = 0, foot = 0;
+            int tops = 0, feet = 0;
+            for (std::size_t p = 0; p < block.particle_count(); ++p) {
+                const bool up = block.particle_reference.at(p).y() > 0.05;
+                (up ? top : foot) += block.particle_position.y[p];
+                ++(up ? tops : feet);
+            }
+            nearest = std::min(nearest, top / tops - foot / feet);
+        }
+        INFO("nearest " << nearest << ", energy " << (r.kinetic + r.elastic) / start);
+        CHECK((nearest > 0.3) == meets);
+        CHECK(r.kinetic + r.elastic < 1.01 * start);
+    }
+}
