@@ -71,20 +71,16 @@ TEST_CASE("a mass keeps the asked share of its speed, whatever its size, speed a
             CHECK(std::abs(rebound(e, m, k, v) - e) < 0.01 * e);
         }
     }
-    CHECK(rebound(0, 1, 1e4, 1) < 0.01);
-    CHECK(rebound(0, 1, 1e4, 1) >= 0);
+    CHECK(rebound(0, 1, 1e4, 1) == Approx(kDullest).epsilon(0.01));
 }
 
 TEST_CASE("the loss is the root of its relation") {
-    for (double e : {0.005, 0.03, 0.2, 0.5, 0.8, 0.99}) {
+    for (double e : {kDullest, 0.2, 0.5, 0.8, 0.99}) {
         const double beta = restitution_loss(e);
-        if (e < 0.1) {
-            CHECK(beta * e == Approx(1).epsilon(1e-2));
-            continue;
-        }
         CHECK(beta * (1 + e) == Approx(std::log((1 + beta) / (1 - beta * e))).epsilon(1e-9));
     }
     CHECK(restitution_loss(1) == 0);
+    CHECK(restitution_loss(0) == restitution_loss(kDullest));
 }
 
 TEST_CASE("a contact never pulls unless it sticks, and never gives energy") {

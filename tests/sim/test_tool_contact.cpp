@@ -295,3 +295,25 @@ TEST_CASE("two blocks that meet part with the asked share of their speed") {
         CHECK(r.contact == 0);
     }
 }
+
+TEST_CASE(
+    "two blocks that are asked to stay together come back by less than their own elasticity") {
+    // Of the speed at which they meet; the stiffer the contact, the more the blocks themselves give
+    // way, and back.
+    for (const auto& [stiffness, share] : {std::pair(0.01, 0.15), std::pair(0.1, 0.6)}) {
+        Material material = kSpringy;
+        material.restitution = 0;
+        Aggregate low = make_block(3, 3, 3, 0.1, material), high = low;
+        for (double& y : high.particle_position.y) y += 0.3005;
+        for (double& v : high.particle_velocity.y) v = -1;
+        SimSettings settings = motion_settings();
+        settings.contact_stiffness = stiffness;
+        const Apparatus nothing;
+        Simulation simulation({&low, &high}, nothing, settings);
+        simulation.advance(still(0), still(0.4));
+        const double back = mean_speed(high).y() - mean_speed(low).y();
+        INFO("contact_stiffness " << stiffness << ": " << back);
+        CHECK(back > 0);
+        CHECK(back < share);
+    }
+}
