@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "laws/spring_damper.h"
 #include "laws/volume_guard.h"
 #include "laws/yield.h"
+#include "sim/cell_batch.h"
 #include "sim/cell_volume.h"
 #include "sim/vector_clones.h"
 
@@ -17,6 +19,7 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 256;
 constexpr std::size_t kSpansPerChunk = 1024;
+constexpr double kNearYield = 1e-4;  // of it: strains are kept as floats
 
 double share_of(int slot) {
     return kCellConnection[slot].direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
@@ -47,6 +50,65 @@ void distortion_block(const float* strain, const float* weight, const float* pla
     }
 }
 
+// At least the root of S (laws/yield.h) of any cell of a run that has never flowed. With q = r^2 -
+// 1 of a connection's ratio r, its logarithm is q/2 to within 0.3 q^2, a third of the volume's j/3
+// to within 0.2 j^2, where these are below a tenth; beyond, it is told as more than anything.
+SWAGE_VECTOR_CLONES
+double most_distorted(const Aggregate& matter, const CellRun& run) {
+    constexpr double kTenth = 0.01, kShares = 12 * (kEdgeShare + kDiagonalShare);
+    const Vec3Array& x = matter.particle_position;
+    const double a = matter.lattice.spacing, s = 0.25 / a;
+    CornerRows<const double> rows;
+    for (int q = 0; q < 4; ++q) {
+        rows.at[0][q] = x.x.data() + run.row[q];
+        rows.at[1][q] = x.y.data() + run.row[q];
+        rows.at[2][q] = x.z.data() + run.row[q];
+    }
+    const int room = static_cast<int>(x.size()) - run.row[3];
+    double most = 0;
+    for (int begin = 0; begin < run.count; begin += kLanes) {
+        const int count = std::min(kLanes, run.count - begin);
+        const CornerSums<Lanes> c = gather<Lanes>(rows, begin, count, room);
+        const Lanes j = (s * s * s) * dot(c.x, cross(c.y, c.z)) - 1.0, third = (1.0 / 3) * j;
+        Lanes edges{}, diagonals{}, squares = j * j;
+        const auto add = [&](const Triple<Lanes>& way, double scale, Lanes& sum)
+            __attribute__((always_inline)) {
+            const Lanes q = scale * dot(way, way) - 1.0, off = 0.5 * q - third;
+            sum += off * off;
+            squares += q * q;
+        };
+        // `m`, `n`: the modes with the axes beside; of the four edges along one axis, and of the
+        // four diagonals in the planes of two.
+        const auto four_edges = [&](const Triple<Lanes>& d, const Triple<Lanes>& m,
+                                    const Triple<Lanes>& n) __attribute__((always_inline)) {
+            add(d + m + n + c.xyz, s * s, edges);
+            add(d + m - n - c.xyz, s * s, edges);
+            add(d - m + n - c.xyz, s * s, edges);
+            add(d - m - n + c.xyz, s * s, edges);
+        };
+        const auto four_diagonals = [&](const Triple<Lanes>& d, const Triple<Lanes>& e,
+                                        const Triple<Lanes>& m, const Triple<Lanes>& n)
+            __attribute__((always_inline)) {
+            add(d + e + m + n, 0.5 * s * s, diagonals);
+            add(d + e - m - n, 0.5 * s * s, diagonals);
+            add(d - e + m - n, 0.5 * s * s, diagonals);
+            add(d - e - m + n, 0.5 * s * s, diagonals);
+        };
+        four_edges(c.x, c.xy, c.zx);
+        four_edges(c.y, c.xy, c.yz);
+        four_edges(c.z, c.yz, c.zx);
+        four_diagonals(c.x, c.y, c.zx, c.yz);
+        four_diagonals(c.y, c.z, c.xy, c.zx);
+        four_diagonals(c.z, c.x, c.yz, c.xy);
+        const Lanes about = kEdgeShare * edges + kDiagonalShare * diagonals;
+        for (int l = 0; l < count; ++l) {
+            if (!(squares[l] < kTenth)) return std::numeric_limits<double>::infinity();
+            most = std::max(most, std::sqrt(about[l]) + 0.3 * std::sqrt(kShares) * squares[l]);
+        }
+    }
+    return most;
+}
+
 }  // namespace
 
 CellFlow::CellFlow(const Aggregate& matter) {
@@ -54,11 +116,32 @@ CellFlow::CellFlow(const Aggregate& matter) {
     law_ = {matter.material.yield_stress, matter.material.hardening,
             lattice_stiffness(matter.material.young_modulus, 1.0)};
     yield_distortion_ = yield_distortion(law_);
+    for (auto& strain : strain_) strain.resize(matter.particle_count());
+    history_changed(matter);
+}
+
+void CellFlow::history_changed(const Aggregate& matter) {
     for (int d = 0; d < kForwardCount; ++d) {
         rest_[d] = matter.connection[d].plastic;
         rest_[d].resize(matter.particle_count());
-        strain_[d].resize(matter.particle_count());
     }
+    flowing_.clear();
+}
+
+// Nothing has ever flowed and nothing does.
+bool CellFlow::is_far_from_yield(const Aggregate& matter) const {
+    if (!matter.cell_plastic[0].empty()) return false;
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const double least = (1 - kNearYield) * std::sqrt(yield_distortion_);
+    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
+    std::vector<char> far(chunks, 1);
+    parallel_for(chunks, [&](std::size_t chunk) {
+        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
+        for (std::size_t r = chunk * kRunsPerChunk; r < end && far[chunk]; ++r) {
+            far[chunk] = most_distorted(matter, runs[r]) < least;
+        }
+    });
+    return std::all_of(far.begin(), far.end(), [](char one) { return one != 0; });
 }
 
 void CellFlow::find_strains(const Aggregate& matter) {
@@ -144,6 +227,10 @@ const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
             rest_[d][lower] = static_cast<float>(matter.connection[d].plastic_of(lower));
         }
     }
+    if (is_far_from_yield(matter)) {
+        flowing_.clear();
+        return rest_;
+    }
     find_strains(matter);
     find_flowing(matter);
     for (const FlowingCell& cell : flowing_) {
@@ -172,9 +259,9 @@ double CellFlow::plastic_work(const Aggregate& matter, int d, ParticleId lower,
            matter.connection[d].weight[lower] * reference * reference * elastic * growth;
 }
 
-double CellFlow::commit(Aggregate& matter) {
+double CellFlow::commit(Aggregate& matter, bool found) {
     if (!active()) return 0;
-    rest_strains(matter);
+    if (!found) rest_strains(matter);
     if (flowing_.empty()) return 0;
     double lost = 0;
     std::vector<std::array<double, kCellConnectionCount>> flow(flowing_.size());

@@ -20,8 +20,15 @@ class CellFlow {
     // and on top what flows. Valid until the next call.
     const RestStrains& rest_strains(const Aggregate& matter);
 
-    // Remembers the flow of a converged state; returns the work that it took [J].
-    double commit(Aggregate& matter);
+    // Whether any cell flowed in that call.
+    bool flows() const { return !flowing_.empty(); }
+
+    // Remembers the flow of a converged state; returns the work that it took [J]. `found`:
+    // rest_strains() was last called at these positions.
+    double commit(Aggregate& matter, bool found = false);
+
+    // What is committed is not what it was when this last looked.
+    void history_changed(const Aggregate& matter);
 
   private:
     struct FlowingCell {
@@ -31,6 +38,7 @@ class CellFlow {
         double share;                   // of its connections' distortion that flows
         double d_alpha;                 // growth of its accumulated plastic strain
     };
+    bool is_far_from_yield(const Aggregate& matter) const;
     void find_strains(const Aggregate& matter);
     void find_flowing(const Aggregate& matter);
     double plastic_work(const Aggregate& matter, int d, ParticleId lower, double growth) const;

@@ -27,6 +27,7 @@ LatticeForces::LatticeForces(const Aggregate& matter)
 void LatticeForces::connections_changed(const Aggregate& matter) {
     if (cells_) cells_->cells_changed(matter);
     loose_.connections_changed(matter);
+    if (spring_flow_) spring_flow_->history_changed(matter);
     if (spring_sweep_) spring_sweep_->connections_changed(matter, loose_.softening_ends(matter));
 }
 
@@ -47,7 +48,8 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
         return add_guard_forces(matter, cells_->crushed_runs(), force);
     }
     const bool flows = spring_flow_ && flow == Flow::trial;
-    const RestStrains* const rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
+    const RestStrains* rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
+    if (flows && !spring_flow_->flows() && matter.connection[0].plastic.empty()) rest = nullptr;
     const double limit = loose_.law().onset > 0 ? kNearOnset * loose_.law().onset : 1e100;
     const bool apart = branches && spring_sweep_->branches_soften();
     double work =
@@ -71,7 +73,7 @@ bool LatticeForces::saw_crushed() const {
 Committed LatticeForces::commit(Aggregate& matter, bool in_motion) {
     Committed result;
     if (cells_) result.plastic = cells_->commit(matter, in_motion);
-    if (spring_flow_) result.plastic = spring_flow_->commit(matter);
+    if (spring_flow_) result.plastic = spring_flow_->commit(matter, in_motion);
     const Broken broken = loose_.commit(matter, nullptr);
     result.fracture = broken.lost;
     result.broken = broken.count;

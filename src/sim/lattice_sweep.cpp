@@ -233,11 +233,6 @@ LatticeSweep::LatticeSweep(const Aggregate& matter)
 
 void LatticeSweep::connections_changed(const Aggregate& matter, const std::vector<char>& softens) {
     const auto& all = matter.connection;
-    flowed_ = std::isfinite(matter.material.yield_stress);
-    flowed_ =
-        flowed_ || std::any_of(all.begin(), all.end(), [](const ConnectionArrays& c) {
-            return std::any_of(c.plastic.begin(), c.plastic.end(), [](float p) { return p != 0; });
-        });
     weight_.clear();
     softens_.clear();
     std::int32_t* batch = batch_.data();
@@ -281,7 +276,7 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
     const Vec3Array &x = matter.particle_position, &v = matter.particle_velocity;
     SpringTask whole;
     whole.particles = static_cast<int>(x.size());
-    whole.flowed = wanted.springs && (wanted.rest || flowed_);
+    whole.flowed = wanted.springs && (wanted.rest || !matter.connection[0].plastic.empty());
     for (int i = 0; i < 3; ++i) {
         whole.position[i] = (i == 0 ? x.x : i == 1 ? x.y : x.z).data();
         whole.velocity[i] = (i == 0 ? v.x : i == 1 ? v.y : v.z).data();
@@ -289,7 +284,6 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
     for (int d = 0; d < kForwardCount; ++d) {
         const ConnectionArrays& own = matter.connection[d];
         whole.rest[d] = (wanted.rest ? (*wanted.rest)[d] : own.plastic).data();
-        whole.flowed = whole.flowed && whole.rest[d] != nullptr;
     }
     whole.weight = (wanted.springs || !branches_soften() ? weight_ : softened_).data();
     whole.stiffness = law.stiffness;

@@ -85,7 +85,6 @@ class LatticeSweep {
     // by direction and lane.
     std::vector<std::int32_t> batch_;
     std::vector<float> weight_;
-    bool flowed_ = false;  // some rest strain may not be zero
     struct SofteningEnd {
         ParticleId lower;
         std::int32_t at;  // in weight_, of the first direction

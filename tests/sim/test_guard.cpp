@@ -86,6 +86,44 @@ TEST_CASE("rubber that is inside out is counted") {
     CHECK(body.inside_out() == 36);
 }
 
+TEST_CASE("what flowed or cracked in steps that are taken back is forgotten") {
+    for (Mechanics mechanics : {Mechanics::springs, Mechanics::cells}) {
+        Material weak = kSpringy;
+        weak.mechanics = mechanics;
+        weak.yield_stress = 0.004 * weak.young_modulus, weak.hardening = weak.young_modulus;
+        weak.strength = 0.03 * weak.young_modulus, weak.toughness = 0.01 * weak.strength;
+        Aggregate m = block(weak);
+        const Apparatus nothing;
+        const SimSettings settings = motion_settings();
+        MovingBody body(m, 0, nothing, settings);
+        BodyOutcome outcome(nothing, 1);
+        const auto pull_to = [&](double stretch) {
+            for (std::size_t p = 0; p < m.particle_count(); ++p) {
+                const Vec3 x = m.particle_reference.at(p);
+                m.particle_position.set(p, {stretch * x.x(), x.y(), x.z()});
+            }
+            body.find_forces(still(0), 0, outcome);
+            body.finish_step(still(0), still(0), 0, outcome);
+        };
+        body.start(still(0), outcome);
+        pull_to(1.01);
+        body.find_forces(still(0), 0, outcome);
+        const Vec3Array pulled = body.force();
+        const std::uint64_t before = state_hash(m);
+        MovingBody::State state;
+        body.save(state);
+        const double plastic = outcome.plastic_work;
+        CHECK(plastic > 0);
+        pull_to(1.2);
+        CHECK(outcome.plastic_work > 2 * plastic);
+        CHECK_FALSE(m.cell_cracked.empty());
+        body.restore(state);
+        CHECK(state_hash(m) == before);
+        body.find_forces(still(0), 0, outcome);
+        CHECK(body.force().x == pulled.x);
+    }
+}
+
 TEST_CASE("energy that appears from nowhere is refused once it is a twentieth of what was put in") {
     EnergyGuard guard;
     guard.start(100);
