@@ -50,7 +50,8 @@ struct SlabTask {
     }
 };
 
-template <int kWidth, CellKind kKind>
+// kWatched: strains are.
+template <int kWidth, CellKind kKind, bool kWatched>
 SWAGE_INLINE void slab_forces(SlabTask& task) {
     typedef LanesOf<kWidth> V;
     typename LaneBatch<kWidth>::Indices lane;
@@ -84,7 +85,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             V size = dot(c.x, cross(c.y, c.z));
             if (count < kWidth) size = lane < count ? size : smallest;
             smallest = size < smallest ? size : smallest;
-            if (task.strained > 0) {
+            if constexpr (kWatched) {
                 V strain = strain_measure(c, task.constants->gram);
                 if (count < kWidth) strain = lane < count ? strain : V{};
                 strained = larger(strained, strain);
@@ -125,7 +126,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             add_forces(r, force, room, begin, count, carry);
         }
         if (run->count % kWidth == 0) add_carried(force, run->count, carry);
-        bool crushed = false, yields = false, strains = any_flowed && task.strained > 0;
+        bool crushed = false, yields = false, strains = any_flowed;
         const double near = -kNearYield * task.constants->law.yield_stress;
         for (int l = 0; l < kWidth; ++l) {
             crushed = crushed || smallest[l] < task.crushed;
@@ -134,35 +135,39 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
         }
         if (crushed) task.crushed_run->push_back(run);
         if (kKind == CellKind::yielding && yields) task.yielding_run->push_back(run);
-        if (task.strained > 0 && strains) task.strained_run->push_back(run);
+        if (kWatched && strains) task.strained_run->push_back(run);
         batch += batches_of(*run);
     }
     task.batch = batch;
 }
 
-template <CellKind kKind>
+template <CellKind kKind, bool kWatched>
 SWAGE_WIDE_VECTORS void wide_slab(SlabTask& task) {
-    slab_forces<8, kKind>(task);
+    slab_forces<8, kKind, kWatched>(task);
 }
-template <CellKind kKind>
+template <CellKind kKind, bool kWatched>
 SWAGE_MIDDLE_VECTORS void middle_slab(SlabTask& task) {
-    slab_forces<4, kKind>(task);
+    slab_forces<4, kKind, kWatched>(task);
 }
-template <CellKind kKind>
+template <CellKind kKind, bool kWatched>
 void narrow_slab(SlabTask& task) {
-    slab_forces<2, kKind>(task);
+    slab_forces<2, kKind, kWatched>(task);
 }
-template <CellKind kKind>
+template <CellKind kKind, bool kWatched>
 void slab_of(SlabTask& task) {
     const int width = vector_width();
-    width == 8   ? wide_slab<kKind>(task)
-    : width == 4 ? middle_slab<kKind>(task)
-                 : narrow_slab<kKind>(task);
+    width == 8   ? wide_slab<kKind, kWatched>(task)
+    : width == 4 ? middle_slab<kKind, kWatched>(task)
+                 : narrow_slab<kKind, kWatched>(task);
+}
+template <bool kWatched>
+void slab_by_kind(CellKind kind, SlabTask& task) {
+    kind == CellKind::rubber     ? slab_of<CellKind::rubber, kWatched>(task)
+    : kind == CellKind::yielding ? slab_of<CellKind::yielding, kWatched>(task)
+                                 : slab_of<CellKind::elastic, kWatched>(task);
 }
 void sweep_slab(CellKind kind, SlabTask& task) {
-    kind == CellKind::rubber     ? slab_of<CellKind::rubber>(task)
-    : kind == CellKind::yielding ? slab_of<CellKind::yielding>(task)
-                                 : slab_of<CellKind::elastic>(task);
+    task.strained > 0 ? slab_by_kind<true>(kind, task) : slab_by_kind<false>(kind, task);
 }
 
 // A run, in pieces of one material.
