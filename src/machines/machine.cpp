@@ -81,7 +81,11 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
 }
 
 void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
-    Tool tool{spec.name, shape_of(setting, spec), setting.friction};
+    Tool tool{.name = spec.name,
+              .shape = shape_of(setting, spec),
+              .friction = setting.friction,
+              .matt = spec.matt};
+    if (spec.color) tool.color = *spec.color;
     if (!spec.friction.empty()) tool.friction = evaluate(spec.friction, setting.known);
     if (!(tool.friction >= 0)) {
         refuse(setting, fmt::format("the friction of tool {} is {}; it cannot be negative",

@@ -51,11 +51,13 @@ struct ToolSpec {
     Expression rounding = "0";           // box
     std::filesystem::path mesh;  // mesh: absolute; scaled so that its longest side is `length`
     Expression3 axis = {"0", "0", "1"};  // the shape's z axis, in the work frame
-    Expression3 at = {"0", "0", "0"};  // centre before `touch`, in the work frame
+    Expression3 at = {"0", "0", "0"};    // centre before `touch`, in the work frame
     // Slides the tool along this direction (from far outside) until it just touches; zero: stays.
     Expression3 touch = {"0", "0", "0"};
-    Expression gap = "0";  // left between tool and work-piece by `touch`
-    Expression friction;   // empty: the material's
+    Expression gap = "0";       // left between tool and work-piece by `touch`
+    Expression friction;        // empty: the material's
+    std::optional<Vec3> color;  // linear RGB
+    bool matt = false;          // drawn without a shine
     MotionSpec motion;
 };
 

@@ -17,6 +17,7 @@ struct Tool {
     Shape shape;
     double friction;  // Coulomb, >= 0
     Vec3 color = {0.35, 0.38, 0.42};
+    bool matt = false;  // drawn without a shine
 };
 
 // A grip holds points of the work-piece's true surface to its frame, by stiff springs; along some

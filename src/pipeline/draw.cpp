@@ -52,8 +52,8 @@ class FrameSource {
             SurfaceMaterial look;
             look.name = machine_[b].name;
             look.color = machine_[b].color;
-            look.roughness = 0.4;
-            look.metallic = 0.6;
+            look.roughness = machine_[b].matt ? 0.95 : 0.4;
+            look.metallic = machine_[b].matt ? 0 : 0.6;
             picture.item.push_back({&machine_[b].surface, nullptr, stored.pose.at(b), look});
         }
         return picture;

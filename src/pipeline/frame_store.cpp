@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3230'6567'6177'7300;  // "\0swage02" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3330'6567'6177'7300;  // "\0swage03" on a little-endian machine
 
 enum RecordKind : std::uint32_t { kSkin = 1, kMachine = 2, kFrame = 3, kEnd = 4 };
 
@@ -94,6 +94,7 @@ int FrameStoreWriter::add_machine(const std::vector<DrawnPart>& parts) {
         out.put_text(part.name);
         put_mesh(out, part.surface);
         out.put(part.color);
+        out.put<std::uint8_t>(part.matt);
     }
     put(kMachine, out.bytes());
     return machines_++;
@@ -199,6 +200,7 @@ std::vector<DrawnPart> FrameStore::machine(int index) const {
         part.name = in.get_text();
         part.surface = get_mesh(in);
         part.color = in.get<Vec3>();
+        part.matt = in.get<std::uint8_t>() != 0;
     }
     return parts;
 }

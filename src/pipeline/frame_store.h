@@ -20,6 +20,7 @@ struct DrawnPart {
     std::string name;
     TriMesh surface;
     Vec3 color = {0.5, 0.5, 0.5};
+    bool matt = false;
 };
 
 struct StoredBody {

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "scene/file_text.h"
+#include "scene/read_color.h"
 #include "scene/read_material.h"
 #include "scene/read_stage.h"
 
@@ -16,10 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kDefaultAcross = 6;
-
-double linear_of(double srgb) {
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
 
 void read_file(TableReader& table, const fs::path& folder, const char* what, MeshSpec& mesh) {
     std::string file;
@@ -55,14 +52,7 @@ void read_start(TableReader& table, BodySpec& body) {
     table.vector("turn", Quantity::angle, body.start.turn);
     table.vector("velocity", Quantity::speed, body.start.velocity);
     table.vector("spin", Quantity::spin, body.start.spin);
-    Vec3 color = Vec3::Zero();
-    if (!table.vector("color", Quantity::number, color)) return;
-    if ((color.array() < 0).any() || (color.array() > 1).any()) {
-        table.mistake("color", fmt::format("color = [{:g}, {:g}, {:g}]: red, green and blue are "
-                                           "each 0 to 1",
-                                           color.x(), color.y(), color.z()));
-    }
-    body.color = Vec3(linear_of(color.x()), linear_of(color.y()), linear_of(color.z()));
+    read_color(table, body.color);
 }
 
 void read_fineness(TableReader& table, MoldSettings& mold) {

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "scene/expressions.h"
 #include "scene/file_text.h"
+#include "scene/read_color.h"
 #include "scene/read_load.h"
 #include "scene/read_stage.h"
 #include "scene/stage_keys.h"
@@ -170,6 +171,8 @@ class MachineReader {
             table.warn("gap", "gap has no effect without touch");
         }
         expression_.read(table, "friction", tool.friction);
+        read_color(table, tool.color);
+        table.choice<bool>("finish", {{"metal", false}, {"matt", true}}, tool.matt);
         table.find("motion");
         if (tool.shape.empty()) table.leave_unknown();
         table.finish();

@@ -5,7 +5,8 @@
 //     [parameter.NAME]            quantity, default, low, high, help
 //     [[tool]]                    name, shape ("cylinder", "box", "sphere", "mesh"),
 //                                 radius, length, size, rounding, file, axis, at,
-//                                 touch, gap, friction
+//                                 touch, gap, friction, color,
+//                                 finish ("metal", "matt")
 //     [tool.motion]               move, turn, axis, pivot
 //     [[grip]]                    name, from, to, and [grip.motion]
 //     [[blade]]                   name, edge, thickness, and [blade.motion]

@@ -47,6 +47,8 @@ at = [0, "-height", 0.25]
 touch = [0, 1, 0]
 gap = "1 mm"
 friction = 0.2
+color = [1, 0.5, 0]
+finish = "matt"
 motion = { move = [0, "-radius*ramp(t, 0, 1)", 0], turn = "turned*t", axis = [1, 0, 0], pivot = ["roll_x", "roll_y", 0] }
 [[tool]]
 name = "block"
@@ -105,6 +107,9 @@ otherwise = "choose a smaller radius"
     CHECK(roll.touch == Expression3{"0", "1", "0"});
     CHECK(roll.gap == "1 mm");
     CHECK(roll.friction == "0.2");
+    CHECK(roll.color.value().y() == Approx(0.2140).epsilon(1e-3));
+    CHECK(roll.matt);
+    CHECK_FALSE(machine.tool[1].matt);
     CHECK(roll.motion.turn == "turned*t");
     CHECK(roll.motion.axis == Vec3(1, 0, 0));
     CHECK(roll.motion.pivot[1] == "roll_y");
@@ -229,6 +234,9 @@ TEST_CASE("mistakes in machine files are named at their letter") {
         {"check",
          kHead + kGrip + "[[check]]\nholds = \"reach <\"\n",
          {"10:17: holds: the expression ends too early", "9:1: [[check]] needs \"otherwise\""}},
+        {"looks",
+         kHead + kGrip + tool + "color = [0, 0, 2]\nfinish = \"gold\"\n",
+         {"color = [0, 0, 2]: red, green and blue are each 0 to 1", "finish"}},
         {"turn without need",
          kHead + kGrip + "[grip.motion]\naxis = [0, 0, 1]\n",
          {"10:8: warning: axis and pivot have no effect without turn"}},

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/read_color.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace swage {
+
+namespace {
+
+double linear_of(double srgb) {
+    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+}  // namespace
+
+void read_color(TableReader& table, std::optional<Vec3>& color) {
+    Vec3 seen = Vec3::Zero();
+    if (!table.vector("color", Quantity::number, seen)) return;
+    if ((seen.array() < 0).any() || (seen.array() > 1).any()) {
+        table.mistake("color", fmt::format("color = [{:g}, {:g}, {:g}]: red, green and blue are "
+                                           "each 0 to 1",
+                                           seen.x(), seen.y(), seen.z()));
+    }
+    color = Vec3(linear_of(seen.x()), linear_of(seen.y()), linear_of(seen.z()));
+}
+
+}  // namespace swage
