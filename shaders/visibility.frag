@@ -62,7 +62,8 @@ float lit(vec3 p, vec3 n, float turn) {
     bool inside = s.z > 0.0 && all(lessThan(abs(s.xy - 0.5), vec2(0.75)));
     // Loops of no turns, where the map does not reach or the surface looks away: much cheaper
     // than a branch in software.
-    bool open = inside && dot(n, key.xyz) > -0.1;
+    bool away = dot(n, key.xyz) < -0.1;
+    bool open = inside && !away;
     float size = 1.0 / shadow.y;
     ivec2 last = ivec2(size) - 1;
     float bias = 0.0015;
@@ -92,6 +93,8 @@ float lit(vec3 p, vec3 n, float turn) {
         float d = texelFetch(shadow_depth, clamp(ivec2(at * size), ivec2(0), last), 0).r;
         light += step(depth - slack, d);
     }
+    // What looks away shades itself; so does the floor where it meets that, at the same depth.
+    if (away) return 0.0;
     return blockers > 0.0 ? light / float(SHADOW_TAPS) : 1.0;
 }
 
