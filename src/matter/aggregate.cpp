@@ -45,6 +45,22 @@ double Aggregate::mass() const {
     return sum;
 }
 
+Vec3 Aggregate::centre() const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < particle_count(); ++p) {
+        sum += particle_mass[p] * particle_position.at(p);
+    }
+    return sum / mass();
+}
+
+Vec3 Aggregate::mean_velocity() const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t p = 0; p < particle_count(); ++p) {
+        sum += particle_mass[p] * particle_velocity.at(p);
+    }
+    return sum / mass();
+}
+
 Vec3 Aggregate::surface_position(std::size_t point) const {
     Vec3 x = Vec3::Zero();
     for (int c = 0; c < 8; ++c) {

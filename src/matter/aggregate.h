@@ -209,6 +209,8 @@ struct Aggregate {
     std::size_t connection_count() const;  // unsevered ones
     double volume() const;                 // of the material at molding [m3]
     double mass() const;                   // [kg]
+    Vec3 centre() const;                   // of mass [m]
+    Vec3 mean_velocity() const;            // of mass [m/s]
     Vec3 surface_position(std::size_t point) const;
     Vec3 surface_velocity(std::size_t point) const;  // [m/s]
     // Deformation gradient of the carrying cell's trilinear map at the point.

@@ -78,11 +78,7 @@ bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOut
     iterations_ += result.steps;
     if (!result.converged) {
         // From where the matter is not strained more than it was.
-        Vec3 drift = Vec3::Zero();
-        for (std::size_t p = 0; p < count; ++p) {
-            drift += matter.particle_mass[p] * matter.particle_velocity.at(p);
-        }
-        drift *= step / matter.mass();
+        const Vec3 drift = step * matter.mean_velocity();
         if (!drift.allFinite()) return false;
         for (std::size_t p = 0; p < count; ++p) {
             matter.particle_position.set(p, start_.at(p) + drift);

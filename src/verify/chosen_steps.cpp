@@ -7,11 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/make_shape.h"
-#include "mold/mold.h"
 #include "sim/energy_steps.h"
 #include "sim/vector_sums.h"
 #include "verify/case.h"
+#include "verify/stand.h"
 
 namespace swage {
 
@@ -34,15 +33,7 @@ struct Drop {
         material.density = kDensity;
         material.damping_ratio = damping;
         material.restitution = 1;  // a spring, as in the paper
-        MoldSettings mold_settings;
-        mold_settings.spacing = kSide;
-        matter = mold(make_shape("bar", {{"length", kSide},
-                                         {"height", kSide},
-                                         {"width", kSide},
-                                         {"rounding", 0},
-                                         {"division", 2}})
-                          .mesh,
-                      material, mold_settings);
+        matter = block_of(Vec3::Constant(kSide), kSide, material);
         for (double& y : matter.particle_position.y) y += 0.5 * kSide + kHeight;
         floor.name = "floor";
         floor.tool.push_back({"floor", BoxShape{Vec3(10, 1, 10), 0}, 0});

@@ -31,13 +31,7 @@ double lowest(const Aggregate& matter) {
     return low;
 }
 
-double height(const Aggregate& matter) {
-    double sum = 0;
-    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-        sum += matter.particle_mass[p] * matter.particle_position.y[p];
-    }
-    return sum / matter.mass();
-}
+double height(const Aggregate& matter) { return matter.centre().y(); }
 
 // Of hard matter on a contact a hundred times softer than usual, so that what the ball stores
 // inside is little beside what the contact does. NOTE: what it does store comes back in part, and

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "geometry/make_shape.h"
-#include "mold/mold.h"
 #include "verify/case.h"
 #include "verify/stand.h"
 
@@ -13,18 +11,6 @@ namespace swage {
 namespace {
 
 const Apparatus kNothing;
-
-Aggregate block(const Vec3& size, double spacing, const Material& material) {
-    MoldSettings settings;
-    settings.spacing = spacing;
-    return mold(make_shape("bar", {{"length", size.x()},
-                                   {"height", size.y()},
-                                   {"width", size.z()},
-                                   {"rounding", 0},
-                                   {"division", std::round(size.x() / spacing)}})
-                    .mesh,
-                material, settings);
-}
 
 SimSettings explicit_settings() {
     SimSettings settings;
@@ -38,14 +24,6 @@ Drive at_time(double time) {
     return drive;
 }
 
-// Sums over all particles of mass times what is asked.
-template <typename Of>
-Vec3 mass_sum(const Aggregate& m, const Of& of) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < m.particle_count(); ++p) sum += m.particle_mass[p] * of(p);
-    return sum;
-}
-
 // A cube of 0.1 m that flies along x through a medium, without weight or from rest by its weight.
 struct Flight {
     static constexpr double kSide = 0.1, kSpeed = 10, kGravity = 9.81;
@@ -54,7 +32,7 @@ struct Flight {
     double time = 0, way = 0, speed = 0;  // now
 
     explicit Flight(int across)
-        : cube(block(Vec3::Constant(kSide), kSide / across, [] {
+        : cube(block_of(Vec3::Constant(kSide), kSide / across, [] {
               Material material;
               material.young_modulus = 1e6;
               material.density = 1000;
@@ -66,19 +44,13 @@ struct Flight {
     // Both after further times, each from where the one before ended.
     template <typename Look>
     void fly(const std::vector<double>& times, const Look& look) {
-        const auto centre = [&] {
-            return mass_sum(cube, [&](std::size_t p) { return cube.particle_position.at(p); }).x() /
-                   cube.mass();
-        };
-        const double from = centre();
+        const double from = cube.centre().x();
         Simulation simulation(cube, kNothing, settings);
         for (double to : times) {
             simulation.advance(at_time(time), at_time(to));
             time = to;
-            way = centre() - from;
-            speed =
-                mass_sum(cube, [&](std::size_t p) { return cube.particle_velocity.at(p); }).x() /
-                cube.mass();
+            way = cube.centre().x() - from;
+            speed = cube.mean_velocity().x();
             look();
         }
     }
@@ -165,8 +137,8 @@ void momentum(bool brief, Values& values) {
     material.density = 1000;
     material.damping_ratio = 0;
     material.restitution = 0.7;
-    Aggregate a = block({0.5, 0.2, 0.2}, 0.1, material),
-              b = block({0.27, 0.27, 0.27}, 0.09, material);
+    Aggregate a = block_of({0.5, 0.2, 0.2}, 0.1, material),
+              b = block_of({0.27, 0.27, 0.27}, 0.09, material);
     const Pose turned{Quat(Eigen::AngleAxisd(0.6, Vec3(1, 1, 0.3).normalized())),
                       Vec3(0.15, 0.32, 0.05)};
     for (std::size_t p = 0; p < b.particle_count(); ++p) {
@@ -178,12 +150,8 @@ void momentum(bool brief, Values& values) {
     for (std::size_t p = 0; p < a.particle_count(); ++p) {
         a.particle_velocity.set(p, Vec3(0, 2, 0) + Vec3(0, 0, 6).cross(a.particle_position.at(p)));
     }
-    const auto velocity = [](const Aggregate& m) {
-        return Vec3(mass_sum(m, [&](std::size_t p) { return m.particle_velocity.at(p); }) /
-                    m.mass());
-    };
     const Momenta before = momenta_of({&a, &b});
-    const Vec3 apart = velocity(b) - velocity(a);
+    const Vec3 apart = b.mean_velocity() - a.mean_velocity();
     Simulation simulation({&a, &b}, kNothing, explicit_settings());
     const long wanted = brief ? 1000 : 10'000;
     constexpr double kFrame = 0.05;
@@ -201,7 +169,7 @@ void momentum(bool brief, Values& values) {
     values.add(absolute("energy gained, share", 0, 0,
                         std::max(0.0, (report.kinetic + report.elastic) / before.kinetic - 1),
                         1e-3));
-    const double parting = apart.normalized().dot(velocity(b) - velocity(a));
+    const double parting = apart.normalized().dot(b.mean_velocity() - a.mean_velocity());
     values.add(absolute("they met (1: they part)", 0, 1, parting < 0, 0.5));
 }
 
@@ -218,7 +186,7 @@ void vibration(bool brief, Values& values) {
         material.density = 1000;
         material.damping_ratio = 0;
         const double spacing = kLength / along;
-        Aggregate bar = block({kLength, spacing, spacing}, spacing, material);
+        Aggregate bar = block_of({kLength, spacing, spacing}, spacing, material);
         const auto shape = [](double x) { return std::sin(kPi * x / kLength); };
         for (std::size_t p = 0; p < bar.particle_count(); ++p) {
             bar.particle_velocity.set(

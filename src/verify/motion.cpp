@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "geometry/make_shape.h"
-#include "mold/mold.h"
 #include "verify/case.h"
 #include "verify/stand.h"
 
@@ -30,15 +28,6 @@ struct Free {
         apparatus.tool.push_back({"plate", BoxShape{{size, 0.2 * size, size}, 0}, friction});
         drive.world_from_tool.push_back({Quat::Identity(), {0, -0.1 * size, 0}});
     }
-    Vec3 centre() const {
-        Vec3 sum = Vec3::Zero();
-        double mass = 0;
-        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-            mass += matter.particle_mass[p];
-            sum += matter.particle_mass[p] * matter.particle_position.at(p);
-        }
-        return sum / mass;
-    }
     void move_by(const Vec3& way) {
         for (std::size_t p = 0; p < matter.particle_count(); ++p) {
             matter.particle_position.add(p, way);
@@ -53,15 +42,7 @@ Free cube_on_plate(double friction, const Vec3& gravity) {
     material.young_modulus = 1e6;
     material.density = 1000;
     material.damping_ratio = 0.3;
-    MoldSettings settings;
-    settings.spacing = kSide / 3;
-    Free cube(mold(make_shape("bar", {{"length", kSide},
-                                      {"height", kSide},
-                                      {"width", kSide},
-                                      {"rounding", 0},
-                                      {"division", 6}})
-                       .mesh,
-                   material, settings));
+    Free cube(block_of(Vec3::Constant(kSide), kSide / 3, material));
     cube.settings.gravity = gravity;
     cube.add_plate(100 * kSide, friction);
     cube.move_by({0, 0.5 * kSide, 0});
@@ -77,16 +58,16 @@ struct Slid {
 Slid slide_on_slope(double degrees, double friction, double seconds) {
     const double slope = degrees * kPi / 180;
     Free cube = cube_on_plate(friction, kGravity * Vec3(std::sin(slope), -std::cos(slope), 0));
-    const double start = cube.centre().x();
+    const double start = cube.matter.centre().x();
     Simulation simulation(cube.matter, cube.apparatus, cube.settings);
     Drive light = cube.drive, full = cube.drive, end = cube.drive;
     light.gravity_strength = 0;
     full.time = kRise;
     end.time = kRise + seconds;
     simulation.advance(light, full);
-    const double risen = cube.centre().x();
+    const double risen = cube.matter.centre().x();
     simulation.advance(full, end);
-    return {cube.centre().x() - start, cube.centre().x() - risen};
+    return {cube.matter.centre().x() - start, cube.matter.centre().x() - risen};
 }
 
 void incline(bool brief, Values& values) {
@@ -119,7 +100,7 @@ void slide_to_rest(bool, Values& values) {
     for (std::size_t p = 0; p < cube.matter.particle_count(); ++p) {
         cube.matter.particle_velocity.set(p, {kSpeed, 0, 0});
     }
-    const double start = cube.centre().x();
+    const double start = cube.matter.centre().x();
     Simulation simulation(cube.matter, cube.apparatus, cube.settings);
     at = cube.drive;
     const auto go_to = [&](double time) {
@@ -127,7 +108,7 @@ void slide_to_rest(bool, Values& values) {
         to.time = time;
         simulation.advance(at, to);
         at = to;
-        return cube.centre().x() - start;
+        return cube.matter.centre().x() - start;
     };
     const double stop = kSpeed / kSlowing;
     values.add(relative("way after half the time [m]", kAcross, 0.375 * kSpeed * stop,
@@ -146,15 +127,7 @@ double mode_frequency(int across, int mode, int swings) {
     material.poisson_ratio = 0.3;
     material.density = kDensity;
     material.damping_ratio = 0;
-    MoldSettings settings;
-    settings.spacing = kSide / across;
-    Free bar(mold(make_shape("bar", {{"length", kLength},
-                                     {"height", kSide},
-                                     {"width", kSide},
-                                     {"rounding", 0},
-                                     {"division", 10}})
-                      .mesh,
-                  material, settings));
+    Free bar(block_of({kLength, kSide, kSide}, kSide / across, material));
     Grip clamp;
     clamp.name = "clamp";
     clamp.point = end_face(bar.matter, -Vec3::UnitX());

@@ -50,6 +50,18 @@ Aggregate unit_mold(const TriMesh& mesh, int across, const Material& material) {
     return mold(mesh, material, settings);
 }
 
+Aggregate block_of(const Vec3& size, double spacing, const Material& material) {
+    MoldSettings settings;
+    settings.spacing = spacing;
+    return mold(make_shape("bar", {{"length", size.x()},
+                                   {"height", size.y()},
+                                   {"width", size.z()},
+                                   {"rounding", 0},
+                                   {"division", std::round(size.x() / spacing)}})
+                    .mesh,
+                material, settings);
+}
+
 Aggregate unit_bar(double length, int across, Material material) {
     return unit_mold(bar_mesh(length, 1), across, material);
 }

@@ -15,6 +15,8 @@ namespace swage {
 
 // A bar along x, centred on the origin, that whole cells fill: sides 1, Young's modulus 1.
 Aggregate unit_bar(double length, int across, Material material);
+// A block along the axes, centred on the origin, that whole cells fill.
+Aggregate block_of(const Vec3& size, double spacing, const Material& material);
 // Any mesh with cells of 1 / across.
 Aggregate unit_mold(const TriMesh& mesh, int across, const Material& material);
 TriMesh bar_mesh(double length, double side);

@@ -24,22 +24,6 @@ inline Drive still(double time) {
     return d;
 }
 
-inline Vec3 middle(const Aggregate& m) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        sum += m.particle_mass[p] * m.particle_position.at(p);
-    }
-    return sum / m.mass();
-}
-
-inline Vec3 mean_speed(const Aggregate& m) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        sum += m.particle_mass[p] * m.particle_velocity.at(p);
-    }
-    return sum / m.mass();
-}
-
 // A force along x on all points of the block's lower side.
 inline Load push_below(const Aggregate& block, double force) {
     Load push;

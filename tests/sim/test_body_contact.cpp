@@ -216,7 +216,7 @@ TEST_CASE("a tumbling collision keeps momentum and angular momentum") {
         CHECK(r.kinetic + r.elastic < 1.001 * energy);
     }
     const Momenta after = momenta({&a, &b});
-    CHECK((mean_speed(a) - Vec3(0, 2, 0)).norm() > 0.5);
+    CHECK((a.mean_velocity() - Vec3(0, 2, 0)).norm() > 0.5);
     CHECK(r.kinetic + r.elastic < 0.95 * energy);
     CHECK((after.linear - before.linear).norm() < 1e-9 * before.size);
     CHECK((after.angular - before.angular).norm() < 1e-9 * before.turn);
@@ -266,9 +266,9 @@ TEST_CASE("bodies that collide part, and neither passes through the other") {
         double nearest = 1;
         for (int f = 0; f < 60; ++f) {
             simulation.advance(still(0.002 * f), still(0.002 * (f + 1)));
-            nearest = std::min(nearest, middle(b).y() - middle(a).y());
+            nearest = std::min(nearest, b.centre().y() - a.centre().y());
         }
-        const double parting = mean_speed(b).y() - mean_speed(a).y();
+        const double parting = b.mean_velocity().y() - a.mean_velocity().y();
         INFO("e " << e << ", parting " << parting << ", nearest " << nearest);
         CHECK(nearest > 0.24);
         CHECK(parting > 0);
@@ -331,7 +331,7 @@ TEST_CASE("steps that energy chooses let bodies meet as explicit ones do") {
         for (int n = 0; n < 6; ++n) {
             met.last = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
         }
-        met.a = mean_speed(a), met.b = mean_speed(b);
+        met.a = a.mean_velocity(), met.b = b.mean_velocity();
         return met;
     };
     const Met fixed = collide(Solver::explicit_steps), chosen = collide(Solver::energy_stepped);
@@ -395,19 +395,19 @@ TEST_CASE("a block on another body stays below static friction and slides above"
         Simulation simulation({&floor.plate, &floor.block}, floor.apparatus, floor.settings);
         simulation.advance(drive(0), drive(0.3));
         simulation.advance(drive(0.3), drive(0.4));
-        const double rest = middle(floor.block).x();
+        const double rest = floor.block.centre().x();
         simulation.advance(drive(0.4), drive(0.7));
         simulation.advance(drive(0.7), drive(0.8));
-        const double v = mean_speed(floor.block).x();
+        const double v = floor.block.mean_velocity().x();
         simulation.advance(drive(0.8), drive(0.9));
-        const double gained = (mean_speed(floor.block).x() - v) / 0.1;
-        INFO("push " << share << ", from " << rest << " to " << middle(floor.block).x()
+        const double gained = (floor.block.mean_velocity().x() - v) / 0.1;
+        INFO("push " << share << ", from " << rest << " to " << floor.block.centre().x()
                      << ", gained " << gained);
         if (slides) {
             CHECK(gained == Approx(g * (share - 0.3)).epsilon(0.01));
         } else {
-            CHECK(std::abs(middle(floor.block).x() - rest) < 1e-3);
-            CHECK(std::abs(mean_speed(floor.block).x()) < 2e-3);
+            CHECK(std::abs(floor.block.centre().x() - rest) < 1e-3);
+            CHECK(std::abs(floor.block.mean_velocity().x()) < 2e-3);
         }
     }
 }
@@ -424,11 +424,11 @@ TEST_CASE("sticking lumps hold below their tension and part above it") {
         for (int f = 0; f < 12; ++f) {
             simulation.advance(floor.drive(0.05 * f), floor.drive(0.05 * (f + 1)));
         }
-        INFO("tension " << tension << ": " << middle(floor.block).y());
+        INFO("tension " << tension << ": " << floor.block.centre().y());
         if (holds) {
-            CHECK(middle(floor.block).y() == Approx(0.1).margin(0.01));
+            CHECK(floor.block.centre().y() == Approx(0.1).margin(0.01));
         } else {
-            CHECK(middle(floor.block).y() > 0.2);
+            CHECK(floor.block.centre().y() > 0.2);
         }
     }
 }
@@ -471,7 +471,7 @@ TEST_CASE("contact gives equal bytes at any number of threads and width of vecto
         const std::uint64_t hash = state_hash(a) ^ (state_hash(b) << 1);
         if (first == 0) first = hash;
         CHECK(hash == first);
-        CHECK(mean_speed(a).norm() > 0.01);
+        CHECK(a.mean_velocity().norm() > 0.01);
     }
     set_thread_count(0);
     limit_vector_width(0);

@@ -89,7 +89,7 @@ TEST_CASE("what has come to rest sleeps where it would have stayed, and its book
     CHECK(sleeps.last.kinetic == 0);
     CHECK(heaviest_remainder(sleeps.last) == Approx(before).margin(1e-9));
     for (int b = 0; b < 2; ++b) {
-        CHECK((middle(sleeps.body[b]) - middle(wakes.body[b])).norm() < 1e-3 * 0.1);
+        CHECK((sleeps.body[b].centre() - wakes.body[b].centre()).norm() < 1e-3 * 0.1);
     }
     for (const auto& [one, other] : {std::pair(sleeps.last.elastic, wakes.last.elastic),
                                      std::pair(sleeps.last.contact, wakes.last.contact),
@@ -112,8 +112,8 @@ TEST_CASE("a pebble that lands wakes what lies there, as if it had never slept")
     const auto sleeps = run(true), wakes = run(false);
     CHECK(sleeps->last.asleep == 0);
     CHECK(sleeps->last.kinetic > 1);
-    CHECK((middle(sleeps->body[0]) - middle(wakes->body[0])).norm() < 0.01 * 0.1);
-    CHECK((middle(sleeps->body[1]) - middle(wakes->body[1])).norm() < 0.01 * 0.1);
+    CHECK((sleeps->body[0].centre() - wakes->body[0].centre()).norm() < 0.01 * 0.1);
+    CHECK((sleeps->body[1].centre() - wakes->body[1].centre()).norm() < 0.01 * 0.1);
     CHECK(heaviest_remainder(sleeps->last) ==
           Approx(heaviest_remainder(wakes->last)).margin(1e-4 * 18 * 9.81 * 15));
 }
@@ -121,19 +121,19 @@ TEST_CASE("a pebble that lands wakes what lies there, as if it had never slept")
 TEST_CASE("a sleeper wakes when its floor moves or its weight changes") {
     Ground ground({0.01});
     REQUIRE(ground.settle().asleep == 1);
-    const double y = middle(ground.body[0]).y();
+    const double y = ground.body[0].centre().y();
     ground.go(0.1, Vec3(0, 0.05, 0));
     CHECK(ground.last.asleep == 0);
-    CHECK(middle(ground.body[0]).y() == Approx(y + 0.05).margin(0.02));
+    CHECK(ground.body[0].centre().y() == Approx(y + 0.05).margin(0.02));
     REQUIRE(ground.settle().asleep == 1);
-    CHECK(middle(ground.body[0]).y() == Approx(y + 0.05).margin(1e-4));
+    CHECK(ground.body[0].centre().y() == Approx(y + 0.05).margin(1e-4));
 
     Drive lighter = ground.drive();
     const Drive now = lighter;
     lighter.time += 0.1;
     lighter.gravity_strength = 0;
     CHECK(ground.simulation->advance(now, lighter).asleep == 0);
-    CHECK(middle(ground.body[0]).y() > y + 0.05);
+    CHECK(ground.body[0].centre().y() > y + 0.05);
 }
 
 TEST_CASE("what swings, slides or stands at the top of its way does not sleep") {
@@ -152,9 +152,9 @@ TEST_CASE("what swings, slides or stands at the top of its way does not sleep") 
         Ground slow({0}, true, ice);
         slow.apparatus.tool[0].friction = 0;
         for (double& v : slow.body[0].particle_velocity.x) v = 0.002;
-        const double from = middle(slow.body[0]).x();
+        const double from = slow.body[0].centre().x();
         for (int n = 0; n < 100; ++n) CHECK(slow.go(0.05).asleep == 0);
-        CHECK(middle(slow.body[0]).x() - from == Approx(0.01).epsilon(0.02));
+        CHECK(slow.body[0].centre().x() - from == Approx(0.01).epsilon(0.02));
     }
     SECTION("without gravity") {
         Ground ground({1});

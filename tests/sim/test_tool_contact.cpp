@@ -58,9 +58,9 @@ TEST_CASE("a block comes back from a floor with the asked share of its speed") {
         Simulation simulation(floor.block, floor.apparatus, floor.settings);
         const FrameReport r = simulation.advance(floor.drive(0), floor.drive(0.6));
         const double energy = 0.5 * floor.block.mass();
-        INFO(name_of(solver) << ", restitution " << e << ": " << mean_speed(floor.block).y());
+        INFO(name_of(solver) << ", restitution " << e << ": " << floor.block.mean_velocity().y());
         const bool is_explicit = solver == Solver::explicit_steps;
-        CHECK(mean_speed(floor.block).y() == Approx(e).epsilon(is_explicit ? 0.03 : 0.06));
+        CHECK(floor.block.mean_velocity().y() == Approx(e).epsilon(is_explicit ? 0.03 : 0.06));
         CHECK(r.damped / energy == Approx(1 - e * e).margin(is_explicit ? 0.02 : 0.04));
         CHECK(r.contact == 0);
         if (is_explicit) CHECK(std::abs(r.remainder) < 1e-3 * energy);
@@ -140,19 +140,19 @@ TEST_CASE("a block on a floor holds up to static friction and slides at the kine
             Simulation simulation(floor.block, floor.apparatus, floor.settings);
             simulation.advance(drive(0), drive(0.3));
             simulation.advance(drive(0.3), drive(0.4));
-            const double rest = middle(floor.block).x();
+            const double rest = floor.block.centre().x();
             simulation.advance(drive(0.4), drive(0.7));
             simulation.advance(drive(0.7), drive(1.0));
-            const double v = mean_speed(floor.block).x();
+            const double v = floor.block.mean_velocity().x();
             const FrameReport r = simulation.advance(drive(1.0), drive(1.2));
-            const double gained = (mean_speed(floor.block).x() - v) / 0.2;
+            const double gained = (floor.block.mean_velocity().x() - v) / 0.2;
             INFO("leans " << leans << ", " << share << " of static friction: gone "
-                          << middle(floor.block).x() - rest << ", acceleration " << gained);
+                          << floor.block.centre().x() - rest << ", acceleration " << gained);
             if (share > 1) {
                 CHECK(gained == Approx(along - kKinetic * down).epsilon(0.01));
             } else {
-                CHECK(std::abs(middle(floor.block).x() - rest) < 5e-4);
-                CHECK(std::abs(mean_speed(floor.block).x()) < 1e-3);
+                CHECK(std::abs(floor.block.centre().x() - rest) < 5e-4);
+                CHECK(std::abs(floor.block.mean_velocity().x()) < 1e-3);
             }
             CHECK(r.load[0].contacts > 0);
         }
@@ -182,10 +182,10 @@ TEST_CASE("a tool's own friction stands for the material's, static friction in i
         simulation.advance(drive(0.3), drive(0.4));
         simulation.advance(drive(0.4), drive(0.7));
         simulation.advance(drive(0.7), drive(1.0));
-        const double v = mean_speed(floor.block).x();
+        const double v = floor.block.mean_velocity().x();
         simulation.advance(drive(1.0), drive(1.2));
         INFO("friction " << friction << ", pulled by " << pull);
-        CHECK((mean_speed(floor.block).x() - v) / 0.2 ==
+        CHECK((floor.block.mean_velocity().x() - v) / 0.2 ==
               Approx(slides > 0 ? g - friction * kG : 0).epsilon(0.01).margin(0.005));
     }
 }
@@ -205,8 +205,8 @@ TEST_CASE("a block hangs from a tool that it sticks to, up to its tension") {
         for (int f = 0; f < 12; ++f) {
             r = simulation.advance(floor.drive(0.05 * f), floor.drive(0.05 * (f + 1)));
         }
-        INFO("tension " << tension << ": at " << middle(floor.block).y());
-        CHECK((middle(floor.block).y() < 0.11) == holds);
+        INFO("tension " << tension << ": at " << floor.block.centre().y());
+        CHECK((floor.block.centre().y() < 0.11) == holds);
         if (holds) {
             CHECK(r.load[0].force.y() == Approx(-floor.block.mass() * kG).epsilon(0.01));
         } else {
@@ -240,7 +240,7 @@ TEST_CASE("a belt drags a block along: its work is motion and friction") {
         const double t = 0.02 * (f + 1);
         const double expected = std::min(1.0, 0.3 * kG * t);
         INFO("after " << t << " s");
-        CHECK(mean_speed(floor.block).x() == Approx(expected).epsilon(0.03));
+        CHECK(floor.block.mean_velocity().x() == Approx(expected).epsilon(0.03));
     }
     const double energy = 0.5 * floor.block.mass();
     CHECK(r.kinetic == Approx(energy).epsilon(0.01));
@@ -311,7 +311,7 @@ TEST_CASE(
         const Apparatus nothing;
         Simulation simulation({&low, &high}, nothing, settings);
         simulation.advance(still(0), still(0.4));
-        const double back = mean_speed(high).y() - mean_speed(low).y();
+        const double back = high.mean_velocity().y() - low.mean_velocity().y();
         INFO("contact_stiffness " << stiffness << ": " << back);
         CHECK(back > 0);
         CHECK(back < share);
