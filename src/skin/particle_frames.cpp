@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  // particles
 
-Vec3 displacement(const Aggregate& matter, ParticleId p) {
-    return matter.particle_position.at(p) - matter.particle_reference.at(p);
+Vec3 displacement(const Aggregate& matter, const FrameStencil& stencil, ParticleId p) {
+    return matter.particle_position.at(p) - stencil.reference.at(p);
 }
 
 // Which of a particle's neighbours are still connected to it; -1 elsewhere.
@@ -83,13 +83,13 @@ bool solve_fit(const Fit& fit, Mat3& gradient) {
 }
 
 Mat3 fitted_gradient(const Aggregate& matter, const FrameStencil& stencil, ParticleId p) {
-    const Vec3 place = matter.particle_reference.at(p), moved = displacement(matter, p);
+    const Vec3 place = stencil.reference.at(p), moved = displacement(matter, stencil, p);
     const double a = matter.lattice.spacing;
     Fit fit;
     const auto add = [&](ParticleId n) {
-        const Vec3 way = (matter.particle_reference.at(n) - place) / a;
+        const Vec3 way = (stencil.reference.at(n) - place) / a;
         fit.spread += way * way.transpose();
-        fit.change += (displacement(matter, n) - moved) / a * way.transpose();
+        fit.change += (displacement(matter, stencil, n) - moved) / a * way.transpose();
     };
     Mat3 gradient;
     for_each_connected(matter, stencil, p, add);
@@ -103,24 +103,26 @@ Mat3 fitted_gradient(const Aggregate& matter, const FrameStencil& stencil, Parti
 ParticleFrame particle_frame(const Aggregate& matter, const FrameStencil& stencil, ParticleId p) {
     const std::array<ParticleId, 12> axis = connected_on_axes(matter, stencil, p);
     ParticleFrame frame;
-    const Vec3 u = displacement(matter, p);
+    const Vec3 u = displacement(matter, stencil, p);
     frame.tail<3>() = u;
     for (int d = 0; d < 3; ++d) {
         const ParticleId* const line = axis.data() + 4 * d;
-        const auto at = [&](ParticleId n) { return matter.particle_reference.at(n)[d]; };
+        const auto at = [&](ParticleId n) { return stencil.reference.at(n)[d]; };
         Vec3 slope;
         if (line[1] >= 0 && line[2] >= 0) {
-            slope = (displacement(matter, line[2]) - displacement(matter, line[1])) /
-                    (at(line[2]) - at(line[1]));
+            slope =
+                (displacement(matter, stencil, line[2]) - displacement(matter, stencil, line[1])) /
+                (at(line[2]) - at(line[1]));
         } else if (line[1] < 0 && line[2] < 0) {
             frame.head<9>() = fitted_gradient(matter, stencil, p).reshaped();
             return frame;
         } else {
             const ParticleId one = line[2] >= 0 ? line[2] : line[1];
             const ParticleId two = line[2] >= 0 ? line[3] : line[0];
-            const Vec3 first = displacement(matter, one);
+            const Vec3 first = displacement(matter, stencil, one);
             if (two >= 0) {
-                slope = (4 * first - 3 * u - displacement(matter, two)) / (at(two) - at(p));
+                slope =
+                    (4 * first - 3 * u - displacement(matter, stencil, two)) / (at(two) - at(p));
             } else {
                 slope = (first - u) / (at(one) - at(p));
             }
@@ -135,6 +137,7 @@ ParticleFrame particle_frame(const Aggregate& matter, const FrameStencil& stenci
 FrameStencil make_frame_stencil(const Aggregate& matter) {
     const std::size_t count = matter.particle_count();
     FrameStencil stencil;
+    stencil.reference = matter.particle_reference.all();
     std::array<ParticleId, 12> none;
     none.fill(-1);
     stencil.axis.assign(count, none);

@@ -13,8 +13,10 @@ namespace swage {
 // rest, so that what follows it comes out to the bit.
 using ParticleFrame = Eigen::Matrix<double, 12, 1>;
 
-// The lattice neighbours of every particle. Derived from the lattice alone; -1 for none.
+// The lattice neighbours of every particle, -1 for none, and where it was at molding. Derived from
+// the lattice alone.
 struct FrameStencil {
+    Vec3Array reference;
     // Along axis d: [4d] two below, [4d + 1] one below, [4d + 2] one above, [4d + 3] two above.
     std::vector<std::array<ParticleId, 12>> axis;
     // Face diagonals d = 3 ... 8: [d - 3] the upper end, [d + 3] the lower end.
