@@ -160,6 +160,8 @@ double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const
         for (std::size_t r = slab_run_[s]; r < slab_run_[s + 1]; ++r) {
             task.run = &all[r];
             task.batch = batch;
+            // What other slabs' cells have flowed is theirs to change meanwhile.
+            task.history.cells = all[r].first + all[r].count;
             batch += batches_of(all[r]);
             if (of != nullptr) {
                 if (next == (*of)[s].size()) break;

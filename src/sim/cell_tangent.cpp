@@ -7,26 +7,23 @@
 #include "base/parallel.h"
 #include "laws/cell_forces.h"
 #include "laws/dual.h"
-#include "sim/cell_batch.h"
+#include "sim/cell_history.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
 
-constexpr int kStrains = 6, kModes = 12;
-
 // Where the arrays of a run begin.
 struct RunView {
-    CornerRows<const double> x;
-    int room;           // particles from the run's last row on
-    int count, cells;   // of the run; from its first on
-    const char* whole;  // of each batch of kLanes cells
-    const float* fill;  // these go on behind the last cell
-    const float* at[3];
-    const float* strain[kStrains];
-    const float* modes[kModes];
-    const float* alpha;  // null: nothing has flowed
+    CornerRows<const double> x{};
+    int room = 0;   // particles from the run's last row on
+    int count = 0;  // cells of the run
+    CellId first = 0;
+    const char* whole = nullptr;  // of each batch of kLanes cells
+    const float* fill = nullptr;  // these go on behind the last cell
+    const float* at[3] = {};
+    HistoryRows history;  // of all cells
 };
 
 template <typename V>
@@ -43,30 +40,17 @@ SWAGE_INLINE Triple<V> minus_slope(const Triple<Dual<V>>& a) {
 }
 
 template <typename V>
-SWAGE_INLINE CellHistory<Dual<V>> load_history(const RunView& run, int begin) {
-    constexpr int kCount = kStrains + kModes + 1;
-    float copy[kCount][kLanes];
-    const float* from[kCount];
-    for (int n = 0; n < kStrains; ++n) from[n] = run.strain[n] + begin;
-    for (int n = 0; n < kModes; ++n) from[kStrains + n] = run.modes[n] + begin;
-    from[kCount - 1] = run.alpha + begin;
-    if (begin + kWidthOf < V >> run.cells) [[unlikely]] {
-        for (int n = 0; n < kCount; ++n) {
-            for (int l = 0; l < kWidthOf<V>; ++l) {
-                copy[n][l] = begin + l < run.cells ? from[n][l] : 0.0f;
-            }
-            from[n] = copy[n];
-        }
-    }
-    const auto one = [&](int n) __attribute__((always_inline)) {
-        return constant(load<V>(from[n]));
-    };
-    const auto triple = [&](int n) __attribute__((always_inline)) {
-        return Triple<Dual<V>>{one(n), one(n + 1), one(n + 2)};
-    };
-    return {{one(0), one(1), one(2), one(3), one(4), one(5)},
-            {triple(6), triple(9), triple(12), triple(15)},
-            one(18)};
+SWAGE_INLINE Triple<Dual<V>> constant(const Triple<V>& v) {
+    return {constant(v.x), constant(v.y), constant(v.z)};
+}
+template <typename V>
+SWAGE_INLINE CellHistory<Dual<V>> history_of(const RunView& run, int begin) {
+    const CellHistory<V> h = load_history<V>(run.history, run.first + begin);
+    return {
+        {constant(h.strain.xx), constant(h.strain.yy), constant(h.strain.zz), constant(h.strain.xy),
+         constant(h.strain.yz), constant(h.strain.zx)},
+        {constant(h.modes.xy), constant(h.modes.yz), constant(h.modes.zx), constant(h.modes.xyz)},
+        constant(h.alpha)};
 }
 
 // Minus the change of the cells' forces on their corners' sums.
@@ -79,10 +63,10 @@ SWAGE_INLINE CornerSums<V> tangent_forces(const CellConstants& constants, const 
                              pair(x.xy, way.xy),  pair(x.yz, way.yz), pair(x.zx, way.zx),
                              pair(x.xyz, way.xyz)};
     CornerSums<N> r;
-    const bool flowed = kKind == CellKind::yielding && run.alpha != nullptr;
+    const bool flowed = kKind == CellKind::yielding && run.history.alpha != nullptr;
     if (run.whole[begin / kLanes]) {
         const CellShare<N> all{};
-        r = flowed ? cell_forces<kKind, false, true>(constants, c, all, load_history<V>(run, begin),
+        r = flowed ? cell_forces<kKind, false, true>(constants, c, all, history_of<V>(run, begin),
                                                      turning)
                    : cell_forces<kKind, false, false>(constants, c, all, CellHistory<N>{}, turning);
     } else {
@@ -90,7 +74,7 @@ SWAGE_INLINE CornerSums<V> tangent_forces(const CellConstants& constants, const 
             constant(load<V>(run.fill + begin)),
             {constant(load<V>(run.at[0] + begin)), constant(load<V>(run.at[1] + begin)),
              constant(load<V>(run.at[2] + begin))}};
-        r = flowed ? cell_forces<kKind, true, true>(constants, c, part, load_history<V>(run, begin),
+        r = flowed ? cell_forces<kKind, true, true>(constants, c, part, history_of<V>(run, begin),
                                                     turning)
                    : cell_forces<kKind, true, false>(constants, c, part, CellHistory<N>{}, turning);
     }
@@ -304,21 +288,14 @@ CornerRows<const double> rows_of(const Vec3Array& v, const CellRun& run) {
 
 RunView view_of(const Aggregate& matter, const CellRun& run, const std::vector<float>& fill,
                 const std::array<std::vector<float>, 3>& at, const char* whole) {
-    RunView view{};
+    RunView view{.history = HistoryRows(matter)};
     view.x = rows_of(matter.particle_position, run);
     view.room = static_cast<int>(matter.particle_count()) - run.row[3];
     view.count = run.count;
-    view.cells = static_cast<int>(matter.cell_fill.size()) - run.first;
+    view.first = run.first;
     view.whole = whole;
     view.fill = fill.data() + run.first;
     for (int i = 0; i < 3; ++i) view.at[i] = at[i].data() + run.first;
-    if (matter.cell_hardening.empty()) return view;
-    for (int s = 0; s < kStrains; ++s) {
-        view.strain[s] = matter.cell_plastic_strain[s].data() + run.first;
-    }
-    for (int s = 0; s < kModes; ++s)
-        view.modes[s] = matter.cell_plastic_modes[s].data() + run.first;
-    view.alpha = matter.cell_hardening.data() + run.first;
     return view;
 }
 
