@@ -172,7 +172,8 @@ struct EnergySteps::Try {
     std::vector<Stored> after{};        // by place in the group
     std::vector<BodyOutcome> so_far{};  // before it
     std::vector<Vec3Array> earlier{};   // Mover::before
-    std::vector<Vec3Array> force{};
+    std::vector<Vec3Array> force{};     // there, and gravity [m/s2]
+    std::vector<Vec3> gravity{};
     std::shared_ptr<const BodyContact::State> contact{};
     double done = 0, turned = 0;  // work in it, and that with every sign made positive [J]
     double gain = 0, astray = 0;  // energy less work, and less what the books say is lost [J]
@@ -189,6 +190,7 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
         t.so_far.push_back(outcome.body[b]);
         t.earlier.push_back(m.before);
         t.force.push_back(m.body.force());
+        t.gravity.push_back(m.body.gravity());
         m.body.save(m.state);
         m.body.begin_step(begin);
         m.body.begin_block(outcome.body[b]);
@@ -277,9 +279,7 @@ void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutco
         outcome.body[group[n]] = t.so_far[n];
         m.before = std::move(t.earlier[n]);
         m.body.restore(m.state);
-        m.body.begin_step(t.begin);
-        m.body.find_forces(t.begin, 0, outcome.body[group[n]]);
-        m.body.force() = std::move(t.force[n]);
+        m.body.restore_forces(std::move(t.force[n]), t.gravity[n]);
         m.step = 0.5 * t.step;
         m.held = true;
     }

@@ -87,6 +87,11 @@ class MovingBody {
     const Aggregate& matter() const { return matter_; }
     Vec3Array& force() { return force_; }
     const Vec3& gravity() const { return gravity_; }  // [m/s2]
+    // As they were found at the state that restore() went back to.
+    void restore_forces(Vec3Array force, const Vec3& gravity) {
+        force_ = std::move(force);
+        gravity_ = gravity;
+    }
     const LoadSet& pushes() const { return pushes_; }
     const std::vector<LoadSum>& load() const { return load_; }  // by tool, then grip
     bool drag_is_held() const { return drag_.is_held(); }

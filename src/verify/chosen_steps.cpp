@@ -63,7 +63,7 @@ Chosen by_energy(double stiffness, double damping) {
     steps.advance(drop.at(0), drop.at(Drop::kTime));
     double sum = 0;
     for (const EnergySteps::Tried& one : chosen.tried) {
-        chosen.forces += one.kept ? 1 : 2;  // once more where it went back to
+        ++chosen.forces;
         if (!one.kept) continue;
         ++chosen.kept;
         sum += one.astray;
