@@ -37,9 +37,24 @@ double stage_duration(const StageSpec& stage, const SceneSpec& scene) {
 }
 
 // The stable step of a full lattice: neither slivers nor damping.
-double lattice_steps_per_second(const Material& material, double spacing, const SimSettings& sim) {
-    const double wave_speed = std::sqrt(material.young_modulus / material.density);
+double lattice_steps_per_second(const BodySpec& body, double spacing, const SimSettings& sim) {
+    double wave_speed = std::sqrt(body.material.young_modulus / body.material.density);
+    for (const InsetSpec& inset : body.inset) {
+        const Material& m = inset.material;
+        wave_speed = std::max(wave_speed, std::sqrt(m.young_modulus / m.density));
+    }
     return 2.5 * wave_speed / spacing / sim.step_safety;
+}
+
+double least_damping(const SceneSpec& scene) {
+    double least = 1;
+    for (const BodySpec& body : scene.body) {
+        least = std::min(least, body.material.damping_ratio);
+        for (const InsetSpec& inset : body.inset) {
+            least = std::min(least, inset.material.damping_ratio);
+        }
+    }
+    return least;
 }
 
 // Of the body with the shortest stable step.
@@ -50,8 +65,7 @@ double steps_per_second(const SceneSpec& scene, const RunCost& cost,
         most = std::max(most, explicit_steps_per_second(body, sim));
     if (matter.empty()) {
         for (std::size_t b = 0; b < scene.body.size(); ++b) {
-            most = std::max(most,
-                            lattice_steps_per_second(scene.body[b].material, cost.spacing[b], sim));
+            most = std::max(most, lattice_steps_per_second(scene.body[b], cost.spacing[b], sim));
         }
     }
     return most;
@@ -67,11 +81,10 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
         if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
             cost.steps += kIterationsPerFrame * stage.frames;
         } else {
-            const double shorter =
-                solver == Solver::energy_stepped ? kEnergyStepsPerStep
-                : solver == Solver::euler
-                    ? 1 / std::max(scene.work_piece().material.damping_ratio, 1e-3)
-                    : 1;
+            const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
+                                   : solver == Solver::euler
+                                       ? 1 / std::max(least_damping(scene), 1e-3)
+                                       : 1;
             cost.steps += shorter * stage_duration(stage, scene) *
                           steps_per_second(scene, cost, matter, stage.sim);
         }

@@ -44,8 +44,8 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
     if ((inset.from.array() >= inset.to.array()).any()) {
         table.mistake(has_to ? "to" : "from", "the box is empty: from must be less than to");
     }
-    for (const char* key : {"mechanics", "friction", "static_friction", "restitution", "stickiness",
-                            "damping_ratio"}) {
+    for (const char* key :
+         {"mechanics", "friction", "static_friction", "restitution", "stickiness"}) {
         if (table.find(key) == nullptr) continue;
         table.mistake(key, fmt::format("{} is the whole body's: say it in [material]", key));
     }
@@ -72,9 +72,9 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
                                               "would lose the inset: leave remold out",
                                               stage.name));
         }
-        if (stage.sim.solver != Solver::quasistatic) {
-            root.mistake("inset", fmt::format("stage \"{}\" moves by steps, whose damping knows "
-                                              "one material: use solver = \"quasistatic\"",
+        if (stage.sim.solver == Solver::implicit_steps) {
+            root.mistake("inset", fmt::format("stage \"{}\" moves by implicit steps, which know "
+                                              "one material in a body: use solver = \"explicit\"",
                                               stage.name));
         }
     }

@@ -10,11 +10,18 @@ namespace swage {
 namespace {
 
 // What a solver cannot do with the scene's matter, and what to do instead.
-void refuse(TableReader& table, const Material& material, Solver solver) {
-    if (solver == Solver::euler && material.damping_ratio == 0) {
-        table.mistake("solver",
-                      "solver = \"euler\" gains energy at any step where nothing damps: give "
-                      "[material] a damping_ratio, or use solver = \"explicit\"");
+void refuse(TableReader& table, const BodySpec& body, Solver solver) {
+    const Material& material = body.material;
+    const bool is_damped =
+        material.damping_ratio > 0 &&
+        std::all_of(body.inset.begin(), body.inset.end(),
+                    [](const InsetSpec& inset) { return inset.material.damping_ratio > 0; });
+    if (solver == Solver::euler && !is_damped) {
+        table.mistake(
+            "solver",
+            fmt::format("solver = \"euler\" gains energy at any step where nothing damps: "
+                        "give {} a damping_ratio, or use solver = \"explicit\"",
+                        material.damping_ratio > 0 ? "each [[inset]]" : "[material]"));
     }
     if (solver != Solver::implicit_steps) return;
     if (material.damping_ratio > 0) {
@@ -54,7 +61,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
                                   "which knows {}: leave it out, or use solver = \"explicit\"",
                                   several ? "one body" : "no velocity and no spin"));
     }
-    for (const BodySpec& body : scene.body) refuse(table, body.material, sim.solver);
+    for (const BodySpec& body : scene.body) refuse(table, body, sim.solver);
     if (sim.solver == Solver::implicit_steps && several) {
         table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
     }

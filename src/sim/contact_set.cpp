@@ -10,6 +10,7 @@
 #include "laws/contact.h"
 #include "sim/move_outcome.h"
 #include "sim/surface_forces.h"
+#include "sim/surface_modulus.h"
 
 namespace swage {
 
@@ -56,22 +57,13 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       settings_(settings),
       spacing_(matter.lattice.spacing),
       young_modulus_(matter.material.young_modulus),
+      point_modulus_(surface_moduli(matter, matter.surface)),
       law_(law_on_tools(matter.material)),
       holding_(matter.material.holding_friction()),
       ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
       stickiness_(matter.material.stickiness),
       tool_way_(apparatus.tool.size()),
-      motion_load_(apparatus.tool.size() + apparatus.grip.size()) {
-    if (matter.inset.empty()) return;
-    // A point is as stiff as the cell that carries it.
-    std::vector<CellId> cell(matter.particle_count(), -1);  // by its lowest corner
-    for (const CellRun& run : matter.lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) cell[run.row[0] + n] = run.first + n;
-    }
-    for (const auto& corner : matter.surface.corner) {
-        point_modulus_.push_back(matter.material_of(cell[corner[0]]).young_modulus);
-    }
-}
+      motion_load_(apparatus.tool.size() + apparatus.grip.size()) {}
 
 double ContactSet::point_stiffness(const Aggregate& matter, int point, double factor) const {
     const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[point];

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "sim/contact_search.h"
 #include "sim/surface_forces.h"
+#include "sim/surface_modulus.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -23,8 +24,8 @@ std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 ContactWay::ContactWay(ContactSide& from, ContactSide& onto, double stiffness)
     : from_(&from), onto_(&onto), scale_(stiffness) {
     const Material &m = from.matter().material, &n = onto.matter().material;
-    const double soft = m.young_modulus / from.matter().lattice.spacing,
-                 other = n.young_modulus / onto.matter().lattice.spacing;
+    const double soft = surface_modulus(from.matter()) / from.matter().lattice.spacing,
+                 other = surface_modulus(onto.matter()) / onto.matter().lattice.spacing;
     const double e = shared_restitution(m.restitution, soft, n.restitution, other);
     law_ = {.stiffness = 0,
             .restitution = e,
@@ -85,14 +86,15 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
 void ContactWay::set_stiffness(double step) {
     const Aggregate &a = from_->matter(), &b = onto_->matter();
     const SurfacePoints& points = from_->points();
-    const double one = a.material.young_modulus / a.lattice.spacing,
-                 other = b.material.young_modulus / b.lattice.spacing;
-    const double k = scale_ * one * other / (one + other);
+    const std::vector<double> modulus = surface_moduli(a, points);
+    const double other = surface_modulus(b) / b.lattice.spacing;
     const double hold = 0.5 * (a.material.stickiness + b.material.stickiness);
     stiffness_.clear();
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
-        stiffness_.push_back(k * points.area[p]);
+        const double one =
+            (modulus.empty() ? a.material.young_modulus : modulus[p]) / a.lattice.spacing;
+        stiffness_.push_back(scale_ * one * other / (one + other) * points.area[p]);
         hold_.push_back(hold * points.area[p]);
         if (!(step > 0)) continue;
         // Half of which acts where the other way does as much.

@@ -29,8 +29,12 @@ double turned_over(const std::vector<double>& before, const std::vector<double>&
 }
 
 double euler_step(const Aggregate& matter, const MovingBody& body) {
-    const double zeta = matter.material.damping_ratio;
-    return body.stable_step() * zeta / (std::sqrt(1 + zeta * zeta) - zeta);
+    double least = 1;
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        least = std::min(least, matter.material_at(m).damping_ratio);
+    }
+    const double zeta = largest_damping_ratio(matter);
+    return body.stable_step() * least / (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
 bool meets(Solver solver) { return solver == Solver::explicit_steps || solver == Solver::euler; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/internal_damping.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -10,51 +11,88 @@ namespace swage {
 // L^2.
 double slowest_frequency(const Aggregate& matter) {
     const Vec3 size = matter.lattice.spacing * matter.lattice.cell_count.cast<double>();
-    const double speed = std::sqrt(matter.material.young_modulus / matter.material.density);
+    const double density =
+        matter.inset.empty() ? matter.material.density : matter.mass() / matter.volume();
+    const double speed = std::sqrt(matter.mean_modulus() / density);
     return speed * size.minCoeff() / (size.maxCoeff() * size.maxCoeff());
 }
 
-InternalDamping::InternalDamping(const Aggregate& matter, double highest)
-    : branches_(
-          damping_branches(matter.material.damping_ratio, slowest_frequency(matter), highest)) {}
-
-BranchStep InternalDamping::step(const LatticeSweep& sweep, double duration) {
-    strain_.resize(sweep.branch_floats(branches_.count));
-    BranchStep step{.count = branches_.count, .step = duration, .strain = &strain_};
-    for (int j = 0; j < branches_.count; ++j) {
-        step.forward[j] =
-            duration > 0 ? damping_step(branches_, j, duration) : DampingStep{1.0, 0.0};
+double largest_damping_ratio(const Aggregate& matter) {
+    double largest = 0;
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        largest = std::max(largest, matter.material_at(m).damping_ratio);
     }
-    return step;
+    return largest;
 }
 
-double InternalDamping::stored_energy(const Aggregate& matter, const LatticeSweep& sweep) const {
-    if (strain_.empty()) return 0;
+InternalDamping::InternalDamping(const Aggregate& matter, double highest) {
+    for (const DampedMaterials& of : damped_materials(matter)) {
+        part_.push_back(
+            {damping_branches(of.damping_ratio, slowest_frequency(matter), highest), {}});
+    }
+}
+
+void InternalDamping::add_stiffness_bound(const Aggregate& matter,
+                                          std::vector<double>& bound) const {
+    const std::vector<DampedMaterials> damped = damped_materials(matter);
+    for (std::size_t n = 0; n < part_.size(); ++n) {
+        const std::vector<double> more = stiffness_bound(
+            matter, lattice_law(matter), ConnectionShares(matter, damped[n].counts));
+        for (std::size_t p = 0; p < bound.size(); ++p) {
+            bound[p] += (fast_stiffness(part_[n].branches) - 1) * more[p];
+        }
+    }
+}
+
+std::vector<BranchStep> InternalDamping::step(const Aggregate& matter, LatticeForces& lattice,
+                                              double duration) {
+    std::vector<BranchStep> steps;
+    for (std::size_t n = 0; n < part_.size(); ++n) {
+        auto& [branches, strain] = part_[n];
+        strain.resize(lattice.sweep(matter, n).branch_floats(branches.count));
+        BranchStep step{.count = branches.count, .step = duration, .strain = &strain};
+        for (int j = 0; j < branches.count; ++j) {
+            step.forward[j] =
+                duration > 0 ? damping_step(branches, j, duration) : DampingStep{1.0, 0.0};
+        }
+        steps.push_back(step);
+    }
+    return steps;
+}
+
+double InternalDamping::stored_energy(const Aggregate& matter, LatticeForces& lattice) const {
     const double k = lattice_law(matter).stiffness;
-    double scale[kForwardCount], share[kMostBranches];
+    double scale[kForwardCount];
     for (int d = 0; d < kForwardCount; ++d) {
         const double length = reference_length(matter.lattice, d);
         scale[d] = 0.5 * k * length * length;
     }
-    for (int j = 0; j < branches_.count; ++j) share[j] = 1 / branches_.share[j];
-    double sum[kLanes] = {};
-    sweep.for_each_branched(
-        strain_, branches_.count,
-        [&](ParticleId, int count, const float* strain, const float* weight) {
-            for (int d = 0; d < kForwardCount; ++d) {
-                double square[kLanes] = {};
-                for (int j = 0; j < branches_.count; ++j, strain += kLanes) {
-                    for (int l = 0; l < kLanes; ++l) {
-                        square[l] += share[j] * (double(strain[l]) * double(strain[l]));
+    double stored = 0;
+    for (std::size_t n = 0; n < part_.size(); ++n) {
+        const auto& [branches, strains] = part_[n];
+        if (strains.empty()) continue;
+        double share[kMostBranches];
+        for (int j = 0; j < branches.count; ++j) share[j] = 1 / branches.share[j];
+        double sum[kLanes] = {};
+        lattice.sweep(matter, n).for_each_branched(
+            strains, branches.count,
+            [&](ParticleId, int count, const float* strain, const float* weight) {
+                for (int d = 0; d < kForwardCount; ++d) {
+                    double square[kLanes] = {};
+                    for (int j = 0; j < branches.count; ++j, strain += kLanes) {
+                        for (int l = 0; l < kLanes; ++l) {
+                            square[l] += share[j] * (double(strain[l]) * double(strain[l]));
+                        }
+                    }
+                    for (int l = 0; l < count; ++l) {
+                        const double whole = weight == nullptr ? 1 : double(weight[d * kLanes + l]);
+                        sum[l] += scale[d] * whole * square[l];
                     }
                 }
-                for (int l = 0; l < count; ++l) {
-                    const double whole = weight == nullptr ? 1 : double(weight[d * kLanes + l]);
-                    sum[l] += scale[d] * whole * square[l];
-                }
-            }
-        });
-    return std::accumulate(sum, sum + kLanes, 0.0);
+            });
+        stored += std::accumulate(sum, sum + kLanes, 0.0);
+    }
+    return stored;
 }
 
 }  // namespace swage

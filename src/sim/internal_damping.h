@@ -1,37 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The lattice's internal damping in explicit steps: branches of springs and dashpots beside each
-// connection (laws/internal_damping.h), and what they remember.
+// connection (laws/internal_damping.h), and what they remember; a set of branches for each of the
+// damping ratios of a body's materials.
 #pragma once
 
 #include <vector>
 
 #include "laws/internal_damping.h"
 #include "matter/aggregate.h"
-#include "sim/lattice_sweep.h"
+#include "sim/lattice_forces.h"
 
 namespace swage {
 
 // The slowest swing to be damped as the material says: about that of the body held at one end.
 double slowest_frequency(const Aggregate& matter);  // [rad/s]
 
+double largest_damping_ratio(const Aggregate& matter);  // of its materials
+
 class InternalDamping {
   public:
     // `highest`: angular frequency of the lattice [rad/s].
     InternalDamping(const Aggregate& matter, double highest);
 
-    bool acts() const { return branches_.count > 0; }
-    const DampingBranches& branches() const { return branches_; }
+    bool acts() const { return !part_.empty(); }
+    // Adds what the branches are as stiff as at most, as if they were springs [N/m].
+    void add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const;
 
     // A step of this length [s], for LatticeForces::find(): 0 to leave the branches as they are.
-    // `sweep` is the one that takes it.
-    BranchStep step(const LatticeSweep& sweep, double duration);
+    // `lattice` is the one that takes it.
+    std::vector<BranchStep> step(const Aggregate& matter, LatticeForces& lattice, double duration);
 
-    double stored_energy(const Aggregate& matter, const LatticeSweep& sweep) const;  // [J]
+    double stored_energy(const Aggregate& matter, LatticeForces& lattice) const;  // [J]
 
   private:
-    DampingBranches branches_;
-    // Tension over stiffness and length, as LatticeSweep keeps it.
-    std::vector<float> strain_;
+    struct Part {  // of damped_materials()
+        DampingBranches branches;
+        // Tension over stiffness and length, as LatticeSweep keeps it.
+        std::vector<float> strain;
+    };
+    std::vector<Part> part_;
 };
 
 }  // namespace swage

@@ -29,9 +29,21 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
     loose_.connections_changed(matter);
     if (spring_flow_) spring_flow_->history_changed(matter);
     if (spring_sweep_) spring_sweep_->connections_changed(matter, loose_.softening_ends(matter));
+    for (LatticeSweep& own : branch_sweep_) {
+        own.connections_changed(matter, loose_.softening_ends(matter));
+    }
 }
 
-const LatticeSweep& LatticeForces::sweep(const Aggregate& matter) {
+const LatticeSweep& LatticeForces::sweep(const Aggregate& matter, std::size_t damped) {
+    if (!matter.inset.empty()) {
+        if (branch_sweep_.empty()) {
+            for (const DampedMaterials& of : damped_materials(matter)) {
+                branch_sweep_.emplace_back(matter, ConnectionShares(matter, of.counts));
+                branch_sweep_.back().connections_changed(matter, loose_.softening_ends(matter));
+            }
+        }
+        return branch_sweep_[damped];
+    }
     if (!spring_sweep_) {
         spring_sweep_ = std::make_unique<LatticeSweep>(matter);
         spring_sweep_->connections_changed(matter, loose_.softening_ends(matter));
@@ -39,11 +51,21 @@ const LatticeSweep& LatticeForces::sweep(const Aggregate& matter) {
     return *spring_sweep_;
 }
 
+double LatticeForces::add_branches(const Aggregate& matter, std::span<const BranchStep> branches,
+                                   Vec3Array& force) {
+    double work = 0;
+    for (std::size_t n = 0; n < branches.size(); ++n) {
+        LatticeSweep& own = branch_sweep_.empty() ? *spring_sweep_ : branch_sweep_[n];
+        work += own.add_branches(matter, spring_law_, branches[n], force);
+    }
+    return work;
+}
+
 int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
-                        const BranchStep* branches, double* given) {
+                        std::span<const BranchStep> branches, double* given) {
     if (cells_) {
         cells_->forces(matter, flow, force);
-        if (branches) *given += spring_sweep_->add_branches(matter, spring_law_, *branches, force);
+        if (!branches.empty()) *given += add_branches(matter, branches, force);
         loose_.add_forces(matter, flow, nullptr, force);
         return add_guard_forces(matter, cells_->crushed_runs(), force);
     }
@@ -51,11 +73,12 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
     const RestStrains* rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
     if (flows && !spring_flow_->flows() && matter.connection[0].plastic.empty()) rest = nullptr;
     const double limit = loose_.law().onset > 0 ? kNearOnset * loose_.law().onset : 1e100;
-    const bool apart = branches && spring_sweep_->branches_soften();
+    const bool apart = spring_sweep_->branches_soften() || !branch_sweep_.empty();
     double work =
-        spring_sweep_->forces(matter, spring_law_, rest, force, apart ? nullptr : branches, limit);
-    if (apart) work = spring_sweep_->add_branches(matter, spring_law_, *branches, force);
-    if (branches) *given += work;
+        spring_sweep_->forces(matter, spring_law_, rest, force,
+                              apart || branches.empty() ? nullptr : branches.data(), limit);
+    if (apart) work = add_branches(matter, branches, force);
+    if (!branches.empty()) *given += work;
     loose_.add_forces(matter, flow, rest, force);
     const int mirrored = add_guard_forces(matter, force);
     mirrored_ = mirrored > 0;
@@ -79,8 +102,9 @@ Committed LatticeForces::commit(Aggregate& matter, bool in_motion) {
     result.broken = broken.count;
     if (broken.count > 0) {
         connections_changed(matter);
-    } else if (spring_sweep_) {
-        spring_sweep_->soften(matter);
+    } else {
+        if (spring_sweep_) spring_sweep_->soften(matter);
+        for (LatticeSweep& own : branch_sweep_) own.soften(matter);
     }
     return result;
 }

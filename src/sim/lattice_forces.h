@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -36,12 +37,12 @@ class LatticeForces {
 
     // Forces on every particle at the present positions [N].
     // Returns the number of cells that are inside out: they are stiffer than stiffness_bound()
-    // says, by add_guard_stiffness(). With branches, their forces are among them, and `given` grows
-    // by the work done on them [J].
+    // says, by add_guard_stiffness(). With branches, those of each of damped_materials(), their
+    // forces are among them, and `given` grows by the work done on them [J].
     int find(const Aggregate& matter, Flow flow, Vec3Array& force,
-             const BranchStep* branches = nullptr, double* given = nullptr);
-    // Whose branches find() moves on.
-    const LatticeSweep& sweep(const Aggregate& matter);
+             std::span<const BranchStep> branches = {}, double* given = nullptr);
+    // Whose branches find() moves on, of these of damped_materials().
+    const LatticeSweep& sweep(const Aggregate& matter, std::size_t damped);
 
     // Whether any cell may have been below half of its volume then.
     bool saw_crushed() const;
@@ -69,12 +70,16 @@ class LatticeForces {
     std::vector<double> stiffness_bound(const Aggregate& matter) const;
 
   private:
+    double add_branches(const Aggregate& matter, std::span<const BranchStep> branches,
+                        Vec3Array& force);
+
     LatticeLaw spring_law_;
     std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act
+    std::vector<LatticeSweep> branch_sweep_;      // the branches' own, of several materials
     std::unique_ptr<CellFlow> spring_flow_;       // springs that yield
     std::unique_ptr<CellSweep> cells_;            // null: springs
-    bool mirrored_ = false;  // springs: some cells are inside out
-    LooseSprings loose_;     // of cells that are not sound
+    bool mirrored_ = false;                       // springs: some cells are inside out
+    LooseSprings loose_;                          // of cells that are not sound
 };
 
 }  // namespace swage

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "sim/spring_batch.h"
@@ -218,8 +219,10 @@ LatticeLaw lattice_law(const Aggregate& matter) {
     return {lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing)};
 }
 
-LatticeSweep::LatticeSweep(const Aggregate& matter)
-    : run_(spring_runs(matter.lattice)), slab_(spring_slabs(run_, matter.particle_count())) {
+LatticeSweep::LatticeSweep(const Aggregate& matter, ConnectionShares shares)
+    : shares_(std::move(shares)),
+      run_(spring_runs(matter.lattice)),
+      slab_(spring_slabs(run_, matter.particle_count())) {
     std::size_t batches = 0;
     for (const RowSlab& slab : slab_) {
         slab_batch_.push_back(batches);
@@ -232,7 +235,6 @@ LatticeSweep::LatticeSweep(const Aggregate& matter)
 }
 
 void LatticeSweep::connections_changed(const Aggregate& matter, const std::vector<char>& softens) {
-    const auto& all = matter.connection;
     weight_.clear();
     softens_.clear();
     std::int32_t* batch = batch_.data();
@@ -243,7 +245,7 @@ void LatticeSweep::connections_changed(const Aggregate& matter, const std::vecto
             float weight[kForwardCount][kLanes] = {};
             bool whole = count == kLanes;
             for (int d = 0; d < kForwardCount; ++d) {
-                all[d].weight.copy(first, count, weight[d]);
+                shares_.copy(matter, d, first, count, weight[d]);
                 for (int l = 0; l < kLanes && whole; ++l) whole = weight[d][l] == 1;
             }
             for (int l = 0; l < count && !softens.empty(); ++l) {
@@ -265,7 +267,8 @@ void LatticeSweep::soften(const Aggregate& matter) {
     for (const SofteningEnd& end : softens_) {
         for (int d = 0; d < kForwardCount; ++d) {
             const ConnectionArrays& own = matter.connection[d];
-            softened_[end.at + d * kLanes] = own.weight[end.lower] * (1 - own.damage[end.lower]);
+            softened_[end.at + d * kLanes] =
+                shares_.of(matter, d, end.lower) * (1 - own.damage[end.lower]);
         }
     }
 }
@@ -358,18 +361,20 @@ void for_each_connection(const Aggregate& matter, const Act& act) {
 
 }  // namespace
 
-double elastic_energy(const Aggregate& matter, const LatticeLaw& law) {
+double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
+                      const ConnectionShares& shares) {
     double sum = 0;
     for_each_connection(
         matter, [&](int d, ParticleId lower, ParticleId, double reference, double distance) {
             const double strain = distance / reference - 1 - matter.connection[d].plastic_of(lower);
-            sum += 0.5 * law.stiffness * matter.connection[d].weight[lower] * reference *
-                   reference * strain * strain;
+            sum += 0.5 * law.stiffness * shares.of(matter, d, lower) * reference * reference *
+                   strain * strain;
         });
     return sum;
 }
 
-std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law) {
+std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law,
+                                    const ConnectionShares& shares) {
     // A spring's energy k (n.(u1 - u2))^2 / 2 is at most k ((n.u1)^2 + (n.u2)^2): each end may be
     // given the matrix 2 k n n^T of its own. Bounded by the row sums of their sum.
     std::vector<Mat3> block(matter.particle_count(), Mat3::Zero());
@@ -377,9 +382,8 @@ std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& l
         const auto& f = kForward[span.direction];
         const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
         const Mat3 dyad = n * n.transpose();
-        const SparseArray<float>& weight = matter.connection[span.direction].weight;
         for (int i = 0; i < span.count; ++i) {
-            const double k = law.stiffness * weight[span.lower + i];
+            const double k = law.stiffness * shares.of(matter, span.direction, span.lower + i);
             block[span.lower + i] += 2 * k * dyad;
             block[span.upper + i] += 2 * k * dyad;
         }

@@ -10,6 +10,7 @@
 #include "laws/internal_damping.h"
 #include "laws/lane_tensor.h"
 #include "matter/aggregate.h"
+#include "sim/connection_shares.h"
 #include "sim/force_slabs.h"
 
 namespace swage {
@@ -35,7 +36,8 @@ struct BranchStep {
 // has them. The same bits at any width and number of threads.
 class LatticeSweep {
   public:
-    explicit LatticeSweep(const Aggregate& matter);
+    // `shares`: how stiff the connections of a body of several materials are.
+    explicit LatticeSweep(const Aggregate& matter, ConnectionShares shares = {});
 
     // Connections were severed or broken. `softens`: of each particle, whether connections that it
     // is the lower end of may soften; empty: none.
@@ -78,6 +80,7 @@ class LatticeSweep {
     const std::vector<std::vector<const SpringRun*>>& stretched_runs() const { return stretched_; }
 
   private:
+    ConnectionShares shares_;
     std::vector<SpringRun> run_;
     std::vector<RowSlab> slab_;
     std::vector<std::size_t> slab_batch_;  // first batch of eight of each slab
@@ -105,10 +108,12 @@ class LatticeSweep {
 };
 
 // Elastic energy stored in the connections [J].
-double elastic_energy(const Aggregate& matter, const LatticeLaw& law);
+double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
+                      const ConnectionShares& shares = {});
 
 // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the fastest
 // of these on their own masses: w_max^2 <= max(bound / mass). Zero without connections.
-std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law);
+std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law,
+                                    const ConnectionShares& shares = {});
 
 }  // namespace swage

@@ -30,15 +30,10 @@ double highest_frequency(const Aggregate& matter, const LatticeForces& lattice) 
 }
 
 double stable_step(const Aggregate& matter, const SimSettings& settings,
-                   const LatticeForces& lattice, const DampingBranches& branches) {
+                   const LatticeForces& lattice, const InternalDamping& damping) {
     std::vector<double> bound = lattice.stiffness_bound(matter);
-    if (branches.count > 0) {
-        const std::vector<double> more = stiffness_bound(matter, lattice_law(matter));
-        for (std::size_t p = 0; p < bound.size(); ++p) {
-            bound[p] += (fast_stiffness(branches) - 1) * more[p];
-        }
-    }
-    const double zeta = matter.material.damping_ratio;
+    damping.add_stiffness_bound(matter, bound);
+    const double zeta = largest_damping_ratio(matter);
     return settings.step_safety * 2 / fastest(matter, bound) * (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
@@ -101,10 +96,8 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
     const LatticeForces lattice(matter);
-    const DampingBranches branches =
-        damping_branches(matter.material.damping_ratio, slowest_frequency(matter),
-                         highest_frequency(matter, lattice));
-    return stable_step(matter, settings, lattice, branches);
+    return stable_step(matter, settings, lattice,
+                       InternalDamping(matter, highest_frequency(matter, lattice)));
 }
 
 MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus,
@@ -114,7 +107,7 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       damping_(matter, highest_frequency(matter, lattice_)),
       contacts_(matter, apparatus, settings, number),
       pushes_(apparatus, settings, number),
-      step_(swage::stable_step(matter, settings, lattice_, damping_.branches())),
+      step_(swage::stable_step(matter, settings, lattice_, damping_)),
       drag_(matter, settings, step_),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       touches_(!apparatus.tool.empty()),
@@ -129,7 +122,7 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
 }
 
 double MovingBody::branch_energy() {
-    return damping_.acts() ? damping_.stored_energy(matter_, lattice_.sweep(matter_)) : 0;
+    return damping_.acts() ? damping_.stored_energy(matter_, lattice_) : 0;
 }
 
 double MovingBody::elastic_energy() { return lattice_.elastic_energy(matter_) + branch_energy(); }
@@ -188,8 +181,8 @@ void MovingBody::find_inner_forces(double step, BodyOutcome& outcome) {
         inside_out_ = lattice_.find(matter_, Flow::trial, force_);
         return;
     }
-    const BranchStep branches = damping_.step(lattice_.sweep(matter_), step);
-    inside_out_ = lattice_.find(matter_, Flow::trial, force_, &branches, &outcome.damped_work);
+    const std::vector<BranchStep> branches = damping_.step(matter_, lattice_, step);
+    inside_out_ = lattice_.find(matter_, Flow::trial, force_, branches, &outcome.damped_work);
 }
 
 void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome) {

@@ -120,6 +120,88 @@ void layers_across(bool brief, Values& values) {
     }
 }
 
+// The lowest swing along a free bar of two materials end to end, of lengths l and wave speeds c:
+// E_1 k_1 tan(k_1 l_1) + E_2 k_2 tan(k_2 l_2) = 0, k = w / c; the shape has cos(k x) from each end.
+struct SeriesSwing {
+    struct Part {
+        double length, modulus, density;
+        double number(double w) const { return w * std::sqrt(density / modulus); }
+    } left, right;
+    double frequency = 0;
+
+    double missed(double w) const {
+        const double p = left.number(w), q = right.number(w);
+        return left.modulus * p * std::sin(p * left.length) * std::cos(q * right.length) +
+               right.modulus * q * std::sin(q * right.length) * std::cos(p * left.length);
+    }
+    void find() {
+        double high = 1e-3;
+        while (missed(high) > 0) high *= 1.001;
+        double low = high / 1.001;
+        for (int n = 0; n < 60; ++n) {
+            const double w = 0.5 * (low + high);
+            (missed(w) > 0 ? low : high) = w;
+        }
+        frequency = low;
+    }
+    double at(double x) const {  // from the left end
+        const double p = left.number(frequency), q = right.number(frequency);
+        if (x <= left.length) return std::cos(p * x) * std::cos(q * right.length);
+        return std::cos(q * (left.length + right.length - x)) * std::cos(p * left.length);
+    }
+};
+
+void layers_swing(bool brief, Values& values) {
+    constexpr double kLength = 4, kSpeed = 1e-4, kDense = 8;
+    const int periods = brief ? 2 : 20;
+    for (int along : brief ? std::vector{16} : std::vector{16, 32}) {
+        const double a = kLength / along;
+        for (double fraction : kFractions) {
+            const double boundary = (along / 2 + fraction) * a;
+            SeriesSwing swing{{boundary, 1, 1}, {kLength - boundary, kStiff, kDense}};
+            swing.find();
+            Material soft = unit_material(0), stiff = soft;
+            soft.density = 1, stiff.density = kDense, stiff.young_modulus = kStiff;
+            soft.damping_ratio = stiff.damping_ratio = 0;
+            MoldSettings settings;
+            settings.spacing = a;
+            const Vec3 size(kLength, a, a);
+            Aggregate bar = mold(box_mesh(Vec3::Zero(), size), soft, settings,
+                                 {{box_mesh({boundary, 0, 0}, size), stiff}});
+            for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+                bar.particle_velocity.x[p] = kSpeed * swing.at(bar.particle_reference.at(p).x());
+            }
+            const Apparatus nothing;
+            SimSettings steps;
+            steps.solver = Solver::explicit_steps;
+            Simulation simulation(bar, nothing, steps);
+            const double period = 2 * kPi / swing.frequency, frame = period / 8;
+            double turns = 0, last = 0, energy = 0, drift = 0;
+            for (int n = 1; n <= 8 * periods; ++n) {
+                Drive from, to;
+                from.time = (n - 1) * frame, to.time = n * frame;
+                const FrameReport report = simulation.advance(from, to);
+                const double held = report.kinetic + report.elastic;
+                if (n == 1) energy = held;
+                drift = std::max(drift, std::abs(held / energy - 1));
+                double place = 0, speed = 0;
+                for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+                    const Vec3 at = bar.particle_reference.at(p);
+                    const double s = bar.particle_mass[p] * swing.at(at.x());
+                    place += s * (bar.particle_position.x[p] - at.x());
+                    speed += s * bar.particle_velocity.x[p];
+                }
+                const double now = std::atan2(swing.frequency * place, speed) / (2 * kPi);
+                turns += std::remainder(now - last, 1);
+                last = now;
+            }
+            values.add(relative(at_fraction("period", fraction), along, period,
+                                8 * periods * frame / turns, along == 16 ? 0.003 : 0.001));
+            values.add(absolute("most that the energy is off, share", along, 0, drift, 1e-3));
+        }
+    }
+}
+
 }  // namespace
 
 void add_two_material_cases(std::vector<Case>& cases) {
@@ -127,6 +209,8 @@ void add_two_material_cases(std::vector<Case>& cases) {
                      "plane sections", 0, false, layers_along});
     cases.push_back({"layers-across", "two materials, 1 : 100, in series: stretched", "Hooke", 0,
                      true, layers_across});
+    cases.push_back({"layers-swing", "two materials, 1 : 100, in series: a free bar swings",
+                     "wave equation", 0, true, layers_swing});
 }
 
 }  // namespace swage

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/surface_modulus.h"
+
+#include <algorithm>
+
+namespace swage {
+
+namespace {
+
+// On which side of the boundary the place lies, -0.5 to 0.5 in the cell. For a plane across a box
+// the middle of both materials' centroids, less that of all, is on the boundary.
+int material_at(const MixedCell& cell, const Vec3& place) {
+    const double all = double(cell.fill[0]) + double(cell.fill[1]);
+    Vec3 on = Vec3::Zero();
+    for (int m : {0, 1}) on += (1 - cell.fill[m] / all) * cell.centroid[m].cast<double>();
+    const Vec3 normal = cell.normal.cast<double>(),
+               way = (cell.centroid[1] - cell.centroid[0]).cast<double>();
+    const double beyond = normal.dot(place - on);
+    return cell.material[(beyond > 0) == (normal.dot(way) > 0) ? 1 : 0];
+}
+
+}  // namespace
+
+std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints& points) {
+    if (matter.inset.empty()) return {};
+    std::vector<CellId> cell(matter.particle_count(), -1);  // by its lowest corner
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) cell[run.row[0] + n] = run.first + n;
+    }
+    std::vector<double> modulus;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const CellId own = cell[points.corner[p][0]];
+        int material = matter.cell_material[own];
+        const auto mixed =
+            std::lower_bound(matter.mixed_cell.begin(), matter.mixed_cell.end(), own,
+                             [](const MixedCell& m, CellId c) { return m.cell < c; });
+        if (mixed != matter.mixed_cell.end() && mixed->cell == own) {
+            Vec3 place = Vec3::Constant(-0.5);
+            for (int c = 0; c < 8; ++c) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (c >> axis & 1) place[axis] += double(points.weight[p][c]);
+                }
+            }
+            material = material_at(*mixed, place);
+        }
+        modulus.push_back(matter.material_at(material).young_modulus);
+    }
+    return modulus;
+}
+
+double surface_modulus(const Aggregate& matter) {
+    const std::vector<double> modulus = surface_moduli(matter, matter.surface);
+    if (modulus.empty()) return matter.material.young_modulus;
+    double sum = 0, area = 0;
+    for (std::size_t p = 0; p < modulus.size(); ++p) {
+        sum += matter.surface.area[p] * modulus[p];
+        area += matter.surface.area[p];
+    }
+    return area > 0 ? sum / area : matter.material.young_modulus;
+}
+
+}  // namespace swage
