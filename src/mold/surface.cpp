@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "matter/carrier_weights.h"
 
 namespace swage {
 
@@ -77,25 +78,6 @@ CellId firm_cell(const Lattice& lattice, const std::vector<float>& fill, const V
     return best;
 }
 
-// Trilinear weights in steps of 2^-23, so that as floats they still sum to exactly one.
-std::array<float, 8> corner_weights(const Vec3& local) {
-    constexpr double kOne = 1 << 23;
-    std::array<double, 8> weight;
-    double sum = 0;
-    int largest = 0;
-    for (int c = 0; c < 8; ++c) {
-        double w = 1;
-        for (int d = 0; d < 3; ++d) w *= c >> d & 1 ? local[d] : 1 - local[d];
-        weight[c] = std::round(w * kOne);
-        sum += weight[c];
-        if (weight[c] > weight[largest]) largest = c;
-    }
-    weight[largest] += kOne - sum;
-    std::array<float, 8> result;
-    for (int c = 0; c < 8; ++c) result[c] = static_cast<float>(weight[c] / kOne);
-    return result;
-}
-
 }  // namespace
 
 SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFrame& frame,
@@ -142,7 +124,7 @@ SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFram
             const Vec3 free = point - site.cast<double>();
             const Vec3 local = free.cwiseMax(-overhang).cwiseMin(1 + overhang);
             surface.corner[p] = lattice.cell_corners(cell);
-            surface.weight[p] = corner_weights(local);
+            surface.weight[p] = carrier_weights(local);
             surface.area[p] = patch.area;
             surface.reference_position[p] = frame.point(2 * (site.cast<double>() + local));
             surface.reference_normal[p] = patch.normal;

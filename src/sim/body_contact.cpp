@@ -23,10 +23,10 @@ double share_of(double one, double other) {
     const double part = one / most;
     const double mean =
         std::sqrt(std::sqrt(0.5 * (square(square(part)) + square(square(other / most)))));
-    // What differs from half by less than a millionth is half: that spares a pass.
-    constexpr double kDigits = 1 << 20;
-    const double share = 0.5 * part * square(part / mean) / mean;
-    return std::max(kLeastShare, std::round(kDigits * share) / kDigits);
+    const double share =
+        (0.5 * part * square(part / mean) / mean + kLeastShare) / (1 + 2 * kLeastShare);
+    // What is half but for round-off spares a pass.
+    return std::abs(share - 0.5) < 1e-10 ? 0.5 : share;
 }
 
 double box_gap(const Box& a, const Box& b) {

@@ -22,9 +22,12 @@ struct Contact : CellPlace {
 
 // What it remembers, committed once a step.
 struct ContactMemory {
-    Vec3 anchor = Vec3::Zero();  // in cells from the other's origin
-    Vec3 bond = Vec3::Zero();    // ImpactForce::bond [N]
-    double stiffness = 0;        // with which it was found [N/m]
+    // Where it met the other, and from there to where it sticks: in cells. What that holds is kept
+    // apart, for the other may be strained by now, which stretches the way, but not the spring.
+    Vec3 place = Vec3::Zero(), reach = Vec3::Zero();
+    double held = 0;           // [J], of its way alone
+    Vec3 bond = Vec3::Zero();  // ImpactForce::bond [N]
+    double stiffness = 0;      // with which it was found [N/m]
     ImpactHistory history{};
     // Where matter has broken a point may be deep in what lies there at once, and deeper than it
     // can have gone: nobody has pressed it in. That much of the depth does not count until it has

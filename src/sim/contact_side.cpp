@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "sim/edge_points.h"
 
 namespace swage {
 
@@ -22,14 +23,15 @@ bool in_box(const Vec3i& at) { return (at.array().abs() <= kNear).all(); }
 }  // namespace
 
 ContactSide::ContactSide(Aggregate& matter, bool itself)
-    : matter_(&matter), patch_(matter), itself_(itself) {
+    : matter_(&matter), patch_(matter), itself_(itself), own_(matter.surface) {
+    add_edge_points(matter.lattice, own_);
     connections_changed();
 }
 
 void ContactSide::connections_changed() {
     find_whole();
     find_points();
-    surface_ = std::make_shared<const RestSurface>(matter_->lattice, points_);
+    surface_ = std::make_shared<const RestSurface>(matter_->lattice, faces());
     std::vector<char> taken(matter_->particle_count(), 0);
     for (CellId cell : surface_->skin()) {
         for (ParticleId p : matter_->lattice.cell_corners(cell)) taken[p] = 1;
@@ -39,6 +41,20 @@ void ContactSide::connections_changed() {
         if (taken[p]) skin_.push_back(static_cast<ParticleId>(p));
     }
     if (itself_) find_near();
+}
+
+// What the depth below the surface is told from: points as molded and those of new surface.
+SurfacePoints ContactSide::faces() const {
+    SurfacePoints all;
+    all.reference_position = matter_->surface.reference_position;
+    all.reference_normal = matter_->surface.reference_normal;
+    const auto from = std::ptrdiff_t(own_points());
+    all.reference_position.insert(all.reference_position.end(),
+                                  points_.reference_position.begin() + from,
+                                  points_.reference_position.end());
+    all.reference_normal.insert(all.reference_normal.end(), points_.reference_normal.begin() + from,
+                                points_.reference_normal.end());
+    return all;
 }
 
 void ContactSide::find_whole() {
@@ -56,7 +72,7 @@ void ContactSide::find_whole() {
 void ContactSide::find_points() {
     const Lattice& lattice = matter_->lattice;
     const double a = lattice.spacing;
-    points_ = matter_->surface;
+    points_ = own_;
     home_.clear();
     meets_.assign(points_.size(), 1);
     for (std::size_t p = 0; p < points_.size(); ++p) {

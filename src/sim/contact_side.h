@@ -28,7 +28,8 @@ class ContactSide {
 
     Aggregate& matter() const { return *matter_; }
     const SurfacePoints& points() const { return points_; }
-    std::size_t own_points() const { return matter_->surface.size(); }
+    // The body's own; those of faces where it has broken come after them.
+    std::size_t own_points() const { return own_.size(); }
     bool meets(int point) const { return meets_[point] != 0; }
     Vec3 position(int point) const {
         Vec3 x = Vec3::Zero();
@@ -57,12 +58,13 @@ class ContactSide {
   private:
     void find_whole();
     void find_points();
+    SurfacePoints faces() const;
     void find_near();
 
     Aggregate* matter_;
     ContactPatch patch_;
     bool itself_;
-    SurfacePoints points_;
+    SurfacePoints own_, points_;
     std::vector<Vec3i> home_;  // of each point, the cell that it lies in or just outside of
     std::vector<char> meets_;
     std::shared_ptr<const RestSurface> surface_;

@@ -16,6 +16,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // contacts
+constexpr double kTurned = 0.1;  // of a reach squared, across a surface that has turned, that holds
 
 std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
@@ -90,16 +91,16 @@ void ContactWay::set_stiffness(double step) {
     const double other = surface_modulus(b) / b.lattice.spacing;
     const double hold = 0.5 * (a.material.stickiness + b.material.stickiness);
     stiffness_.clear();
+    stiffest_.clear();
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
         const double one =
             (modulus.empty() ? a.material.young_modulus : modulus[p]) / a.lattice.spacing;
         stiffness_.push_back(scale_ * one * other / (one + other) * points.area[p]);
         hold_.push_back(hold * points.area[p]);
-        if (!(step > 0)) continue;
         // Half of which acts where the other way does as much.
-        const double most = 0.5 * lightest_carrier(a, points, p) / (step * step);
-        stiffness_[p] = std::min(stiffness_[p], most);
+        stiffest_.push_back(step > 0 ? 0.5 * lightest_carrier(a, points, p) / (step * step)
+                                     : std::numeric_limits<double>::infinity());
     }
 }
 
@@ -111,6 +112,13 @@ struct ContactWay::Kernel {
 
     static bool is_known(const Meeting& at) { return at.inverse[0][3] != 0; }
     static bool meets(const Meeting& at) { return at.inverse[1][3] != 0; }
+
+    // Of a depth that is counted as it is now where the depth at rest is stretched by 1 / slope
+    // [m].
+    SWAGE_INLINE double stiffness(int point, double slope) const {
+        const double stretch = onto.matter().lattice.spacing * slope;
+        return std::min(way.stiffness_[point] * stretch * stretch, way.stiffest_[point]);
+    }
 
     // Where the point lies in the other side.
     SWAGE_INLINE void find(Contact& contact, const ContactMemory& last, CellCorners& corner,
@@ -142,6 +150,7 @@ struct ContactWay::Kernel {
         }
         const double size = std::sqrt(dot3(slope, slope));
         if (!(size > 0)) return;
+        at.inverse[2][3] = stiffness(contact.point, size);
         if (way.from_ == way.onto_ &&
             onto.is_closed_crack(contact.point, contact.site.cast<double>() + contact.place)) {
             return;
@@ -181,14 +190,26 @@ struct ContactWay::Kernel {
             if (!(depth > 0 || hold > 0)) at.inverse[1][3] = 0;
         }
         if (!meets(at)) return;
-        const double k = way.stiffness_[contact.point];
+        const double k = at.inverse[2][3];
         const double push = std::max(k * at.normal[3], -hold);
         at.spring = push * at.normal;
         at.reach = Vec4{};
         if (last.history.touches) {
-            const Vec3 way_back = last.anchor - contact.site.cast<double>() - contact.place;
-            at.reach = gradient.g[0] * way_back.x() + gradient.g[1] * way_back.y() +
-                       gradient.g[2] * way_back.z();
+            const Vec3 back = last.place - contact.site.cast<double>() - contact.place;
+            const auto turned = [&](const Vec3& way) __attribute__((always_inline)) {
+                return gradient.g[0] * way.x() + gradient.g[1] * way.y() + gradient.g[2] * way.z();
+            };
+            Vec4 held = turned(last.reach);
+            const double whole = dot3(held, held);
+            held -= dot3(at.normal, held) * at.normal;
+            const double left = dot3(held, held);
+            if (left > kTurned * whole) {
+                held *= std::sqrt(2 * last.held / (k * left));
+            } else {
+                held = Vec4{};
+                sums.lost += last.held;
+            }
+            at.reach = turned(back) + held;
             const Vec4 along = k * (at.reach - dot3(at.normal, at.reach) * at.normal);
             const double limit =
                 (last.history.slides ? way.law_.friction : way.law_.holding) * (push + hold);
@@ -203,7 +224,7 @@ struct ContactWay::Kernel {
     SWAGE_INLINE void find_chunk(std::size_t chunk, double step) const {
         Chunk& result = way.chunk_[chunk];
         result.moved.clear();
-        result.took = result.stored = 0;
+        result.took = result.stored = result.lost = 0;
         const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < stop; ++n) {
             Contact& contact = way.list_.contact[n];
@@ -253,7 +274,7 @@ struct ContactWay::Kernel {
             push -= weight[c] * f[3] * f;
         }
         ImpactLaw law = way.law_;
-        law.stiffness = way.share_ * way.stiffness_[contact.point];
+        law.stiffness = way.share_ * at.inverse[2][3];
         law.hold = way.share_ * way.hold_[contact.point];
         const ImpactForce f = impact_force(law,
                                            {.depth = at.normal[3],
@@ -270,7 +291,10 @@ struct ContactWay::Kernel {
 
     SWAGE_INLINE void respond(double step) const {
         ContactSums& sums = way.sums_ = {};
-        for (const Chunk& chunk : way.chunk_) sums.took += 0.5 * chunk.took;
+        for (const Chunk& chunk : way.chunk_) {
+            sums.took += 0.5 * chunk.took;
+            sums.friction += 0.5 * way.share_ * chunk.lost;
+        }
         for (std::size_t n = 0; n < way.list_.size(); ++n) {
             Contact& contact = way.list_.contact[n];
             const ContactMemory& last = way.list_.memory[n];
@@ -280,16 +304,17 @@ struct ContactWay::Kernel {
             if (meets(at)) f = impact(contact, last, at, step);
             next.history = f.history;
             next.bond = f.bond;
-            next.stiffness = way.share_ * way.stiffness_[contact.point];
+            next.stiffness = way.share_ * at.inverse[2][3];
             next.sunk = at.now[3];
             next.pressed = at.normal[3];
             next.is_new = last.is_new && !is_known(at);
             contact.dashed = f.force - f.elastic;
             if (f.history.touches) {
                 const Vec4 reach = vec4(f.reach);
-                next.anchor = contact.site.cast<double>() + contact.place +
-                              Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
-                                   dot3(at.inverse[2], reach));
+                next.place = contact.site.cast<double>() + contact.place;
+                next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
+                                  dot3(at.inverse[2], reach));
+                next.held = 0.5 * at.inverse[2][3] * dot3(reach, reach);
                 sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
                 sums.stored += 0.5 * f.stored;
                 sums.friction += 0.5 * f.friction;

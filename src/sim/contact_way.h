@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The points of one body's surface against the cells of another, or of its own: what they do.
 //
-// The cell that holds a point is found by the inverse of its trilinear map, and there the depth
-// below the surface that the body was molded with (sim/rest_surface.h), turned and stretched as the
-// cell is:
+// The cell that holds a point is found by the inverse of its trilinear map, and there the depth D
+// below the surface that the body was molded with (sim/rest_surface.h), a continuous function of
+// the place g in the rest shape. Its spring holds k (a D)^2 / 2, whose slope is what pushes:
 //
-//     d = -D a / |J^-T grad D|,   n = J^-T grad D / |J^-T grad D|,   J = dx / dg at the place g.
+//     F = k s^2 d n,   d = -a D / s,   n = J^-T grad D / |J^-T grad D|,
+//     s = a |J^-T grad D|,   J = dx / dg:
+//
+// the depth as the cell is strained now, and a spring as much stiffer as it is pressed. Measured in
+// strained lengths the energy would jump where J does, from cell to cell and over every edge, and
+// no step would close the books. Friction's spring keeps what it holds when J changes, likewise.
 //
 // The point pushes back with its own weights, the cell with the trilinear weights of the same place
 // in space, so that force and moment are kept to round-off. Friction's anchors are material points
@@ -59,12 +64,13 @@ class ContactWay {
         Vec4 reach;       // from the point to where it sticks [m]; ImpactState::give [1/kg]
         Vec4 now;         // speed of the point over the other side [m/s]; depth that does not [m]
         Vec4 spring;      // what its springs would do if this way were alone [N]
-        Vec4 inverse[3];  // rows of J^-1 [1/m]; 1 where its depth is known, where it meets
+        Vec4 inverse[3];  // rows of J^-1 [1/m]; 1 where its depth is known, where it meets; [N/m]
     };
     struct Chunk {
         std::vector<int> moved;  // contacts that have come into other cells
         double took = 0;         // ContactSums::took, of the one half
         double stored = 0;       // by springs of the whole stiffness [J]
+        double lost = 0;         // likewise, where the surface turned away from where points stick
     };
     struct Kernel;
     void find_chunk(std::size_t chunk, double step);
@@ -74,11 +80,11 @@ class ContactWay {
     void middle_respond(double step);
 
     ContactSide *from_, *onto_;
-    double scale_;             // contact_stiffness
-    bool has_broken_ = false;  // one of them
-    ImpactLaw law_{};          // stiffness and hold: of each point
-    std::vector<double> stiffness_{}, hold_{};
-    double share_ = 0.5;  // of what this way would do alone
+    double scale_;                                           // contact_stiffness
+    bool has_broken_ = false;                                // one of them
+    ImpactLaw law_{};                                        // stiffness and hold: of each point
+    std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
+    double share_ = 0.5;                                     // of what this way would do alone
     ContactList list_;
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit

@@ -16,7 +16,6 @@ namespace {
 constexpr double kTolerance = 1e-9;  // of all energy that was put in, that a step may gain
 constexpr double kMistake = 1e-6;    // likewise, that it may lose where no book says so
 constexpr double kFinest = 1e-6;     // of the stable step; shorter ones may lose more
-constexpr double kJump = 0.01;       // or gain that, where bodies meet
 constexpr double kWay = 0.3;         // spacings that the fastest particle may go in a step
 constexpr double kShortest = 1e-9;   // of the stable step of explicit steps
 
@@ -99,6 +98,7 @@ EnergySteps::EnergySteps(const std::vector<Aggregate*>& bodies, const Apparatus&
 
 void EnergySteps::connections_changed(std::size_t body) {
     mover_[body].body.connections_changed();
+    for (Mover& mover : mover_) mover.met = -1;
     contact_.connections_changed(body);
 }
 
@@ -240,20 +240,18 @@ bool EnergySteps::holds(const Group& group, const Try& t, double budget) {
         return error <= share * budget + noise;
     };
     const bool finest = t.step < kFinest * stable_step(group);
-    return (within(t.gain, kTolerance) && (within(std::abs(t.astray), kMistake) || finest)) ||
-           (finest && contact_.acts() && t.gain <= kJump * budget &&
-            jumped_ + t.gain <= kMostGain * budget);
+    return within(t.gain, kTolerance) && (within(std::abs(t.astray), kMistake) || finest);
 }
 
 void EnergySteps::keep(const Group& group, const Try& t, MoveOutcome& outcome) {
     for (std::size_t n = 0; n < group.size(); ++n) {
         Mover& m = mover_[group[n]];
         m.budget += std::abs(outcome.body[group[n]].done() - t.so_far[n].done());
+        m.met = met_[group[n]].stored;
         m.last_step = t.step;
         m.step = m.held ? t.step : 1.5 * t.step;
         m.held = false;
     }
-    if (t.step < kFinest * stable_step(group)) jumped_ += std::max(t.gain, 0.0);
     ++outcome.steps;
     ++steps_;
     outcome.shortest_step = std::min(outcome.shortest_step, t.step);
@@ -297,6 +295,11 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
                           MoveOutcome& outcome) {
     contact_.renew_all(all_but(group));
     meet(group, mover_[group[0]].last_step > 0 ? mover_[group[0]].last_step : stable_step(group));
+    // Found anew at other speeds friction might let go of some of it; but what counts is what the
+    // last step has left.
+    for (std::size_t b : group) {
+        if (mover_[b].met >= 0) met_[b].stored = mover_[b].met;
+    }
     std::vector<Stored> held = stored(group, from);
     for (std::size_t n = 0; n < group.size(); ++n) {
         const std::size_t b = group[n];

@@ -18,9 +18,6 @@
 // bouncing body's energy to nothing, and hid what they gained behind what damping took; here the
 // books of a step must also close, to 1e-6 of what was put in. Either bound grows by what places
 // are rounded to.
-// NOTE: where a point in contact passes from one face of an edge to the next its depth jumps by the
-// strain there, and no step is short enough: the finest take it, up to a twentieth of what was put
-// in, and the remainder shows it.
 // NOTE: S0.8 lets the step grow after each success, which takes back 3 tries of 8 where the best
 // step stays the same: tries/steps is 1.58. The step after one that was taken back keeps its
 // length here, which gives 1.33.
@@ -73,6 +70,7 @@ class EnergySteps {
         double last_step = 0;  // [s] of the last step kept
         bool held = false;     // the step before was taken back
         double budget = 0;     // energy ever put in [J]
+        double met = -1;  // in contact with others when the last step was kept; else unknown [J]
     };
     using Group = std::vector<std::size_t>;
     struct Try;
@@ -95,7 +93,6 @@ class EnergySteps {
     std::vector<ContactSums> met_;  // by body, as the bodies of the present group are
     std::vector<Tried>* tried_ = nullptr;
     long steps_ = 0;
-    double jumped_ = 0;  // energy gained in the finest steps [J]
 };
 
 }  // namespace swage

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <unordered_map>
 
@@ -14,9 +15,12 @@ namespace {
 
 constexpr int kRings = 2;               // cells around a surface point that are rim
 constexpr double kReach = 1.0;          // of a point's weight along the surface
+constexpr double kBeyond = 1.1;         // the nearest point, that points count
+constexpr double kSupport = 0.6;        // from a place's foot to its side's nearest point
 constexpr double kSameSide = 0.7;       // least cosine between normals of one side of an edge
 constexpr double kInterpolates = 0.04;  // error of interpolated distances that serves
-constexpr std::size_t kChunk = 256;
+constexpr int kMostSides = 4;
+constexpr std::size_t kChunk = 64;
 
 std::uint64_t key_of(const Vec3i& site) {
     const auto part = [](int i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1FFFFF; };
@@ -25,10 +29,23 @@ std::uint64_t key_of(const Vec3i& site) {
 
 Vec3i floor_of(const Vec3& g) { return g.array().floor().cast<int>(); }
 
-double weight_of(int corner, const Vec3& p) {
-    double w = 1;
-    for (int d = 0; d < 3; ++d) w *= corner >> d & 1 ? p[d] : 1 - p[d];
-    return w;
+RestSurface::Depth interpolate(const std::array<float, 8>& d, const Vec3& p) {
+    const Vec3 q = Vec3::Ones() - p;
+    const double d00 = q.x() * d[0] + p.x() * d[1], d10 = q.x() * d[2] + p.x() * d[3],
+                 d01 = q.x() * d[4] + p.x() * d[5], d11 = q.x() * d[6] + p.x() * d[7];
+    const double d0 = q.y() * d00 + p.y() * d10, d1 = q.y() * d01 + p.y() * d11;
+    const double gx0 = q.y() * (d[1] - d[0]) + p.y() * (d[3] - d[2]),
+                 gx1 = q.y() * (d[5] - d[4]) + p.y() * (d[7] - d[6]);
+    return {q.z() * d0 + p.z() * d1,
+            Vec3(q.z() * gx0 + p.z() * gx1, q.z() * (d10 - d00) + p.z() * (d11 - d01), d1 - d0)};
+}
+
+template <typename Body>
+void in_chunks(std::size_t count, const Body& body) {
+    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t stop = std::min(count, (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < stop; ++n) body(n);
+    });
 }
 
 }  // namespace
@@ -78,143 +95,247 @@ RestSurface::RestSurface(const Lattice& lattice, const SurfacePoints& surface) {
         while (cell >= run->first + run->count) ++run;
         site_.emplace_back(run->i + cell - run->first, run->j, run->k);
     }
-    measure();
+    measure_corners();
+    std::vector<char> is_fine(rim.size());
+    find_fine(is_fine);
+    measure_fine(lattice, is_fine);
     for (std::size_t n = 0; n < rim.size(); ++n) {
         const auto& c = corner_[n];
         const bool shallow = *std::max_element(c.begin(), c.end()) > -0.999f;
-        if (shallow || list_begin_[n] < list_begin_[n + 1]) skin_.push_back(rim[n]);
+        if (shallow || is_fine[n]) skin_.push_back(rim[n]);
     }
 }
 
-std::vector<int> RestSurface::points_near(const Vec3i& site, int rings) const {
-    std::vector<int> found;
-    for (int k = -rings; k <= rings; ++k) {
-        for (int j = -rings; j <= rings; ++j) {
-            for (int i = -rings; i <= rings; ++i) {
-                const std::uint64_t key = key_of(site + Vec3i(i, j, k));
-                const auto at = std::lower_bound(
-                    bin_.begin(), bin_.end(), key,
-                    [](const Site& s, std::uint64_t wanted) { return s.key < wanted; });
-                if (at == bin_.end() || at->key != key) continue;
-                for (int p = at->first; p < at->first + at->count; ++p) found.push_back(p);
+// Points in bins that come within `reach` of the box.
+void RestSurface::gather(const Vec3& low, const Vec3& high, double reach, Near& near) const {
+    near.point.clear();
+    near.reach = reach;
+    const Vec3i from = floor_of(low - Vec3::Constant(reach)),
+                to = floor_of(high + Vec3::Constant(reach));
+    for (int k = from.z(); k <= to.z(); ++k) {
+        for (int j = from.y(); j <= to.y(); ++j) {
+            const std::uint64_t stop = key_of({to.x(), j, k});
+            auto at =
+                std::lower_bound(bin_.begin(), bin_.end(), key_of({from.x(), j, k}),
+                                 [](const Site& s, std::uint64_t key) { return s.key < key; });
+            for (; at != bin_.end() && at->key <= stop; ++at) {
+                for (int p = at->first; p < at->first + at->count; ++p) near.point.push_back(p);
             }
         }
     }
-    return found;
 }
 
-RestSurface::Depth RestSurface::blend(const Vec3& g, int nearest, const int* begin,
-                                      const int* end) const {
-    const Vec3& side = normal_[nearest];
-    double sum = 0, own = 0;
-    Vec3 normal = Vec3::Zero(), arm = Vec3::Zero();
-    for (const int* p = begin; p != end; ++p) {
-        const Vec3& n = normal_[*p];
-        if (n.dot(side) < kSameSide) continue;
-        const Vec3 way = g - point_[*p];
-        const double d = n.dot(way), along = 1 - (way.squaredNorm() - d * d) / (kReach * kReach);
-        if (along <= 0) continue;
-        const double w = along * along;
-        sum += w;
-        own += w * d;
-        normal += w * n;
-        arm += w * way;
-    }
-    const Vec3 way = g - point_[nearest];
-    if (!(sum > 0)) return {side.dot(way), side};
-    normal.normalize();
-    return {0.5 * (own + normal.dot(arm)) / sum, normal};
-}
-
-RestSurface::Depth RestSurface::direct(const Vec3& g, const int* begin, const int* end) const {
-    int nearest = *begin;
+double RestSurface::distance(const Vec3& g, const Near& near) const {
     double least = std::numeric_limits<double>::infinity();
-    for (const int* p = begin; p != end; ++p) {
-        const double far = (g - point_[*p]).squaredNorm();
-        if (far < least) least = far, nearest = *p;
+    for (int p : near.point) least = std::min(least, (g - point_[p]).squaredNorm());
+    const double most = std::sqrt(least) + kBeyond;
+    // A point lies within 0.001 of its bin.
+    if (!(most <= near.reach - 0.01)) return std::numeric_limits<double>::quiet_NaN();
+    struct Seen {
+        int point, side;
+        double far;
+    };
+    thread_local std::vector<Seen> seen;
+    seen.clear();
+    for (int p : near.point) {
+        const double far = (g - point_[p]).squaredNorm();
+        if (far < most * most) seen.push_back({p, -1, far});
     }
-    return blend(g, nearest, begin, end);
+    double result = 0;
+    int first = -1;
+    for (int side = 0; side < kMostSides; ++side) {
+        const Seen* nearest = nullptr;
+        for (const Seen& s : seen) {
+            if (s.side < 0 && (nearest == nullptr || s.far < nearest->far)) nearest = &s;
+        }
+        if (nearest == nullptr) break;
+        const int begin = nearest->point;
+        double sum = 0, own = 0, foot = std::numeric_limits<double>::infinity();
+        Vec3 normal = Vec3::Zero(), arm = Vec3::Zero();
+        for (Seen& s : seen) {
+            const Vec3& n = normal_[s.point];
+            if (n.dot(normal_[begin]) < kSameSide) continue;
+            if (s.side < 0) s.side = side;
+            const Vec3 way = g - point_[s.point];
+            const double d = n.dot(way), along = s.far - d * d;
+            foot = std::min(foot, along);
+            if (along >= kReach * kReach) continue;
+            const double w = (1 - along / (kReach * kReach)) * (1 - along / (kReach * kReach));
+            sum += w;
+            own += w * d;
+            normal += w * n;
+            arm += w * way;
+        }
+        const double d = sum > 0 ? 0.5 * (own + normal.normalized().dot(arm)) / sum
+                                 : normal_[begin].dot(g - point_[begin]);
+        if (side == 0) {
+            first = begin;
+            result = d;
+            continue;
+        }
+        const double convex = (normal_[begin] - normal_[first]).dot(point_[begin] - point_[first]);
+        if (convex < 0) {
+            result = std::min(result, d);
+        } else if (foot < kSupport * kSupport) {
+            result = std::max(result, d);
+        }
+    }
+    return result;
 }
 
-void RestSurface::measure() {
-    const std::vector<Vec3i>& cells = site_;
+double RestSurface::distance(const Vec3& g) const {
+    Near near;
+    for (double reach = 2; reach < 1e6; reach *= 1.5) {
+        gather(g, g, reach, near);
+        const double d = distance(g, near);
+        if (!std::isnan(d)) return d;
+    }
+    return -1e6;
+}
+
+void RestSurface::measure_corners() {
     // Corners of the rim, each once.
     std::unordered_map<std::uint64_t, int> number;  // looked up only
     std::vector<Vec3i> corner;
-    std::vector<std::array<int, 8>> of_cell(cells.size());
-    for (std::size_t n = 0; n < cells.size(); ++n) {
+    std::vector<std::array<int, 8>> of_cell(site_.size());
+    for (std::size_t n = 0; n < site_.size(); ++n) {
         for (int c = 0; c < 8; ++c) {
-            const Vec3i at = cells[n] + Vec3i(c & 1, c >> 1 & 1, c >> 2);
+            const Vec3i at = site_[n] + Vec3i(c & 1, c >> 1 & 1, c >> 2);
             const auto [entry, is_new] =
                 number.try_emplace(key_of(at), static_cast<int>(corner.size()));
             if (is_new) corner.push_back(at);
             of_cell[n][c] = entry->second;
         }
     }
-    std::vector<float> distance(corner.size());
-    parallel_for((corner.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t stop = std::min(corner.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
-            const Vec3 g = corner[n].cast<double>();
-            std::vector<int> near;
-            for (int rings = 1; near.empty() && rings <= kRings + 2; ++rings) {
-                near = points_near(corner[n], rings);
-            }
-            // The nearest first, then all around the foot that it leads to.
-            const Depth rough = direct(g, near.data(), near.data() + near.size());
-            const Vec3 foot = g - rough.distance * rough.gradient;
-            for (int p : points_near(floor_of(foot), 1)) near.push_back(p);
-            std::sort(near.begin(), near.end());
-            near.erase(std::unique(near.begin(), near.end()), near.end());
-            distance[n] =
-                static_cast<float>(direct(g, near.data(), near.data() + near.size()).distance);
-        }
+    std::vector<float> value(corner.size());
+    in_chunks(corner.size(), [&](std::size_t n) {
+        value[n] = static_cast<float>(distance(corner[n].cast<double>()));
     });
-    corner_.resize(cells.size());
-    std::vector<std::vector<int>> list(cells.size());
-    parallel_for((cells.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t stop = std::min(cells.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
-            for (int c = 0; c < 8; ++c) corner_[n][c] = distance[of_cell[n][c]];
-            const auto [low, high] = std::minmax_element(corner_[n].begin(), corner_[n].end());
-            if (*high < -1 && *low > -4) continue;
-            const std::vector<int> near = points_near(cells[n], 1);
-            if (near.empty()) continue;
-            bool serves = true;
-            for (int s = 0; s < 9 && serves; ++s) {
-                const Vec3 p =
-                    s == 8 ? Vec3::Constant(0.5)
-                           : Vec3(Vec3::Constant(0.2) + 0.6 * Vec3(s & 1, s >> 1 & 1, s >> 2));
-                double mean = 0;
-                for (int c = 0; c < 8; ++c) mean += weight_of(c, p) * corner_[n][c];
-                const double exact =
-                    direct(cells[n].cast<double>() + p, near.data(), near.data() + near.size())
-                        .distance;
-                serves = std::abs(mean - exact) < kInterpolates || (mean < -1 && exact < -1);
-            }
-            if (!serves) list[n] = near;
-        }
-    });
-    list_begin_.push_back(0);
-    for (const std::vector<int>& one : list) {
-        list_.insert(list_.end(), one.begin(), one.end());
-        list_begin_.push_back(static_cast<int>(list_.size()));
+    corner_.resize(site_.size());
+    for (std::size_t n = 0; n < site_.size(); ++n) {
+        for (int c = 0; c < 8; ++c) corner_[n][c] = value[of_cell[n][c]];
     }
 }
 
+// Cells whose corners do not tell enough: a gentle error, but not in what lies deep.
+void RestSurface::find_fine(std::vector<char>& is_fine) const {
+    in_chunks(site_.size(), [&](std::size_t n) {
+        const auto [low, high] = std::minmax_element(corner_[n].begin(), corner_[n].end());
+        if (*high < -1 && *low > -4) return;
+        const Vec3 site = site_[n].cast<double>();
+        Near near;
+        gather(site, site + Vec3::Ones(), 2.2, near);
+        for (int s = 0; s < 9 && !is_fine[n]; ++s) {
+            const Vec3 p = s == 8
+                               ? Vec3::Constant(0.5)
+                               : Vec3(Vec3::Constant(0.2) + 0.6 * Vec3(s & 1, s >> 1 & 1, s >> 2));
+            const double mean = interpolate(corner_[n], p).distance;
+            double exact = distance(site + p, near);
+            if (std::isnan(exact)) exact = distance(site + p);
+            is_fine[n] = !(std::abs(mean - exact) < kInterpolates || (mean < -1 && exact < -1));
+        }
+    });
+}
+
+void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& is_fine) {
+    fine_of_.assign(site_.size(), -1);
+    std::vector<int> slot;
+    for (std::size_t n = 0; n < site_.size(); ++n) {
+        if (!is_fine[n]) continue;
+        fine_of_[n] = static_cast<int>(slot.size());
+        slot.push_back(static_cast<int>(n));
+    }
+    fine_.assign(slot.size(), {});
+    in_chunks(slot.size(), [&](std::size_t f) {
+        const int n = slot[f];
+        const Vec3 site = site_[n].cast<double>();
+        // Neighbours that are sampled at their corners only.
+        std::array<bool, 27> coarse;
+        for (int m = 0; m < 27; ++m) {
+            const Vec3i at = site_[n] + Vec3i(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
+            const CellId cell = lattice.cell_at(at.x(), at.y(), at.z());
+            coarse[m] = cell >= 0 && slot_[cell] >= 0 && !is_fine[slot_[cell]];
+        }
+        for (int face = 0; face < 6; ++face) {
+            const int d = face >> 1, u = 1 << (d + 1) % 3, v = 1 << (d + 2) % 3,
+                      low = face & 1 ? 1 << d : 0;
+            constexpr std::array<int, 3> kStep{1, 3, 9};
+            if (!coarse[13 + (face & 1 ? 1 : -1) * kStep[d]]) continue;
+            const auto& c = corner_[n];
+            const double twist = double(c[low]) - c[low + u] - c[low + v] + c[low + u + v];
+            fine_[f].twist[face] = twist;
+            fine_[f].has_twist = fine_[f].has_twist || twist != 0;
+        }
+        Near near;
+        gather(site, site + Vec3::Ones(), 2.2, near);
+        for (int s = 0; s < kSamples; ++s) {
+            const Vec3i at(s % (kFine + 1), s / (kFine + 1) % (kFine + 1),
+                           s / (kFine + 1) / (kFine + 1));
+            // The side of the cell that it lies on, of each axis.
+            const auto side = [&](int d) { return at[d] == 0 ? -1 : at[d] == kFine ? 1 : 0; };
+            const Vec3 p = at.cast<double>() / kFine;
+            bool is_coarse = false;
+            for (int m = 0; m < 27 && !is_coarse; ++m) {
+                const Vec3i to(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
+                is_coarse = coarse[m] && (to.x() == 0 || to.x() == side(0)) &&
+                            (to.y() == 0 || to.y() == side(1)) &&
+                            (to.z() == 0 || to.z() == side(2));
+            }
+            double& sample = fine_[f].sample[s];
+            if (is_coarse || side(0) * side(1) * side(2) != 0) {
+                sample = interpolate(corner_[n], p).distance;
+                continue;
+            }
+            sample = distance(site + p, near);
+            if (std::isnan(sample)) sample = distance(site + p);
+        }
+    });
+}
+
 RestSurface::Depth RestSurface::at(CellId cell, const Vec3& p) const {
-    const int n = slot_[cell];
-    const int *begin = list_.data() + list_begin_[n], *end = list_.data() + list_begin_[n + 1];
-    if (begin != end) return direct(site_[n].cast<double>() + p, begin, end);
-    const auto& d = corner_[n];
-    const Vec3 q = Vec3::Ones() - p;
-    const double d00 = q.x() * d[0] + p.x() * d[1], d10 = q.x() * d[2] + p.x() * d[3],
-                 d01 = q.x() * d[4] + p.x() * d[5], d11 = q.x() * d[6] + p.x() * d[7];
-    const double d0 = q.y() * d00 + p.y() * d10, d1 = q.y() * d01 + p.y() * d11;
-    const double gx0 = q.y() * (d[1] - d[0]) + p.y() * (d[3] - d[2]),
-                 gx1 = q.y() * (d[5] - d[4]) + p.y() * (d[7] - d[6]);
-    return {q.z() * d0 + p.z() * d1,
-            Vec3(q.z() * gx0 + p.z() * gx1, q.z() * (d10 - d00) + p.z() * (d11 - d01), d1 - d0)};
+    const int n = slot_[cell], f = fine_of_[n];
+    if (f < 0) return interpolate(corner_[n], p);
+    const Fine& fine = fine_[f];
+    // Of the six tetrahedra of the cube between samples, the one along whose edges the place lies.
+    const Vec3i at = floor_of(kFine * p).cwiseMax(0).cwiseMin(kFine - 1);
+    std::array<double, 3> along;
+    std::array<int, 3> step{1, kFine + 1, (kFine + 1) * (kFine + 1)};
+    std::array<int, 3> axis{0, 1, 2}, sign{kFine, kFine, kFine};
+    int from = 0;
+    for (int d = 0; d < 3; ++d) {
+        along[d] = kFine * p[d] - at[d];
+        from += at[d] * step[d];
+        if (at[d] % 2 == 0) continue;
+        from += step[d];
+        along[d] = 1 - along[d];
+        step[d] = -step[d];
+        sign[d] = -kFine;
+    }
+    if (along[axis[0]] < along[axis[1]]) std::swap(axis[0], axis[1]);
+    if (along[axis[1]] < along[axis[2]]) std::swap(axis[1], axis[2]);
+    if (along[axis[0]] < along[axis[1]]) std::swap(axis[0], axis[1]);
+    const double* sample = fine.sample.data() + from;
+    double last = *sample;
+    Depth depth{last, Vec3::Zero()};
+    for (int d : axis) {
+        sample += step[d];
+        const double rise = *sample - last;
+        last = *sample;
+        depth.distance += along[d] * rise;
+        depth.gradient[d] = sign[d] * rise;
+    }
+    if (!fine.has_twist) return depth;
+    for (int face = 0; face < 6; ++face) {
+        const int d = face >> 1, u = (d + 1) % 3, v = (d + 2) % 3;
+        const double twist = fine.twist[face] * sign[u] * sign[v] / std::pow(kFine, 4);
+        const double near = face & 1 ? p[d] : 1 - p[d];
+        const double a = along[u], b = along[v], bulge = a * b - std::min(a, b);
+        depth.distance += near * twist * bulge;
+        depth.gradient[d] += (face & 1 ? 1 : -1) * twist * bulge;
+        depth.gradient[u] += near * twist * (b - (a < b)) * sign[u];
+        depth.gradient[v] += near * twist * (a - (a >= b)) * sign[v];
+    }
+    return depth;
 }
 
 }  // namespace swage

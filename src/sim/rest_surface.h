@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How deep a place of a body lies below its surface in the shape that it was molded in: what other
-// bodies' points meet. Made from the body's surface points, each with its normal.
+// bodies' points meet. Made from the body's surface points, each with its normal. Of one side of an
+// edge, over the points within one spacing along the surface,
 //
-//     d(g) = sum_i w_i (n_i + n) / 2 . (g - g_i)        n = sum_i w_i n_i, unit
+//     d(g) = sum_i w_i (n_i + n) / 2 . (g - g_i)        n = sum_i w_i n_i, unit;
 //
-// over the points of the same side of an edge within one spacing along the surface. Exact for
-// planes; on a surface of radius R n_i . (g - g_i) alone is wrong by -t^2 / 2R at a distance t from
-// the foot, n . (g - g_i) by +t^2 / 2R, so that of the mean only the fourth order is left.
+// of several sides the largest where they meet in a convex edge, the least in a concave one. Exact
+// for planes; on a surface of radius R n_i . (g - g_i) alone is wrong by -t^2 / 2R at a distance t
+// from the foot, n . (g - g_i) by +t^2 / 2R, so that of the mean only the fourth order is left.
+//
+// It is sampled at the corners of cells and interpolated. Where that does not serve, at edges, it
+// is sampled four times as finely and interpolated along the edges of tetrahedra (Kuhn's six of a
+// cube, each cube the mirror image of its neighbours, so that an edge along the lattice keeps its
+// shape). Where such a cell meets another, that one's values hold, and by how much its face is not
+// flat is added to this cell, less and less toward the far side. So depth is one continuous
+// function of the place, and what pushes by its slope gains no energy by the way it goes.
 // All lengths in spacings, all places in cells from the lattice's origin.
 #pragma once
 
@@ -34,23 +42,40 @@ class RestSurface {
     const std::vector<CellId>& skin() const { return skin_; }
 
   private:
+    static constexpr int kFine = 4;  // samples along an edge of a cell, but for the last
+    static constexpr int kSamples = (kFine + 1) * (kFine + 1) * (kFine + 1);
+
     struct Site {
         std::uint64_t key;
         int first, count;  // points
     };
-    std::vector<int> points_near(const Vec3i& site, int rings) const;
-    Depth blend(const Vec3& g, int nearest, const int* begin, const int* end) const;
-    Depth direct(const Vec3& g, const int* begin, const int* end) const;
-    void measure();
+    struct Fine {
+        std::array<double, kSamples> sample{};  // x first
+        // Of the faces, low and high along x, y, z, that a cell known by its corners shares.
+        std::array<double, 6> twist{};
+        bool has_twist = false;
+    };
+    struct Near {
+        std::vector<int> point;  // in their order
+        double reach;            // all within it of any place asked about are there
+    };
+    void gather(const Vec3& low, const Vec3& high, double reach, Near& near) const;
+    // Of a place as far as `near` tells; no number where it does not reach.
+    double distance(const Vec3& g, const Near& near) const;
+    double distance(const Vec3& g) const;
+    void measure_corners();
+    void find_fine(std::vector<char>& is_fine) const;
+    void measure_fine(const Lattice& lattice, const std::vector<char>& is_fine);
 
     std::vector<Vec3> point_, normal_;  // sorted by bin
     std::vector<Site> bin_;
     std::vector<int> slot_;  // of each cell, -1: no rim
     std::vector<CellId> skin_;
-    // By slot: distances at the corners where their interpolation serves; else the points to ask.
+    // By slot: distances at the corners, and which of the finely sampled it is, or -1.
     std::vector<std::array<float, 8>> corner_;
+    std::vector<int> fine_of_;
     std::vector<Vec3i> site_;
-    std::vector<int> list_begin_, list_;
+    std::vector<Fine> fine_;
 };
 
 }  // namespace swage

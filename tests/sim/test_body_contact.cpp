@@ -101,8 +101,8 @@ TEST_CASE("two blocks press on each other as both tools' springs in series") {
     for (double stiffer : {1.0, 10.0}) {
         Material hard = soft();
         hard.young_modulus *= stiffer;
-        Aggregate a = make_block(6, 6, 6, 0.1, soft()), b = make_block(6, 6, 6, 0.1, hard);
-        const double depth = 0.003, area = 0.36;
+        Aggregate a = make_block(5, 6, 5, 0.1, soft()), b = make_block(6, 6, 6, 0.1, hard);
+        const double depth = 0.003, area = 0.25;
         place(a, {Quat::Identity(), Vec3(0, 0.6 - depth, 0)});
         const Pressed p = pressed({&a, &b});
         const double k = 2 * 1e6 * area / 0.1;
@@ -124,16 +124,18 @@ TEST_CASE("a small block presses on a face alike on its points and between them"
     };
     const double k = 2 * 1e6 / (0.1 + 0.02) * 0.04 * 0.04;
     put(0.001, -depth, 0.002);  // none of the face's points below it
-    CHECK(pressed({&small, &big}).total(0).y() == Approx(std::pow(2, -0.25) * k * depth));
+    CHECK(pressed({&small, &big}).total(0).y() ==
+          Approx(std::pow(2, -0.25) * k * depth).epsilon(1e-3));
     // The same whichever comes first.
-    CHECK(pressed({&big, &small}).total(1).y() == Approx(std::pow(2, -0.25) * k * depth));
+    CHECK(pressed({&big, &small}).total(1).y() ==
+          Approx(std::pow(2, -0.25) * k * depth).epsilon(1e-3));
     put(0.026, -depth, 0.024);  // one, which stands for a larger square
     const double on = pressed({&small, &big}).total(0).y();
     CHECK(on > k * depth);
     CHECK(on < 1.4 * k * depth);
 
     // Down between the points, along to one of them and up: what it took it gives back.
-    const int steps = 400;
+    const int steps = 3200;
     double work = 0, most = 0;
     Vec3 last = Vec3::Zero(), f_last = Vec3::Zero();
     const auto way = [&](Vec3 from, Vec3 to) {
@@ -154,6 +156,19 @@ TEST_CASE("a small block presses on a face alike on its points and between them"
     INFO("work " << work << " of " << most);
     CHECK(most > 0);
     CHECK(std::abs(work) < 0.02 * most);
+}
+
+TEST_CASE("an edge and a corner are met as soon as they touch") {
+    Aggregate floor = make_block(8, 2, 8, 0.1, soft()), die = make_block(3, 3, 3, 0.1, soft());
+    const Quat on_edge(Eigen::AngleAxisd(kPi / 4, Vec3::UnitX()));
+    const Quat on_corner = Quat::FromTwoVectors(Vec3(-1, -1, -1), Vec3(0, -1, 0));
+    for (const auto& [turn, half] :
+         {std::pair(on_edge, std::sqrt(2.)), std::pair(on_corner, std::sqrt(3.))}) {
+        for (double depth : {-0.001, 0.002}) {
+            place(die, {turn, Vec3(0.013, 0.1 + 0.15 * half - depth, 0.021)});
+            CHECK((pressed({&floor, &die}).total(1).y() > 0) == (depth > 0));
+        }
+    }
 }
 
 TEST_CASE("force and moment of contact vanish in sum, however the bodies lie and are bent") {
@@ -220,36 +235,6 @@ TEST_CASE("a tumbling collision keeps momentum and angular momentum") {
     CHECK(r.kinetic + r.elastic < 0.95 * energy);
     CHECK((after.linear - before.linear).norm() < 1e-9 * before.size);
     CHECK((after.angular - before.angular).norm() < 1e-9 * before.turn);
-}
-
-TEST_CASE("the books of each of two bodies that collide balance by what they pass to each other") {
-    const auto worst = [](double safety) {
-        Material dull = soft();
-        dull.restitution = 0.5;
-        dull.friction = 0.4;
-        Aggregate a = make_block(3, 3, 3, 0.1, dull), b = make_block(2, 2, 2, 0.1, dull);
-        place(b, {Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())), Vec3(0.42, 0.1, 0.05)});
-        for (std::size_t p = 0; p < b.particle_count(); ++p) b.particle_velocity.x[p] = -2;
-        const double energy = 0.5 * b.mass() * 4;
-        SimSettings settings = motion_settings();
-        settings.step_safety = safety;
-        const Apparatus nothing;
-        Simulation simulation({&a, &b}, nothing, settings);
-        FrameReport r;
-        double most = 0;
-        for (int n = 0; n < 10; ++n) {
-            r = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
-            for (const Books& books : r.body) most = std::max(most, std::abs(books.remainder));
-        }
-        REQUIRE(r.body[0].passed > 0.05 * energy);  // they did meet
-        return std::array{most / energy, std::abs(r.remainder) / energy};
-    };
-    const auto coarse = worst(0.8), fine = worst(0.2);
-    for (int n = 0; n < 2; ++n) {
-        INFO(n << ": " << coarse[n] << ' ' << fine[n]);
-        CHECK(coarse[n] < 0.01);
-        CHECK(fine[n] < 0.5 * coarse[n]);
-    }
 }
 
 TEST_CASE("bodies that collide part, and neither passes through the other") {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/edge_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "matter/carrier_weights.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kSameSide = 0.7;  // least cosine between normals of one side of an edge
+constexpr double kNear = 0.6;      // an edge lies from its patches' middles, in spacings
+constexpr double kEdge = 0.25;     // of a patch's area, that goes to an edge
+constexpr double kCorner = 0.0625;
+
+// In spacings.
+struct Patch {
+    Vec3 place, normal;
+};
+
+bool meet_convex(const Patch& a, const Patch& b) {
+    return a.normal.dot(b.normal) < kSameSide && a.normal.cross(b.normal).norm() > 0.5 &&
+           (b.normal - a.normal).dot(b.place - a.place) > 0;
+}
+
+// The place on all their planes that is nearest to their middle.
+Vec3 common_place(const std::vector<Patch>& patch) {
+    Vec3 middle = Vec3::Zero();
+    for (const Patch& p : patch) middle += p.place / double(patch.size());
+    Mat3 sides = Mat3::Zero();  // rows of normals
+    Vec3 off = Vec3::Zero();
+    for (std::size_t n = 0; n < patch.size(); ++n) {
+        sides.row(Eigen::Index(n)) = patch[n].normal;
+        off[Eigen::Index(n)] = patch[n].normal.dot(patch[n].place - middle);
+    }
+    if (patch.size() == 2) sides.row(2) = patch[0].normal.cross(patch[1].normal);
+    return middle + sides.inverse() * off;
+}
+
+// A new point on an edge or a corner, and what each patch gives it.
+struct EdgePoint {
+    Vec3 place;
+    std::vector<int> patch;
+    double share;
+};
+
+}  // namespace
+
+void add_edge_points(const Lattice& lattice, SurfacePoints& points) {
+    const double a = lattice.spacing;
+    const std::size_t own = points.size();
+    std::vector<Patch> patch(own);
+    std::vector<std::array<int, 3>> bin(own);
+    for (std::size_t p = 0; p < own; ++p) {
+        patch[p] = {(points.reference_position[p] - lattice.origin) / a,
+                    points.reference_normal[p]};
+        const Vec3 inner = patch[p].place - 1e-3 * patch[p].normal;
+        for (int d = 0; d < 3; ++d) bin[p][d] = static_cast<int>(std::floor(2 * inner[d]));
+    }
+    std::vector<int> order(own);
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int p, int q) { return bin[p] < bin[q]; });
+
+    std::vector<EdgePoint> found;
+    const auto consider = [&](const std::vector<int>& which, double share) {
+        std::vector<Patch> sides;
+        for (int p : which) sides.push_back(patch[p]);
+        const Vec3 place = common_place(sides);
+        const double far = which.size() == 2 ? kNear : 1.5 * kNear;
+        for (const Patch& side : sides) {
+            if (!((place - side.place).norm() < far)) return false;
+        }
+        found.push_back({place, which, share});
+        return true;
+    };
+    for (std::size_t begin = 0, end; begin < own; begin = end) {
+        for (end = begin + 1; end < own && bin[order[end]] == bin[order[begin]];) ++end;
+        if (end - begin < 2 || end - begin > 3) continue;  // slivers of several sheets
+        const std::vector<int> in(order.begin() + std::ptrdiff_t(begin),
+                                  order.begin() + std::ptrdiff_t(end));
+        std::vector<std::vector<int>> edges;
+        for (std::size_t p = 0; p < in.size(); ++p) {
+            for (std::size_t q = p + 1; q < in.size(); ++q) {
+                if (meet_convex(patch[in[p]], patch[in[q]])) edges.push_back({in[p], in[q]});
+            }
+        }
+        const bool is_corner = edges.size() == 3 && consider(in, kCorner);
+        for (const std::vector<int>& edge : edges) consider(edge, is_corner ? 0.75 * kEdge : kEdge);
+    }
+
+    std::vector<double> given(own, 0.0);          // of a patch's area
+    std::vector<Vec3> moment(own, Vec3::Zero());  // about its middle
+    const std::vector<double> area = points.area;
+    const auto local_of = [&](std::size_t p) {
+        Vec3 local = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) {
+            for (int d = 0; d < 3; ++d) {
+                if (c >> d & 1) local[d] += points.weight[p][c];
+            }
+        }
+        return local;
+    };
+    std::vector<Vec3> local(own);
+    for (std::size_t p = 0; p < own; ++p) local[p] = local_of(p);
+    for (const EdgePoint& edge : found) {
+        const int carrier = edge.patch[0];
+        const Vec3 there = local[carrier] + edge.place - patch[carrier].place;
+        if ((there.array() < -0.25).any() || (there.array() > 1.25).any()) continue;
+        double sum = 0;
+        Vec3 normal = Vec3::Zero();
+        for (int p : edge.patch) {
+            sum += edge.share * area[p] / double(edge.patch.size());
+            normal += patch[p].normal;
+            given[p] += edge.share;
+            moment[p] += edge.share * (patch[p].place - edge.place);
+        }
+        points.corner.push_back(points.corner[carrier]);
+        points.weight.push_back(carrier_weights(there));
+        points.area.push_back(sum);
+        points.reference_position.push_back(lattice.origin + a * edge.place);
+        points.reference_normal.push_back(normal.normalized());
+    }
+    for (std::size_t p = 0; p < own; ++p) {
+        if (given[p] == 0) continue;
+        const Vec3 inward = moment[p] / (1 - given[p]);
+        points.area[p] *= 1 - given[p];
+        points.weight[p] = carrier_weights(local[p] + inward);
+        points.reference_position[p] += a * inward;
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/advance.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+Material soft() {
+    return {.young_modulus = 1e6, .poisson_ratio = 0.25, .density = 1000, .damping_ratio = 0};
+}
+
+void place(Aggregate& m, const Pose& pose) {
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_position.set(p, pose * m.particle_reference.at(p));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("the books of each of two bodies that collide balance by what they pass to each other") {
+    const auto worst = [](double safety) {
+        Material dull = soft();
+        dull.restitution = 0.5;
+        dull.friction = 0.4;
+        Aggregate a = make_block(3, 3, 3, 0.1, dull), b = make_block(2, 2, 2, 0.1, dull);
+        place(b, {Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())), Vec3(0.42, 0.1, 0.05)});
+        for (std::size_t p = 0; p < b.particle_count(); ++p) b.particle_velocity.x[p] = -2;
+        const double energy = 0.5 * b.mass() * 4;
+        SimSettings settings = motion_settings();
+        settings.step_safety = safety;
+        const Apparatus nothing;
+        Simulation simulation({&a, &b}, nothing, settings);
+        FrameReport r;
+        double most = 0;
+        for (int n = 0; n < 10; ++n) {
+            r = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
+            for (const Books& books : r.body) most = std::max(most, std::abs(books.remainder));
+        }
+        REQUIRE(r.body[0].passed > 0.05 * energy);  // they did meet
+        return std::array{most / energy, std::abs(r.remainder) / energy};
+    };
+    const auto coarse = worst(0.8), fine = worst(0.2);
+    for (int n = 0; n < 2; ++n) {
+        INFO(n << ": " << coarse[n] << ' ' << fine[n]);
+        CHECK(coarse[n] < 0.01);
+        CHECK(fine[n] < 0.5 * coarse[n]);
+    }
+}
+
+TEST_CASE("what tumbling bodies leave in the books' remainder falls with the step") {
+    const auto worst = [](double friction, double safety) {
+        Material m = soft();
+        m.restitution = 0.5;
+        m.friction = friction;
+        Aggregate a = make_block(5, 2, 2, 0.1, m), b = make_block(3, 3, 3, 0.09, m);
+        place(b,
+              {Quat(Eigen::AngleAxisd(0.6, Vec3(1, 1, 0.3).normalized())), Vec3(0.15, 0.32, 0.05)});
+        double energy = 0;
+        for (std::size_t p = 0; p < a.particle_count(); ++p) {
+            a.particle_velocity.set(p,
+                                    Vec3(0, 2, 0) + Vec3(0, 0, 6).cross(a.particle_position.at(p)));
+            energy += 0.5 * a.particle_mass[p] * a.particle_velocity.at(p).squaredNorm();
+        }
+        for (std::size_t p = 0; p < b.particle_count(); ++p) {
+            b.particle_velocity.set(p, Vec3(-0.5, -3, 0));
+            energy += 0.5 * b.particle_mass[p] * b.particle_velocity.at(p).squaredNorm();
+        }
+        SimSettings settings = motion_settings();
+        settings.step_safety = safety;
+        const Apparatus nothing;
+        Simulation simulation({&a, &b}, nothing, settings);
+        double most = 0;
+        for (int n = 0; n < 60; ++n) {
+            const FrameReport r = simulation.advance(still(0.005 * n), still(0.005 * (n + 1)));
+            most = std::max(most, std::abs(r.remainder));
+        }
+        return most / energy;
+    };
+    for (double friction : {0.0, 0.3}) {
+        const double coarse = worst(friction, 0.4), fine = worst(friction, 0.05);
+        INFO("friction " << friction << ": " << coarse << ' ' << fine);
+        CHECK(coarse < 4e-3);
+        CHECK(fine < 4e-4);
+        CHECK(fine < 0.25 * coarse);
+    }
+}
