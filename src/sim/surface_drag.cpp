@@ -2,15 +2,17 @@
 #include "sim/surface_drag.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
 #include "sim/surface_forces.h"
+#include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
 
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kChunk = 256;  // cells
 constexpr double kMostShare = 0.25;  // of a carrier's speed that a step may take
 
 }  // namespace
@@ -19,42 +21,109 @@ SurfaceDrag::SurfaceDrag(const Aggregate& matter, const SimSettings& settings, d
     : ambient_{settings.medium_density, settings.drag_coefficient},
       facing_{settings.directional_drag, settings.directional_drag_along} {
     if (!acts()) return;
-    const std::size_t points = matter.surface.size();
-    push_.resize(points);
-    power_.resize(points);
-    for (std::size_t p = 0; p < points; ++p) {
-        most_.push_back(kMostShare * lightest_carrier(matter, p) / step);
+    const SurfacePoints& surface = matter.surface;
+    const double a = matter.lattice.spacing;
+    for (std::size_t p = 0; p < surface.size(); ++p) {
+        // The weights are trilinear in the place within the cell, so they tell it.
+        Vec3 place = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) {
+            for (int d = 0; d < 3; ++d) {
+                if (c >> d & 1) place[d] += double(surface.weight[p][c]);
+            }
+        }
+        if (cell_.empty() || cell_.back().corner != surface.corner[p]) {
+            cell_.push_back({surface.corner[p], p, p});
+        }
+        ++cell_.back().end;
+        Patch& patch = patch_.emplace_back();
+        patch.place = vec4(place, kMostShare * lightest_carrier(matter, p) / step);
+        patch.area = vec4(surface.area[p] / (a * a) * surface.reference_normal[p]);
+        for (int c = 0; c < 8; ++c) patch.weight[c] = double(surface.weight[p][c]);
     }
+    push_.resize(cell_.size());
+    chunk_.resize((cell_.size() + kChunk - 1) / kChunk);
+}
+
+struct SurfaceDrag::Kernel {
+    SurfaceDrag& drag;
+    const Aggregate& matter;
+
+    // The present area vector of a patch [m2].
+    static SWAGE_INLINE Vec4 area_of(const Patch& patch, const Vec4* x) {
+        const double px = patch.place[0], py = patch.place[1], pz = patch.place[2];
+        const double qy = 1 - py, qz = 1 - pz;
+        const Vec4 e0 = x[1] - x[0], e1 = x[3] - x[2], e2 = x[5] - x[4], e3 = x[7] - x[6];
+        const Vec4 a0 = x[0] + px * e0, a1 = x[2] + px * e1, a2 = x[4] + px * e2,
+                   a3 = x[6] + px * e3;
+        const Vec4 along_x = qz * (qy * e0 + py * e1) + pz * (qy * e2 + py * e3),
+                   along_y = qz * (a1 - a0) + pz * (a3 - a2),
+                   along_z = (qy * a2 + py * a3) - (qy * a0 + py * a1);
+        return patch.area[0] * cross(along_y, along_z) + patch.area[1] * cross(along_z, along_x) +
+               patch.area[2] * cross(along_x, along_y);
+    }
+
+    SWAGE_INLINE void find(std::size_t chunk) const {
+        Chunk result;
+        const std::size_t stop = std::min(drag.cell_.size(), (chunk + 1) * kChunk);
+        const Vec3Array &place = matter.particle_position, &speed = matter.particle_velocity;
+        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
+            const Cell& cell = drag.cell_[n];
+            const auto of = [&](const Vec3Array& all, int c) __attribute__((always_inline)) {
+                const ParticleId p = cell.corner[c];
+                return Vec4{all.x[p], all.y[p], all.z[p], 0};
+            };
+            const Vec4 x[8]{of(place, 0), of(place, 1), of(place, 2), of(place, 3),
+                            of(place, 4), of(place, 5), of(place, 6), of(place, 7)};
+            const Vec4 v[8]{of(speed, 0), of(speed, 1), of(speed, 2), of(speed, 3),
+                            of(speed, 4), of(speed, 5), of(speed, 6), of(speed, 7)};
+            Vec4 push[8]{};
+            for (std::size_t m = cell.first; m < cell.end; ++m) {
+                const Patch& patch = drag.patch_[m];
+                Vec4 now{};
+                for (int c = 0; c < 8; ++c) now += patch.weight[c] * v[c];
+                const Vec4 outward = area_of(patch, x);
+                const double area = std::sqrt(dot3(outward, outward)),
+                             fast = std::sqrt(dot3(now, now));
+                if (!(area > 0 && fast > 0)) continue;
+                Vec3 f = ambient_drag_force(drag.ambient_, area, vec3(now));
+                if (drag.facing_.drag > 0) {
+                    f += directional_drag_force<double>(drag.facing_, area, vec3(now),
+                                                        vec3(outward / area));
+                }
+                const double size = f.squaredNorm(), most = patch.place[3] * fast;
+                if (size > most * most) {
+                    f *= most / std::sqrt(size);
+                    result.held = true;
+                }
+                const Vec4 force = vec4(f);
+                for (int c = 0; c < 8; ++c) push[c] += patch.weight[c] * force;
+                result.power -= dot3(force, now);
+            }
+            std::copy(push, push + 8, drag.push_[n].begin());
+        }
+        drag.chunk_[chunk] = result;
+    }
+};
+
+SWAGE_MIDDLE_VECTORS void SurfaceDrag::middle_find_chunk(const Aggregate& matter,
+                                                         std::size_t chunk) {
+    Kernel{*this, matter}.find(chunk);
+}
+
+void SurfaceDrag::find_chunk(const Aggregate& matter, std::size_t chunk) {
+    if (vector_width() >= 4) return middle_find_chunk(matter, chunk);
+    Kernel{*this, matter}.find(chunk);
 }
 
 double SurfaceDrag::add_forces(const Aggregate& matter, Vec3Array& force) {
-    const std::size_t points = push_.size(), chunks = (points + kChunk - 1) / kChunk;
-    std::vector<char> held(chunks, 0);
-    parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t end = std::min(points, (chunk + 1) * kChunk);
-        for (std::size_t p = chunk * kChunk; p < end; ++p) {
-            const Vec3 v = matter.surface_velocity(p);
-            const Vec3 area_vector = surface_area_vector(matter, static_cast<int>(p));
-            const double area = area_vector.norm(), speed = v.norm();
-            Vec3 f = Vec3::Zero();
-            if (area > 0 && speed > 0) {
-                f = ambient_drag_force(ambient_, area, v) +
-                    directional_drag_force<double>(facing_, area, v, area_vector / area);
-                const double size = f.norm(), most = most_[p] * speed;
-                if (size > most) {
-                    f *= most / size;
-                    held[chunk] = 1;
-                }
-            }
-            push_[p] = f;
-            power_[p] = -f.dot(v);
-        }
-    });
-    for (char one : held) held_ = held_ || one;
+    parallel_for(chunk_.size(), [&](std::size_t chunk) { find_chunk(matter, chunk); });
     double power = 0;
-    for (std::size_t p = 0; p < points; ++p) {
-        spread(matter.surface, static_cast<int>(p), push_[p], force);
-        power += power_[p];
+    for (const Chunk& one : chunk_) {
+        held_ = held_ || one.held;
+        power += one.power;
+    }
+    for (std::size_t n = 0; n < cell_.size(); ++n) {
+        for (int c = 0; c < 8; ++c) force.add(cell_[n].corner[c], vec3(push_[n][c]));
     }
     return power;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a medium around the work-piece does to its true surface, in explicit steps.
+// What a medium around the work-piece does to its true surface, in explicit steps. Points of one
+// cell follow one another: what the cell's corners do is read, and what they get is given, once for
+// all of them.
 #pragma once
 
 #include <vector>
@@ -8,6 +10,7 @@
 #include "laws/directional_drag.h"
 #include "matter/aggregate.h"
 #include "sim/settings.h"
+#include "sim/vec4.h"
 
 namespace swage {
 
@@ -24,11 +27,29 @@ class SurfaceDrag {
     bool is_held() const { return held_; }  // whether any drag ever was
 
   private:
+    struct alignas(32) Patch {
+        Vec4 place;  // in the cell; most force over speed [N s/m]
+        Vec4 area;   // outward at molding, over the spacing squared
+        std::array<double, 8> weight;
+    };
+    struct Cell {
+        std::array<ParticleId, 8> corner;
+        std::size_t first, end;  // patches
+    };
+    struct Chunk {
+        double power = 0;
+        bool held = false;
+    };
+    struct Kernel;
+    void find_chunk(const Aggregate& matter, std::size_t chunk);
+    void middle_find_chunk(const Aggregate& matter, std::size_t chunk);
+
     AmbientDrag ambient_;
     DirectionalDrag facing_;
-    std::vector<double> most_;  // force over speed, a point [N s/m]
-    std::vector<Vec3> push_;
-    std::vector<double> power_;
+    std::vector<Patch> patch_;
+    std::vector<Cell> cell_;
+    std::vector<std::array<Vec4, 8>> push_;  // of each cell's corners [N]
+    std::vector<Chunk> chunk_;
     bool held_ = false;
 };
 
