@@ -80,6 +80,39 @@ SWAGE_INLINE Dual<N> larger(const Dual<N>& a, double b) {
     return larger(a, Dual<N>{b + 0.0 * a.value, 0.0 * a.value});
 }
 
+// Numbers that do not change.
+template <typename N>
+SWAGE_INLINE Dual<N> constant(const N& v) {
+    return {v, N{}};
+}
+template <typename N>
+SWAGE_INLINE Triple<Dual<N>> constant(const Triple<N>& v) {
+    return {constant(v.x), constant(v.y), constant(v.z)};
+}
+template <typename N>
+SWAGE_INLINE CellModes<Dual<N>> constant(const CellModes<N>& v) {
+    return {constant(v.xy), constant(v.yz), constant(v.zx), constant(v.xyz)};
+}
+template <typename N>
+SWAGE_INLINE CellHistory<Dual<N>> constant(const CellHistory<N>& v) {
+    const Symmetric<N>& e = v.strain;
+    return {{constant(e.xx), constant(e.yy), constant(e.zz), constant(e.xy), constant(e.yz),
+             constant(e.zx)},
+            constant(v.modes),
+            constant(v.alpha)};
+}
+
+// With a slope.
+template <typename N>
+SWAGE_INLINE Triple<Dual<N>> pair(const Triple<N>& v, const Triple<N>& s) {
+    return {{v.x, s.x}, {v.y, s.y}, {v.z, s.z}};
+}
+template <typename N>
+SWAGE_INLINE CornerSums<Dual<N>> pair(const CornerSums<N>& v, const CornerSums<N>& s) {
+    return {pair(v.x, s.x),   pair(v.y, s.y),   pair(v.z, s.z),    pair(v.xy, s.xy),
+            pair(v.yz, s.yz), pair(v.zx, s.zx), pair(v.xyz, s.xyz)};
+}
+
 // The same with its slope times s.
 template <typename N>
 SWAGE_INLINE Dual<N> slope_scaled(const Dual<N>& a, double s) {

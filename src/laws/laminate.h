@@ -8,19 +8,23 @@
 //     a minimises W:   (P_1 - P_2) n = 0,   P_m = dw_m/dF_m                       [Pa]
 //
 // so that layers in series share the stress and layers side by side the strain. By the minimum the
-// forces are the gradient of W with a held. Plastic flow couples strain and modes within each
-// material as in laws/cell.h.
-//
-// NOTE: where either material can yield there is no jump (a = 0): with flow in it the minimum was
-// not found in one cell of twenty, which kept whole bodies from coming to rest. In series such
-// cells are too stiff, by f_soft a / L of the strain over a soft length L at most.
+// forces are the gradient of W with a held. Where a material can flow, w_m is what its increment
+// from the committed history takes, which is convex too. Plastic flow couples strain and modes
+// within each material as in laws/cell.h.
 //
 // Source of the jump: rank-one laminates, e.g. G. Milton, "The theory of composites", 2002, ch. 9.
 // a is found by Broyden's method from the laminate of small strains (C. Broyden, "A class of
-// methods for solving nonlinear simultaneous equations", Math. Comp. 19, 1965).
+// methods for solving nonlinear simultaneous equations", Math. Comp. 19, 1965), and where that
+// takes long, as it does when flow sets in, by Newton's with the exact tangent. No step goes where
+// W has risen steeply again.
+//
+// NOTE: strained by 0.05 in one increment, 50 times what it yields at, every cell of thousands
+// finds its jump; at 0.2, where W is not convex any more, one in fifty, and of two materials
+// without hardening one in five, does not: its two sides then carry tractions that differ somewhat.
 #pragma once
 
 #include "laws/cell_forces.h"
+#include "laws/dual.h"
 
 namespace swage {
 
@@ -85,9 +89,75 @@ SWAGE_INLINE bool all_less(const V& a, const V& b) {
     return all;
 }
 
+// What a change of a by each of the axes does to the traction P n at gradient f + a n^T.
+template <typename N>
+SWAGE_INLINE Columns<N> traction_slope(const Phase<N>& m, const Columns<N>& f,
+                                       const CellModes<N>& modes, const Triple<N>& n) {
+    const Phase<Dual<N>> phase = {m.law, m.kind, constant(m.fill), constant(m.at),
+                                  constant(m.history)};
+    Columns<N> slope{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const N none{}, one = none + 1.0;
+        const Triple<N> e = {axis == 0 ? one : none, axis == 1 ? one : none,
+                             axis == 2 ? one : none};
+        PhaseState<Dual<N>> s;
+        s.modes = constant(modes);
+        find_stress(phase, {pair(f.x, n.x * e), pair(f.y, n.y * e), pair(f.z, n.z * e)}, s);
+        const Triple<Dual<N>> t = s.stress * constant(n);
+        (axis == 0 ? slope.x : axis == 1 ? slope.y : slope.z) = {t.x.slope, t.y.slope, t.z.slope};
+    }
+    return slope;
+}
+
+template <typename N>
+SWAGE_INLINE Columns<N> inverse_of(const Columns<N>& m) {
+    const Triple<N> x = cross(m.y, m.z), y = cross(m.z, m.x), z = cross(m.x, m.y);
+    const N over = 1.0 / dot(m.x, x);
+    return {over * Triple<N>{x.x, y.x, z.x}, over * Triple<N>{x.y, y.y, z.y},
+            over * Triple<N>{x.z, y.z, z.z}};
+}
+
+template <typename M, typename N>
+SWAGE_INLINE Triple<N> pick(const M& which, const Triple<N>& a, const Triple<N>& b) {
+    return {which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z};
+}
+
 inline constexpr int kMostRounds = 40;
+inline constexpr int kSecantRounds = 6;         // without the tangent
 inline constexpr double kTractionLeft = 1e-11;  // of the tractions
 inline constexpr double kNoise = 1e-14;         // of the stiffer material's moduli
+inline constexpr double kTooFar = 0.5;          // of the slope of W, on the other side
+inline constexpr double kLongest = 0.3;         // of a step of a
+inline constexpr double kFirm = 1e-7;           // of the stiffness, where flow leaves none
+
+// The gradient's part in the jump, of each material.
+template <typename N>
+SWAGE_INLINE void jump_shares(const Phase<N> (&m)[2], N (&share)[2]) {
+    const N all = m[0].fill + m[1].fill;
+    share[0] = m[1].fill / all, share[1] = -1.0 * m[0].fill / all;
+}
+template <typename N>
+SWAGE_INLINE Columns<N> jumped(const Columns<N>& f, const Triple<N>& n, const Triple<N>& by) {
+    return {f.x + n.x * by, f.y + n.y * by, f.z + n.z * by};
+}
+
+// Of the tractions' difference with a, at a.
+template <typename N>
+SWAGE_INLINE Columns<N> jump_slope(const Phase<N> (&m)[2], const Triple<N>& n,
+                                   const Laminate<N>& r) {
+    N share[2];
+    jump_shares(m, share);
+    Columns<N> sum{};
+    for (int p = 0; p < 2; ++p) {
+        const Columns<N> slope = traction_slope(
+            m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p].modes, n);
+        const N weight = p == 0 ? share[0] : -1.0 * share[1];
+        const N firm = (kFirm * m[p].law->shear) * weight;
+        sum = {sum.x + weight * slope.x, sum.y + weight * slope.y, sum.z + weight * slope.z};
+        sum.x.x = sum.x.x + firm, sum.y.y = sum.y.y + firm, sum.z.z = sum.z.z + firm;
+    }
+    return sum;
+}
 
 template <typename N>
 SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const Triple<N>& n,
@@ -96,8 +166,8 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         r.phase[p].gradient = phase_gradient(c, m[p].at, spacing);
         r.phase[p].modes = pulled_back(r.phase[p].gradient, c);
     }
-    const N all = m[0].fill + m[1].fill;
-    const N share[2] = {m[1].fill / all, -1.0 * m[0].fill / all};
+    N share[2];
+    jump_shares(m, share);
     // Inverse of the acoustic tensor of small strains, sum of mu (1 + v v^T) with v along the
     // normal as the cell has turned it.
     N shear{}, along{};
@@ -110,50 +180,60 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
     const Triple<N> turned = r.phase[0].gradient * n;
     const N over = 1.0 / (dot(turned, turned) + 1e-300);
     const N one = 1.0 / shear, less = along / (shear * (shear + along)) * over;
-    Columns<N> inverse = {(-1.0 * less * turned.x) * turned, (-1.0 * less * turned.y) * turned,
-                          (-1.0 * less * turned.z) * turned};
-    inverse.x.x = inverse.x.x + one;
-    inverse.y.y = inverse.y.y + one;
-    inverse.z.z = inverse.z.z + one;
+    Columns<N> firm = {(-1.0 * less * turned.x) * turned, (-1.0 * less * turned.y) * turned,
+                       (-1.0 * less * turned.z) * turned};
+    firm.x.x = firm.x.x + one;
+    firm.y.y = firm.y.y + one;
+    firm.z.z = firm.z.z + one;
 
     const double noise =
         kNoise * larger(m[0].law->shear + m[0].law->bulk, m[1].law->shear + m[1].law->bulk);
-    const bool flows = m[0].kind == CellKind::yielding || m[1].kind == CellKind::yielding;
-    r.jump = {N{}, N{}, N{}};
-    Triple<N> step{}, last{};
+    const N none{};
+    const Triple<N> nowhere{};
+    Columns<N> inverse = firm;
+    Triple<N> from{}, way{}, last{};  // the step on trial begins there, with that difference
+    N start{}, length = none + 1.0;   // slope of W along it; share of it that is on trial
+    r.jump = nowhere;
     for (r.rounds = 0;; ++r.rounds) {
         Triple<N> pull[2];
         for (int p = 0; p < 2; ++p) {
-            const Triple<N> by = share[p] * r.jump;
-            const Columns<N>& f = r.phase[p].gradient;
-            find_stress(m[p], Columns<N>{f.x + n.x * by, f.y + n.y * by, f.z + n.z * by},
-                        r.phase[p]);
+            find_stress(m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p]);
             pull[p] = r.phase[p].stress * n;
         }
         const Triple<N> left = pull[0] - pull[1];
         const N size = dot(pull[0], pull[0]) + dot(pull[1], pull[1]);
         const N wrong = dot(left, left),
                 right = kTractionLeft * kTractionLeft * size + noise * noise;
-        if (flows || r.rounds == kMostRounds || all_less(wrong, right)) return;
-        if (r.rounds > 0) {
+        if (r.rounds == kMostRounds || all_less(wrong, right)) return;
+        const auto arrived = wrong < right;
+        const N now = dot(left, way);
+        const auto good = arrived | (now <= -kTooFar * start);
+        if (r.rounds < kSecantRounds) {
             // The step was meant to bring the difference to nothing; what it did corrects.
-            const Triple<N> gone = inverse * (left - last);
+            const Triple<N> step = r.jump - from, gone = inverse * (left - last);
             const Triple<N> row = {dot(step, inverse.x), dot(step, inverse.y),
                                    dot(step, inverse.z)};
-            const N scale = dot(step, gone);
-            const N full = dot(step, step), none{};
-            const N factor = scale > 0.1 * full ? 1.0 / (scale + 1e-300) : none;
-            const Triple<N> missed = factor * (step - gone);
+            const N scale = dot(step, gone), enough = 0.1 * dot(step, step);
+            const Triple<N> missed =
+                pick(scale > enough, (1.0 / (scale + 1e-300)) * (step - gone), nowhere);
             inverse = {inverse.x + row.x * missed, inverse.y + row.y * missed,
                        inverse.z + row.z * missed};
+        } else {
+            inverse = inverse_of(jump_slope(m, n, r));
         }
-        // Lanes that have arrived stay.
-        const Triple<N> on = inverse * left;
-        const N none{};
-        step = {wrong < right ? none : -1.0 * on.x, wrong < right ? none : -1.0 * on.y,
-                wrong < right ? none : -1.0 * on.z};
-        last = left;
-        r.jump = r.jump + step;
+        Triple<N> next = -1.0 * (inverse * left);
+        next = pick(dot(left, next) < none, next, -1.0 * (firm * left));
+        const N far = root(dot(next, next));
+        next = pick(far > kLongest + none, (kLongest / (far + 1e-300)) * next, next);
+        next = pick(arrived, nowhere, next);  // lanes that have arrived stay
+        const N cut = start / (start - now), least = none + 0.1, most = none + 0.7;
+        const N shorter = cut > least ? (cut < most ? cut : most) : least;
+        from = pick(good, r.jump, from);
+        last = pick(good, left, last);
+        way = pick(good, next, way);
+        start = good ? dot(left, next) : start;
+        length = good ? none + 1.0 : length * shorter;
+        r.jump = from + length * way;
     }
 }
 

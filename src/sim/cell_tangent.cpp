@@ -27,30 +27,13 @@ struct RunView {
 };
 
 template <typename V>
-SWAGE_INLINE Dual<V> constant(const V& v) {
-    return {v, V{}};
-}
-template <typename V>
-SWAGE_INLINE Triple<Dual<V>> pair(const Triple<V>& v, const Triple<V>& s) {
-    return {{v.x, s.x}, {v.y, s.y}, {v.z, s.z}};
-}
-template <typename V>
 SWAGE_INLINE Triple<V> minus_slope(const Triple<Dual<V>>& a) {
     return {-a.x.slope, -a.y.slope, -a.z.slope};
 }
 
 template <typename V>
-SWAGE_INLINE Triple<Dual<V>> constant(const Triple<V>& v) {
-    return {constant(v.x), constant(v.y), constant(v.z)};
-}
-template <typename V>
 SWAGE_INLINE CellHistory<Dual<V>> history_of(const RunView& run, int begin) {
-    const CellHistory<V> h = load_history<V>(run.history, run.first + begin);
-    return {
-        {constant(h.strain.xx), constant(h.strain.yy), constant(h.strain.zz), constant(h.strain.xy),
-         constant(h.strain.yz), constant(h.strain.zx)},
-        {constant(h.modes.xy), constant(h.modes.yz), constant(h.modes.zx), constant(h.modes.xyz)},
-        constant(h.alpha)};
+    return constant(load_history<V>(run.history, run.first + begin));
 }
 
 // Minus the change of the cells' forces on their corners' sums.
@@ -59,9 +42,7 @@ SWAGE_INLINE CornerSums<V> tangent_forces(const CellConstants& constants, const 
                                           int begin, double turning, const CornerSums<V>& x,
                                           const CornerSums<V>& way) {
     using N = Dual<V>;
-    const CornerSums<N> c = {pair(x.x, way.x),    pair(x.y, way.y),   pair(x.z, way.z),
-                             pair(x.xy, way.xy),  pair(x.yz, way.yz), pair(x.zx, way.zx),
-                             pair(x.xyz, way.xyz)};
+    const CornerSums<N> c = pair(x, way);
     CornerSums<N> r;
     const bool flowed = kKind == CellKind::yielding && run.history.alpha != nullptr;
     if (run.whole[begin / kLanes]) {

@@ -180,7 +180,11 @@ void Stand::start_from(const Aggregate& coarse) {
 FrameReport Stand::settle() {
     FrameReport report;
     Vec3Array last;
-    const bool jumps = std::isinf(matter.material.yield_stress) && !matter.material.breaks();
+    bool jumps = true;
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        const Material& material = matter.material_at(m);
+        jumps = jumps && std::isinf(material.yield_stress) && !material.breaks();
+    }
     for (int frame = 0; frame < kMostFrames; ++frame) {
         const Vec3Array before = matter.particle_position;
         report = move(drive);

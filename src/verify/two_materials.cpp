@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bars of two materials, one a hundred times as stiff, whose boundary runs through cells.
 #include <cmath>
+#include <limits>
+#include <memory>
 
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
@@ -120,6 +122,155 @@ void layers_across(bool brief, Values& values) {
     }
 }
 
+// What a material bears when it is sheared by g, and how far it goes under t; linear hardening.
+struct Sheared {
+    double modulus, yields, hardening;  // mu; yield stress in shear; of t over plastic shear [Pa]
+
+    explicit Sheared(const Material& m)
+        : modulus(m.young_modulus / (2 + 2 * m.poisson_ratio)),
+          yields(m.yield_stress / std::sqrt(3.0)),
+          hardening(m.hardening / 3) {}
+    double flow_at(double t) const { return t > yields ? (t - yields) / hardening : 0; }
+    double strain_at(double t) const { return t / modulus + flow_at(t); }
+    double stress_at(double g) const {
+        const double t = modulus * g;
+        return t < yields ? t : (g + yields / hardening) / (1 / modulus + 1 / hardening);
+    }
+};
+
+// A block of two layers, the stiff one above y or z = at; sheared in x and y.
+struct ShearedBlock {
+    struct Yields {
+        const char* flows;
+        double soft, stiff;  // [Pa]
+    };
+    Material soft = unit_material(0.25), stiff = soft;
+    double low;  // share of the soft layer
+    std::unique_ptr<Stand> stand;
+
+    ShearedBlock(int across, double fraction, int axis, const Yields& yields) {
+        const double a = 1.0 / across, at = -0.5 + (across / 2 + fraction) * a;
+        low = at + 0.5;
+        stiff.young_modulus = kStiff;
+        soft.yield_stress = yields.soft, stiff.yield_stress = yields.stiff;
+        soft.hardening = 0.2, stiff.hardening = 5;
+        MoldSettings settings;
+        settings.spacing = a;
+        const Vec3 half = Vec3::Constant(0.5);
+        Vec3 from = -half;
+        from[axis] = at;
+        stand = std::make_unique<Stand>(
+            mold(box_mesh(-half, half), soft, settings, {{box_mesh(from, half), stiff}}));
+    }
+    std::vector<int> face(int axis, double side) const {
+        return end_face(stand->matter, side * Vec3::Unit(axis));
+    }
+    double shear() const {
+        double sum = 0;
+        for (int axis : {0, 1}) {
+            for (double side : {-1.0, 1.0}) {
+                sum += side * mean_move(stand->matter, face(axis, side))[1 - axis];
+            }
+        }
+        return sum;
+    }
+};
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// Layers in series bear the same: dead loads on four faces, and taken off again.
+void yield_in_series(int across, double fraction, const ShearedBlock::Yields& yields,
+                     Values& values) {
+    constexpr double kStress = 1.2e-3;
+    ShearedBlock block(across, fraction, 1, yields);
+    Stand& stand = *block.stand;
+    for (int axis : {0, 1}) {
+        for (double side : {-1.0, 1.0}) {
+            stand.load(block.face(axis, side), side * kStress * Vec3::Unit(1 - axis));
+        }
+    }
+    // It would turn over, so that all of it is pulled.
+    stand.grip(block.face(2, -1), Vec3::UnitZ());
+    stand.grip(block.face(2, 1), Vec3::UnitZ());
+    const auto go_to = [&](double strength) {
+        Drive to = stand.drive;
+        to.time += 1;
+        for (double& one : to.load_strength) one = strength;
+        stand.move(to);
+    };
+    for (double& one : stand.drive.load_strength) one = 0;
+    for (double strength : {0.25, 0.5, 0.75, 1.0}) go_to(strength);
+    stand.settle();
+    const Sheared s(block.soft), h(block.stiff);
+    const double low = block.low, g = low * s.strain_at(kStress) + (1 - low) * h.strain_at(kStress);
+    const std::string what = std::string("in series, ") + yields.flows;
+    values.add(relative(at_fraction((what + ": shear").c_str(), fraction), across, g, block.shear(),
+                        0.002));
+    for (double strength : {0.5, 0.0}) go_to(strength);
+    stand.settle();
+    const double left = low * s.flow_at(kStress) + (1 - low) * h.flow_at(kStress);
+    values.add(absolute(at_fraction((what + ": share left of it").c_str(), fraction), across,
+                        left / g, block.shear() / g, 0.005));
+}
+
+// Layers side by side go as far: four faces are led, and half of the way back.
+void yield_side_by_side(int across, double fraction, const ShearedBlock::Yields& yields,
+                        Values& values) {
+    constexpr double kShear = 4e-3;
+    ShearedBlock block(across, fraction, 2, yields);
+    Stand& stand = *block.stand;
+    for (double side : {-1.0, 1.0}) stand.grip(block.face(1, side));
+    for (double side : {-1.0, 1.0}) stand.grip(block.face(0, side));
+    const Drive start = stand.drive;
+    FrameReport report;
+    const auto go_to = [&](double g) {
+        Drive to = start;
+        to.time = stand.drive.time + 1;
+        to.world_from_grip[0].translation.x() -= 0.5 * g;
+        to.world_from_grip[1].translation.x() += 0.5 * g;
+        for (int n : {2, 3}) {
+            to.world_from_grip[n].rotation = Quat(Eigen::AngleAxisd(-g, Vec3::UnitZ()));
+        }
+        report = stand.move(to);
+    };
+    // Of all forces on the faces, sum of (f_x r_y + f_y r_x) / 2: edges belong to two faces.
+    const auto mean_stress = [&] {
+        double sum = 0;
+        for (int n = 0; n < 4; ++n) {
+            const double arm = n % 2 ? 0.5 : -0.5, lever = n < 2 ? 1 : -1;
+            sum += 0.5 *
+                   (report.load[n].force[n < 2 ? 0 : 1] * arm + lever * report.load[n].torque.z());
+        }
+        return sum;
+    };
+    for (double share : {0.25, 0.5, 0.75, 1.0}) go_to(share * kShear);
+    report = stand.settle();
+    const Sheared s(block.soft), h(block.stiff);
+    const double low = block.low, g = block.shear();
+    const auto mean = [&](double soft, double stiff) { return low * soft + (1 - low) * stiff; };
+    const double stress = mean(s.stress_at(g), h.stress_at(g));
+    const std::string what = std::string("side by side, ") + yields.flows;
+    values.add(relative(at_fraction((what + ": stress").c_str(), fraction), across, stress,
+                        mean_stress(), 0.005));
+    for (double share : {0.75, 0.5}) go_to(share * kShear);
+    report = stand.settle();
+    const double back = g - block.shear();
+    values.add(absolute(at_fraction((what + ": share left half-way back").c_str(), fraction),
+                        across, 1 - mean(s.modulus, h.modulus) * back / stress,
+                        mean_stress() / stress, 0.005));
+}
+
+void layers_yield(bool brief, Values& values) {
+    for (int across : brief ? std::vector{4} : std::vector{4, 8}) {
+        for (double fraction : brief ? std::vector{0.5} : std::vector{0.25, 0.5, 0.9}) {
+            yield_in_series(across, fraction, {"the soft one flows", 1e-3, kNever}, values);
+            yield_in_series(across, fraction, {"both flow", 1e-3, 1.5e-3}, values);
+            yield_side_by_side(across, fraction, {"the soft one flows", 1e-3, kNever}, values);
+            yield_side_by_side(across, fraction, {"the stiff one flows", kNever, 0.1}, values);
+            yield_side_by_side(across, fraction, {"both flow", 1e-3, 0.1}, values);
+        }
+    }
+}
+
 // The lowest swing along a free bar of two materials end to end, of lengths l and wave speeds c:
 // E_1 k_1 tan(k_1 l_1) + E_2 k_2 tan(k_2 l_2) = 0, k = w / c; the shape has cos(k x) from each end.
 struct SeriesSwing {
@@ -209,6 +360,8 @@ void add_two_material_cases(std::vector<Case>& cases) {
                      "plane sections", 0, false, layers_along});
     cases.push_back({"layers-across", "two materials, 1 : 100, in series: stretched", "Hooke", 0,
                      true, layers_across});
+    cases.push_back({"layers-yield", "two materials, 1 : 100, sheared past yield and let go",
+                     "linear hardening", 0, true, layers_yield});
     cases.push_back({"layers-swing", "two materials, 1 : 100, in series: a free bar swings",
                      "wave equation", 0, true, layers_swing});
 }

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <random>
+
+#include "laws/laminate.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+constexpr double kSpacing = 0.1;
+
+struct Cell {
+    double at[3][8];
+    CellModuli law[2];
+    CellKind kind[2];
+    double fill[2];
+    Triple<double> place[2], normal;
+    CellHistory<double> history[2]{};
+
+    void phases(Phase<double> (&m)[2]) const {
+        for (int p = 0; p < 2; ++p) {
+            m[p] = {&law[p], kind[p], fill[p], place[p], history[p]};
+        }
+    }
+    CornerSums<double> sums() const {
+        CornerSums<double> c;
+        sum_corners(at[0], c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
+        sum_corners(at[1], c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
+        sum_corners(at[2], c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
+        return c;
+    }
+    Laminate<double> solved() const {
+        Phase<double> m[2];
+        phases(m);
+        Laminate<double> r;
+        laminate(sums(), m, normal, kSpacing, r);
+        return r;
+    }
+    // What the increment from the history takes, elastic and plastic together.
+    double energy() const {
+        Phase<double> m[2];
+        phases(m);
+        const Laminate<double> r = solved();
+        double share[2], sum = 0;
+        jump_shares(m, share);
+        const double volume = kSpacing * kSpacing * kSpacing;
+        for (int p = 0; p < 2; ++p) {
+            const PhaseState<double>& s = r.phase[p];
+            const Columns<double> f = jumped(s.gradient, normal, share[p] * r.jump);
+            const CellModes<double> q = s.modes - history[p].modes;
+            const double modes = 0.5 * mode_fill(fill[p]) * product(mode_stress(law[p], q), q);
+            if (kind[p] == CellKind::rubber) {
+                sum += volume * fill[p] * rubber_energy(law[p], f) + modes;
+                continue;
+            }
+            const Symmetric<double> e = cell_strain(f).log;
+            sum += volume * fill[p] * strain_energy(law[p], e, history[p]) + modes;
+            if (kind[p] != CellKind::yielding) continue;
+            const CellFlowed<double> flowed = flow_cell(law[p], history[p], e, s.modes, fill[p]);
+            const double over = std::max(0.0, flowed.over);
+            sum -= volume * fill[p] * over * over / (2 * (3 * law[p].shear + law[p].hardening));
+        }
+        return sum;
+    }
+};
+
+// Strained by about `strain`, with flow behind it; yielding at 1e-3.
+Cell random_cell(std::mt19937& engine, double strain, double ratio, bool hardens) {
+    std::uniform_real_distribution<double> draw(-1, 1);
+    Cell cell;
+    for (int p = 0; p < 2; ++p) {
+        const double e = p == 0 ? 1.0 : ratio;
+        const double yields = e * 1e-3 * (1.5 + draw(engine));
+        cell.law[p] = cell_moduli(e, 0.3, kSpacing, yields, hardens ? 0.02 * e : 0);
+        cell.kind[p] = p == 0 || draw(engine) > 0 ? CellKind::yielding : CellKind::elastic;
+    }
+    cell.fill[0] = 0.5 + 0.45 * draw(engine);
+    cell.fill[1] = 1 - cell.fill[0];
+    const Triple<double> n = {draw(engine), draw(engine), draw(engine)};
+    cell.normal = (1 / std::sqrt(dot(n, n))) * n;
+    for (int p = 0; p < 2; ++p) {
+        cell.place[p] = ((p == 0 ? -1 : 1) * (1 - cell.fill[p])) * cell.normal;
+    }
+    double turn[3][3], angle = 3 * draw(engine);
+    const Triple<double> axis = cell.normal;  // any
+    const double w[3] = {axis.x, axis.y, axis.z}, c = std::cos(angle), s = std::sin(angle);
+    const double skew[3][3] = {{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}};
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            turn[i][j] = (i == j ? c : 0) + s * skew[i][j] + (1 - c) * w[i] * w[j];
+        }
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+        double x[3];
+        for (int i = 0; i < 3; ++i) {
+            x[i] = kSpacing * ((corner >> i & 1) - 0.5 + 0.3 * strain * draw(engine));
+        }
+        x[0] *= 1 + strain;
+        x[1] += strain * x[2];
+        for (int i = 0; i < 3; ++i) {
+            cell.at[i][corner] = turn[i][0] * x[0] + turn[i][1] * x[1] + turn[i][2] * x[2];
+        }
+    }
+    return cell;
+}
+
+void flow(Cell& cell) {
+    const Laminate<double> r = cell.solved();
+    for (int p = 0; p < 2; ++p) {
+        const CellFlowed<double>& s = r.phase[p].flowed;
+        if (cell.kind[p] != CellKind::yielding || !(s.d_alpha > 0)) continue;
+        CellHistory<double>& h = cell.history[p];
+        h.strain = h.strain + (1 - s.kept) * s.distortion;
+        const CellModes<double> grown = (1 - s.kept) * s.modes;
+        h.modes = {h.modes.xy + grown.xy, h.modes.yz + grown.yz, h.modes.zx + grown.zx,
+                   h.modes.xyz + grown.xyz};
+        h.alpha += s.d_alpha;
+    }
+}
+
+double traction_left(const Cell& cell, const Laminate<double>& r) {
+    const Triple<double> one = r.phase[0].stress * cell.normal,
+                         other = r.phase[1].stress * cell.normal, left = one - other;
+    return std::sqrt(dot(left, left) / (dot(one, one) + dot(other, other)));
+}
+
+}  // namespace
+
+TEST_CASE("both sides of a boundary carry one traction, whatever flows") {
+    std::mt19937 engine(5);
+    int tried = 0, missed = 0, most = 0;
+    long rounds = 0;
+    for (bool hardens : {true, false}) {
+        for (double ratio : {1.0, 10.0, 1000.0}) {
+            for (double strain : {1e-4, 2e-3, 0.02, 0.05}) {
+                for (int n = 0; n < 60; ++n) {
+                    Cell cell = random_cell(engine, strain, ratio, hardens);
+                    for (int step = 0; step < 3; ++step) {
+                        const Laminate<double> r = cell.solved();
+                        ++tried;
+                        rounds += r.rounds;
+                        most = std::max(most, r.rounds);
+                        missed += !(traction_left(cell, r) < 1e-7);
+                        flow(cell);
+                        for (auto& row : cell.at) {
+                            for (double& x : row) {
+                                x += 0.3 * strain * kSpacing *
+                                     std::uniform_real_distribution<double>(-1, 1)(engine);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    INFO(tried << " tried, rounds in the mean " << double(rounds) / tried << ", at most " << most);
+    CHECK(missed == 0);
+    CHECK(double(rounds) / tried < 8);
+}
+
+TEST_CASE(
+    "a cell of two materials pushes by the slope of its increment's energy, as flow sets in") {
+    std::mt19937 engine(7);
+    for (bool hardens : {true, false}) {
+        for (double strain : {1e-3, 5e-3, 0.03}) {
+            for (int n = 0; n < 20; ++n) {
+                Cell cell = random_cell(engine, strain, 30, hardens);
+                if (n % 5 == 4) cell.kind[1] = CellKind::rubber;
+                if (n % 2) flow(cell);
+                Phase<double> m[2];
+                cell.phases(m);
+                const Laminate<double> r = cell.solved();
+                const CornerSums<double> f = laminate_forces(cell.sums(), m, r, kSpacing);
+                double force[3][8], largest = 0;
+                spread_corners(f.x.x, f.y.x, f.z.x, f.xy.x, f.yz.x, f.zx.x, f.xyz.x, force[0]);
+                spread_corners(f.x.y, f.y.y, f.z.y, f.xy.y, f.yz.y, f.zx.y, f.xyz.y, force[1]);
+                spread_corners(f.x.z, f.y.z, f.z.z, f.xy.z, f.yz.z, f.zx.z, f.xyz.z, force[2]);
+                for (const auto& row : force) {
+                    for (double v : row) largest = std::max(largest, std::abs(v));
+                }
+                const double h = 1e-5 * strain * kSpacing;
+                for (int corner = 0; corner < 8; corner += 3) {
+                    for (int i = 0; i < 3; ++i) {
+                        Cell moved = cell;
+                        moved.at[i][corner] += h;
+                        const double up = moved.energy();
+                        moved.at[i][corner] -= 2 * h;
+                        const double slope = (up - moved.energy()) / (2 * h);
+                        CHECK(std::abs(force[i][corner] + slope) < 1e-4 * largest);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("layers in series and side by side past yield are as their materials alone") {
+    // Sheared by g, so that layers in series share the stress t and those beside it the strain:
+    // t = mu g elastic, and beyond yield g = t / mu + (sqrt(3) t - sigma) sqrt(3) / H.
+    const double fill = 0.3, g = 6e-3;
+    const auto stress = [](const CellModuli& m, double strain) {
+        const double elastic = m.shear * strain;
+        if (std::sqrt(3.0) * elastic < m.yield_stress) return elastic;
+        return (strain + std::sqrt(3.0) * m.yield_stress / m.hardening) /
+               (1 / m.shear + 3 / m.hardening);
+    };
+    const auto strain = [](const CellModuli& m, double t) {
+        return t / m.shear +
+               std::max(0.0, std::sqrt(3.0) * t - m.yield_stress) * std::sqrt(3.0) / m.hardening;
+    };
+    for (bool series : {true, false}) {
+        Cell cell{};
+        cell.law[0] = cell_moduli(1, 0.3, kSpacing, 1e-3, 0.1);
+        cell.law[1] = cell_moduli(10, 0.2, kSpacing, 1.5e-3, 0.2);
+        cell.kind[0] = cell.kind[1] = CellKind::yielding;
+        cell.fill[0] = fill, cell.fill[1] = 1 - fill;
+        cell.normal = series ? Triple<double>{0, 1, 0} : Triple<double>{0, 0, 1};
+        cell.place[0] = (fill - 1) * cell.normal, cell.place[1] = fill * cell.normal;
+        for (int corner = 0; corner < 8; ++corner) {
+            double x[3];
+            for (int i = 0; i < 3; ++i) x[i] = kSpacing * ((corner >> i & 1) - 0.5);
+            x[0] += g * x[1];
+            for (int i = 0; i < 3; ++i) cell.at[i][corner] = x[i];
+        }
+        const Laminate<double> r = cell.solved();
+        for (int p = 0; p < 2; ++p) {
+            const double t = r.phase[p].stress.y.x;
+            CAPTURE(series, p, t);
+            if (!series) CHECK(t == Approx(stress(cell.law[p], g)).epsilon(1e-3));
+        }
+        if (!series) continue;
+        const double t = r.phase[0].stress.y.x;
+        CHECK(r.phase[1].stress.y.x == Approx(t).epsilon(1e-6));
+        CHECK(fill * strain(cell.law[0], t) + (1 - fill) * strain(cell.law[1], t) ==
+              Approx(g).epsilon(1e-3));
+        CHECK(r.phase[0].flowed.d_alpha > 0);
+        CHECK(r.phase[1].flowed.d_alpha > 0);
+    }
+}
