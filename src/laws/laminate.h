@@ -46,9 +46,20 @@ struct PhaseState {
     CellFlowed<N> flowed;      // of what yields
 };
 
-// Stress at gradient f.
 template <typename N>
-SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState<N>& s) {
+SWAGE_INLINE const Columns<N>& turned_by(const Columns<N>& f, double) {
+    return f;
+}
+template <typename N>
+SWAGE_INLINE Columns<Dual<N>> turned_by(const Columns<Dual<N>>& f, double turning) {
+    return slope_scaled(f, turning);
+}
+
+// Stress at gradient f. Numbers with a slope: of what turning does to the stress, theirs gets the
+// share `turning`.
+template <typename N>
+SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState<N>& s,
+                              double turning = 1) {
     if (m.kind == CellKind::rubber) {
         s.stress = rubber_stress(*m.law, f);
         s.mode_stress = mode_stress(*m.law, s.modes);
@@ -60,7 +71,7 @@ SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState
     const N pressure = m.law->bulk * s.flowed.trace;
     Symmetric<N> t = ((2 * m.law->shear) * s.flowed.kept) * s.flowed.distortion;
     t.xx = t.xx + pressure, t.yy = t.yy + pressure, t.zz = t.zz + pressure;
-    s.stress = f * material_stress(e, t);
+    s.stress = turned_by(f, turning) * material_stress(e, t);
     s.mode_stress = s.flowed.kept * s.flowed.mode_stress;
 }
 
@@ -89,12 +100,17 @@ SWAGE_INLINE bool all_less(const V& a, const V& b) {
     return all;
 }
 
+template <typename N>
+SWAGE_INLINE Phase<Dual<N>> constant(const Phase<N>& m) {
+    return {m.law, m.kind, constant(m.fill), constant(m.at), constant(m.history)};
+}
+
 // What a change of a by each of the axes does to the traction P n at gradient f + a n^T.
 template <typename N>
 SWAGE_INLINE Columns<N> traction_slope(const Phase<N>& m, const Columns<N>& f,
-                                       const CellModes<N>& modes, const Triple<N>& n) {
-    const Phase<Dual<N>> phase = {m.law, m.kind, constant(m.fill), constant(m.at),
-                                  constant(m.history)};
+                                       const CellModes<N>& modes, const Triple<N>& n,
+                                       double turning) {
+    const Phase<Dual<N>> phase = constant(m);
     Columns<N> slope{};
     for (int axis = 0; axis < 3; ++axis) {
         const N none{}, one = none + 1.0;
@@ -102,7 +118,8 @@ SWAGE_INLINE Columns<N> traction_slope(const Phase<N>& m, const Columns<N>& f,
                              axis == 2 ? one : none};
         PhaseState<Dual<N>> s;
         s.modes = constant(modes);
-        find_stress(phase, {pair(f.x, n.x * e), pair(f.y, n.y * e), pair(f.z, n.z * e)}, s);
+        find_stress(phase, {pair(f.x, n.x * e), pair(f.y, n.y * e), pair(f.z, n.z * e)}, s,
+                    turning);
         const Triple<Dual<N>> t = s.stress * constant(n);
         (axis == 0 ? slope.x : axis == 1 ? slope.y : slope.z) = {t.x.slope, t.y.slope, t.z.slope};
     }
@@ -123,7 +140,8 @@ SWAGE_INLINE Triple<N> pick(const M& which, const Triple<N>& a, const Triple<N>&
 }
 
 inline constexpr int kMostRounds = 40;
-inline constexpr int kSecantRounds = 6;         // without the tangent
+inline constexpr int kGuessedRounds = 3;        // with that of small strains, where any may flow
+inline constexpr int kSecantRounds = 12;        // without the exact tangent
 inline constexpr double kTractionLeft = 1e-11;  // of the tractions
 inline constexpr double kNoise = 1e-14;         // of the stiffer material's moduli
 inline constexpr double kTooFar = 0.5;          // of the slope of W, on the other side
@@ -143,18 +161,54 @@ SWAGE_INLINE Columns<N> jumped(const Columns<N>& f, const Triple<N>& n, const Tr
 
 // Of the tractions' difference with a, at a.
 template <typename N>
-SWAGE_INLINE Columns<N> jump_slope(const Phase<N> (&m)[2], const Triple<N>& n,
-                                   const Laminate<N>& r) {
+SWAGE_INLINE Columns<N> jump_slope(const Phase<N> (&m)[2], const Triple<N>& n, const Laminate<N>& r,
+                                   double turning = 1) {
     N share[2];
     jump_shares(m, share);
     Columns<N> sum{};
     for (int p = 0; p < 2; ++p) {
         const Columns<N> slope = traction_slope(
-            m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p].modes, n);
+            m[p], jumped(r.phase[p].gradient, n, share[p] * r.jump), r.phase[p].modes, n, turning);
         const N weight = p == 0 ? share[0] : -1.0 * share[1];
         const N firm = (kFirm * m[p].law->shear) * weight;
         sum = {sum.x + weight * slope.x, sum.y + weight * slope.y, sum.z + weight * slope.z};
         sum.x.x = sum.x.x + firm, sum.y.y = sum.y.y + firm, sum.z.z = sum.z.z + firm;
+    }
+    return sum;
+}
+
+// The same for small strains, from what flows now.
+template <typename N>
+SWAGE_INLINE Columns<N> about_jump_slope(const Phase<N> (&m)[2], const Triple<N>& n,
+                                         const Laminate<N>& r, const N (&share)[2]) {
+    Columns<N> sum{};
+    for (int p = 0; p < 2; ++p) {
+        const CellModuli& law = *m[p].law;
+        const Columns<N>& f = r.phase[p].gradient;
+        const N none{}, one = none + 1.0;
+        N kept = one, flows = none;
+        Triple<N> along = f * n, across{};
+        if (m[p].kind == CellKind::yielding) {
+            const CellFlowed<N>& s = r.phase[p].flowed;
+            kept = s.kept;
+            const N stress = s.over + law.yield_stress + law.hardening * m[p].history.alpha;
+            const N share_left = kept - (1 - 3 * law.shear / (3 * law.shear + law.hardening));
+            flows = s.over > none
+                        ? (12 * law.shear * law.shear * law.shear) * share_left / (stress * stress)
+                        : none;
+            const Symmetric<N>& d = s.distortion;
+            across = f * Triple<N>{d.xx * n.x + d.xy * n.y + d.zx * n.z,
+                                   d.xy * n.x + d.yy * n.y + d.yz * n.z,
+                                   d.zx * n.x + d.yz * n.y + d.zz * n.z};
+        }
+        const N weight = p == 0 ? share[0] : -1.0 * share[1];
+        const N shear = weight * larger(law.shear * kept, kFirm * law.shear + none);
+        const N rise = (weight * law.bulk + (1.0 / 3) * shear) / (dot(along, along) + 1e-300);
+        const N less = weight * flows;
+        sum = {sum.x + (rise * along.x) * along - (less * across.x) * across,
+               sum.y + (rise * along.y) * along - (less * across.y) * across,
+               sum.z + (rise * along.z) * along - (less * across.z) * across};
+        sum.x.x = sum.x.x + shear, sum.y.y = sum.y.y + shear, sum.z.z = sum.z.z + shear;
     }
     return sum;
 }
@@ -188,6 +242,7 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
 
     const double noise =
         kNoise * larger(m[0].law->shear + m[0].law->bulk, m[1].law->shear + m[1].law->bulk);
+    const bool flows = m[0].kind == CellKind::yielding || m[1].kind == CellKind::yielding;
     const N none{};
     const Triple<N> nowhere{};
     Columns<N> inverse = firm;
@@ -208,7 +263,9 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         const auto arrived = wrong < right;
         const N now = dot(left, way);
         const auto good = arrived | (now <= -kTooFar * start);
-        if (r.rounds < kSecantRounds) {
+        if (flows && r.rounds < kGuessedRounds) {
+            inverse = inverse_of(about_jump_slope(m, n, r, share));
+        } else if (r.rounds < kSecantRounds) {
             // The step was meant to bring the difference to nothing; what it did corrects.
             const Triple<N> step = r.jump - from, gone = inverse * (left - last);
             const Triple<N> row = {dot(step, inverse.x), dot(step, inverse.y),
@@ -257,6 +314,46 @@ SWAGE_INLINE CornerSums<N> laminate_forces(const CornerSums<N>& c, const Phase<N
     };
     const CornerSums<N> a = of(0), b = of(1);
     return {a.x + b.x, a.y + b.y, a.z + b.z, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx, a.xyz + b.xyz};
+}
+
+// How the forces change with the sums going some way, the jump following: `inverse` of
+// jump_slope(), both with the same share of what turning does.
+template <typename N>
+SWAGE_INLINE CornerSums<N> laminate_slope(const CornerSums<N>& c, const CornerSums<N>& way,
+                                          const Phase<N> (&m)[2], const Triple<N>& n,
+                                          double spacing, const Triple<N>& jump,
+                                          const Columns<N>& inverse, double turning) {
+    using D = Dual<N>;
+    const CornerSums<D> x = pair(c, way);
+    const Phase<D> phase[2] = {constant(m[0]), constant(m[1])};
+    const Triple<D> normal = constant(n);
+    D share[2];
+    jump_shares(phase, share);
+    Laminate<D> r;
+    r.jump = constant(jump);
+    for (int round = 0; round < 2; ++round) {
+        Triple<D> left{};
+        for (int p = 0; p < 2; ++p) {
+            PhaseState<D>& s = r.phase[p];
+            s.gradient = phase_gradient(x, phase[p].at, spacing);
+            s.modes = pulled_back(s.gradient, x);
+            find_stress(phase[p], jumped(s.gradient, normal, share[p] * r.jump), s, turning);
+            const Triple<D> pull = s.stress * normal;
+            left = p == 0 ? pull : left - pull;
+            s.gradient = slope_scaled(s.gradient, turning);
+        }
+        if (round > 0) break;
+        // The first time the jump has stayed.
+        const Triple<N> follows =
+            -1.0 * (inverse * Triple<N>{left.x.slope, left.y.slope, left.z.slope});
+        r.jump = pair(jump, follows);
+    }
+    const CornerSums<D> f = laminate_forces(slope_scaled(x, turning), phase, r, spacing);
+    const auto slope = [](const Triple<D>& t) __attribute__((always_inline)) {
+        return Triple<N>{t.x.slope, t.y.slope, t.z.slope};
+    };
+    return {slope(f.x),  slope(f.y),  slope(f.z),  slope(f.xy),
+            slope(f.yz), slope(f.zx), slope(f.xyz)};
 }
 
 }  // namespace swage

@@ -72,11 +72,6 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
                                               "would lose the inset: leave remold out",
                                               stage.name));
         }
-        if (stage.sim.solver == Solver::implicit_steps) {
-            root.mistake("inset", fmt::format("stage \"{}\" moves by implicit steps, which know "
-                                              "one material in a body: use solver = \"explicit\"",
-                                              stage.name));
-        }
     }
 }
 

@@ -187,13 +187,13 @@ double CellSweep::commit(Aggregate& matter, bool seen) const {
         });
     };
     if (matter.cell_plastic_strain[0].empty()) {
-        if (sum(nullptr) == 0) return mixed_.commit(matter, law_);
+        if (sum(nullptr) == 0) return mixed_.commit(matter, law_, seen);
         for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
         for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
         matter.cell_hardening.assign(fill_.size(), 0.0f);
     }
     const double lost = sum(&matter);
-    return lost + mixed_.commit(matter, law_);
+    return lost + mixed_.commit(matter, law_, seen);
 }
 
 double CellSweep::elastic_energy(const Aggregate& matter) const {

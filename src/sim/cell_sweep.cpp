@@ -17,7 +17,6 @@ namespace swage {
 
 namespace {
 
-constexpr double kNeverYields = 1e100;   // [Pa]
 constexpr ParticleId kZeroAhead = 2048;  // particles whose forces are zeroed at a time
 // Cells that share a particle never all move in their stiffest way at once. Of the sum over eight
 // cells the fastest motion of a block has, measured for nu = 0 to 0.49, this much of each modulus.
@@ -168,20 +167,6 @@ void slab_by_kind(CellKind kind, SlabTask& task) {
 }
 void sweep_slab(CellKind kind, SlabTask& task) {
     task.strained > 0 ? slab_by_kind<true>(kind, task) : slab_by_kind<false>(kind, task);
-}
-
-// A run, in pieces of one material.
-void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces) {
-    for (int n = 0; n < run.count; ++n) {
-        const CellId cell = run.first + n;
-        if (n == 0 || matter.cell_material[cell] != matter.cell_material[cell - 1]) {
-            CellRun piece = run;
-            piece.i += n, piece.first = cell, piece.count = 0;
-            for (ParticleId& row : piece.row) row += n;
-            pieces.push_back(piece);
-        }
-        ++pieces.back().count;
-    }
 }
 
 template <typename Act>

@@ -26,7 +26,6 @@ class CellSweep {
     // Cells that are not whole any more carry nothing from now on.
     void cells_changed(const Aggregate& matter);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole
-    bool one_material() const { return law_.size() == 1; }
 
     // force = sum of the cells' forces on each particle [N].
     void forces(const Aggregate& matter, Flow flow, Vec3Array& force);

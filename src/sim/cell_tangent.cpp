@@ -218,7 +218,15 @@ F of_kind(CellKind kind, F elastic, F yielding, F rubber) {
 }  // namespace
 
 CellTangent::CellTangent(const Aggregate& matter, const std::vector<float>& fill)
-    : fill_(fill), slab_(cell_slabs(matter)) {
+    : mixed_(matter, fill), fill_(fill), slab_(cell_slabs(matter)) {
+    for (const RowSlab& slab : slab_) {
+        slab_run_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
+        for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
+            add_pieces(matter, matter.lattice.cell_run[r], piece_);
+        }
+    }
+    slab_run_.push_back(runs(matter).size());
+    for (const MixedCell& cell : matter.mixed_cell) fill_[cell.cell] = 0;
     fill_.resize(fill.size() + kLanes);
     for (int i = 0; i < 3; ++i) {
         for (std::size_t c = 0; c < matter.cell_centroid.size(); ++c) {
@@ -226,13 +234,13 @@ CellTangent::CellTangent(const Aggregate& matter, const std::vector<float>& fill
         }
         at_[i].resize(at_[i].size() + kLanes);
     }
-    for (const CellRun& run : matter.lattice.cell_run) {
+    for (const CellRun& run : runs(matter)) {
         batch_.push_back(whole_.size());
         for (int begin = 0; begin < run.count; begin += kLanes) {
             bool whole = true;
             for (int n = begin; n < std::min(run.count, begin + kLanes); ++n) {
                 const CellId cell = run.first + n;
-                whole = whole && fill[cell] == 1 && matter.cell_centroid[cell].isZero(0);
+                whole = whole && fill_[cell] == 1 && matter.cell_centroid[cell].isZero(0);
             }
             whole_.push_back(whole);
         }
@@ -244,16 +252,21 @@ struct CellTangent::Law {
     CellKind kind;
 };
 
-CellTangent::Law CellTangent::law_for(const Aggregate& matter, Flow flow) const {
-    const Material& m = matter.material;
-    const bool yields =
-        std::isfinite(m.yield_stress) && (flow == Flow::trial || !matter.cell_hardening.empty());
-    const double yield_stress = flow == Flow::none ? 1e100 : m.yield_stress;
-    return {CellConstants(cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
-                                      yields ? yield_stress : 0, yields ? m.hardening : 0)),
-            m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
-            : yields                                ? CellKind::yielding
-                                                    : CellKind::elastic};
+std::vector<CellTangent::Law> CellTangent::laws_for(const Aggregate& matter, Flow flow) const {
+    std::vector<Law> laws;
+    for (MaterialLaw& law : material_laws(matter)) {
+        if (law.kind == CellKind::yielding && flow == Flow::none) {
+            law.moduli.yield_stress = kNeverYields;
+            if (matter.cell_hardening.empty()) law.kind = CellKind::elastic;
+        }
+        laws.push_back({CellConstants(law.moduli), law.kind});
+    }
+    return laws;
+}
+
+const CellTangent::Law& CellTangent::law_of(const Aggregate& matter, const std::vector<Law>& laws,
+                                            const CellRun& run) const {
+    return piece_.empty() ? laws[0] : laws[matter.cell_material[run.first]];
 }
 
 namespace {
@@ -284,9 +297,8 @@ RunView view_of(const Aggregate& matter, const CellRun& run, const std::vector<f
 
 void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& direction,
                           Vec3Array& result) {
-    const Law law = law_for(matter, kind.flow);
-    const auto sweep = of_kind(law.kind, product_of<CellKind::elastic>,
-                               product_of<CellKind::yielding>, product_of<CellKind::rubber>);
+    const std::vector<Law> laws = laws_for(matter, kind.flow);
+    const std::vector<CellRun>& all = runs(matter);
     result.resize(matter.particle_count());
     parallel_for(slab_.size(), [&](std::size_t index) {
         RowSlab& slab = slab_[index];
@@ -294,8 +306,12 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
         for (double* component : to.own) {
             std::fill(component + slab.begin, component + slab.end, 0.0);
         }
-        for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
-            const CellRun& run = matter.lattice.cell_run[r];
+        for (std::size_t r = slab_run_[index]; r < slab_run_[index + 1]; ++r) {
+            const CellRun& run = all[r];
+            const Law& law = law_of(matter, laws, run);
+            const auto sweep =
+                of_kind(law.kind, product_of<CellKind::elastic>, product_of<CellKind::yielding>,
+                        product_of<CellKind::rubber>);
             RunProduct p{rows_of(direction, run), {}, {}, kind.geometric};
             for (int q = 0; q < 4; ++q) {
                 const ParticleId row = run.row[q];
@@ -309,15 +325,16 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
         }
     });
     add_seams(slab_, result);
+    mixed_.add_product(matter, kind, direction, result);
 }
 
 std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) const {
-    const Law law = law_for(matter, kind.flow);
-    const auto blocks = of_kind(law.kind, elastic_blocks, yielding_blocks, rubber_blocks);
+    const std::vector<Law> laws = laws_for(matter, kind.flow);
+    const std::vector<CellRun>& all = runs(matter);
     std::vector<Mat3> own(matter.particle_count(), Mat3::Zero());
     // Planes of cells share particles with the next ones only: every other plane at a time.
     std::vector<std::size_t> plane(matter.lattice.cell_count.z() + 1, 0);
-    for (const CellRun& run : matter.lattice.cell_run) ++plane[run.k + 1];
+    for (const CellRun& run : all) ++plane[run.k + 1];
     for (std::size_t n = 1; n < plane.size(); ++n) plane[n] += plane[n - 1];
     for (std::size_t odd = 0; odd < 2; ++odd) {
         parallel_for(plane.size() / 2, [&](std::size_t half) {
@@ -325,7 +342,10 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
             if (index + 1 >= plane.size()) return;
             Lanes block[8][6];
             for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
-                const CellRun& run = matter.lattice.cell_run[r];
+                const CellRun& run = all[r];
+                const Law& law = law_of(matter, laws, run);
+                const auto blocks =
+                    of_kind(law.kind, elastic_blocks, yielding_blocks, rubber_blocks);
                 const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
                 for (int done = 0; done < run.count; done += kLanes) {
                     blocks(law.constants, view, done, kind.geometric, block);
@@ -342,24 +362,71 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
             }
         });
     }
+    if (mixed_.empty()) return own;
+    const std::vector<CellMatrix>& mixed = mixed_.matrices(matter, kind);
+    for (std::size_t n = 0; n < mixed.size(); ++n) {
+        for (int c = 0; c < 8; ++c) {
+            Mat3& to = own[mixed_.corner(n)[c]];
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) to(i, j) += mixed[n](3 * c + i, 3 * c + j);
+            }
+        }
+    }
     return own;
 }
 
+namespace {
+
+// sum += of a cell at `low` of so many in its coarse cell, whose particles follow its corners.
+void add_followed(const CellMatrix& own, const Vec3i& low, const Vec3i& ratio, CellMatrix& sum) {
+    double follow[8][8];  // corner of the coarse cell, of the cell
+    for (int q = 0; q < 8; ++q) {
+        for (int c = 0; c < 8; ++c) {
+            follow[q][c] = 1;
+            for (int d = 0; d < 3; ++d) {
+                const double t = double(low[d] + (c >> d & 1)) / ratio[d];
+                follow[q][c] *= q >> d & 1 ? t : 1 - t;
+            }
+        }
+    }
+    constexpr int kSize = CellMatrix::kSize;
+    double half[kSize][kSize];  // rows of the cell, columns of the coarse one
+    for (int row = 0; row < kSize; ++row) {
+        for (int column = 0; column < kSize; ++column) {
+            double one = 0;
+            for (int c = 0; c < 8; ++c) one += follow[column / 3][c] * own(row, 3 * c + column % 3);
+            half[row][column] = one;
+        }
+    }
+    for (int column = 0; column < kSize; ++column) {
+        for (int row = 0; row <= column; ++row) {
+            double one = 0;
+            for (int c = 0; c < 8; ++c) one += follow[row / 3][c] * half[3 * c + row % 3][column];
+            sum.upper[CellMatrix::place(row, column)] += one;
+        }
+    }
+}
+
+}  // namespace
+
 std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind kind,
                                                   const Lattice& coarse, const Vec3i& ratio) const {
-    const Law law = law_for(matter, kind.flow);
-    const auto matrices = of_kind(law.kind, elastic_matrices, yielding_matrices, rubber_matrices);
+    const std::vector<Law> laws = laws_for(matter, kind.flow);
+    const std::vector<CellRun>& all = runs(matter);
     std::size_t count = 0;
     for (const CellRun& run : coarse.cell_run) count += run.count;
     std::vector<CellMatrix> sum(count);
     // Each chunk is a plane of coarse cells.
     std::vector<std::size_t> plane(coarse.cell_count.z() + 1, 0);
-    for (const CellRun& run : matter.lattice.cell_run) ++plane[run.k / ratio.z() + 1];
+    for (const CellRun& run : all) ++plane[run.k / ratio.z() + 1];
     for (std::size_t n = 1; n < plane.size(); ++n) plane[n] += plane[n - 1];
     parallel_for(plane.size() - 1, [&](std::size_t index) {
         Lanes matrix[std::tuple_size_v<decltype(CellMatrix::upper)>];
         for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
-            const CellRun& run = matter.lattice.cell_run[r];
+            const CellRun& run = all[r];
+            const Law& law = law_of(matter, laws, run);
+            const auto matrices =
+                of_kind(law.kind, elastic_matrices, yielding_matrices, rubber_matrices);
             const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
             const Vec3i site(run.i, run.j, run.k);
             for (int done = 0; done < run.count; done += kLanes) {
@@ -385,6 +452,13 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
             }
         }
     });
+    if (mixed_.empty()) return sum;
+    const std::vector<CellMatrix>& mixed = mixed_.matrices(matter, kind);
+    for (std::size_t n = 0; n < mixed.size(); ++n) {
+        const Vec3i site = mixed_.site(n), at = site.cwiseQuotient(ratio);
+        add_followed(mixed[n], site - at.cwiseProduct(ratio), ratio,
+                     sum[coarse.cell_at(at.x(), at.y(), at.z())]);
+    }
     return sum;
 }
 

@@ -8,32 +8,22 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "sim/cell_matrix.h"
 #include "sim/cell_sweep.h"
 #include "sim/force_slabs.h"
+#include "sim/mixed_tangent.h"
 
 namespace swage {
-
-// Symmetric, of the eight corners' three components, 3 corner + component: the upper triangle by
-// columns.
-struct CellMatrix {
-    static constexpr int kSize = 24;
-    std::array<double, kSize*(kSize + 1) / 2> upper{};
-
-    static int place(int row, int column) { return column * (column + 1) / 2 + row; }
-    double operator()(int a, int b) const { return upper[a < b ? place(a, b) : place(b, a)]; }
-};
 
 class CellTangent {
   public:
     // `fill`: of each cell, what it carries (CellSweep::carried_fill).
     CellTangent(const Aggregate& matter, const std::vector<float>& fill);
 
-    // Which tangent: of what flows or not; a share `geometric` of what the stress does by turning
-    // with the matter, 1 being exact, and 0 the part that never makes a body unstable.
-    struct Kind {
-        Flow flow = Flow::trial;
-        double geometric = 1;
-    };
+    using Kind = TangentKind;
+
+    // The particles have moved, or flow was committed, since any of these was last asked.
+    void moved() { mixed_.forget(); }
 
     // result = -d(force)/d(position) direction, at the present positions.
     void product(const Aggregate& matter, Kind kind, const Vec3Array& direction, Vec3Array& result);
@@ -48,9 +38,18 @@ class CellTangent {
 
   private:
     struct Law;
-    Law law_for(const Aggregate& matter, Flow flow) const;
+    std::vector<Law> laws_for(const Aggregate& matter, Flow flow) const;  // by material
+    // The lattice's runs, or their pieces of one material each where there are several.
+    const std::vector<CellRun>& runs(const Aggregate& matter) const {
+        return piece_.empty() ? matter.lattice.cell_run : piece_;
+    }
+    const Law& law_of(const Aggregate& matter, const std::vector<Law>& laws,
+                      const CellRun& run) const;
 
-    std::vector<float> fill_;  // these two with room for a batch behind
+    std::vector<CellRun> piece_;
+    std::vector<std::size_t> slab_run_;  // first of runs() in each slab; the end
+    MixedTangent mixed_;                 // cells of two materials, beside the sweep
+    std::vector<float> fill_;            // these two with room for a batch behind
     std::array<std::vector<float>, 3> at_;
     std::vector<char> whole_;         // of each batch of cells: full, and centred
     std::vector<std::size_t> batch_;  // first one of each run

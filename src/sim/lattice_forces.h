@@ -58,10 +58,9 @@ class LatticeForces {
 
     double elastic_energy(const Aggregate& matter);  // [J]
 
-    // What the cells carry, where forces are theirs alone and of one material; else null.
+    // What the cells carry, where forces are theirs alone; else null.
     const std::vector<float>* cells_alone() const {
-        const bool alone = cells_ && loose_.empty() && cells_->one_material();
-        return alone ? &cells_->carried_fill() : nullptr;
+        return cells_ && loose_.empty() ? &cells_->carried_fill() : nullptr;
     }
 
     // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "laws/laminate.h"
+#include "sim/mixed_batch.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -12,6 +12,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kBatchesPerChunk = 8;
+constexpr double kNearYield = 1e-6;  // of the yield stress: lanes round otherwise
 
 // What a batch of cells is read from, and where its forces on the corners go: component, corner.
 struct MixedBatch {
@@ -20,52 +21,9 @@ struct MixedBatch {
     const std::array<ParticleId, 8>* corner[kLanes];
     const MaterialLaw* law[2];
     std::array<double, 24>* push;
+    MixedCells::Seen* seen;
     int count;
 };
-
-template <typename N>
-SWAGE_INLINE void set_lane(N& v, int lane, double to) {
-    v[lane] = to;
-}
-SWAGE_INLINE void set_lane(double& v, int, double to) { v = to; }
-
-// Lane of a batch, or all there is of a number.
-template <typename N>
-SWAGE_INLINE void read_cell(const Vec3Array& x, const MixedCell& cell,
-                            const std::array<ParticleId, 8>& corner, int lane, N (&at)[3][8],
-                            Phase<N> (&phase)[2], Triple<N>& normal) {
-    for (int c = 0; c < 8; ++c) {
-        set_lane(at[0][c], lane, x.x[corner[c]]);
-        set_lane(at[1][c], lane, x.y[corner[c]]);
-        set_lane(at[2][c], lane, x.z[corner[c]]);
-    }
-    set_lane(normal.x, lane, cell.normal.x());
-    set_lane(normal.y, lane, cell.normal.y());
-    set_lane(normal.z, lane, cell.normal.z());
-    for (int p = 0; p < 2; ++p) {
-        Phase<N>& m = phase[p];
-        set_lane(m.fill, lane, cell.fill[p]);
-        set_lane(m.at.x, lane, 2 * cell.centroid[p].x());
-        set_lane(m.at.y, lane, 2 * cell.centroid[p].y());
-        set_lane(m.at.z, lane, 2 * cell.centroid[p].z());
-        Symmetric<N>& e = m.history.strain;
-        CellModes<N>& q = m.history.modes;
-        N* const slot[MixedCell::kHistory] = {
-            &e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,           &e.zx,   &q.xy.x,
-            &q.xy.y, &q.xy.z,  &q.yz.x,  &q.yz.y,  &q.yz.z,         &q.zx.x, &q.zx.y,
-            &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &m.history.alpha};
-        for (int n = 0; n < MixedCell::kHistory; ++n) set_lane(*slot[n], lane, cell.flowed[p][n]);
-    }
-}
-
-template <typename N>
-SWAGE_INLINE CornerSums<N> sums_of(const N (&at)[3][8]) {
-    CornerSums<N> c;
-    sum_corners(at[0], c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-    sum_corners(at[1], c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-    sum_corners(at[2], c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    return c;
-}
 
 // Eight cells, as so many batches of the machine's own width.
 template <int kWidth>
@@ -80,18 +38,23 @@ SWAGE_INLINE void batch_forces(const MixedBatch& b) {
         for (int l = 0; l < kWidth; ++l) {
             // Lanes that are left over repeat the last cell.
             const int n = std::min(begin + l, b.count - 1);
-            read_cell(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
+            read_mixed(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
         }
         const double spacing = b.matter->lattice.spacing;
-        const CornerSums<V> c = sums_of(at);
+        const CornerSums<V> c = corner_sums(at);
         Laminate<V> found;
         laminate(c, phase, normal, spacing, found);
         const CornerSums<V> r = laminate_forces(c, phase, found, spacing);
-        spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, at[0]);
-        spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, at[1]);
-        spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, at[2]);
+        corner_forces(r, at);
         for (int l = 0; l < kWidth && begin + l < b.count; ++l) {
             for (int n = 0; n < 24; ++n) b.push[begin + l][n] = at[n / 8][n % 8][l];
+            MixedCells::Seen& seen = b.seen[begin + l];
+            seen.may_flow = false;
+            for (int p = 0; p < 2; ++p) {
+                const double near = -kNearYield * phase[p].law->yield_stress;
+                seen.may_flow = seen.may_flow || (phase[p].kind == CellKind::yielding &&
+                                                  found.phase[p].flowed.over[l] > near);
+            }
         }
     }
 }
@@ -114,8 +77,8 @@ OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws
         one.phase[p].law = &laws[cell.material[p]].moduli;
         one.phase[p].kind = laws[cell.material[p]].kind;
     }
-    read_cell(matter.particle_position, cell, corner, 0, at, one.phase, normal);
-    laminate(sums_of(at), one.phase, normal, matter.lattice.spacing, one.found);
+    read_mixed(matter.particle_position, cell, corner, 0, at, one.phase, normal);
+    laminate(corner_sums(at), one.phase, normal, matter.lattice.spacing, one.found);
     return one;
 }
 
@@ -135,6 +98,19 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter) {
     return laws;
 }
 
+void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces) {
+    for (int n = 0; n < run.count; ++n) {
+        const CellId cell = run.first + n;
+        if (n == 0 || matter.cell_material[cell] != matter.cell_material[cell - 1]) {
+            CellRun piece = run;
+            piece.i += n, piece.first = cell, piece.count = 0;
+            for (ParticleId& row : piece.row) row += n;
+            pieces.push_back(piece);
+        }
+        ++pieces.back().count;
+    }
+}
+
 void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>& carried) {
     cell_.clear(), corner_.clear(), batch_.clear();
     for (std::size_t n = 0; n < matter.mixed_cell.size(); ++n) {
@@ -149,6 +125,7 @@ void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>
     }
     batch_.push_back(static_cast<int>(cell_.size()));
     push_.resize(cell_.size());
+    seen_.assign(cell_.size(), {});
 }
 
 void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
@@ -168,6 +145,7 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
             }
             for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
             batch.push = &push_[batch_[b]];
+            batch.seen = &seen_[batch_[b]];
             (width == 8 ? wide_batch : width == 4 ? middle_batch : narrow_batch)(batch);
         }
     });
@@ -178,11 +156,13 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
     }
 }
 
-double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws) const {
+double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                          bool seen) const {
     const double volume = std::pow(matter.lattice.spacing, 3);
     double lost = 0;
     for (std::size_t n = 0; n < cell_.size(); ++n) {
         MixedCell& cell = matter.mixed_cell[cell_[n]];
+        if (seen && !seen_[n].may_flow) continue;
         const OneMixed one = one_mixed(matter, laws, cell, corner_[n]);
         for (int p = 0; p < 2; ++p) {
             const CellFlowed<double>& r = one.found.phase[p].flowed;

@@ -14,7 +14,11 @@ struct MaterialLaw {
     CellModuli moduli;
     CellKind kind;
 };
+inline constexpr double kNeverYields = 1e100;  // [Pa]
 std::vector<MaterialLaw> material_laws(const Aggregate& matter);
+
+// Adds a run in pieces of one material each.
+void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces);
 
 class MixedCells {
   public:
@@ -25,11 +29,18 @@ class MixedCells {
     // Adds their forces on the particles [N]. Laws: by material, as they are to hold now.
     void add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                     Vec3Array& force);
-    // Remembers the flow of a converged state; returns the work that it took [J].
-    double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
+    // Remembers the flow of a converged state; returns the work that it took [J]. `seen`: the last
+    // forces were at these positions, with what flows.
+    double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen) const;
     double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
 
+    // What the last forces saw in a cell.
+    struct Seen {
+        bool may_flow;
+    };
+
   private:
+    std::vector<Seen> seen_;
     std::vector<int> cell_;  // into mixed_cell
     std::vector<std::array<ParticleId, 8>> corner_;
     std::vector<int> batch_;  // first of each batch of cells with the same two materials; the end

@@ -173,6 +173,7 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
         ++since_;
         return false;
     }
+    tangent_.moved();
     const bool moved =
         !prepared_ || held_ != problem.held.size() ||
         farthest_move(prepared_at_, matter.particle_position) > matter.lattice.spacing;
@@ -206,6 +207,7 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
     Result result;
     problem.forces(force_);
     const bool turns = problem.held.empty() && !problem.held_now;
+    tangent_.moved();
     for (result.steps = 0; result.steps < kMostSteps; ++result.steps) {
         result.residual = problem.residual(force_);
         if (!std::isfinite(result.residual)) break;
@@ -222,6 +224,7 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
             break;
         }
         const double share = line_search(matter, problem, turns);
+        tangent_.moved();
         if (share == 0) break;
         if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) stale_ = true;
     }

@@ -209,7 +209,7 @@ void yield_in_series(int across, double fraction, const ShearedBlock::Yields& yi
     stand.settle();
     const double left = low * s.flow_at(kStress) + (1 - low) * h.flow_at(kStress);
     values.add(absolute(at_fraction((what + ": share left of it").c_str(), fraction), across,
-                        left / g, block.shear() / g, 0.005));
+                        left / g, block.shear() / g, 0.002));
 }
 
 // Layers side by side go as far: four faces are led, and half of the way back.
@@ -250,13 +250,13 @@ void yield_side_by_side(int across, double fraction, const ShearedBlock::Yields&
     const double stress = mean(s.stress_at(g), h.stress_at(g));
     const std::string what = std::string("side by side, ") + yields.flows;
     values.add(relative(at_fraction((what + ": stress").c_str(), fraction), across, stress,
-                        mean_stress(), 0.005));
+                        mean_stress(), 0.002));
     for (double share : {0.75, 0.5}) go_to(share * kShear);
     report = stand.settle();
     const double back = g - block.shear();
     values.add(absolute(at_fraction((what + ": share left half-way back").c_str(), fraction),
                         across, 1 - mean(s.modulus, h.modulus) * back / stress,
-                        mean_stress() / stress, 0.005));
+                        mean_stress() / stress, 0.002));
 }
 
 void layers_yield(bool brief, Values& values) {

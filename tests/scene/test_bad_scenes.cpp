@@ -374,8 +374,6 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
     };
     Parts springs = inset("name = \"lead\"\n" + box);
     springs.material = "[material]\nname = \"rubber\"\nmechanics = \"springs\"\n";
-    Parts steps = inset("name = \"lead\"\n" + box);
-    steps.stage = "[[stage]]\nmachine = \"bend\"\nsolver = \"implicit\"\n";
     Parts undamped = inset("name = \"lead\"\ndamping_ratio = 0\n" + box);
     undamped.stage = "[[stage]]\nmachine = \"bend\"\nsolver = \"euler\"\n";
     check_all({
@@ -397,10 +395,6 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
          {"14:12: friction is the whole body's: say it in [material]"}},
         {"breaking", inset("name = \"ice\"\n" + box), {"bodies of two materials do not break yet"}},
         {"in springs", springs, {"springs know one material"}},
-        {"in implicit steps",
-         steps,
-         {"moves by implicit steps, which know one material in a body",
-          "damping_ratio has no effect"}},
         {"undamped",
          undamped,
          {"where nothing damps: give each [[inset]] a damping_ratio, or use solver"}},

@@ -5,7 +5,10 @@
 #include "base/parallel.h"
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
+#include "sim/cell_tangent.h"
 #include "sim/lattice_forces.h"
+#include "sim/lattice_transfer.h"
+#include "sim/node_stiffness.h"
 #include "sim/vector_clones.h"
 #include "tests/catch.h"
 
@@ -71,6 +74,98 @@ TEST_CASE("cells of two materials push by minus the gradient of their energy") {
             const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
             CHECK(std::abs(f.y[p] + slope) < 1e-7 * largest);
         }
+    }
+}
+
+TEST_CASE("the tangent of cells of two materials is how their forces change, flow included") {
+    Material yields = stiff(), rubbery = rubber();
+    yields.yield_stress = 3e4, yields.hardening = 1e5;
+    for (const Material& outside : {soft(), yields, rubbery}) {
+        for (const Material& inside : {stiff(), yields}) {
+            Aggregate m = bar_with_ball(outside, inside);
+            shake(m, 0.02);
+            LatticeForces forces(m);
+            forces.commit(m);
+            shake(m, 0.005, 5);
+            Vec3Array way;
+            way.resize(m.particle_count());
+            std::mt19937 engine(11);
+            std::uniform_real_distribution<double> draw(-1, 1);
+            for (std::size_t p = 0; p < way.size(); ++p) {
+                way.set(p, {draw(engine), draw(engine), draw(engine)});
+            }
+            CellTangent tangent(m, m.cell_fill);
+            Vec3Array product;
+            tangent.product(m, {}, way, product);
+            // The matrices are the same tangent.
+            NodeStiffness fine(m.lattice);
+            fine.add_cells(m.lattice, tangent.coarse_cells(m, {}, m.lattice, Vec3i::Ones()));
+            Vec3Array other;
+            fine.product(way, other);
+            const std::vector<Mat3> own = tangent.own_blocks(m, {});
+            double largest = 0, wrong = 0, blocks = 0;
+            for (std::size_t p = 0; p < way.size(); ++p) {
+                largest = std::max(largest, product.at(p).norm());
+                wrong = std::max(wrong, (product.at(p) - other.at(p)).norm());
+                blocks =
+                    std::max(blocks, (own[p] - fine.block(static_cast<ParticleId>(p), 13)).norm());
+            }
+            CHECK(wrong < 1e-7 * largest);  // history is kept as floats
+            CHECK(blocks < 1e-7 * largest);
+            const Vec3Array here = m.particle_position;
+            const double h = 1e-6 * kSpacing;
+            Vec3Array f[2];
+            for (int n : {0, 1}) {
+                m.particle_position = here;
+                for (std::size_t p = 0; p < here.size(); ++p) {
+                    m.particle_position.add(p, (n == 0 ? -h : h) * way.at(p));
+                }
+                forces.find(m, Flow::trial, f[n]);
+            }
+            double slope = 0;
+            for (std::size_t p = 0; p < way.size(); ++p) {
+                slope =
+                    std::max(slope, (product.at(p) - (f[0].at(p) - f[1].at(p)) / (2 * h)).norm());
+            }
+            CHECK(slope < 2e-4 * largest);
+            // Without what turning does no way is soft.
+            m.particle_position = here;
+            tangent.product(m, {Flow::trial, 0}, way, product);
+            double work = 0;
+            for (std::size_t p = 0; p < way.size(); ++p) work += way.at(p).dot(product.at(p));
+            CHECK(work > 0);
+        }
+    }
+}
+
+TEST_CASE("coarse cells of two materials are their tangent seen through the coarse corners") {
+    Aggregate m = bar_with_ball(soft(), stiff());
+    shake(m, 0.02);
+    CellTangent tangent(m, m.cell_fill);
+    for (const Vec3i& ratio : {Vec3i(2, 1, 2), Vec3i(2, 2, 2), Vec3i(4, 3, 1)}) {
+        const Lattice coarse = coarse_lattice(m.lattice, ratio);
+        const LatticeTransfer transfer(m.lattice, coarse, ratio);
+        NodeStiffness matrix(coarse);
+        matrix.add_cells(coarse, tangent.coarse_cells(m, {}, coarse, ratio));
+        Vec3Array u, fine, product, back, got;
+        u.resize(particle_count(coarse));
+        std::mt19937 engine(11);
+        std::uniform_real_distribution<double> draw(-1, 1);
+        for (std::size_t p = 0; p < u.size(); ++p) {
+            u.set(p, {draw(engine), draw(engine), draw(engine)});
+        }
+        fine.resize(m.particle_count());
+        for (auto* x : {&fine.x, &fine.y, &fine.z}) std::fill(x->begin(), x->end(), 0.0);
+        transfer.add_prolonged(u, fine);
+        tangent.product(m, {}, fine, product);
+        transfer.restricted(product, back);
+        matrix.product(u, got);
+        double largest = 0, off = 0;
+        for (std::size_t p = 0; p < back.size(); ++p) {
+            largest = std::max(largest, back.at(p).norm());
+            off = std::max(off, (back.at(p) - got.at(p)).norm());
+        }
+        CHECK(off < 1e-10 * largest);
     }
 }
 

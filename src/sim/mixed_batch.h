@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How cells of two materials are read, several at a time or alone.
+#pragma once
+
+#include "laws/laminate.h"
+#include "matter/aggregate.h"
+
+namespace swage {
+
+template <typename N>
+SWAGE_INLINE void set_lane(N& v, int lane, double to) {
+    v[lane] = to;
+}
+SWAGE_INLINE void set_lane(double& v, int, double to) { v = to; }
+
+// Lane of a batch, or all there is of a number.
+template <typename N>
+SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
+                             const std::array<ParticleId, 8>& corner, int lane, N (&at)[3][8],
+                             Phase<N> (&phase)[2], Triple<N>& normal) {
+    for (int c = 0; c < 8; ++c) {
+        set_lane(at[0][c], lane, x.x[corner[c]]);
+        set_lane(at[1][c], lane, x.y[corner[c]]);
+        set_lane(at[2][c], lane, x.z[corner[c]]);
+    }
+    set_lane(normal.x, lane, cell.normal.x());
+    set_lane(normal.y, lane, cell.normal.y());
+    set_lane(normal.z, lane, cell.normal.z());
+    for (int p = 0; p < 2; ++p) {
+        Phase<N>& m = phase[p];
+        set_lane(m.fill, lane, cell.fill[p]);
+        set_lane(m.at.x, lane, 2 * cell.centroid[p].x());
+        set_lane(m.at.y, lane, 2 * cell.centroid[p].y());
+        set_lane(m.at.z, lane, 2 * cell.centroid[p].z());
+        Symmetric<N>& e = m.history.strain;
+        CellModes<N>& q = m.history.modes;
+        N* const slot[MixedCell::kHistory] = {
+            &e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,           &e.zx,   &q.xy.x,
+            &q.xy.y, &q.xy.z,  &q.yz.x,  &q.yz.y,  &q.yz.z,         &q.zx.x, &q.zx.y,
+            &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &m.history.alpha};
+        for (int n = 0; n < MixedCell::kHistory; ++n) set_lane(*slot[n], lane, cell.flowed[p][n]);
+    }
+}
+
+template <typename N>
+SWAGE_INLINE CornerSums<N> corner_sums(const N (&at)[3][8]) {
+    CornerSums<N> c;
+    sum_corners(at[0], c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
+    sum_corners(at[1], c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
+    sum_corners(at[2], c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
+    return c;
+}
+
+template <typename N>
+SWAGE_INLINE void corner_forces(const CornerSums<N>& r, N (&at)[3][8]) {
+    spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, at[0]);
+    spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, at[1]);
+    spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, at[2]);
+}
+
+}  // namespace swage

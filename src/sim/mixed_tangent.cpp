@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/mixed_tangent.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "sim/mixed_batch.h"
+#include "sim/vector_clones.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kCellsPerChunk = 64;
+
+struct TangentBatch {
+    const Aggregate* matter;
+    const MixedCell* cell[kLanes];
+    const std::array<ParticleId, 8>* corner[kLanes];
+    const MaterialLaw* law[2];
+    double turning;
+    CellMatrix* to;
+    int count;
+};
+
+SWAGE_VECTOR_CLONES
+void batch_matrices(const TangentBatch& b) {
+    Lanes at[3][8]{};
+    Phase<Lanes> phase[2]{};
+    Triple<Lanes> normal{};
+    for (int p = 0; p < 2; ++p) {
+        phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
+    }
+    for (int l = 0; l < kLanes; ++l) {
+        const int n = std::min(l, b.count - 1);
+        read_mixed(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
+    }
+    const double spacing = b.matter->lattice.spacing;
+    const CornerSums<Lanes> c = corner_sums(at);
+    Laminate<Lanes> found;
+    laminate(c, phase, normal, spacing, found);
+    const Columns<Lanes> inverse = inverse_of(jump_slope(phase, normal, found, b.turning));
+    for (int column = 0; column < CellMatrix::kSize; ++column) {
+        Lanes alone[3][8]{};
+        alone[column % 3][column / 3] += 1.0;
+        const CornerSums<Lanes> r = laminate_slope(c, corner_sums(alone), phase, normal, spacing,
+                                                   found.jump, inverse, b.turning);
+        Lanes force[3][8];
+        corner_forces(r, force);
+        for (int row = 0; row <= column; ++row) {
+            const Lanes& f = force[row % 3][row / 3];
+            for (int l = 0; l < b.count; ++l) {
+                b.to[l].upper[static_cast<std::size_t>(CellMatrix::place(row, column))] = -f[l];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+MixedTangent::MixedTangent(const Aggregate& matter, const std::vector<float>& carried) {
+    for (std::size_t n = 0; n < matter.mixed_cell.size(); ++n) {
+        const MixedCell& cell = matter.mixed_cell[n];
+        if (carried[cell.cell] <= 0) continue;
+        const bool same =
+            !cell_.empty() && matter.mixed_cell[cell_.back()].material == cell.material;
+        const int at = static_cast<int>(cell_.size());
+        if (!same || at - batch_.back() == kLanes) batch_.push_back(at);
+        cell_.push_back(static_cast<int>(n));
+        corner_.push_back(matter.lattice.cell_corners(cell.cell));
+        site_.push_back(matter.lattice.cell_site(cell.cell));
+    }
+    batch_.push_back(static_cast<int>(cell_.size()));
+    push_.resize(cell_.size());
+}
+
+const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
+                                                      TangentKind kind) const {
+    for (const Known& known : known_) {
+        if (known.kind == kind) return known.matrix;
+    }
+    std::vector<MaterialLaw> laws = material_laws(matter);
+    for (MaterialLaw& law : laws) {
+        if (kind.flow == Flow::none) law.moduli.yield_stress = kNeverYields;
+    }
+    known_.push_back({kind, std::vector<CellMatrix>(cell_.size())});
+    std::vector<CellMatrix>& matrix = known_.back().matrix;
+    parallel_for(cell_.empty() ? 0 : batch_.size() - 1, [&](std::size_t b) {
+        TangentBatch batch{};
+        batch.matter = &matter;
+        batch.turning = kind.geometric;
+        batch.count = batch_[b + 1] - batch_[b];
+        for (int n = 0; n < batch.count; ++n) {
+            batch.cell[n] = &matter.mixed_cell[cell_[batch_[b] + n]];
+            batch.corner[n] = &corner_[batch_[b] + n];
+        }
+        for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
+        batch.to = matrix.data() + batch_[b];
+        batch_matrices(batch);
+    });
+    return matrix;
+}
+
+void MixedTangent::add_product(const Aggregate& matter, TangentKind kind,
+                               const Vec3Array& direction, Vec3Array& result) {
+    if (empty()) return;
+    const std::vector<CellMatrix>& matrix = matrices(matter, kind);
+    parallel_for((cell_.size() + kCellsPerChunk - 1) / kCellsPerChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(cell_.size(), (chunk + 1) * kCellsPerChunk);
+        for (std::size_t n = chunk * kCellsPerChunk; n < end; ++n) {
+            double way[24], sum[24] = {};
+            for (int c = 0; c < 8; ++c) {
+                const Vec3 v = direction.at(corner_[n][c]);
+                for (int i = 0; i < 3; ++i) way[3 * c + i] = v[i];
+            }
+            const double* own = matrix[n].upper.data();
+            for (int column = 0; column < 24; ++column) {
+                double mine = 0;
+                for (int row = 0; row < column; ++row, ++own) {
+                    mine += *own * way[row];
+                    sum[row] += *own * way[column];
+                }
+                sum[column] += mine + *own++ * way[column];
+            }
+            std::copy_n(sum, 24, push_[n].begin());
+        }
+    });
+    for (std::size_t n = 0; n < cell_.size(); ++n) {
+        for (int c = 0; c < 8; ++c) {
+            result.add(corner_[n][c], {push_[n][3 * c], push_[n][3 * c + 1], push_[n][3 * c + 2]});
+        }
+    }
+}
+
+}  // namespace swage
