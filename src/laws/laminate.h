@@ -18,9 +18,10 @@
 // takes long, as it does when flow sets in, by Newton's with the exact tangent. No step goes where
 // W has risen steeply again.
 //
-// NOTE: strained by 0.05 in one increment, 50 times what it yields at, every cell of thousands
-// finds its jump; at 0.2, where W is not convex any more, one in fifty, and of two materials
-// without hardening one in five, does not: its two sides then carry tractions that differ somewhat.
+// NOTE: strained by 0.02 in one increment, ten times what it yields at, every cell of thousands
+// finds its jump, and by 0.05 where its materials harden; without hardening one in a hundred does
+// not. At 0.2, where W is not convex any more, one in fifty, and without hardening one in five: its
+// two sides then carry tractions that differ.
 #pragma once
 
 #include "laws/cell_forces.h"
@@ -140,8 +141,8 @@ SWAGE_INLINE Triple<N> pick(const M& which, const Triple<N>& a, const Triple<N>&
 }
 
 inline constexpr int kMostRounds = 40;
-inline constexpr int kGuessedRounds = 3;        // with that of small strains, where any may flow
-inline constexpr int kSecantRounds = 12;        // without the exact tangent
+inline constexpr int kGuessedRounds = 1;        // with that of small strains, where any may flow
+inline constexpr int kSecantRounds = 9;         // without the exact tangent
 inline constexpr double kTractionLeft = 1e-11;  // of the tractions
 inline constexpr double kNoise = 1e-14;         // of the stiffer material's moduli
 inline constexpr double kTooFar = 0.5;          // of the slope of W, on the other side
