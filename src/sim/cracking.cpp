@@ -9,6 +9,7 @@
 #include "laws/strain_bound.h"
 #include "sim/cell_batch.h"
 #include "sim/cell_volume.h"
+#include "sim/crack_path.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -22,15 +23,6 @@ constexpr double kTogether = 0.98;
 // Particles far from the material of their cell do not tell its strain.
 constexpr float kOffCentre = 0.15f;  // of the cell
 constexpr double kSpared = 1.5;      // times onset
-constexpr double kNear = 2.3;        // cells
-constexpr double kInLine = 0.8;      // least cosine between the pull and the way to a neighbour
-
-struct Strained {
-    CellId cell;
-    double strain;
-    Vec3i site = Vec3i::Zero();
-    Vec3 pull = Vec3::Zero();
-};
 
 // Largest principal strain of the cell's mean, less what has flowed.
 double mean_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
@@ -58,49 +50,26 @@ double mean_strain(const Aggregate& matter, const CellRun& run, int n, double le
         Eigen::SelfAdjointEigenSolver<Mat3>(log, Eigen::EigenvaluesOnly).eigenvalues()[2]);
 }
 
-// The direction in which the cell is pulled most.
-Vec3 pull_of(const Aggregate& matter, const CellRun& run, int n) {
-    const Mat3 f = cell_gradient(matter, run, n);
-    return Eigen::SelfAdjointEigenSolver<Mat3>(f.transpose() * f).eigenvectors().col(2);
-}
+struct Candidate {
+    StrainedCell at;
+    double strain;  // less for being off the track
+};
 
-// Whether a cell this many sites away is in line with the pull.
-bool is_in_line(const Vec3i& way, const Vec3& pull) {
-    const double length = way.cast<double>().norm();
-    return length > 0 && length < kNear &&
-           std::abs(way.cast<double>().dot(pull)) > kInLine * length;
-}
-
-// Whether a cell in line with this one has cracked.
-bool is_spared(const Aggregate& matter, const CellRun& run, int n) {
-    if (matter.cell_cracked.empty()) return false;
-    const Vec3 pull = pull_of(matter, run, n);
-    for (int k = -2; k <= 2; ++k) {
-        for (int j = -2; j <= 2; ++j) {
-            for (int i = -2; i <= 2; ++i) {
-                if (!is_in_line({i, j, k}, pull)) continue;
-                const CellId cell = matter.lattice.cell_at(run.i + n + i, run.j + j, run.k + k);
-                if (cell >= 0 && matter.cell_cracked[cell]) return true;
-            }
-        }
-    }
-    return false;
-}
-
-// Of cells in line with each other the most strained is left.
-void spare_each_other(std::vector<Strained>& cells) {
-    std::vector<Strained> order = cells, taken;
-    std::stable_sort(order.begin(), order.end(),
-                     [](const Strained& a, const Strained& b) { return a.strain > b.strain; });
-    for (const Strained& s : order) {
-        const bool spared = std::any_of(taken.begin(), taken.end(), [&](const Strained& t) {
-            return is_in_line(t.site - s.site, s.pull);
+// Of cells in line with each other the most strained is left, in the order of the cells.
+std::vector<CellId> not_in_line(std::vector<Candidate> cells) {
+    std::stable_sort(cells.begin(), cells.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.strain > b.strain; });
+    std::vector<StrainedCell> taken;
+    for (const Candidate& c : cells) {
+        const bool spared = std::any_of(taken.begin(), taken.end(), [&](const StrainedCell& t) {
+            return are_in_line(c.at, t);
         });
-        if (!spared) taken.push_back(s);
+        if (!spared) taken.push_back(c.at);
     }
-    std::sort(taken.begin(), taken.end(),
-              [](const Strained& a, const Strained& b) { return a.cell < b.cell; });
-    cells = std::move(taken);
+    std::vector<CellId> cell;
+    for (const StrainedCell& t : taken) cell.push_back(t.cell);
+    std::sort(cell.begin(), cell.end());
+    return cell;
 }
 
 // Of the cells of a run.
@@ -170,7 +139,7 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
     const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
     const bool springs = matter.material.mechanics == Mechanics::springs;
     const double far = strain_measure_at(law.onset);
-    std::vector<std::vector<Strained>> part(chunks);
+    std::vector<std::vector<Candidate>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
         std::vector<double> measure;
         const std::size_t end = std::min(count, (chunk + 1) * kRunsPerChunk);
@@ -190,29 +159,25 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
-                if (strain >= law.onset &&
-                    !(strain < kSpared * law.onset && is_spared(matter, run, n))) {
-                    part[chunk].push_back({cell, strain});
-                    part[chunk].back().site = {run.i + n, run.j, run.k};
-                    part[chunk].back().pull = pull_of(matter, run, n);
-                }
+                if (strain < law.onset) continue;
+                const StrainedCell at = strained_cell(matter, run, n);
+                if (strain < kSpared * law.onset && is_beside_crack(matter, at)) continue;
+                strain /= off_track_factor(matter, at);
+                if (strain >= law.onset) part[chunk].push_back({at, strain});
             }
         }
     });
     double largest = 0;
     for (const auto& p : part) {
-        for (const Strained& s : p) largest = std::max(largest, s.strain);
+        for (const Candidate& c : p) largest = std::max(largest, c.strain);
     }
-    std::vector<Strained> next;
+    std::vector<Candidate> next;
     for (const auto& p : part) {
-        for (const Strained& s : p) {
-            if (s.strain >= kTogether * largest) next.push_back(s);
+        for (const Candidate& c : p) {
+            if (c.strain >= kTogether * largest) next.push_back(c);
         }
     }
-    spare_each_other(next);
-    std::vector<CellId> cells;
-    for (const Strained& s : next) cells.push_back(s.cell);
-    return cells;
+    return not_in_line(std::move(next));
 }
 
 }  // namespace swage

@@ -13,10 +13,7 @@ namespace swage {
 // Sound cells whose largest elastic strain, of their mean or of one of their connections, is beyond
 // onset and near the largest of all: those that are next, in the order of the cells. What is
 // committed counts; the state should have converged. `only`: runs of cells that are looked at.
-//
-// A cell that has cracked relieves what it is in line with, in motion only as fast as it opens: all
-// around the tip would crack until then, a cloud too blunt to go on. What has a cracked cell within
-// two in the direction of its pull is therefore spared up to half as much again.
+// Cells beside a crack are spared up to half as much again, and those off its track up to twice as much (sim/crack_path.h).
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
                                           const std::vector<const CellRun*>* only = nullptr);
 

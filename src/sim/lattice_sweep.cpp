@@ -119,8 +119,11 @@ SWAGE_INLINE void give_carried(const RunRows& rows, int begin, int count, bool g
             double* const to = rows.to[r + 1][i];
             const double one =
                 last(carry.middle[r], i, kWidth - 1) + last(carry.forward[r], i, kWidth - 2);
-            if (begin + kWidth - 1 <= count) to[begin + kWidth - 1] -= one;
-            if (begin + kWidth <= count) to[count] -= last(carry.forward[r], i, kWidth - 1);
+            const int end = std::min(count + 1, rows.room[r + 1]);
+            if (begin + kWidth - 1 < end) to[begin + kWidth - 1] -= one;
+            if (begin + kWidth == count && count < end) {
+                to[count] -= last(carry.forward[r], i, kWidth - 1);
+            }
         }
     }
 }

@@ -143,7 +143,7 @@ struct SpringKernel {
     }
 
     // Adds -f to the rows of `to`, from lane 0 at `begin`; up to `room` of them may be written over
-    // with what they are, `count` are wanted.
+    // with what they are, `count` are wanted. What lies beyond is another thread's, or nobody's.
     SWAGE_INLINE static void take(double* const (&to)[3], int begin, int room, int count,
                                   const Triple<V>& f) {
         const auto component = [&](double* row, const V& one) __attribute__((always_inline)) {
@@ -154,7 +154,8 @@ struct SpringKernel {
                 old -= one;
                 std::memcpy(from, &old, sizeof old);
             } else {
-                for (int l = 0; l < kWidth && begin + l < count; ++l) from[l] -= one[l];
+                const int end = std::min(count, room) - begin;
+                for (int l = 0; l < kWidth && l < end; ++l) from[l] -= one[l];
             }
         };
         component(to[0], f.x);

@@ -37,7 +37,7 @@ void notch(Aggregate& matter, const Vec3& along, const Vec3& across, double end)
     sever(matter, {{at(far, -9), at(end, -9), at(end, 9)}, {at(far, -9), at(end, 9), at(far, 9)}});
 }
 
-Tip tip_of(const Aggregate& m, const Vec3& along, const Vec3& across) {
+Tip tip_of(const Aggregate& m, const Vec3& along, const Vec3& across, double until) {
     Tip tip;
     for (const Span& span : m.lattice.span) {
         const std::vector<float>& damage = m.connection[span.direction].damage;
@@ -46,6 +46,7 @@ Tip tip_of(const Aggregate& m, const Vec3& along, const Vec3& across) {
             if (damage[span.lower + n] < 1) continue;
             const Vec3 middle = 0.5 * (m.particle_reference.at(span.lower + n) +
                                        m.particle_reference.at(span.upper + n));
+            if (along.dot(middle) > until) continue;
             tip.ahead = std::max(tip.ahead, along.dot(middle));
             tip.off = std::max(tip.off, std::abs(across.dot(middle)));
         }

@@ -21,7 +21,8 @@ struct Tip {
     double ahead = -1e3;  // of the middle
     double off = 0;       // largest distance of a broken edge from the line
 };
-Tip tip_of(const Aggregate& matter, const Vec3& along, const Vec3& across);
+// Of the crack as far as `until` ahead of the middle.
+Tip tip_of(const Aggregate& matter, const Vec3& along, const Vec3& across, double until = 1e3);
 
 // Surface points farther out than `half` on one side (-1 or 1).
 std::vector<int> clamped(const Aggregate& matter, const Vec3& across, int side, double half);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "verify/case.h"
 #include "verify/crack_strip.h"
@@ -66,7 +67,11 @@ void strip(bool brief, Values& values) {
             // Across the axes a crack may ask less.
             if (degrees > 0) toughness.error = std::max(0.0, asked - 1);
             values.add(toughness);
-            values.add(absolute("off its line / a" + at, 0, 0, tip.off, 1));
+            const double grown = tip_of(stand.matter, along, across, end + 0.7 * half).off;
+            values.add(absolute("off its line / a" + at, 0, 0, grown, 1));
+            // Once it has grown so far it may run on to the strip's end.
+            values.add(absolute("off all along / a" + at, 0, 0, tip.off,
+                                std::numeric_limits<double>::infinity()));
         }
     }
 }
