@@ -37,7 +37,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
         if (given.azimuth) key.azimuth = *given.azimuth * kDegree;
         if (given.elevation) key.elevation = *given.elevation * kDegree;
         if (given.zoom) key.zoom = *given.zoom;
-        settings.camera = {key};
+        settings.camera.assign(1, key);
         if (given.turn) {
             key.at = 1;
             key.azimuth += *given.turn * kDegree;

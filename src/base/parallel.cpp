@@ -5,19 +5,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <thread>
-
-#if defined(__SANITIZE_THREAD__)
-// The thread sanitizer does not see into libtbb, so the hand-over of work is told to it by hand.
-extern "C" void __tsan_acquire(void*);
-extern "C" void __tsan_release(void*);
-#define SWAGE_TSAN_ACQUIRE(p) __tsan_acquire(p)
-#define SWAGE_TSAN_RELEASE(p) __tsan_release(p)
-#else
-#define SWAGE_TSAN_ACQUIRE(p) (void)(p)
-#define SWAGE_TSAN_RELEASE(p) (void)(p)
-#endif
+#include <vector>
 
 namespace swage {
 
@@ -42,17 +33,24 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
-    char begin = 0, end = 0;
-    SWAGE_TSAN_RELEASE(&begin);
+#if defined(__SANITIZE_THREAD__)
+    // The sanitizer does not see into libtbb and would report its own hand-over of work.
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < count; i = next++) body(i);
+    };
+    std::vector<std::thread> helper;
+    for (int n = 1; n < thread_count(); ++n) helper.emplace_back(work);
+    work();
+    for (std::thread& thread : helper) thread.join();
+#else
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
-            SWAGE_TSAN_ACQUIRE(&begin);
             for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-            SWAGE_TSAN_RELEASE(&end);
         },
         tbb::simple_partitioner());
-    SWAGE_TSAN_ACQUIRE(&end);
+#endif
 }
 
 }  // namespace swage

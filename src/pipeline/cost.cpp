@@ -182,6 +182,11 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     cost.note = build_machine(first.machine, first.parameter,
                               place_work_frame(matter[0], first.axis, first.up), matter[0])
                     .notes;
+    const bool breaks = std::any_of(scene.body.begin(), scene.body.end(),
+                                    [](const BodySpec& b) { return b.material.breaks(); });
+    if (breaks && scene.skin.kind != SkinKind::boundary) {
+        cost.note.push_back(kTornSkin);
+    }
     add_up(cost, scene, input, options, matter);
     return cost;
 }

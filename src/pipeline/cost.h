@@ -22,7 +22,7 @@ struct RunCost {
     double seconds = 0;             // of simulation and drawing on this machine, about
     double memory_bytes = 0;        // at the peak, about
     double disk_bytes = 0;          // of the run directory, about
-    std::vector<std::string> note;  // of the first machine, set up at the work-piece
+    std::vector<std::string> note;  // of the first machine at the work-piece; of the skin
 };
 
 int frame_count(const SceneSpec& scene);

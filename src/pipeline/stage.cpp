@@ -229,7 +229,10 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         }
         {
             const auto lap = context.watch.lap("skin");
-            if (last.broken > 0 && skin != SkinKind::boundary) tears = true;
+            if (last.broken > 0 && skin != SkinKind::boundary) {
+                tears = true;
+                warnings.add(number, kTornSkin);
+            }
             for (WorkPiece& body : bodies) {
                 follow_matter(body, skin);
                 if (tears) remove_torn_triangles(body.skin, body.mount, body.matter);

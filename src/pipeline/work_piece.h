@@ -69,4 +69,8 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 // Brings the skin to where the matter is.
 void follow_matter(WorkPiece& piece, SkinKind kind);
 
+// What a mounted skin comes to.
+inline constexpr const char* kTornSkin =
+    "where matter breaks the mounted skin is torn open; [skin] kind = \"boundary\" closes it";
+
 }  // namespace swage

@@ -20,8 +20,8 @@ constexpr double kTrackReach = 5.5;
 constexpr double kPullReach = 2.5;
 // The middles of cells that an oblique plane crosses lie off it by a quarter of a face's diagonal.
 constexpr double kOnTrack = 0.35;
-// At 8 a crack at 11 degrees leaves its line by 1.7 spacings over 46; at 30 one at 34 degrees asks
-// 1.3 times what it should, at 16 1.2 times.
+// At 8 a crack at 11 degrees leaves its line by 1.7 spacings over 46; the larger, the more a crack at
+// 34 degrees asks (at 16 1.25 of its toughness).
 constexpr double kOffTrack = 16;
 constexpr double kMostSpared = 2;
 

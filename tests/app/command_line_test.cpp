@@ -185,6 +185,27 @@ TEST_CASE("check tells what a run will cost, and the run costs it") {
     }
 }
 
+TEST_CASE("a mounted skin that will be torn open is told before and after") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "glass.toml";
+    for (bool closed : {false, true}) {
+        put_text(scene, "[mesh]\nfile = \"" + fs::absolute("assets/meshes/bar.obj").string() +
+                            "\"\nlength = \"20 cm\"\n[material]\nname = \"glass\"\n"
+                            "[mold]\nacross = 2\n[[stage]]\nmachine = \"stretch\"\n"
+                            "frames = 2\n" +
+                            (closed ? "[skin]\nkind = \"boundary\"\n" : ""));
+        const std::string said = "torn open";
+        const Outcome check = run_swage({"check", scene.string()});
+        REQUIRE(check.code == 0);
+        CHECK((check.out.find(said) == std::string::npos) == closed);
+        const std::string out = (scratch.path() / (closed ? "closed" : "mounted")).string();
+        const Outcome run = run_swage({"run", scene.string(), "--no-render", "--out", out});
+        INFO(run.err);
+        REQUIRE(run.code == 0);
+        CHECK((run.err.find(said) == std::string::npos) == closed);
+    }
+}
+
 TEST_CASE("info and machines tell the same in words and in JSON") {
     const Json info = Json::parse(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
     CHECK(info.at("watertight") == true);
