@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a blade leaves of a body of two materials: springs as stiff as what they run through.
+#include <random>
+
+#include "geometry/make_shape.h"
+#include "mold/mold.h"
+#include "sim/lattice_forces.h"
+#include "sim/sever.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+constexpr double kSpacing = 0.25;
+
+TriMesh box_mesh(const Vec3& low, const Vec3& high) {
+    const Vec3 size = high - low;
+    TriMesh mesh = make_shape("bar", {{"length", size.x()},
+                                      {"height", size.y()},
+                                      {"width", size.z()},
+                                      {"rounding", 0},
+                                      {"division", 1}})
+                       .mesh;
+    const Vec3 center = box_of(mesh.position).center();
+    for (Vec3& p : mesh.position) p += 0.5 * (low + high) - center;
+    return mesh;
+}
+
+// A bar, of another material from `boundary` on, cut along a plane that holds its length.
+Aggregate cut_bar(const Material& left, const Material& right, double boundary,
+                  bool severed = true) {
+    MoldSettings settings;
+    settings.spacing = kSpacing;
+    const Vec3 size(4, 1, 0.75);
+    std::vector<Inset> insets;
+    if (boundary < size.x()) insets = {{box_mesh({boundary, 0, 0}, size), right}};
+    Aggregate m = mold(box_mesh(Vec3::Zero(), size), left, settings, insets);
+    const double far = 10, y = 0.4;
+    if (severed) {
+        sever(m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
+                  {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}});
+    }
+    return m;
+}
+
+Material with_modulus(double modulus) { return {.young_modulus = modulus, .poisson_ratio = 0.25}; }
+
+void shake(Aggregate& m, double by, int seed = 3) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (auto* x : {&m.particle_position.x, &m.particle_position.y, &m.particle_position.z}) {
+        for (double& v : *x) v += by * kSpacing * draw(engine);
+    }
+}
+
+double largest_of(const Vec3Array& f) {
+    double largest = 0;
+    for (std::size_t p = 0; p < f.size(); ++p) largest = std::max(largest, f.at(p).norm());
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("a cut bar of two materials keeps each part's stiffness") {
+    const double boundary = 2;  // between cells
+    const Material soft = with_modulus(1e5), stiff = with_modulus(3e7);
+    Aggregate both = cut_bar(soft, stiff, boundary), left = cut_bar(soft, soft, 9),
+              right = cut_bar(stiff, stiff, 9);
+    REQUIRE(both.particle_count() == left.particle_count());
+    Vec3Array f[3];
+    int n = 0;
+    for (Aggregate* m : {&both, &left, &right}) {
+        shake(*m, 0.05);
+        LatticeForces(*m).find(*m, Flow::trial, f[n++]);
+    }
+    int seen = 0;
+    for (std::size_t p = 0; p < both.particle_count(); ++p) {
+        const double x = both.particle_reference.at(p).x() - boundary;
+        if (std::abs(x) < 0.1 * kSpacing) continue;
+        const Vec3 alone = f[x < 0 ? 1 : 2].at(p);
+        CHECK((f[0].at(p) - alone).norm() <= 1e-9 * alone.norm());
+        ++seen;
+    }
+    CHECK(seen > 200);
+}
+
+TEST_CASE("a cut bar of two materials pushes by minus the gradient of its energy") {
+    Material soft = with_modulus(1e5), stiff = with_modulus(3e6);
+    soft.yield_stress = 500, stiff.yield_stress = 5e3, stiff.hardening = 1e5;
+    for (bool flowed : {false, true}) {
+        // The boundary in the midst of cells.
+        Aggregate m = cut_bar(soft, stiff, 2.1, false);
+        REQUIRE(!m.mixed_cell.empty());
+        shake(m, 0.02);
+        if (flowed) CHECK(LatticeForces(m).commit(m).plastic > 0);
+        m.material.yield_stress = m.inset[0].yield_stress = 1e9;  // and no more
+        const double far = 10, y = 0.4;
+        sever(m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
+                  {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}});
+        LatticeForces forces(m);
+        Vec3Array f;
+        forces.find(m, Flow::none, f);
+        const double largest = largest_of(f), h = 1e-4 * kSpacing;
+        for (std::size_t p = 0; p < m.particle_count(); p += 3) {
+            const auto at = [&](double by) {
+                Aggregate moved = m;
+                moved.particle_position.x[p] += by;
+                return forces.elastic_energy(moved);
+            };
+            const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+            CHECK(std::abs(f.x[p] + slope) < 1e-7 * largest);
+        }
+    }
+}
+
+TEST_CASE("the bound on stiffness is above the stiffest motion of a cut bar of two materials") {
+    Aggregate m = cut_bar(with_modulus(1e5), with_modulus(3e7), 2.1);
+    LatticeForces forces(m);
+    const std::vector<double> bound = forces.stiffness_bound(m);
+    // Power iteration on the stiffness by the bound.
+    const Vec3Array rest = m.particle_position;
+    Vec3Array way, f;
+    way.resize(m.particle_count());
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    for (std::size_t p = 0; p < way.size(); ++p) {
+        way.set(p, {draw(engine), draw(engine), draw(engine)});
+    }
+    const double h = 1e-7 * kSpacing;
+    double most = 0;
+    for (int round = 0; round < 80; ++round) {
+        const double scale = 1 / largest_of(way);
+        for (std::size_t p = 0; p < way.size(); ++p) {
+            way.set(p, scale * way.at(p));
+            m.particle_position.set(p, rest.at(p) + h * way.at(p));
+        }
+        forces.find(m, Flow::trial, f);
+        double over = 0, under = 0;
+        for (std::size_t p = 0; p < way.size(); ++p) {
+            over -= way.at(p).dot(f.at(p)) / h;
+            under += bound[p] * way.at(p).squaredNorm();
+            way.set(p, -1 / (h * bound[p]) * f.at(p));
+        }
+        most = over / under;
+    }
+    CHECK(most < 1);
+    CHECK(most > 0.3);
+}
+
+TEST_CASE("what flowed before the cut stays bent after it, across the boundary too") {
+    const Vec3 strain(1e-3, -4e-4, -6e-4);
+    Material yields = with_modulus(1e6), stiff = with_modulus(1e7);
+    yields.yield_stress = stiff.yield_stress = 1e3;
+    double left[2];
+    for (int flowed : {0, 1}) {
+        Aggregate m = cut_bar(yields, stiff, 2.1);
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            const Vec3 grown = strain.array().exp();
+            m.particle_position.set(p, grown.cwiseProduct(m.particle_reference.at(p)));
+        }
+        if (flowed != 0) {
+            for (auto& v : m.cell_plastic_strain) v.resize(m.cell_fill.size());
+            for (auto& v : m.cell_plastic_modes) v.assign(m.cell_fill.size(), 0.0f);
+            m.cell_hardening.assign(m.cell_fill.size(), 1e-3f);
+            for (int i = 0; i < 3; ++i) {
+                const float e = static_cast<float>(strain[i]);
+                std::fill(m.cell_plastic_strain[i].begin(), m.cell_plastic_strain[i].end(), e);
+                for (MixedCell& cell : m.mixed_cell) cell.flowed[0][i] = cell.flowed[1][i] = e;
+            }
+        }
+        Vec3Array f;
+        LatticeForces(m).find(m, Flow::none, f);
+        left[flowed] = largest_of(f);
+    }
+    CHECK(left[1] < 2e-3 * left[0]);
+}
