@@ -79,8 +79,18 @@ SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState
 template <typename N>
 struct Laminate {
     PhaseState<N> phase[2];
-    Triple<N> jump;  // a
+    Triple<N> jump;      // a
+    Columns<N> inverse;  // about what undoes the tractions' difference
+    N wrong, right;      // of that difference, squared: what is left of it, and what may be
     int rounds;
+};
+
+// Where the search begins: with what a search nearby has ended with, where `known`, 0 or 1.
+template <typename N>
+struct JumpGuess {
+    N known;
+    Triple<N> jump;
+    Columns<N> inverse;
 };
 
 // F(c_m), without the product terms of laws/cell.h: of the two parts of a full cell these do not
@@ -214,9 +224,15 @@ SWAGE_INLINE Columns<N> about_jump_slope(const Phase<N> (&m)[2], const Triple<N>
     return sum;
 }
 
+template <typename M, typename N>
+SWAGE_INLINE Columns<N> pick(const M& which, const Columns<N>& a, const Columns<N>& b) {
+    return {pick(which, a.x, b.x), pick(which, a.y, b.y), pick(which, a.z, b.z)};
+}
+
 template <typename N>
 SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const Triple<N>& n,
-                           double spacing, Laminate<N>& r) {
+                           double spacing, Laminate<N>& r,
+                           const JumpGuess<N>& guess = JumpGuess<N>{}) {
     for (int p = 0; p < 2; ++p) {
         r.phase[p].gradient = phase_gradient(c, m[p].at, spacing);
         r.phase[p].modes = pulled_back(r.phase[p].gradient, c);
@@ -246,10 +262,13 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
     const bool flows = m[0].kind == CellKind::yielding || m[1].kind == CellKind::yielding;
     const N none{};
     const Triple<N> nowhere{};
-    Columns<N> inverse = firm;
-    Triple<N> from{}, way{}, last{};  // the step on trial begins there, with that difference
-    N start{}, length = none + 1.0;   // slope of W along it; share of it that is on trial
-    r.jump = nowhere;
+    const auto known = guess.known > none;
+    const bool all_known = all_less(none, guess.known);
+    r.inverse = pick(known, guess.inverse, firm);
+    r.jump = pick(known, guess.jump, nowhere);
+    // The step on trial begins there, with that difference.
+    Triple<N> from = r.jump, way{}, last{};
+    N start{}, length = none + 1.0;  // slope of W along it; share of it that is on trial
     for (r.rounds = 0;; ++r.rounds) {
         Triple<N> pull[2];
         for (int p = 0; p < 2; ++p) {
@@ -258,14 +277,17 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         }
         const Triple<N> left = pull[0] - pull[1];
         const N size = dot(pull[0], pull[0]) + dot(pull[1], pull[1]);
-        const N wrong = dot(left, left),
-                right = kTractionLeft * kTractionLeft * size + noise * noise;
-        if (r.rounds == kMostRounds || all_less(wrong, right)) return;
-        const auto arrived = wrong < right;
+        r.wrong = dot(left, left);
+        r.right = kTractionLeft * kTractionLeft * size + noise * noise;
+        if (r.rounds == kMostRounds || all_less(r.wrong, r.right)) return;
+        const auto arrived = r.wrong < r.right;
         const N now = dot(left, way);
         const auto good = arrived | (now <= -kTooFar * start);
+        Columns<N> inverse = r.inverse;
         if (flows && r.rounds < kGuessedRounds) {
-            inverse = inverse_of(about_jump_slope(m, n, r, share));
+            if (!all_known) {
+                inverse = pick(known, inverse, inverse_of(about_jump_slope(m, n, r, share)));
+            }
         } else if (r.rounds < kSecantRounds) {
             // The step was meant to bring the difference to nothing; what it did corrects.
             const Triple<N> step = r.jump - from, gone = inverse * (left - last);
@@ -279,11 +301,12 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
         } else {
             inverse = inverse_of(jump_slope(m, n, r));
         }
-        Triple<N> next = -1.0 * (inverse * left);
+        r.inverse = pick(arrived, r.inverse, inverse);  // lanes that have arrived stay
+        Triple<N> next = -1.0 * (r.inverse * left);
         next = pick(dot(left, next) < none, next, -1.0 * (firm * left));
         const N far = root(dot(next, next));
         next = pick(far > kLongest + none, (kLongest / (far + 1e-300)) * next, next);
-        next = pick(arrived, nowhere, next);  // lanes that have arrived stay
+        next = pick(arrived, nowhere, next);
         const N cut = start / (start - now), least = none + 0.1, most = none + 0.7;
         const N shorter = cut > least ? (cut < most ? cut : most) : least;
         from = pick(good, r.jump, from);

@@ -25,6 +25,27 @@ struct MixedBatch {
     int count;
 };
 
+// The search for a jump begins where the last forces found it, and anew where they did not.
+template <typename V>
+SWAGE_INLINE void set_guess(JumpGuess<V>& guess, int lane, const MixedCells::Seen& seen) {
+    guess.known[lane] = seen.jump_found ? 1 : 0;
+    const auto set = [&](Triple<V>& v, const double* from) {
+        v.x[lane] = from[0], v.y[lane] = from[1], v.z[lane] = from[2];
+    };
+    set(guess.jump, seen.jump.data());
+    set(guess.inverse.x, seen.inverse.data());
+    set(guess.inverse.y, seen.inverse.data() + 3);
+    set(guess.inverse.z, seen.inverse.data() + 6);
+}
+template <typename V>
+SWAGE_INLINE void set_seen(const Laminate<V>& found, int lane, MixedCells::Seen& seen) {
+    seen.jump_found = found.wrong[lane] < found.right[lane];
+    const auto& [x, y, z] = found.inverse;
+    seen.jump = {found.jump.x[lane], found.jump.y[lane], found.jump.z[lane]};
+    seen.inverse = {x.x[lane], x.y[lane], x.z[lane], y.x[lane], y.y[lane],
+                    y.z[lane], z.x[lane], z.y[lane], z.z[lane]};
+}
+
 // Eight cells, as so many batches of the machine's own width.
 template <int kWidth>
 SWAGE_INLINE void batch_forces(const MixedBatch& b) {
@@ -33,23 +54,26 @@ SWAGE_INLINE void batch_forces(const MixedBatch& b) {
         V at[3][8]{};
         Phase<V> phase[2]{};
         Triple<V> normal{};
+        JumpGuess<V> guess{};
         for (int p = 0; p < 2; ++p)
             phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
         for (int l = 0; l < kWidth; ++l) {
             // Lanes that are left over repeat the last cell.
             const int n = std::min(begin + l, b.count - 1);
             read_mixed(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
+            set_guess(guess, l, b.seen[n]);
         }
         const double spacing = b.matter->lattice.spacing;
         const CornerSums<V> c = corner_sums(at);
         Laminate<V> found;
-        laminate(c, phase, normal, spacing, found);
+        laminate(c, phase, normal, spacing, found, guess);
         const CornerSums<V> r = laminate_forces(c, phase, found, spacing);
         corner_forces(r, at);
         for (int l = 0; l < kWidth && begin + l < b.count; ++l) {
             for (int n = 0; n < 24; ++n) b.push[begin + l][n] = at[n / 8][n % 8][l];
             MixedCells::Seen& seen = b.seen[begin + l];
             seen.may_flow = false;
+            set_seen(found, l, seen);
             for (int p = 0; p < 2; ++p) {
                 const double near = -kNearYield * phase[p].law->yield_stress;
                 seen.may_flow = seen.may_flow || (phase[p].kind == CellKind::yielding &&

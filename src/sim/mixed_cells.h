@@ -34,9 +34,12 @@ class MixedCells {
     double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen) const;
     double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
 
-    // What the last forces saw in a cell.
+    // What the last forces saw in a cell, and where the search for its jump ended.
     struct Seen {
         bool may_flow;
+        bool jump_found;
+        std::array<double, 3> jump;
+        std::array<double, 9> inverse;  // laws/laminate.h
     };
 
   private:

@@ -217,3 +217,43 @@ TEST_CASE("a body of two materials has its mass, its volume, and the same bits i
     limit_vector_width(0);
     set_thread_count(0);
 }
+
+TEST_CASE(
+    "a jump sought from the last one is the one sought anew, and the same bits in every way") {
+    Material light = soft(), heavy = stiff();
+    light.yield_stress = 1e3, heavy.yield_stress = 3e4, heavy.hardening = 1e5;
+    const Aggregate start = bar_with_ball(light, heavy);
+    // Forces at some places in turn, the last of them anew too.
+    const auto forces_along = [&](bool anew) {
+        Aggregate m = start;
+        LatticeForces forces(m);
+        Vec3Array f;
+        for (int seed : {3, 5, 8}) {
+            shake(m, 0.01, seed);
+            if (anew) {
+                LatticeForces(m).find(m, Flow::trial, f);
+            } else {
+                forces.find(m, Flow::trial, f);
+            }
+        }
+        return f;
+    };
+    const Vec3Array expected = forces_along(false), anew = forces_along(true);
+    double largest = 0, off = 0;
+    for (std::size_t p = 0; p < expected.size(); ++p) {
+        largest = std::max(largest, anew.at(p).norm());
+        off = std::max(off, (expected.at(p) - anew.at(p)).norm());
+    }
+    CHECK(off < 1e-9 * largest);
+    for (int threads : {1, 3}) {
+        set_thread_count(threads);
+        for (int width : {8, 4, 2}) {
+            limit_vector_width(width);
+            const Vec3Array f = forces_along(false);
+            CHECK(f.x == expected.x);
+            CHECK(f.y == expected.y);
+        }
+    }
+    limit_vector_width(0);
+    set_thread_count(0);
+}
