@@ -23,10 +23,7 @@ double share_of(double one, double other) {
     const double part = one / most;
     const double mean =
         std::sqrt(std::sqrt(0.5 * (square(square(part)) + square(square(other / most)))));
-    const double share =
-        (0.5 * part * square(part / mean) / mean + kLeastShare) / (1 + 2 * kLeastShare);
-    // What is half but for round-off spares a pass.
-    return std::abs(share - 0.5) < 1e-10 ? 0.5 : share;
+    return (0.5 * part * square(part / mean) / mean + kLeastShare) / (1 + 2 * kLeastShare);
 }
 
 double box_gap(const Box& a, const Box& b) {
@@ -167,7 +164,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t w : awake) stored[w] = way_[w].meet(step);
     for (std::size_t w : awake) {
         const std::size_t back = pair_[w].back;
-        if (back != w) way_[w].set_share(share_of(stored[w], stored[back]));
+        way_[w].push(back == w ? 0.5 : share_of(stored[w], stored[back]));
     }
     for (std::size_t w : awake) way_[w].respond(step);
     for (std::size_t b = 0; b < side_.size(); ++b) {

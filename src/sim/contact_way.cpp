@@ -51,21 +51,26 @@ void ContactWay::search(double margin) {
 void ContactWay::resolve() {
     const Lattice& lattice = onto_->matter().lattice;
     const SurfacePoints& points = from_->points();
+    point_push_ = cell_push_ = {};
     CellId last = -1;
     std::array<int, 8> corner{};
     for (Contact& contact : list_.contact) {
         if (contact.cell != last) {
             last = contact.cell;
             const std::array<ParticleId, 8> particle = lattice.cell_corners(last);
-            for (int c = 0; c < 8; ++c) corner[c] = onto_->patch().slot_of(particle[c]);
+            for (int c = 0; c < 8; ++c) {
+                corner[c] = onto_->patch().slot_of(particle[c]);
+                cell_push_.grow(corner[c]);
+            }
         }
         contact.corner = corner;
         contact.carriers = 0;
         for (int c = 0; c < 8; ++c) {
             const float w = points.weight[contact.point][c];
             if (w == 0) continue;
-            contact.carrier[contact.carriers] =
-                from_->patch().slot_of(points.corner[contact.point][c]);
+            const int slot = from_->patch().slot_of(points.corner[contact.point][c]);
+            point_push_.grow(slot);
+            contact.carrier[contact.carriers] = slot;
             contact.share[contact.carriers++] = w;
         }
     }
@@ -250,12 +255,20 @@ struct ContactWay::Kernel {
         for (int c = 0; c < 8; ++c) b.force(contact.corner[c]) -= weight[c] * f;
     }
 
-    SWAGE_INLINE void push_chunk(std::size_t chunk, double share) const {
+    SWAGE_INLINE void push_chunk(std::size_t chunk) const {
+        Pushed &point = way.point_push_, &cell = way.cell_push_;
         const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < stop; ++n) {
             const Contact& contact = way.list_.contact[n];
             if (!meets(way.meeting_[n])) continue;
-            spread(contact, trilinear_weights(contact.place), share * way.meeting_[n].spring);
+            const std::array<double, 8> weight = trilinear_weights(contact.place);
+            const Vec4 f = way.meeting_[n].spring;
+            for (int c = 0; c < contact.carriers; ++c) {
+                point.force[contact.carrier[c] - point.low].value += double(contact.share[c]) * f;
+            }
+            for (int c = 0; c < 8; ++c) {
+                cell.force[contact.corner[c] - cell.low].value -= weight[c] * f;
+            }
         }
     }
 
@@ -331,8 +344,8 @@ struct ContactWay::Kernel {
 SWAGE_MIDDLE_VECTORS void ContactWay::middle_find_chunk(std::size_t chunk, double step) {
     Kernel{*this}.find_chunk(chunk, step);
 }
-SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk, double share) {
-    Kernel{*this}.push_chunk(chunk, share);
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk) {
+    Kernel{*this}.push_chunk(chunk);
 }
 SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step) { Kernel{*this}.respond(step); }
 
@@ -341,16 +354,23 @@ void ContactWay::find_chunk(std::size_t chunk, double step) {
     Kernel{*this}.find_chunk(chunk, step);
 }
 
-void ContactWay::push_chunk(std::size_t chunk, double share) {
-    if (vector_width() >= 4) return middle_push_chunk(chunk, share);
-    Kernel{*this}.push_chunk(chunk, share);
+void ContactWay::push_chunk(std::size_t chunk) {
+    if (vector_width() >= 4) return middle_push_chunk(chunk);
+    Kernel{*this}.push_chunk(chunk);
+}
+
+void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {
+    for (std::size_t n = 0; n < force.size(); ++n)
+        patch.force(low + int(n)) += share * force[n].value;
 }
 
 // What one thread has just found it pushes at once, while it is near.
 double ContactWay::meet(double step) {
     meeting_.resize(list_.size());
     chunk_.resize(chunks(list_.size()));
-    share_ = 0.5;
+    for (Pushed* pushed : {&point_push_, &cell_push_}) {
+        pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
+    }
     double stored = 0;
     const std::size_t group = thread_count() == 1 ? 1 : chunk_.size();
     for (std::size_t begin = 0; begin < chunk_.size(); begin += group) {
@@ -360,19 +380,23 @@ double ContactWay::meet(double step) {
             for (int n : chunk_[chunk].moved) {
                 Contact& contact = list_.contact[n];
                 const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
-                for (int c = 0; c < 8; ++c) contact.corner[c] = onto_->patch().slot_of(particle[c]);
+                for (int c = 0; c < 8; ++c) {
+                    const int slot = onto_->patch().slot_of(particle[c]);
+                    contact.corner[c] = slot;
+                    cell_push_.take(slot);
+                }
             }
-            push_chunk(chunk, share_);
+            push_chunk(chunk);
             stored += chunk_[chunk].stored;
         }
     }
     return stored;
 }
 
-void ContactWay::set_share(double share) {
-    if (share == share_) return;
-    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) push_chunk(chunk, share - share_);
+void ContactWay::push(double share) {
     share_ = share;
+    point_push_.add_to(from_->patch(), share);
+    cell_push_.add_to(onto_->patch(), share);
 }
 
 void ContactWay::respond(double step) {

@@ -18,9 +18,11 @@
 // follow in one step.
 //
 // In each step: resolve() where contacts have been found anew; then of all ways meet(), of all
-// set_share(), of all respond(); and commit() where the step is kept. Both sides' patches are read
+// push(), of all respond(); and commit() where the step is kept. Both sides' patches are read
 // before and written after.
 #pragma once
+
+#include <algorithm>
 
 #include "sim/contact_list.h"
 
@@ -42,11 +44,11 @@ class ContactWay {
     // What is whole has changed on one side or both: the first too, whose points are others then.
     void surfaces_changed(bool points_too, double step);
 
-    // Finds how each point lies and moves now, for a step of this length [s], and adds half of what
-    // springs would do if this way were alone; returns what they would hold then [J].
+    // Finds how each point lies and moves now, for a step of this length [s], and what springs
+    // would do if this way were alone; returns what they would hold then [J].
     double meet(double step);
-    // Another share than half.
-    void set_share(double share);
+    // Adds this share of it.
+    void push(double share);
     // Dashpots and friction, one contact after the other, given what all springs do.
     void respond(double step);
     // While nothing moves.
@@ -72,11 +74,33 @@ class ContactWay {
         double stored = 0;       // by springs of the whole stiffness [J]
         double lost = 0;         // likewise, where the surface turned away from where points stick
     };
+    // What springs do to the particles of a patch, from the slot `low` on [N].
+    struct Pushed {
+        int low = 0, high = -1;
+        struct alignas(32) Force {
+            Vec4 value{};
+        };
+        std::vector<Force> force;
+        void grow(int slot) {
+            low = high < 0 ? slot : std::min(low, slot);
+            high = std::max(high, slot);
+        }
+        // Another, while there are forces.
+        void take(int slot) {
+            if (slot < low) {
+                force.insert(force.begin(), std::size_t(low - slot), Force{});
+            } else if (slot > high) {
+                force.resize(std::size_t(slot - low + 1));
+            }
+            grow(slot);
+        }
+        void add_to(ContactPatch& patch, double share) const;
+    };
     struct Kernel;
     void find_chunk(std::size_t chunk, double step);
     void middle_find_chunk(std::size_t chunk, double step);
-    void push_chunk(std::size_t chunk, double share);
-    void middle_push_chunk(std::size_t chunk, double share);
+    void push_chunk(std::size_t chunk);
+    void middle_push_chunk(std::size_t chunk);
     void middle_respond(double step);
 
     ContactSide *from_, *onto_;
@@ -90,6 +114,7 @@ class ContactWay {
     std::vector<ContactMemory> next_{};  // to commit
     bool is_found_ = false;              // since the last commit
     std::vector<Chunk> chunk_;
+    Pushed point_push_{}, cell_push_{};
     ContactSums sums_{};
 };
 

@@ -19,6 +19,7 @@ constexpr double kBeyond = 1.1;         // the nearest point, that points count
 constexpr double kSupport = 0.6;        // from a place's foot to its side's nearest point
 constexpr double kSameSide = 0.7;       // least cosine between normals of one side of an edge
 constexpr double kInterpolates = 0.04;  // error of interpolated distances that serves
+constexpr double kDeep = 0.999;         // nothing comes as deep: a spacing, but for round-off
 constexpr int kMostSides = 4;
 constexpr std::size_t kChunk = 64;
 
@@ -74,9 +75,26 @@ RestSurface::RestSurface(const Lattice& lattice, const SurfacePoints& surface) {
         normal_.push_back(surface.reference_normal[p]);
     }
 
-    std::vector<CellId> rim;
+    std::vector<Vec3i> site_of_bin;
     for (const Site& bin : bin_) {
-        const Vec3i site = floor_of(point_[bin.first] - 1e-3 * normal_[bin.first]);
+        site_of_bin.push_back(floor_of(point_[bin.first] - 1e-3 * normal_[bin.first]));
+    }
+    if (!bin_.empty()) {
+        Vec3i high = row_low_ = site_of_bin[0];
+        for (const Vec3i& s : site_of_bin) {
+            row_low_ = row_low_.cwiseMin(s);
+            high = high.cwiseMax(s);
+        }
+        row_count_ = high - row_low_ + Vec3i::Ones();
+        for (std::size_t n = 0; n < bin_.size(); ++n) {
+            const Vec3i at = site_of_bin[n] - row_low_;
+            row_.resize(std::size_t(at.z() * row_count_.y() + at.y() + 1), int(n));
+        }
+        row_.resize(std::size_t(row_count_.y() * row_count_.z() + 1), int(bin_.size()));
+    }
+
+    std::vector<CellId> rim;
+    for (const Vec3i& site : site_of_bin) {
         for (int k = -kRings; k <= kRings; ++k) {
             for (int j = -kRings; j <= kRings; ++j) {
                 for (int i = -kRings; i <= kRings; ++i) {
@@ -101,25 +119,32 @@ RestSurface::RestSurface(const Lattice& lattice, const SurfacePoints& surface) {
     measure_fine(lattice, is_fine);
     for (std::size_t n = 0; n < rim.size(); ++n) {
         const auto& c = corner_[n];
-        const bool shallow = *std::max_element(c.begin(), c.end()) > -0.999f;
+        const bool shallow = *std::max_element(c.begin(), c.end()) > -kDeep;
         if (shallow || is_fine[n]) skin_.push_back(rim[n]);
     }
 }
 
-// Points in bins that come within `reach` of the box.
+// Points within `reach` of the box.
 void RestSurface::gather(const Vec3& low, const Vec3& high, double reach, Near& near) const {
     near.point.clear();
     near.reach = reach;
     const Vec3i from = floor_of(low - Vec3::Constant(reach)),
-                to = floor_of(high + Vec3::Constant(reach));
-    for (int k = from.z(); k <= to.z(); ++k) {
-        for (int j = from.y(); j <= to.y(); ++j) {
-            const std::uint64_t stop = key_of({to.x(), j, k});
+                to = floor_of(high + Vec3::Constant(reach)), first = (from - row_low_).cwiseMax(0),
+                last = (to - row_low_).cwiseMin(row_count_ - Vec3i::Ones());
+    for (int k = first.z(); k <= last.z(); ++k) {
+        for (int j = first.y(); j <= last.y(); ++j) {
+            const std::size_t row = std::size_t(k * row_count_.y() + j);
+            const std::uint64_t stop = key_of({to.x(), j + row_low_.y(), k + row_low_.z()});
+            const auto end = bin_.begin() + row_[row + 1];
             auto at =
-                std::lower_bound(bin_.begin(), bin_.end(), key_of({from.x(), j, k}),
+                std::lower_bound(bin_.begin() + row_[row], end,
+                                 key_of({from.x(), j + row_low_.y(), k + row_low_.z()}),
                                  [](const Site& s, std::uint64_t key) { return s.key < key; });
-            for (; at != bin_.end() && at->key <= stop; ++at) {
-                for (int p = at->first; p < at->first + at->count; ++p) near.point.push_back(p);
+            for (; at != end && at->key <= stop; ++at) {
+                for (int p = at->first; p < at->first + at->count; ++p) {
+                    const Vec3 out = (low - point_[p]).cwiseMax(point_[p] - high).cwiseMax(0.0);
+                    if (out.squaredNorm() <= reach * reach) near.point.push_back(p);
+                }
             }
         }
     }
@@ -217,14 +242,43 @@ void RestSurface::measure_corners() {
     }
 }
 
+// Whether all that is near lies in a few planes, of which one is the nearest to all of the cell.
+bool RestSurface::is_flat(int slot, const Near& near) const {
+    constexpr double kSame = 1e-6, kRounds = 1e-5;
+    std::array<int, kMostSides> plane;
+    int planes = 0;
+    for (int p : near.point) {
+        const auto holds = [&](int q) {
+            return (normal_[p] - normal_[q]).squaredNorm() < kSame * kSame &&
+                   std::abs(normal_[q].dot(point_[p] - point_[q])) < kSame;
+        };
+        if (std::any_of(plane.begin(), plane.begin() + planes, holds)) continue;
+        if (planes == kMostSides) return false;
+        plane[planes++] = p;
+    }
+    bool found = false;
+    for (int q = 0; q < planes; ++q) {
+        bool is_this = true;
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 at = site_[slot].cast<double>() + Vec3(c & 1, c >> 1 & 1, c >> 2);
+            const double off = normal_[plane[q]].dot(at - point_[plane[q]]) - corner_[slot][c];
+            if (off > kRounds) return false;
+            is_this = is_this && off > -kRounds;
+        }
+        found = found || is_this;
+    }
+    return found;
+}
+
 // Cells whose corners do not tell enough: a gentle error, but not in what lies deep.
 void RestSurface::find_fine(std::vector<char>& is_fine) const {
     in_chunks(site_.size(), [&](std::size_t n) {
         const auto [low, high] = std::minmax_element(corner_[n].begin(), corner_[n].end());
-        if (*high < -1 && *low > -4) return;
+        if (*high<-kDeep&& * low> - 4) return;
         const Vec3 site = site_[n].cast<double>();
         Near near;
         gather(site, site + Vec3::Ones(), 2.2, near);
+        if (is_flat(static_cast<int>(n), near)) return;
         for (int s = 0; s < 9 && !is_fine[n]; ++s) {
             const Vec3 p = s == 8
                                ? Vec3::Constant(0.5)
@@ -232,7 +286,8 @@ void RestSurface::find_fine(std::vector<char>& is_fine) const {
             const double mean = interpolate(corner_[n], p).distance;
             double exact = distance(site + p, near);
             if (std::isnan(exact)) exact = distance(site + p);
-            is_fine[n] = !(std::abs(mean - exact) < kInterpolates || (mean < -1 && exact < -1));
+            is_fine[n] =
+                !(std::abs(mean - exact) < kInterpolates || (mean < -kDeep && exact < -kDeep));
         }
     });
 }

@@ -64,12 +64,15 @@ class RestSurface {
     double distance(const Vec3& g, const Near& near) const;
     double distance(const Vec3& g) const;
     void measure_corners();
+    bool is_flat(int slot, const Near& near) const;
     void find_fine(std::vector<char>& is_fine) const;
     void measure_fine(const Lattice& lattice, const std::vector<char>& is_fine);
 
     std::vector<Vec3> point_, normal_;  // sorted by bin
     std::vector<Site> bin_;
-    std::vector<int> slot_;  // of each cell, -1: no rim
+    Vec3i row_low_{0, 0, 0}, row_count_{0, 0, 0};  // rows of bins along x: by y, then z
+    std::vector<int> row_;                         // first bin of each, and one beyond
+    std::vector<int> slot_;                        // of each cell, -1: no rim
     std::vector<CellId> skin_;
     // By slot: distances at the corners, and which of the finely sampled it is, or -1.
     std::vector<std::array<float, 8>> corner_;
