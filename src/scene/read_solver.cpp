@@ -123,6 +123,15 @@ void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
     } else {
         table.vector("gravity", Quantity::acceleration, sim.gravity);
     }
+    if (sim.gravity != Vec3::Zero() && !(sim.gravity.y() < 0)) {
+        table.warn("gravity",
+                   "gravity does not point down: y is up, and a single number points down");
+    }
+    if (machine_moves && sim.gravity == Vec3::Zero() && !starts && table.find("load") == nullptr) {
+        table.warn("machine",
+                   "nothing moves: there is no gravity (gravity = \"9.81 m/s2\"), no load, and no "
+                   "body starts with a velocity or a spin");
+    }
 }
 
 }  // namespace swage

@@ -8,7 +8,7 @@ using namespace swage::test;
 
 namespace {
 
-const std::string kSteps = "[[stage]]\nmachine = \"floor\"\nsolver = \"explicit\"\n";
+const std::string kSteps = "[[stage]]\nmachine = \"floor\"\ngravity = 9.81\n";
 
 // Lines of the body: 12 and on.
 Parts beside(const std::string& lines) {

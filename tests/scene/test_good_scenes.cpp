@@ -130,7 +130,7 @@ medium_density = "1.2 kg/m3"
 drag_coefficient = 0.47
 directional_drag = "2 kPa s/m"
 directional_drag_along = "normal"
-gravity = [0, 0, "-1 m/s2"]
+gravity = [0, "-2 m/s2", -1]
 [render]
 size = [1, 16384]
 fps = 24
@@ -208,7 +208,7 @@ meshes_per_frame = true
     CHECK(scene.stage.at(1).sim.drag_coefficient == 0.47);
     CHECK(scene.stage.at(1).sim.directional_drag == 2000);
     CHECK(scene.stage.at(1).sim.directional_drag_along == DragAlong::normal);
-    CHECK(scene.stage.at(1).sim.gravity == Vec3(0, 0, -1));
+    CHECK(scene.stage.at(1).sim.gravity == Vec3(0, -2, -1));
     CHECK(scene.render.width == 1);
     CHECK(scene.render.height == 16384);
     CHECK(scene.render.frames_per_second == 24);
