@@ -24,19 +24,23 @@ double Aggregate::volume() const {
 double Aggregate::mean_modulus() const {
     if (inset.empty()) return material.young_modulus;
     double sum = 0, cells = 0;
-    auto mixed = mixed_cell.begin();
     for (std::size_t c = 0; c < cell_fill.size(); ++c) {
         cells += cell_fill[c];
-        if (mixed != mixed_cell.end() && mixed->cell == static_cast<CellId>(c)) {
+        if (const MixedCell* mixed = mixed_at(static_cast<CellId>(c))) {
             for (int m : {0, 1}) {
                 sum += mixed->fill[m] * material_at(mixed->material[m]).young_modulus;
             }
-            ++mixed;
         } else {
             sum += cell_fill[c] * material_of(static_cast<CellId>(c)).young_modulus;
         }
     }
     return sum / cells;
+}
+
+const MixedCell* Aggregate::mixed_at(CellId cell) const {
+    const auto at = std::lower_bound(mixed_cell.begin(), mixed_cell.end(), cell,
+                                     [](const MixedCell& m, CellId c) { return m.cell < c; });
+    return at != mixed_cell.end() && at->cell == cell ? &*at : nullptr;
 }
 
 double Aggregate::mass() const {

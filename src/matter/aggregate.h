@@ -198,6 +198,7 @@ struct Aggregate {
     SurfacePoints surface;
 
     std::size_t particle_count() const { return particle_mass.size(); }
+    const MixedCell* mixed_at(CellId cell) const;  // null: of one material
     std::size_t material_count() const { return 1 + inset.size(); }
     const Material& material_at(std::size_t number) const {
         return number == 0 ? material : inset[number - 1];

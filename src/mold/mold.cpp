@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "geometry/box_mesh.h"
 #include "mold/caps.h"
 #include "mold/insets.h"
 #include "mold/prepare.h"
@@ -21,25 +22,6 @@ namespace {
 constexpr double kThinnest = 0.02;  // mean thickness, in cells
 constexpr double kThin = 0.25;
 
-TriMesh box_surface(const Box& box) {
-    TriMesh mesh;
-    for (int c = 0; c < 8; ++c) {
-        mesh.position.emplace_back(c & 1 ? box.high.x() : box.low.x(),
-                                   c & 2 ? box.high.y() : box.low.y(),
-                                   c & 4 ? box.high.z() : box.low.z());
-    }
-    for (const auto& [a, b, c, d] : {std::array{0, 4, 6, 2},
-                                     {1, 3, 7, 5},
-                                     {0, 1, 5, 4},
-                                     {2, 6, 7, 3},
-                                     {0, 2, 3, 1},
-                                     {4, 5, 7, 6}}) {
-        mesh.triangle.push_back({a, b, c});
-        mesh.triangle.push_back({a, c, d});
-    }
-    return mesh;
-}
-
 // The box, grown to whole cells about its centre (S2.16).
 TriMesh block_around(const TriMesh& mesh, double spacing) {
     const Box box = surface_box(mesh);
@@ -47,7 +29,7 @@ TriMesh block_around(const TriMesh& mesh, double spacing) {
     Box block;
     block.grow(box.center() - half);
     block.grow(box.center() + half);
-    return box_surface(block);
+    return box_mesh(block);
 }
 
 void fill_cells(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
@@ -80,11 +62,8 @@ void place_particles(const MoldFrame& frame, Aggregate& matter) {
 
 // Mean of what a cell of a body of several materials holds.
 double density_of(const Aggregate& matter, CellId cell) {
-    const auto mixed = std::lower_bound(matter.mixed_cell.begin(), matter.mixed_cell.end(), cell,
-                                        [](const MixedCell& m, CellId c) { return m.cell < c; });
-    if (mixed == matter.mixed_cell.end() || mixed->cell != cell) {
-        return matter.material_of(cell).density;
-    }
+    const MixedCell* mixed = matter.mixed_at(cell);
+    if (mixed == nullptr) return matter.material_of(cell).density;
     double sum = 0, fill = 0;
     for (int m : {0, 1}) {
         sum += mixed->fill[m] * matter.material_at(mixed->material[m]).density;

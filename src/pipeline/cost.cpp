@@ -157,6 +157,9 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         cost.mold.connections += mold.connections;
         cost.mold.bytes += mold.bytes;
     }
+    const bool breaks = std::any_of(scene.body.begin(), scene.body.end(),
+                                    [](const BodySpec& b) { return b.material.breaks(); });
+    if (breaks && scene.skin.kind != SkinKind::boundary) cost.note.push_back(kTornSkin);
     add_up(cost, scene, input, options, {});
     return cost;
 }
@@ -179,14 +182,10 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         cost.mold.bytes += static_cast<double>(matter[b].bytes());
     }
     const StageSpec& first = scene.stage.front();
-    cost.note = build_machine(first.machine, first.parameter,
-                              place_work_frame(matter[0], first.axis, first.up), matter[0])
-                    .notes;
-    const bool breaks = std::any_of(scene.body.begin(), scene.body.end(),
-                                    [](const BodySpec& b) { return b.material.breaks(); });
-    if (breaks && scene.skin.kind != SkinKind::boundary) {
-        cost.note.push_back(kTornSkin);
-    }
+    const Machine machine =
+        build_machine(first.machine, first.parameter,
+                      place_work_frame(matter[0], first.axis, first.up), matter[0]);
+    cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     add_up(cost, scene, input, options, matter);
     return cost;
 }

@@ -5,7 +5,7 @@
 
 #include "base/hash.h"
 #include "base/log.h"
-#include "geometry/make_shape.h"
+#include "geometry/box_mesh.h"
 #include "geometry/mesh_read.h"
 #include "geometry/mesh_repair.h"
 #include "mold/mold.h"
@@ -96,17 +96,8 @@ std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body) {
     for (const InsetSpec& spec : body.inset) {
         TriMesh solid;
         if (spec.file.empty()) {
-            const Vec3 low = box.low + spec.from.cwiseProduct(box.size());
-            const Vec3 high = box.low + spec.to.cwiseProduct(box.size());
-            solid =
-                make_shape(
-                    "bar",
-                    {{"length", 1}, {"height", 1}, {"width", 1}, {"rounding", 0}, {"division", 1}})
-                    .mesh;
-            const Box unit = box_of(solid.position);
-            for (Vec3& p : solid.position) {
-                p = low + (p - unit.low).cwiseQuotient(unit.size()).cwiseProduct(high - low);
-            }
+            solid = box_mesh(box.low + spec.from.cwiseProduct(box.size()),
+                             box.low + spec.to.cwiseProduct(box.size()));
         } else {
             InputMesh read = read_mesh_as_it_is(spec.file, std::nullopt);
             for (Vec3& p : read.mesh.position) p *= input.scale;

@@ -161,8 +161,7 @@ void Simulation::Rooms::count_pieces(std::size_t b, const char* who,
     const std::vector<char> crumb = crumbs_of(*at.matter);
     const auto loose = std::count(crumb.begin(), crumb.end(), 1);
     if (loose > at.crumbs) {
-        warning.push_back(
-            fmt::format("{} left crumbs of less than one cell, {} particles in all", who, loose));
+        warning.push_back(fmt::format("{} left crumbs of less than one cell", who));
     }
     at.crumbs = loose;
     at.pieces = find_pieces(*at.matter).count;

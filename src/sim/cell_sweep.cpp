@@ -318,12 +318,10 @@ void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>
         };
         return Bound{of(alone), of(among)};
     };
-    auto mixed = matter.mixed_cell.begin();
     for_each_cell(
         matter, 0, matter.lattice.cell_run.size(), [&](const CellRun& run, int n, CellId cell) {
-            const bool is_mixed = mixed != matter.mixed_cell.end() && mixed->cell == cell;
-            const MixedCell* two = is_mixed ? &*mixed++ : nullptr;
             if (fill_[cell] <= 0) return;
+            const MixedCell* two = matter.mixed_at(cell);
             Bound own;
             if (two == nullptr) {
                 own =

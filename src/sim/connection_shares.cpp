@@ -32,12 +32,10 @@ double stiffness_in(const Aggregate& matter, CellId cell, const MixedCell* mixed
 ConnectionShares::ConnectionShares(const Aggregate& matter, const MaterialMask& counts) {
     if (matter.inset.empty()) return;
     for (std::vector<float>& of : share_) of.assign(matter.particle_count(), 0.0f);
-    auto mixed = matter.mixed_cell.begin();
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             const CellId cell = run.first + n;
-            const bool is_mixed = mixed != matter.mixed_cell.end() && mixed->cell == cell;
-            const MixedCell* two = is_mixed ? &*mixed++ : nullptr;
+            const MixedCell* two = matter.mixed_at(cell);
             std::array<float, kForwardCount> own;
             for (int d = 0; d < kForwardCount; ++d) {
                 const double share = d < kEdgeCount ? 0.25 : 0.5;

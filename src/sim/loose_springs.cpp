@@ -84,15 +84,13 @@ void LooseSprings::connections_changed(const Aggregate& matter) {
     if (beside_sweep_ && !breaks) return;
     // Each cell that is not sound gives its share of what its connections have left, as stiff as
     // the materials in it.
-    auto mixed = matter.mixed_cell.begin();
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             const CellId cell = run.first + n;
-            const bool is_mixed = mixed != matter.mixed_cell.end() && mixed->cell == cell;
-            const MixedCell* two = is_mixed ? &*mixed++ : nullptr;
             std::array<ParticleId, 4> row = run.row;
             for (ParticleId& p : row) p += n;
             if (cell_is_sound(matter, cell, row)) continue;
+            const MixedCell* two = matter.mixed_at(cell);
             std::array<int, kCellConnectionCount> number;
             number.fill(-1);
             for (int slot = 0; slot < kCellConnectionCount; ++slot) {

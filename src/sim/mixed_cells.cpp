@@ -135,47 +135,50 @@ void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun
     }
 }
 
-void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>& carried) {
-    cell_.clear(), corner_.clear(), batch_.clear();
+MixedBatches::MixedBatches(const Aggregate& matter, const std::vector<float>& carried) {
     for (std::size_t n = 0; n < matter.mixed_cell.size(); ++n) {
-        const MixedCell& cell = matter.mixed_cell[n];
-        if (carried[cell.cell] <= 0) continue;
+        const MixedCell& mixed = matter.mixed_cell[n];
+        if (carried[mixed.cell] <= 0) continue;
         const bool same =
-            !cell_.empty() && matter.mixed_cell[cell_.back()].material == cell.material;
-        const int at = static_cast<int>(cell_.size());
-        if (!same || at - batch_.back() == kLanes) batch_.push_back(at);
-        cell_.push_back(static_cast<int>(n));
-        corner_.push_back(matter.lattice.cell_corners(cell.cell));
+            !cell.empty() && matter.mixed_cell[cell.back()].material == mixed.material;
+        const int at = static_cast<int>(cell.size());
+        if (!same || at - first.back() == kLanes) first.push_back(at);
+        cell.push_back(static_cast<int>(n));
+        corner.push_back(matter.lattice.cell_corners(mixed.cell));
     }
-    batch_.push_back(static_cast<int>(cell_.size()));
-    push_.resize(cell_.size());
-    seen_.assign(cell_.size(), {});
+    first.push_back(static_cast<int>(cell.size()));
+}
+
+void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>& carried) {
+    batches_ = {matter, carried};
+    push_.resize(batches_.cell.size());
+    seen_.assign(batches_.cell.size(), {});
 }
 
 void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                             Vec3Array& force) {
-    if (cell_.empty()) return;
-    const std::size_t batches = batch_.size() - 1;
+    if (batches_.cell.empty()) return;
+    const std::size_t batches = batches_.count();
     const int width = vector_width();
     parallel_for((batches + kBatchesPerChunk - 1) / kBatchesPerChunk, [&](std::size_t chunk) {
         const std::size_t end = std::min(batches, (chunk + 1) * kBatchesPerChunk);
         for (std::size_t b = chunk * kBatchesPerChunk; b < end; ++b) {
             MixedBatch batch{};
             batch.matter = &matter;
-            batch.count = batch_[b + 1] - batch_[b];
+            batch.count = batches_.first[b + 1] - batches_.first[b];
             for (int n = 0; n < batch.count; ++n) {
-                batch.cell[n] = &matter.mixed_cell[cell_[batch_[b] + n]];
-                batch.corner[n] = &corner_[batch_[b] + n];
+                batch.cell[n] = &matter.mixed_cell[batches_.cell[batches_.first[b] + n]];
+                batch.corner[n] = &batches_.corner[batches_.first[b] + n];
             }
             for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
-            batch.push = &push_[batch_[b]];
-            batch.seen = &seen_[batch_[b]];
+            batch.push = &push_[batches_.first[b]];
+            batch.seen = &seen_[batches_.first[b]];
             (width == 8 ? wide_batch : width == 4 ? middle_batch : narrow_batch)(batch);
         }
     });
-    for (std::size_t n = 0; n < cell_.size(); ++n) {
+    for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         for (int c = 0; c < 8; ++c) {
-            force.add(corner_[n][c], {push_[n][c], push_[n][8 + c], push_[n][16 + c]});
+            force.add(batches_.corner[n][c], {push_[n][c], push_[n][8 + c], push_[n][16 + c]});
         }
     }
 }
@@ -184,10 +187,10 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
                           bool seen) const {
     const double volume = std::pow(matter.lattice.spacing, 3);
     double lost = 0;
-    for (std::size_t n = 0; n < cell_.size(); ++n) {
-        MixedCell& cell = matter.mixed_cell[cell_[n]];
+    for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
+        MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
         if (seen && !seen_[n].may_flow) continue;
-        const OneMixed one = one_mixed(matter, laws, cell, corner_[n]);
+        const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
         for (int p = 0; p < 2; ++p) {
             const CellFlowed<double>& r = one.found.phase[p].flowed;
             if (one.phase[p].kind != CellKind::yielding || !(r.d_alpha > 0)) continue;
@@ -214,9 +217,9 @@ double MixedCells::elastic_energy(const Aggregate& matter,
                                   const std::vector<MaterialLaw>& laws) const {
     const double volume = std::pow(matter.lattice.spacing, 3);
     double sum = 0;
-    for (std::size_t n = 0; n < cell_.size(); ++n) {
-        const MixedCell& cell = matter.mixed_cell[cell_[n]];
-        const OneMixed one = one_mixed(matter, laws, cell, corner_[n]);
+    for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
+        const MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
+        const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
         const Triple<double> normal = {cell.normal.x(), cell.normal.y(), cell.normal.z()};
         const double all = one.phase[0].fill + one.phase[1].fill;
         for (int p = 0; p < 2; ++p) {

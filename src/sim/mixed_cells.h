@@ -20,11 +20,23 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter);
 // Adds a run in pieces of one material each.
 void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces);
 
+// The cells of two materials in batches of the same two. Those with `carried` 0 are left out.
+struct MixedBatches {
+    MixedBatches() = default;
+    MixedBatches(const Aggregate& matter, const std::vector<float>& carried);
+
+    std::size_t count() const { return cell.empty() ? 0 : first.size() - 1; }
+
+    std::vector<int> cell;  // into mixed_cell
+    std::vector<std::array<ParticleId, 8>> corner;
+    std::vector<int> first;  // of each batch; the end
+};
+
 class MixedCells {
   public:
     // Cells with `carried` 0 are left out.
     void cells_changed(const Aggregate& matter, const std::vector<float>& carried);
-    bool any() const { return !cell_.empty(); }
+    bool any() const { return !batches_.cell.empty(); }
 
     // Adds their forces on the particles [N]. Laws: by material, as they are to hold now.
     void add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
@@ -44,9 +56,7 @@ class MixedCells {
 
   private:
     std::vector<Seen> seen_;
-    std::vector<int> cell_;  // into mixed_cell
-    std::vector<std::array<ParticleId, 8>> corner_;
-    std::vector<int> batch_;  // first of each batch of cells with the same two materials; the end
+    MixedBatches batches_;
     std::vector<std::array<double, 24>> push_;
 };
 

@@ -58,20 +58,10 @@ void batch_matrices(const TangentBatch& b) {
 
 }  // namespace
 
-MixedTangent::MixedTangent(const Aggregate& matter, const std::vector<float>& carried) {
-    for (std::size_t n = 0; n < matter.mixed_cell.size(); ++n) {
-        const MixedCell& cell = matter.mixed_cell[n];
-        if (carried[cell.cell] <= 0) continue;
-        const bool same =
-            !cell_.empty() && matter.mixed_cell[cell_.back()].material == cell.material;
-        const int at = static_cast<int>(cell_.size());
-        if (!same || at - batch_.back() == kLanes) batch_.push_back(at);
-        cell_.push_back(static_cast<int>(n));
-        corner_.push_back(matter.lattice.cell_corners(cell.cell));
-        site_.push_back(matter.lattice.cell_site(cell.cell));
-    }
-    batch_.push_back(static_cast<int>(cell_.size()));
-    push_.resize(cell_.size());
+MixedTangent::MixedTangent(const Aggregate& matter, const std::vector<float>& carried)
+    : batches_(matter, carried), push_(batches_.cell.size()) {
+    for (int n : batches_.cell)
+        site_.push_back(matter.lattice.cell_site(matter.mixed_cell[n].cell));
 }
 
 const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
@@ -83,19 +73,19 @@ const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
     for (MaterialLaw& law : laws) {
         if (kind.flow == Flow::none) law.moduli.yield_stress = kNeverYields;
     }
-    known_.push_back({kind, std::vector<CellMatrix>(cell_.size())});
+    known_.push_back({kind, std::vector<CellMatrix>(batches_.cell.size())});
     std::vector<CellMatrix>& matrix = known_.back().matrix;
-    parallel_for(cell_.empty() ? 0 : batch_.size() - 1, [&](std::size_t b) {
+    parallel_for(batches_.count(), [&](std::size_t b) {
         TangentBatch batch{};
         batch.matter = &matter;
         batch.turning = kind.geometric;
-        batch.count = batch_[b + 1] - batch_[b];
+        batch.count = batches_.first[b + 1] - batches_.first[b];
         for (int n = 0; n < batch.count; ++n) {
-            batch.cell[n] = &matter.mixed_cell[cell_[batch_[b] + n]];
-            batch.corner[n] = &corner_[batch_[b] + n];
+            batch.cell[n] = &matter.mixed_cell[batches_.cell[batches_.first[b] + n]];
+            batch.corner[n] = &batches_.corner[batches_.first[b] + n];
         }
         for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
-        batch.to = matrix.data() + batch_[b];
+        batch.to = matrix.data() + batches_.first[b];
         batch_matrices(batch);
     });
     return matrix;
@@ -105,29 +95,31 @@ void MixedTangent::add_product(const Aggregate& matter, TangentKind kind,
                                const Vec3Array& direction, Vec3Array& result) {
     if (empty()) return;
     const std::vector<CellMatrix>& matrix = matrices(matter, kind);
-    parallel_for((cell_.size() + kCellsPerChunk - 1) / kCellsPerChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(cell_.size(), (chunk + 1) * kCellsPerChunk);
-        for (std::size_t n = chunk * kCellsPerChunk; n < end; ++n) {
-            double way[24], sum[24] = {};
-            for (int c = 0; c < 8; ++c) {
-                const Vec3 v = direction.at(corner_[n][c]);
-                for (int i = 0; i < 3; ++i) way[3 * c + i] = v[i];
-            }
-            const double* own = matrix[n].upper.data();
-            for (int column = 0; column < 24; ++column) {
-                double mine = 0;
-                for (int row = 0; row < column; ++row, ++own) {
-                    mine += *own * way[row];
-                    sum[row] += *own * way[column];
+    parallel_for(
+        (batches_.cell.size() + kCellsPerChunk - 1) / kCellsPerChunk, [&](std::size_t chunk) {
+            const std::size_t end = std::min(batches_.cell.size(), (chunk + 1) * kCellsPerChunk);
+            for (std::size_t n = chunk * kCellsPerChunk; n < end; ++n) {
+                double way[24], sum[24] = {};
+                for (int c = 0; c < 8; ++c) {
+                    const Vec3 v = direction.at(batches_.corner[n][c]);
+                    for (int i = 0; i < 3; ++i) way[3 * c + i] = v[i];
                 }
-                sum[column] += mine + *own++ * way[column];
+                const double* own = matrix[n].upper.data();
+                for (int column = 0; column < 24; ++column) {
+                    double mine = 0;
+                    for (int row = 0; row < column; ++row, ++own) {
+                        mine += *own * way[row];
+                        sum[row] += *own * way[column];
+                    }
+                    sum[column] += mine + *own++ * way[column];
+                }
+                std::copy_n(sum, 24, push_[n].begin());
             }
-            std::copy_n(sum, 24, push_[n].begin());
-        }
-    });
-    for (std::size_t n = 0; n < cell_.size(); ++n) {
+        });
+    for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         for (int c = 0; c < 8; ++c) {
-            result.add(corner_[n][c], {push_[n][3 * c], push_[n][3 * c + 1], push_[n][3 * c + 2]});
+            result.add(batches_.corner[n][c],
+                       {push_[n][3 * c], push_[n][3 * c + 1], push_[n][3 * c + 2]});
         }
     }
 }

@@ -16,9 +16,9 @@ class MixedTangent {
     // Cells with `carried` 0 are left out.
     MixedTangent(const Aggregate& matter, const std::vector<float>& carried);
 
-    bool empty() const { return cell_.empty(); }
-    std::size_t size() const { return cell_.size(); }
-    const std::array<ParticleId, 8>& corner(std::size_t n) const { return corner_[n]; }
+    bool empty() const { return batches_.cell.empty(); }
+    std::size_t size() const { return batches_.cell.size(); }
+    const std::array<ParticleId, 8>& corner(std::size_t n) const { return batches_.corner[n]; }
     Vec3i site(std::size_t n) const { return site_[n]; }
 
     // The particles have moved, or flow was committed.
@@ -32,10 +32,8 @@ class MixedTangent {
                      Vec3Array& result);
 
   private:
-    std::vector<int> cell_;  // into mixed_cell
-    std::vector<std::array<ParticleId, 8>> corner_;
+    MixedBatches batches_;
     std::vector<Vec3i> site_;
-    std::vector<int> batch_;  // as MixedCells
     struct Known {
         TangentKind kind;
         std::vector<CellMatrix> matrix;

@@ -18,7 +18,7 @@ constexpr double kReach = 1.0;          // of a point's weight along the surface
 constexpr double kBeyond = 1.1;         // the nearest point, that points count
 constexpr double kSupport = 0.6;        // from a place's foot to its side's nearest point
 constexpr double kSameSide = 0.7;       // least cosine between normals of one side of an edge
-constexpr double kInterpolates = 0.04;  // error of interpolated distances that serves
+constexpr double kInterpolates = 0.03;  // error of interpolated distances that serves
 constexpr double kDeep = 0.999;         // nothing comes as deep: a spacing, but for round-off
 constexpr int kMostSides = 4;
 constexpr std::size_t kChunk = 64;
@@ -274,7 +274,7 @@ bool RestSurface::is_flat(int slot, const Near& near) const {
 void RestSurface::find_fine(std::vector<char>& is_fine) const {
     in_chunks(site_.size(), [&](std::size_t n) {
         const auto [low, high] = std::minmax_element(corner_[n].begin(), corner_[n].end());
-        if (*high<-kDeep&& * low> - 4) return;
+        if (*high < -kDeep && -4 < *low) return;
         const Vec3 site = site_[n].cast<double>();
         Near near;
         gather(site, site + Vec3::Ones(), 2.2, near);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/surface_modulus.h"
 
-#include <algorithm>
-
 namespace swage {
 
 namespace {
@@ -31,10 +29,7 @@ std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints&
     for (std::size_t p = 0; p < points.size(); ++p) {
         const CellId own = cell[points.corner[p][0]];
         int material = matter.cell_material[own];
-        const auto mixed =
-            std::lower_bound(matter.mixed_cell.begin(), matter.mixed_cell.end(), own,
-                             [](const MixedCell& m, CellId c) { return m.cell < c; });
-        if (mixed != matter.mixed_cell.end() && mixed->cell == own) {
+        if (const MixedCell* mixed = matter.mixed_at(own)) {
             Vec3 place = Vec3::Constant(-0.5);
             for (int c = 0; c < 8; ++c) {
                 for (int axis = 0; axis < 3; ++axis) {

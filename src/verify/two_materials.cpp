@@ -4,7 +4,7 @@
 #include <limits>
 #include <memory>
 
-#include "geometry/make_shape.h"
+#include "geometry/box_mesh.h"
 #include "mold/mold.h"
 #include "verify/case.h"
 #include "verify/stand.h"
@@ -15,20 +15,6 @@ namespace {
 
 constexpr double kStiff = 100;
 constexpr double kFractions[] = {0.25, 0.5, 0.75, 0.9};  // of the cell that the boundary crosses
-
-TriMesh box_mesh(const Vec3& low, const Vec3& high) {
-    const Vec3 size = high - low;
-    TriMesh mesh = make_shape("bar", {{"length", size.x()},
-                                      {"height", size.y()},
-                                      {"width", size.z()},
-                                      {"rounding", 0},
-                                      {"division", 1}})
-                       .mesh;
-    Box box;
-    for (const Vec3& p : mesh.position) box.grow(p);
-    for (Vec3& p : mesh.position) p += 0.5 * (low + high) - box.center();
-    return mesh;
-}
 
 Aggregate layered(const Vec3& size, int across, const Vec3& low, const Vec3& high, double nu) {
     Material stiff = unit_material(nu);

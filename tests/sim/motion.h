@@ -12,6 +12,12 @@ namespace swage::test {
 
 inline const Material kSpringy{.young_modulus = 1e6, .density = 1000, .damping_ratio = 0};
 
+inline void place(Aggregate& m, const Pose& pose) {
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_position.set(p, pose * m.particle_reference.at(p));
+    }
+}
+
 inline SimSettings motion_settings(Solver solver = Solver::explicit_steps) {
     SimSettings s;
     s.solver = solver;

@@ -7,23 +7,9 @@
 using namespace swage;
 using namespace swage::test;
 
-namespace {
-
-Material soft() {
-    return {.young_modulus = 1e6, .poisson_ratio = 0.25, .density = 1000, .damping_ratio = 0};
-}
-
-void place(Aggregate& m, const Pose& pose) {
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        m.particle_position.set(p, pose * m.particle_reference.at(p));
-    }
-}
-
-}  // namespace
-
 TEST_CASE("the books of each of two bodies that collide balance by what they pass to each other") {
     const auto worst = [](double safety) {
-        Material dull = soft();
+        Material dull = kSpringy;
         dull.restitution = 0.5;
         dull.friction = 0.4;
         Aggregate a = make_block(3, 3, 3, 0.1, dull), b = make_block(2, 2, 2, 0.1, dull);
@@ -53,7 +39,7 @@ TEST_CASE("the books of each of two bodies that collide balance by what they pas
 
 TEST_CASE("what tumbling bodies leave in the books' remainder falls with the step") {
     const auto worst = [](double friction, double safety) {
-        Material m = soft();
+        Material m = kSpringy;
         m.restitution = 0.5;
         m.friction = friction;
         Aggregate a = make_block(5, 2, 2, 0.1, m), b = make_block(3, 3, 3, 0.09, m);

@@ -2,7 +2,7 @@
 // What a blade leaves of a body of two materials: springs as stiff as what they run through.
 #include <random>
 
-#include "geometry/make_shape.h"
+#include "geometry/box_mesh.h"
 #include "mold/mold.h"
 #include "sim/lattice_forces.h"
 #include "sim/sever.h"
@@ -13,19 +13,6 @@ using namespace swage;
 namespace {
 
 constexpr double kSpacing = 0.25;
-
-TriMesh box_mesh(const Vec3& low, const Vec3& high) {
-    const Vec3 size = high - low;
-    TriMesh mesh = make_shape("bar", {{"length", size.x()},
-                                      {"height", size.y()},
-                                      {"width", size.z()},
-                                      {"rounding", 0},
-                                      {"division", 1}})
-                       .mesh;
-    const Vec3 center = box_of(mesh.position).center();
-    for (Vec3& p : mesh.position) p += 0.5 * (low + high) - center;
-    return mesh;
-}
 
 // A bar, of another material from `boundary` on, cut along a plane that holds its length.
 Aggregate cut_bar(const Material& left, const Material& right, double boundary,

@@ -2,7 +2,7 @@
 // Euler's column with a stiff core: E I is the sum over what it is made of.
 #include <cmath>
 
-#include "geometry/make_shape.h"
+#include "geometry/box_mesh.h"
 #include "mold/mold.h"
 #include "sim/advance.h"
 #include "tests/catch.h"
@@ -15,15 +15,8 @@ constexpr double kSpacing = 0.1, kSide = 3 * kSpacing, kLength = 60 * kSpacing;
 constexpr double kModulus = 1e6, kCoreModulus = 41 * kModulus;
 
 TriMesh long_box(double side) {
-    TriMesh mesh = make_shape("bar", {{"length", kLength},
-                                      {"height", side},
-                                      {"width", side},
-                                      {"rounding", 0},
-                                      {"division", 1}})
-                       .mesh;
-    const Vec3 center = box_of(mesh.position).center();
-    for (Vec3& p : mesh.position) p -= center;
-    return mesh;
+    const Vec3 half = 0.5 * Vec3(kLength, side, side);
+    return box_mesh(-half, half);
 }
 
 double inertia(double side) { return side * side * side * side / 12; }

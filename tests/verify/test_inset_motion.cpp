@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <numbers>
 
+#include "geometry/box_mesh.h"
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
 #include "sim/advance.h"
@@ -11,19 +12,6 @@
 using namespace swage;
 
 namespace {
-
-TriMesh box_mesh(const Vec3& low, const Vec3& high) {
-    const Vec3 size = high - low;
-    TriMesh mesh = make_shape("bar", {{"length", size.x()},
-                                      {"height", size.y()},
-                                      {"width", size.z()},
-                                      {"rounding", 0},
-                                      {"division", 1}})
-                       .mesh;
-    const Vec3 center = box_of(mesh.position).center();
-    for (Vec3& p : mesh.position) p += 0.5 * (low + high) - center;
-    return mesh;
-}
 
 // A bar of 16 cells in a row, of another material from `boundary` on.
 Aggregate row_of_two(const Material& left, const Material& right, double boundary) {

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/box_mesh.h"
+
+namespace swage {
+
+TriMesh box_mesh(const Box& box) {
+    TriMesh mesh;
+    for (int c = 0; c < 8; ++c) {
+        mesh.position.emplace_back(c & 1 ? box.high.x() : box.low.x(),
+                                   c & 2 ? box.high.y() : box.low.y(),
+                                   c & 4 ? box.high.z() : box.low.z());
+    }
+    for (const auto& [a, b, c, d] : {std::array{0, 4, 6, 2},
+                                     {1, 3, 7, 5},
+                                     {0, 1, 5, 4},
+                                     {2, 6, 7, 3},
+                                     {0, 2, 3, 1},
+                                     {4, 5, 7, 6}}) {
+        mesh.triangle.push_back({a, b, c});
+        mesh.triangle.push_back({a, c, d});
+    }
+    return mesh;
+}
+
+}  // namespace swage
