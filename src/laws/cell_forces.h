@@ -80,9 +80,9 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             strain_of_sum(Symmetric<N>{k.gram * dot(d.x, d.x) + 1.0, k.gram * dot(d.y, d.y) + 1.0,
                                        k.gram * dot(d.z, d.z) + 1.0, k.gram * dot(d.x, d.y),
                                        k.gram * dot(d.y, d.z), k.gram * dot(d.z, d.x)});
-        const N size = 3.0 * e.series.a + e.i1 * e.series.b + trace(e.square) * e.series.c;
+        const CellSize<N> size = cell_size(e);
         N shear = (2 * k.folded.shear) + N{};
-        N pressure = k.folded.bulk * size;
+        N pressure = k.folded.bulk * size.log;
         if constexpr (kPart) {
             shear = share.fill * shear;
             pressure = share.fill * pressure;
@@ -94,9 +94,8 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             N mode_scale = -k.scale * r.kept;
             if constexpr (kPart) mode_scale = mode_fill(share.fill) * mode_scale;
             g = mode_scale * r.mode_stress;
-            Symmetric<N> t = (shear * r.kept) * r.distortion;
-            t.xx = t.xx + pressure, t.yy = t.yy + pressure, t.zz = t.zz + pressure;
-            stress = material_stress(e, t);
+            stress = material_stress(e, (shear * r.kept) * r.distortion) +
+                     evaluate(e, pressure * size.slope);
         } else {
             g = mode_stress(k.folded, modes);
             if constexpr (kKind == CellKind::yielding) {
@@ -110,9 +109,10 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
                 g = back.kept * g;
             }
             if constexpr (kPart) g = mode_fill(share.fill) * g;
-            const N third = (1.0 / 3) * size;
-            stress = material_stress(e, CayleySeries<N>{shear * (e.series.a - third) + pressure,
-                                                        shear * e.series.b, shear * e.series.c});
+            const N third = (1.0 / 3) * (e.i1 * e.series.b + trace(e.square) * e.series.c);
+            const CayleySeries<N> t = {-1.0 * shear * third, shear * e.series.b,
+                                       shear * e.series.c};
+            stress = evaluate(e, material_stress(e, t) + pressure * size.slope);
         }
     }
     if constexpr (requires { c.x.x.slope; }) {

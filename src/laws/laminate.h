@@ -69,10 +69,10 @@ SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState
     const CellStrain<N> e = cell_strain(f);
     s.flowed = flow_cell(*m.law, m.history, e.log, s.modes, m.fill);
     if (m.kind == CellKind::elastic) s.flowed.kept = N{} + 1.0;
-    const N pressure = m.law->bulk * s.flowed.trace;
-    Symmetric<N> t = ((2 * m.law->shear) * s.flowed.kept) * s.flowed.distortion;
-    t.xx = t.xx + pressure, t.yy = t.yy + pressure, t.zz = t.zz + pressure;
-    s.stress = turned_by(f, turning) * material_stress(e, t);
+    const CellSize<N> size = cell_size(e);
+    const Symmetric<N> t = ((2 * m.law->shear) * s.flowed.kept) * s.flowed.distortion;
+    s.stress = turned_by(f, turning) *
+               (material_stress(e, t) + evaluate(e, (m.law->bulk * size.log) * size.slope));
     s.mode_stress = s.flowed.kept * s.flowed.mode_stress;
 }
 

@@ -4,23 +4,23 @@
 // the way there; rubber's law rests at a point too. Below half of its volume a cell therefore also
 // resists by its volume and by a strain that goes on where the law's turns back:
 //
-//     W = E (1/2 - J)^2 / 2 + b(J) [H(g(s)) - H(e(s))]        per volume at molding [J/m3]
+//     W = E (1/2 - J)^2 / 2 + b(J) [H(g(s)) - W_law]         per volume at molding [J/m3]
 //     H(e) = mu |dev e|^2 + K (tr e)^2 / 2        b = (1 - 2 J)^2 (1 + 4 J), 1 where J < 0
-//     e(s) = y + y^3/3 + y^5/5, y = (s^2 - 1)/(s^2 + 1)              the strain of laws/cell.h
-//     g(s) = e(s); below s_t = 1/3, where e is steepest,
+//     g(s) = e(s), the strain of laws/cell.h, y + y^3/3 + y^5/5, y = (s^2 - 1)/(s^2 + 1);
+//            below s_t = 1/3, where e is steepest,
 //            e(s_t) - e'(s_t) d / (1 + d/L), d = s_t - s, L = 1/2    rising for every s
 //
 // J = det F, s the principal stretches. Where J < 0 each of the three may be the one that is
 // turned: H(g) is the mean of the three, weighed by 1/s_i^2, which next to J = 0 leaves the
 // smallest (taken alone, as by Irving, Teran, Fedkiw, "Invertible finite elements", SCA 2004, the
-// force would jump where two are equal). Cells of the cell law give up H(e), which is theirs, for
-// H(g), and so rest in their own shape alone; springs and rubber have H(g) on top.
+// force would jump where two are equal). Cells of the cell law give up what their own law says,
+// W_law, by the share b, for H(g) + K g(J)^2 / 2, and so rest in their own shape alone, whatever
+// they have flowed. Springs and rubber keep theirs, for which W_law stands for 0.
 //
 // Nothing above half the volume feels any of this: it changes no answer that can be trusted.
 //
 // NOTE: a larger L gives more back than matter can take without being torn; with a smaller one g
 // turns too flat to win over what nearly incompressible matter has besides.
-// NOTE: the plastic strain of matter that has flowed is left out of H(g) - H(e).
 #pragma once
 
 #include <Eigen/SVD>
@@ -35,12 +35,14 @@ inline constexpr double kFlattens = 0.5;      // L
 
 struct GuardModuli {
     double young, shear, bulk;  // E, mu, K [Pa]
-    bool replaces_strain;       // the cell's own law is H(e)
+    bool fades;                 // the cell's own law
 };
 
 struct GuardedCell {
-    double energy;  // W [J/m3]
-    Mat3 stress;    // P = dW/dF [Pa]
+    double energy;     // W without W_law [J/m3]
+    Mat3 stress;       // its dW/dF [Pa]
+    double share;      // b
+    Mat3 share_slope;  // db/dF
 };
 
 // e and de/ds at one stretch.
@@ -107,28 +109,28 @@ inline CellResistance inverted_resistance(const GuardModuli& law, const Vec3& x)
     return sum;
 }
 
-// W and its gradient; zero above half of the volume.
+// Zero above half of the volume.
 inline GuardedCell guard_cell(const GuardModuli& law, const Mat3& gradient) {
     const double volume = gradient.determinant(), lost = kGuardedVolume - volume;
-    if (!(lost > 0)) return {0, Mat3::Zero()};
+    if (!(lost > 0)) return {0, Mat3::Zero(), 0, Mat3::Zero()};
     const Eigen::JacobiSVD<Mat3> split(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Vec3 x = split.singularValues();
     const bool inverted = volume < 0;
-    Vec3 e, e_slope;
-    for (int i = 0; i < 3; ++i) {
-        const StretchStrain strain = cell_law_strain(x[i]);
-        e[i] = strain.value, e_slope[i] = strain.slope;
-    }
     const CellResistance asked = inverted ? inverted_resistance(law, x) : resistance_of(law, x);
-    const double own = law.replaces_strain ? 1 : 0;
-    const double more = asked.energy - own * hencky_energy(law, e);
+    const StretchStrain size = guarded_strain(volume);
     const double share = inverted ? 1 : 4 * lost * lost * (1 + 4 * volume);
     const double share_slope = inverted ? 0 : -48 * volume * lost;
     const Vec3 area = (inverted ? -1 : 1) * Vec3(x[1] * x[2], x[2] * x[0], x[0] * x[1]);  // dJ/dx
-    const Vec3 push = share * (asked.slope - own * hencky_stress(law, e).cwiseProduct(e_slope)) +
-                      (share_slope * more - law.young * lost) * area;
-    return {0.5 * law.young * lost * lost + share * more,
-            split.matrixU() * push.asDiagonal() * split.matrixV().transpose()};
+    const double bulk = law.fades ? law.bulk : 0;
+    const double resisted = asked.energy + 0.5 * bulk * size.value * size.value;
+    const Vec3 push =
+        share * asked.slope +
+        (share * bulk * size.value * size.slope + share_slope * resisted - law.young * lost) * area;
+    const auto along = [&](const Vec3& v) -> Mat3 {
+        return split.matrixU() * v.asDiagonal() * split.matrixV().transpose();
+    };
+    return {0.5 * law.young * lost * lost + share * resisted, along(push), share,
+            along(share_slope * area)};
 }
 
 // The most that d2W/ds2 comes to in a cell that is inside out, about [Pa].

@@ -60,20 +60,26 @@ CellId nearest_cell(const Lattice& lattice, const Vec3i& home, const Vec3& point
     return best;
 }
 
-// The nearest firm cell within reach of a point, or -1; the fuller of two that are equally near.
+// Who carries a point whose own cell is not firm: the nearest firm cell within reach, the fuller of
+// two that are equally near; where none is, the fullest. -1: there is no cell within reach.
 CellId firm_cell(const Lattice& lattice, const std::vector<float>& fill, const Vec3i& home,
                  const Vec3& point) {
     CellId best = -1;
-    double best_distance = kReach * kReach;
+    double best_distance = 0;
     for (int n = 0; n < 27; ++n) {
         const Vec3i site = home + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
         const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
-        if (cell < 0 || fill[cell] < kFirmFill) continue;
+        if (cell < 0) continue;
         const double d = distance_squared(point, site);
-        if (d < best_distance || (d == best_distance && best >= 0 && fill[cell] > fill[best])) {
-            best = cell;
-            best_distance = d;
-        }
+        if (d >= kReach * kReach) continue;
+        const auto better = [&] {
+            if (best < 0) return true;
+            const bool firm = fill[cell] >= kFirmFill, best_firm = fill[best] >= kFirmFill;
+            if (firm != best_firm) return firm;
+            if (firm && d != best_distance) return d < best_distance;
+            return fill[cell] > fill[best];
+        };
+        if (better()) best = cell, best_distance = d;
     }
     return best;
 }

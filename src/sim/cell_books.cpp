@@ -78,7 +78,7 @@ SWAGE_INLINE void add_energy(BookTask& task) {
         const V modes = 0.5 * mode_fill(c.fill) * product(mode_stress(law, q), q);
         const V mean = kind == CellKind::rubber
                            ? rubber_energy(law, c.gradient)
-                           : strain_energy(law, cell_strain(c.gradient).log, c.history);
+                           : strain_energy(law, cell_strain(c.gradient), c.history);
         const V energy = volume * c.fill * mean + modes;
         for (int l = 0; l < count; ++l) {
             if (c.fill[l] > 0) task.sum += energy[l];

@@ -49,6 +49,13 @@ struct SlabTask {
     }
 };
 
+template <typename V>
+SWAGE_INLINE CellShare<V> share_of(const SlabTask& task, std::int32_t shares, int begin) {
+    const float* from = task.share + shares + begin % kLanes;
+    return {load<V>(from),
+            {load<V>(from + kLanes), load<V>(from + 2 * kLanes), load<V>(from + 3 * kLanes)}};
+}
+
 // kWatched: strains are.
 template <int kWidth, CellKind kKind, bool kWatched>
 SWAGE_INLINE void slab_forces(SlabTask& task) {
@@ -81,7 +88,9 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             const std::int32_t shares = batch[begin / kLanes];
             const int left = run->count - begin, count = left < kWidth ? left : kWidth;
             const CornerSums<V> c = gather<V>(x, begin, count, task.particles - run->row[3]);
-            V size = dot(c.x, cross(c.y, c.z));
+            Columns<V> d = {c.x, c.y, c.z};
+            if (shares != kWholeCells) d = centroid_sums(c, share_of<V>(task, shares, begin).at);
+            V size = dot(d.x, cross(d.y, d.z));
             if (count < kWidth) size = lane < count ? size : smallest;
             smallest = size < smallest ? size : smallest;
             if constexpr (kWatched) {
@@ -106,10 +115,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
                                                          CellHistory<V>{}, 1, &over);
                 }
             } else {
-                const float* from = task.share + shares + begin % kLanes;
-                const CellShare<V> part{load<V>(from),
-                                        {load<V>(from + kLanes), load<V>(from + 2 * kLanes),
-                                         load<V>(from + 3 * kLanes)}};
+                const CellShare<V> part = share_of<V>(task, shares, begin);
                 if (flowed) {
                     r = cell_forces<kKind, true, true>(
                         *task.constants, c, part, load_history<V>(task.history, cell), 1, &over);

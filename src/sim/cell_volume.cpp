@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "laws/cell_moduli.h"
-#include "laws/volume_guard.h"
+#include "laws/cell.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -39,13 +38,13 @@ void volume_block(const CellRows& rows, int count, double scale, double* __restr
     }
 }
 
-struct SmallCell {
-    const CellRun* run;
-    int n;
-    double volume;
-};
+// Whether a cell's law looks at it from its middle.
+bool is_centred(const Aggregate& matter, CellId cell) {
+    return matter.material.mechanics == Mechanics::springs || matter.cell_centroid[cell].isZero(0);
+}
 
-// Of a run: sound cells below a volume ratio, in their order.
+}  // namespace
+
 void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
                      std::vector<SmallCell>& found) {
     double volume[kCellBlock];
@@ -53,6 +52,9 @@ void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
         const int count = std::min(kCellBlock, run.count - at);
         cell_volumes(matter, run, at, count, volume);
         for (int n = 0; n < count; ++n) {
+            if (!is_centred(matter, run.first + at + n)) {
+                volume[n] = material_gradient(matter, run, at + n).determinant();
+            }
             if (!(volume[n] < limit)) continue;
             std::array<ParticleId, 4> row = run.row;
             for (ParticleId& p : row) p += at + n;
@@ -77,42 +79,6 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
     return found;
 }
 
-CellId id_of(const SmallCell& cell) { return cell.run->first + cell.n; }
-
-GuardModuli guard_moduli(const Aggregate& matter, const SmallCell& cell) {
-    const Material& m = matter.material_of(id_of(cell));
-    const double nu = m.mechanics == Mechanics::springs ? 0.25 : m.poisson_ratio;
-    const CellModuli law = cell_moduli(m.young_modulus, nu, matter.lattice.spacing);
-    return {m.young_modulus, law.shear, law.bulk,
-            m.mechanics == Mechanics::cells && m.elasticity != Elasticity::neo_hookean};
-}
-
-double material_volume(const Aggregate& matter, const SmallCell& cell) {
-    const double a = matter.lattice.spacing;
-    return matter.cell_fill[cell.run->first + cell.n] * a * a * a;
-}
-
-// Their forces; returns how many are inside out.
-int resist(const Aggregate& matter, const std::vector<SmallCell>& crushed, Vec3Array& force) {
-    int mirrored = 0;
-    for (const SmallCell& cell : crushed) {
-        mirrored += cell.volume < 0;
-        const Mat3 stress =
-            material_volume(matter, cell) *
-            guard_cell(guard_moduli(matter, cell), cell_gradient(matter, *cell.run, cell.n)).stress;
-        for (int c = 0; c < 8; ++c) {
-            Vec3 slope;  // of the gradient's columns with the corner's position
-            for (int axis = 0; axis < 3; ++axis) {
-                slope[axis] = (c >> axis & 1 ? 0.25 : -0.25) / matter.lattice.spacing;
-            }
-            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), -(stress * slope));
-        }
-    }
-    return mirrored;
-}
-
-}  // namespace
-
 void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count, double* volume) {
     CellRows rows;
     for (int q = 0; q < 4; ++q) {
@@ -134,86 +100,47 @@ Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {
     return gradient;
 }
 
-int add_guard_forces(const Aggregate& matter, Vec3Array& force) {
-    return resist(matter, cells_below(matter, kGuardedVolume), force);
+CornerSums<double> corner_sums(const Aggregate& matter, const CellRun& run, int n) {
+    CornerSums<double> c;
+    double v[8];
+    const auto component = [&](const std::vector<double>& x) -> const double(&)[8] {
+        for (int q = 0; q < 8; ++q) v[q] = x[run.row[q >> 1] + n + (q & 1)];
+        return v;
+    };
+    const Vec3Array& x = matter.particle_position;
+    sum_corners(component(x.x), c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
+    sum_corners(component(x.y), c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
+    sum_corners(component(x.z), c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
+    return c;
 }
 
-int add_guard_forces(const Aggregate& matter,
-                     const std::vector<std::vector<const CellRun*>>& crushed, Vec3Array& force) {
-    std::vector<SmallCell> found;
-    for (const std::vector<const CellRun*>& part : crushed) {
-        for (const CellRun* run : part) add_cells_below(matter, *run, kGuardedVolume, found);
-    }
-    return resist(matter, found, force);
+Triple<double> material_place(const Aggregate& matter, CellId cell) {
+    if (is_centred(matter, cell)) return {0, 0, 0};
+    const Vec3 at = 2 * matter.cell_centroid[cell].cast<double>();
+    return {at.x(), at.y(), at.z()};
 }
 
-// NOTE: what the guard's law gives back to matter that was turned inside out is ten times what
-// would tear it apart, so it is taken on the way.
-double calm_crushed(Aggregate& matter, double keep) {
-    double taken = 0;
-    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
-        std::array<std::size_t, 8> p;
-        double mass = 0;
-        Vec3 center = Vec3::Zero(), drift = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) {
-            p[c] = static_cast<std::size_t>(cell.run->row[c >> 1] + cell.n + (c & 1));
-            const double m = matter.particle_mass[p[c]];
-            mass += m;
-            center += m * matter.particle_position.at(p[c]);
-            drift += m * matter.particle_velocity.at(p[c]);
-        }
-        center /= mass;
-        drift /= mass;
-        Mat3 inertia = Mat3::Zero();
-        Vec3 spin = Vec3::Zero();
-        for (std::size_t q : p) {
-            const Vec3 r = matter.particle_position.at(q) - center;
-            inertia +=
-                matter.particle_mass[q] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-            spin += matter.particle_mass[q] * r.cross(matter.particle_velocity.at(q));
-        }
-        const double trace = inertia.trace();
-        if (!(trace > 0) || !std::isfinite(trace)) continue;
-        inertia.diagonal().array() += 1e-12 * trace;
-        const Vec3 turn = inertia.ldlt().solve(spin);
-        for (std::size_t q : p) {
-            const Vec3 rigid = drift + turn.cross(matter.particle_position.at(q) - center);
-            const Vec3 v = matter.particle_velocity.at(q), calmed = rigid + keep * (v - rigid);
-            taken += 0.5 * matter.particle_mass[q] * (v.squaredNorm() - calmed.squaredNorm());
-            matter.particle_velocity.set(q, calmed);
-        }
-    }
-    return taken;
+Mat3 matrix_of(const Columns<double>& f) {
+    Mat3 m;
+    m << f.x.x, f.y.x, f.z.x, f.x.y, f.y.y, f.z.y, f.x.z, f.y.z, f.z.z;
+    return m;
+}
+
+Mat3 material_gradient(const Aggregate& matter, const CellRun& run, int n) {
+    return matrix_of(centroid_gradient(corner_sums(matter, run, n),
+                                       material_place(matter, run.first + n),
+                                       matter.lattice.spacing));
 }
 
 CellId first_inside_out(const Aggregate& matter) {
     const std::vector<SmallCell> found = cells_below(matter, 0);
-    return found.empty() ? -1 : id_of(found[0]);
-}
-
-void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness) {
-    for (const SmallCell& cell : cells_below(matter, 0)) {
-        const double own = material_volume(matter, cell) *
-                           guard_stiffness(guard_moduli(matter, cell)) /
-                           (2 * matter.lattice.spacing * matter.lattice.spacing);
-        for (int c = 0; c < 8; ++c) stiffness[cell.run->row[c >> 1] + cell.n + (c & 1)] += own;
-    }
-}
-
-double guard_energy_of(const Aggregate& matter) {
-    double sum = 0;
-    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
-        sum +=
-            material_volume(matter, cell) *
-            guard_cell(guard_moduli(matter, cell), cell_gradient(matter, *cell.run, cell.n)).energy;
-    }
-    return sum;
+    return found.empty() ? -1 : found[0].id();
 }
 
 double smallest_cell_volume(const Aggregate& matter) {
     double smallest = 1;
     for (const SmallCell& cell : cells_below(matter, 1.0)) {
-        if (matter.cell_fill[cell.run->first + cell.n] < 0.25f) continue;
+        if (matter.cell_fill[cell.id()] < 0.25f) continue;
         smallest = std::min(smallest, cell.volume);
     }
     return smallest;

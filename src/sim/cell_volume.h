@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The volumes of lattice cells, by the determinant of their mean deformation gradient.
+// The volumes of lattice cells, by the determinants of their deformation gradients.
 #pragma once
 
+#include <vector>
+
+#include "laws/cell.h"
 #include "matter/aggregate.h"
 
 namespace swage {
@@ -9,27 +12,35 @@ namespace swage {
 // Cells looked at in one go.
 inline constexpr int kCellBlock = 64;
 
-// Volume ratios, 1 at molding, of `count` cells of a run from cell `at` on; count <= kCellBlock.
+// Volume ratios, 1 at molding, of `count` cells of a run from cell `at` on; count <= kCellBlock. At
+// the cells' middles.
 void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count, double* volume);
 
-// Mean deformation gradient of cell n of a run.
+// Deformation gradient of cell n of a run, at its middle.
 Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n);
 
-// Adds the forces by which crushed cells resist (laws/volume_guard.h), in the order of the cells;
-// returns how many of them are inside out.
-// Cells that a blade or a crack has crossed have no volume of their own and resist nothing.
-int add_guard_forces(const Aggregate& matter, Vec3Array& force);
-// The same when these runs are all that have such cells (CellSweep::crushed_runs).
-int add_guard_forces(const Aggregate& matter,
-                     const std::vector<std::vector<const CellRun*>>& crushed, Vec3Array& force);
+// As the cell's law sees it: from the centroid of its material, -1 to 1 in the cell.
+CornerSums<double> corner_sums(const Aggregate& matter, const CellRun& run, int n);
+Triple<double> material_place(const Aggregate& matter, CellId cell);
+Mat3 material_gradient(const Aggregate& matter, const CellRun& run, int n);
+Mat3 matrix_of(const Columns<double>& f);
+
+struct SmallCell {
+    const CellRun* run;
+    int n;
+    double volume;  // ratio, as its law sees it
+
+    CellId id() const { return run->first + n; }
+};
+
+// Of a run, or of all: sound cells below a volume ratio, in their order. Cells that a blade or a
+// crack has crossed have no volume of their own.
+void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
+                     std::vector<SmallCell>& found);
+std::vector<SmallCell> cells_below(const Aggregate& matter, double limit);
+
 // The first cell that is inside out, or -1.
 CellId first_inside_out(const Aggregate& matter);
-// Keeps only a share of the speed by which cells below half of their volume deform; momentum and
-// angular momentum stay. Returns the energy that this takes [J].
-double calm_crushed(Aggregate& matter, double keep);
-// Adds to each particle what the guard of cells inside out can add to its stiffness [N/m].
-void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness);
-double guard_energy_of(const Aggregate& matter);  // [J]
 
 // The volume ratio of the most compressed cell that is at least a quarter full; below 0 it is
 // turned inside out.

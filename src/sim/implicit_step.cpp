@@ -35,8 +35,22 @@ bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOut
     start_ = matter.particle_position;
     aim_ = start_;
     combine(1, step, matter.particle_velocity, aim_);
-    for (std::size_t p = 0; p < count; ++p) inertia_[p] = matter.particle_mass[p] / (step * step);
+    double kinetic = 0;
+    const Vec3 drift = step * matter.mean_velocity();
+    if (!drift.allFinite()) return false;
+    Vec3Array carried = start_;
+    for (std::size_t p = 0; p < count; ++p) {
+        inertia_[p] = matter.particle_mass[p] / (step * step);
+        carried.add(p, drift);
+        kinetic += 0.5 * inertia_[p] * (carried.at(p) - aim_.at(p)).squaredNorm();
+    }
+    // The step looks for the least of inertia's and the matter's energy, from where the velocities
+    // lead, or from the matter as it is, carried along: what is drawn out so far that its law
+    // hardly resists any more may come to rest as well.
+    const double held = body.elastic_energy();
     matter.particle_position = aim_;
+    const bool from_aim = body.elastic_energy() <= held + kinetic;
+    if (!from_aim) matter.particle_position = carried;
     body.find_candidates(now);
 
     // Forces below these are round-off: of the matter's, and of the inertia's.
@@ -78,12 +92,7 @@ bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOut
     Newton::Result result = newton_->solve(matter, problem);
     iterations_ += result.steps;
     if (!result.converged) {
-        // From where the matter is not strained more than it was.
-        const Vec3 drift = step * matter.mean_velocity();
-        if (!drift.allFinite()) return false;
-        for (std::size_t p = 0; p < count; ++p) {
-            matter.particle_position.set(p, start_.at(p) + drift);
-        }
+        matter.particle_position = from_aim ? carried : aim_;
         result = newton_->solve(matter, problem);
         iterations_ += result.steps;
     }

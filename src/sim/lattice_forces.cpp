@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sim/cell_volume.h"
+#include "sim/crushed_cells.h"
 #include "sim/cracking.h"
 
 namespace swage {
@@ -67,7 +67,7 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
         cells_->forces(matter, flow, force);
         if (!branches.empty()) *given += add_branches(matter, branches, force);
         loose_.add_forces(matter, flow, nullptr, force);
-        return add_guard_forces(matter, cells_->crushed_runs(), force);
+        return add_guard_forces(matter, flow, cells_->crushed_runs(), force);
     }
     const bool flows = spring_flow_ && flow == Flow::trial;
     const RestStrains* rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
@@ -80,7 +80,7 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
     if (apart) work = add_branches(matter, branches, force);
     if (!branches.empty()) *given += work;
     loose_.add_forces(matter, flow, rest, force);
-    const int mirrored = add_guard_forces(matter, force);
+    const int mirrored = add_guard_forces(matter, flow, force);
     mirrored_ = mirrored > 0;
     return mirrored;
 }

@@ -231,7 +231,7 @@ double MixedCells::elastic_energy(const Aggregate& matter,
                                        s.gradient.z + normal.z * by};
             const double mean = m.kind == CellKind::rubber
                                     ? rubber_energy(*m.law, f)
-                                    : strain_energy(*m.law, cell_strain(f).log, m.history);
+                                    : strain_energy(*m.law, cell_strain(f), m.history);
             const CellModes<double> q = s.modes - m.history.modes;
             sum += volume * m.fill * mean +
                    0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, q), q);

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "sim/cell_batch.h"
-#include "sim/cell_volume.h"
+#include "sim/crushed_cells.h"
 #include "sim/lattice_sweep.h"
 #include "sim/vector_clones.h"
 #include "sim/vector_sums.h"

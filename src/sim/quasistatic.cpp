@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "sim/cell_volume.h"
+#include "sim/crushed_cells.h"
 #include "sim/fire_schedule.h"
 #include "sim/vector_sums.h"
 

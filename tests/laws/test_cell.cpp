@@ -76,13 +76,14 @@ double energy(const CellModuli& law, const Cell& cell, const Corners& x) {
         return kVolume * cell.fill * rubber_energy(law, s.gradient) +
                0.5 * fill3 * product(mode_stress(law, s.modes), s.modes);
     }
-    const Symmetric<double> strain = cell_strain(s.gradient).log;
-    const CellFlowed<double> r = flow_cell(law, cell.history, strain, s.modes, cell.fill);
+    const CellStrain<double> strain = cell_strain(s.gradient);
+    const CellFlowed<double> r = flow_cell(law, cell.history, strain.log, s.modes, cell.fill);
+    const double size = cell_size(strain).log;
     const double w = r.kept * r.kept;
-    const double stored = kVolume * cell.fill *
-                              (law.shear * w * contract(r.distortion, r.distortion) +
-                               0.5 * law.bulk * r.trace * r.trace) +
-                          0.5 * fill3 * w * product(mode_stress(law, r.modes), r.modes);
+    const double stored =
+        kVolume * cell.fill *
+            (law.shear * w * contract(r.distortion, r.distortion) + 0.5 * law.bulk * size * size) +
+        0.5 * fill3 * w * product(mode_stress(law, r.modes), r.modes);
     const double flowed =
         r.d_alpha * (law.yield_stress + law.hardening * (cell.history.alpha + 0.5 * r.d_alpha));
     return stored + kVolume * cell.fill * flowed;
@@ -100,11 +101,13 @@ Corners force(const CellModuli& law, const Cell& cell, const Corners& x) {
     }
     const CellStrain<double> strain = cell_strain(s.gradient);
     const CellFlowed<double> r = flow_cell(law, cell.history, strain.log, s.modes, cell.fill);
-    Symmetric<double> t = (2 * law.shear * r.kept) * r.distortion;
-    t.xx += law.bulk * r.trace, t.yy += law.bulk * r.trace, t.zz += law.bulk * r.trace;
-    return forces_of(
-        sum_forces(s.sums, s.gradient, s.gradient * (scale * material_stress(strain, t)),
-                   (fill3 * r.kept) * mode_stress(law, r.modes), cell.at, law.spacing));
+    const CellSize<double> size = cell_size(strain);
+    const Symmetric<double> stress =
+        material_stress(strain, (2 * law.shear * r.kept) * r.distortion) +
+        evaluate(strain, law.bulk * size.log * size.slope);
+    return forces_of(sum_forces(s.sums, s.gradient, s.gradient * (scale * stress),
+                                (fill3 * r.kept) * mode_stress(law, r.modes), cell.at,
+                                law.spacing));
 }
 
 class Draw {
@@ -228,6 +231,23 @@ TEST_CASE("the logarithmic strain is the logarithm's, and its stress does the st
         got << e.xx, e.xy, e.zx, e.xy, e.yy, e.yz, e.zx, e.yz, e.zz;
         const Mat3 expected = axes * Vec3(stretch.array().log()).asDiagonal() * axes.transpose();
         CHECK((got - expected).norm() < 5e-6);
+    }
+}
+
+TEST_CASE("a cell's volume is told by its volume alone, however far it is drawn") {
+    Draw draw;
+    for (int n = 0; n < 40; ++n) {
+        const double j = std::exp(draw(-.2, .2)), x = std::exp(draw(-2, 2)),
+                     y = std::exp(draw(-1, 1));
+        const Mat3 f = draw.turn() * Vec3(x, y, j / (x * y)).asDiagonal() * draw.turn();
+        const auto column = [&](int c) { return Triple<double>{f(0, c), f(1, c), f(2, c)}; };
+        const CellStrain<double> e = cell_strain(Columns<double>{column(0), column(1), column(2)});
+        CHECK(cell_size(e).log == Approx(std::log(j)).margin(5e-6));
+        // 2 dJ/dC = J C^-1, where J is 1.
+        const Symmetric<double> s = evaluate(e, cell_size(e).slope);
+        Mat3 slope;
+        slope << s.xx, s.xy, s.zx, s.xy, s.yy, s.yz, s.zx, s.yz, s.zz;
+        CHECK((slope * (f.transpose() * f) - Mat3::Identity()).norm() < 2e-4);
     }
 }
 

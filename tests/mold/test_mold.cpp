@@ -119,6 +119,35 @@ TEST_CASE("a surface point moves with its cell") {
     CHECK(farthest < 1e-6);
 }
 
+TEST_CASE("a surface point is carried by a firm cell, or by the fullest within reach") {
+    TriMesh spike = box_mesh(Vec3::Zero(), Vec3::Ones());
+    for (Vec3& x : spike.position) {
+        if (x.minCoeff() > 0) x = {2, 2.5, 3};
+    }
+    const Aggregate matter = mold_across(spike, 8);
+    const Lattice& lattice = matter.lattice;
+    const auto corner = [&](CellId cell, int c) {
+        return Vec3(matter.particle_reference.at(lattice.cell_corners(cell)[c]));
+    };
+    int thin = 0;
+    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+        const Vec3& point = matter.surface.reference_position[p];
+        float carrier = 0, fullest = 0;
+        for (CellId cell = 0; cell < static_cast<CellId>(matter.cell_fill.size()); ++cell) {
+            const Vec3 low = corner(cell, 0), high = corner(cell, 7);
+            if (lattice.cell_corners(cell) == matter.surface.corner[p]) {
+                carrier = matter.cell_fill[cell];
+            }
+            if ((point - point.cwiseMax(low).cwiseMin(high)).norm() < 0.45 * lattice.spacing) {
+                fullest = std::max(fullest, matter.cell_fill[cell]);
+            }
+        }
+        thin += carrier < 0.4f;
+        CHECK((carrier >= 0.4f || carrier >= fullest));
+    }
+    CHECK(thin > 0);
+}
+
 TEST_CASE("a block holds the mesh's box in whole cells") {
     MoldSettings settings;
     settings.kind = MoldKind::block;

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
+#include "sim/crushed_cells.h"
 #include "sim/lattice_forces.h"
 #include "sim/sever.h"
 #include "sim/vector_clones.h"
@@ -244,8 +245,8 @@ TEST_CASE("the sweep misses no cell that the volume guard acts on") {
     Vec3Array f;
     sweep.forces(m, Flow::trial, f);
     Vec3Array all = f;
-    add_guard_forces(m, all);
-    add_guard_forces(m, sweep.crushed_runs(), f);
+    add_guard_forces(m, Flow::trial, all);
+    add_guard_forces(m, Flow::trial, sweep.crushed_runs(), f);
     CHECK(first_difference(f, all) == -1);
     CHECK(smallest_cell_volume(m) < kGuardedVolume);
     std::size_t runs = 0;

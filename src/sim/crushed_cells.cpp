@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/crushed_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "laws/volume_guard.h"
+#include "sim/cell_history.h"
+#include "sim/cell_volume.h"
+#include "sim/mixed_cells.h"
+
+namespace swage {
+
+namespace {
+
+// |cof F|^2, 3 at rest: with more its volume makes a cell much stiffer than it was there.
+constexpr double kSqueezed = 4.5;
+
+Columns<double> columns(const Mat3& m) {
+    return {{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}};
+}
+
+std::vector<MaterialLaw> guard_laws(const Aggregate& matter, Flow flow) {
+    std::vector<MaterialLaw> laws = material_laws(matter);
+    for (std::size_t n = 0; n < laws.size(); ++n) {
+        MaterialLaw& law = laws[n];
+        const Material& m = matter.material_at(n);
+        if (m.mechanics == Mechanics::springs) {
+            const CellModuli is = law.moduli;
+            law.moduli =
+                cell_moduli(m.young_modulus, 0.25, is.spacing, is.yield_stress, is.hardening);
+        }
+        if (law.kind != CellKind::yielding || flow == Flow::none) {
+            law.moduli.yield_stress = kNeverYields;
+        }
+    }
+    return laws;
+}
+
+const MaterialLaw& law_of(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                          CellId cell) {
+    return laws[matter.cell_material.empty() ? 0 : matter.cell_material[cell]];
+}
+
+// One crushed cell.
+struct Crushed {
+    double volume;  // of its material [m3]
+    GuardedCell guard;
+    // The state that the cell's own law sees; `fades`: it gives way to the guard.
+    bool fades;
+    const CellModuli* law;
+    double fill;
+    Triple<double> at;
+    CornerSums<double> sums;
+    Columns<double> gradient;
+    CellStrain<double> strain;
+    CellHistory<double> history{};
+    CellFlowed<double> flowed;
+
+    Crushed(const Aggregate& matter, const std::vector<MaterialLaw>& laws, const SmallCell& cell) {
+        const CellId id = cell.id();
+        const MaterialLaw& own = law_of(matter, laws, id);
+        const double a = matter.lattice.spacing;
+        law = &own.moduli;
+        fades = matter.material.mechanics == Mechanics::cells && own.kind != CellKind::rubber &&
+                matter.mixed_at(id) == nullptr;
+        fill = matter.cell_fill[id];
+        volume = fill * a * a * a;
+        at = material_place(matter, id);
+        sums = corner_sums(matter, *cell.run, cell.n);
+        gradient = centroid_gradient(sums, at, a);
+        guard = guard_cell({matter.material_of(id).young_modulus, law->shear, law->bulk, fades},
+                           matrix_of(gradient));
+        if (!fades) return;
+        strain = cell_strain(gradient);
+        if (!matter.cell_hardening.empty()) load(matter, id);
+        flowed = flow_cell(*law, history, strain.log, pulled_back(gradient, sums), fill);
+    }
+
+    // Of the cell's own law: what it holds, and besides what the flow on trial takes.
+    double held() const { return strain_energy(*law, strain, history); }
+    double spent() const {
+        const double over = std::max(0.0, flowed.over);
+        return held() - over * over / (2 * (3 * law->shear + law->hardening));
+    }
+
+    double energy() const { return volume * (guard.energy - (fades ? guard.share * held() : 0.0)); }
+
+    // On the sums of the corners. The modes do not fade: they only stop flowing.
+    CornerSums<double> forces() const {
+        Mat3 stress = guard.stress;
+        CellModes<double> modes{};
+        if (fades) {
+            const CellSize<double> size = cell_size(strain);
+            const Symmetric<double> own =
+                material_stress(strain, (2 * law->shear * flowed.kept) * flowed.distortion) +
+                evaluate(strain, (law->bulk * size.log) * size.slope);
+            stress -= guard.share * matrix_of(gradient * own) + spent() * guard.share_slope;
+            modes = (guard.share * mode_fill(fill) * (1 - flowed.kept)) * flowed.mode_stress;
+        }
+        return sum_forces(sums, gradient, columns(volume * stress), modes, at, law->spacing);
+    }
+
+  private:
+    void load(const Aggregate& matter, CellId id) {
+        const auto& e = matter.cell_plastic_strain;
+        const auto& m = matter.cell_plastic_modes;
+        const auto triple = [&](int n) {
+            return Triple<double>{m[n][id], m[n + 1][id], m[n + 2][id]};
+        };
+        history = {{e[0][id], e[1][id], e[2][id], e[3][id], e[4][id], e[5][id]},
+                   {triple(0), triple(3), triple(6), triple(9)},
+                   matter.cell_hardening[id]};
+    }
+};
+
+int resist(const Aggregate& matter, Flow flow, const std::vector<SmallCell>& crushed,
+           Vec3Array& force) {
+    if (crushed.empty()) return 0;
+    const std::vector<MaterialLaw> laws = guard_laws(matter, flow);
+    int mirrored = 0;
+    for (const SmallCell& cell : crushed) {
+        mirrored += cell.volume < 0;
+        const CornerSums<double> r = Crushed(matter, laws, cell).forces();
+        double x[8], y[8], z[8];
+        spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, x);
+        spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, y);
+        spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, z);
+        for (int c = 0; c < 8; ++c) {
+            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), {x[c], y[c], z[c]});
+        }
+    }
+    return mirrored;
+}
+
+}  // namespace
+
+int add_guard_forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
+    return resist(matter, flow, cells_below(matter, kGuardedVolume), force);
+}
+
+int add_guard_forces(const Aggregate& matter, Flow flow,
+                     const std::vector<std::vector<const CellRun*>>& crushed, Vec3Array& force) {
+    std::vector<SmallCell> found;
+    for (const std::vector<const CellRun*>& part : crushed) {
+        for (const CellRun* run : part) add_cells_below(matter, *run, kGuardedVolume, found);
+    }
+    return resist(matter, flow, found, force);
+}
+
+double guard_energy_of(const Aggregate& matter) {
+    const std::vector<SmallCell> crushed = cells_below(matter, kGuardedVolume);
+    if (crushed.empty()) return 0;
+    const std::vector<MaterialLaw> laws = guard_laws(matter, Flow::none);
+    double sum = 0;
+    for (const SmallCell& cell : crushed) {
+        sum += Crushed(matter, laws, cell).energy();
+    }
+    return sum;
+}
+
+// NOTE: what the guard's law gives back to matter that was turned inside out is ten times what
+// would tear it apart, so it is taken on the way.
+double calm_crushed(Aggregate& matter, double keep) {
+    double taken = 0;
+    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
+        std::array<std::size_t, 8> p;
+        double mass = 0;
+        Vec3 center = Vec3::Zero(), drift = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) {
+            p[c] = static_cast<std::size_t>(cell.run->row[c >> 1] + cell.n + (c & 1));
+            const double m = matter.particle_mass[p[c]];
+            mass += m;
+            center += m * matter.particle_position.at(p[c]);
+            drift += m * matter.particle_velocity.at(p[c]);
+        }
+        center /= mass;
+        drift /= mass;
+        Mat3 inertia = Mat3::Zero();
+        Vec3 spin = Vec3::Zero();
+        for (std::size_t q : p) {
+            const Vec3 r = matter.particle_position.at(q) - center;
+            inertia +=
+                matter.particle_mass[q] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+            spin += matter.particle_mass[q] * r.cross(matter.particle_velocity.at(q));
+        }
+        const double trace = inertia.trace();
+        if (!(trace > 0) || !std::isfinite(trace)) continue;
+        inertia.diagonal().array() += 1e-12 * trace;
+        const Vec3 turn = inertia.ldlt().solve(spin);
+        for (std::size_t q : p) {
+            const Vec3 rigid = drift + turn.cross(matter.particle_position.at(q) - center);
+            const Vec3 v = matter.particle_velocity.at(q), calmed = rigid + keep * (v - rigid);
+            taken += 0.5 * matter.particle_mass[q] * (v.squaredNorm() - calmed.squaredNorm());
+            matter.particle_velocity.set(q, calmed);
+        }
+    }
+    return taken;
+}
+
+void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness) {
+    const std::vector<MaterialLaw> laws = guard_laws(matter, Flow::none);
+    const double a = matter.lattice.spacing;
+    const auto add = [&](const CellRun& run, int n, double own) {
+        for (int c = 0; c < 8; ++c) stiffness[run.row[c >> 1] + n + (c & 1)] += own;
+    };
+    for (const SmallCell& cell : cells_below(matter, 0)) {
+        const CellModuli& law = law_of(matter, laws, cell.id()).moduli;
+        const double volume = matter.cell_fill[cell.id()] * a * a * a;
+        add(*cell.run, cell.n,
+            volume * guard_stiffness({0, law.shear, law.bulk, true}) / (2 * a * a));
+    }
+    if (matter.material.mechanics == Mechanics::springs) return;
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            const CellId id = run.first + n;
+            const Mat3 f = material_gradient(matter, run, n);
+            const Vec3 x = f.col(1).cross(f.col(2)), y = f.col(2).cross(f.col(0)),
+                       z = f.col(0).cross(f.col(1));
+            const double cofactor = x.squaredNorm() + y.squaredNorm() + z.squaredNorm();
+            if (cofactor < kSqueezed) continue;
+            std::array<ParticleId, 4> row = run.row;
+            for (ParticleId& p : row) p += n;
+            if (!cell_is_sound(matter, id, row)) continue;
+            const double volume = f.col(0).dot(x), slope = guarded_strain(volume).slope;
+            const double more = cofactor * slope * slope - 3;
+            if (!(volume > 0) || !(more > 0)) continue;
+            add(run, n,
+                0.5 * matter.cell_fill[id] * a * law_of(matter, laws, id).moduli.bulk * more);
+        }
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/crushed_cells.h"
+
+#include <random>
+
+#include "laws/volume_guard.h"
+#include "sim/cell_volume.h"
+#include "sim/lattice_forces.h"
+#include "sim/quasistatic.h"
+#include "tests/catch.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kSide = 0.1;
+
+// Two cells thick, partly filled in one layer.
+Aggregate shaken_block(const Material& material, bool flowed) {
+    std::mt19937 random(5);
+    const auto draw = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    Aggregate m = make_block(3, 2, 2, kSide, material);
+    for (std::size_t c = 0; c < m.cell_fill.size(); c += 2) {
+        Eigen::Vector3f centroid;
+        m.cell_fill[c] = static_cast<float>(draw(0.05, 0.9));
+        for (float& at : centroid) at = static_cast<float>(draw(-0.4, 0.4));
+        m.cell_centroid.set(c, centroid);
+    }
+    if (flowed) {
+        const std::size_t cells = m.cell_fill.size();
+        for (auto& v : m.cell_plastic_strain) {
+            for (std::size_t c = 0; c < cells; ++c) v.push_back(static_cast<float>(draw(-1, 1)));
+        }
+        for (std::size_t c = 0; c < cells; ++c) {
+            m.cell_plastic_strain[2][c] =
+                -m.cell_plastic_strain[0][c] - m.cell_plastic_strain[1][c];
+        }
+        for (auto& v : m.cell_plastic_modes) {
+            for (std::size_t c = 0; c < cells; ++c) {
+                v.push_back(static_cast<float>(draw(-0.2, 0.2) * kSide));
+            }
+        }
+        m.cell_hardening.assign(cells, 1.0f);
+    }
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p).cwiseProduct(Vec3(1.1, 0.35, 0.9));
+        m.particle_position.set(p, x + 0.1 * kSide * Vec3(draw(-1, 1), draw(-1, 1), draw(-1, 1)));
+    }
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("forces of crushed matter are minus the slope of its energy, whatever it has flowed") {
+    Material elastic{.young_modulus = 1e6, .poisson_ratio = 0.4}, rubber = elastic, flows = elastic;
+    rubber.elasticity = Elasticity::neo_hookean;
+    flows.yield_stress = 1e30;  // it has flowed, and does not flow on
+    for (const Material& material : {elastic, rubber, flows}) {
+        Aggregate m = shaken_block(material, std::isfinite(material.yield_stress));
+        int crushed = 0, inverted = 0;
+        for (const SmallCell& cell : cells_below(m, kGuardedVolume)) {
+            ++crushed;
+            inverted += cell.volume < 0;
+        }
+        CHECK(crushed >= 4);
+        LatticeForces forces(m);
+        Vec3Array f;
+        CHECK(forces.find(m, Flow::trial, f) == inverted);
+        CHECK(forces.elastic_energy(m) > 0);
+        double largest = 0;
+        for (std::size_t p = 0; p < f.size(); ++p) largest = std::max(largest, f.at(p).norm());
+        const double h = 1e-5 * kSide;
+        for (std::size_t p = 0; p < m.particle_count(); p += 3) {
+            double& y = m.particle_position.y[p];
+            const double here = y;
+            const auto energy_at = [&](double by) {
+                y = here + by;
+                return forces.elastic_energy(m);
+            };
+            const double slope =
+                (8 * (energy_at(h) - energy_at(-h)) - (energy_at(2 * h) - energy_at(-2 * h))) /
+                (12 * h);
+            y = here;
+            CHECK(f.y[p] == Approx(-slope).margin(1e-6 * largest));
+        }
+    }
+}
+
+TEST_CASE("clay that is pressed flat keeps its volume, to a fifth of its height") {
+    const Material clay{.young_modulus = 3e6, .poisson_ratio = 0.45, .yield_stress = 3e4};
+    Aggregate m = make_block(4, 4, 4, kSide / 4, clay);
+    Apparatus press;
+    press.name = "press";
+    for (const char* name : {"anvil", "plate"}) {
+        press.tool.push_back({name, BoxShape{Vec3(0.3, 0.05, 0.3), 0.005}, 0.1});
+    }
+    const auto drive_at = [](double t) {
+        Drive d;
+        d.time = t;
+        d.world_from_tool.push_back({Quat::Identity(), Vec3(0, -kSide / 2 - 0.05, 0)});
+        d.world_from_tool.push_back(
+            {Quat::Identity(), Vec3(0, kSide / 2 + 0.05 - 0.8 * kSide * t, 0)});
+        return d;
+    };
+    Simulation simulation(m, press, SimSettings{});
+    constexpr int kFrames = 16;
+    for (int n = 0; n < kFrames; ++n) {
+        const FrameReport r =
+            simulation.advance(drive_at(double(n) / kFrames), drive_at(double(n + 1) / kFrames));
+        CHECK(r.elastic >= 0);
+    }
+    double volume = 0;
+    for (const SmallCell& cell : cells_below(m, 1e9)) volume += cell.volume;
+    CHECK(volume / 64 == Approx(1).margin(0.01));
+}
