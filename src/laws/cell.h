@@ -164,6 +164,7 @@ struct CellStrain {
     Symmetric<N> cayley, square;  // Y, Y^2
     N i1, i2, i3;                 // Y's invariants: Y^3 = i1 Y^2 - i2 Y + i3
     CayleySeries<N> series;       // of E
+    N size, over;                 // y of J; 1 / (1 + i2)
 };
 template <typename N>
 SWAGE_INLINE CayleySeries<N> times_cayley(const CellStrain<N>& e, const CayleySeries<N>& p) {
@@ -180,13 +181,19 @@ SWAGE_INLINE Symmetric<N> evaluate(const CellStrain<N>& e, const CayleySeries<N>
 template <typename N>
 SWAGE_INLINE CellStrain<N> strain_of_sum(const Symmetric<N>& m) {
     CellStrain<N> e;
-    // Y = I - 2 (C + I)^-1
+    // Y = I - 2 (C + I)^-1. J^2 = det C follows from the invariants of C + I; both are divided at
+    // once.
     const N xx = m.yy * m.zz - m.yz * m.yz, xy = m.yz * m.zx - m.xy * m.zz,
             zx = m.xy * m.yz - m.yy * m.zx;
-    const N over = -2.0 / (m.xx * xx + m.xy * xy + m.zx * zx);
+    const N yy = m.xx * m.zz - m.zx * m.zx, zz = m.xx * m.yy - m.xy * m.xy;
+    const N det = m.xx * xx + m.xy * xy + m.zx * zx;
+    const N size = det - (xx + yy + zz) + trace(m), inverse = 1.0 / (det * size);  // J^2 + 1
+    const N over = -2.0 * size * inverse, over_size = det * inverse;
+    e.size = (size - 2.0) * over_size;
+    e.over = 0.25 * det * over_size;
     e.cayley = {1.0 + over * xx,
-                1.0 + over * (m.xx * m.zz - m.zx * m.zx),
-                1.0 + over * (m.xx * m.yy - m.xy * m.xy),
+                1.0 + over * yy,
+                1.0 + over * zz,
                 over * xy,
                 over * (m.xy * m.zx - m.xx * m.yz),
                 over * zx};
@@ -209,8 +216,8 @@ SWAGE_INLINE CellStrain<N> cell_strain(const Columns<N>& f) {
                                       dot(f.x, f.y), dot(f.y, f.z), dot(f.z, f.x)});
 }
 
-// theta, and 2 dtheta/dC as a function of Y: (1 - y^6) C^-1. By det(I + Y) and det(I - Y), whose
-// quotient is J^2; their sum, unlike J, is never near zero.
+// theta, and 2 dtheta/dC = (1 - y^6) C^-1 as a function of Y, which det(I + Y) = (1 + i2)(1 + y)
+// divides.
 template <typename N>
 struct CellSize {
     N log;
@@ -218,11 +225,10 @@ struct CellSize {
 };
 template <typename N>
 SWAGE_INLINE CellSize<N> cell_size(const CellStrain<N>& e) {
-    const N even = 1.0 + e.i2, odd = e.i1 + e.i3, over = 1.0 / even;
-    const N y = odd * over, y2 = y * y;
-    const N rate = (1.0 + y2 * (1.0 + y2)) * (even - odd) * (over * over);
+    const N y = e.size, y2 = y * y, one = 1.0 + e.i1;
+    const N rate = (1.0 + y2 * (1.0 + y2)) * (1.0 - y) * e.over;
     return {y * (1.0 + y2 * (1.0 / 3 + 0.2 * y2)),
-            {rate * (even + e.i1 - e.i3), -2.0 * rate * (1.0 + e.i1), 2.0 * rate}};
+            {rate * (one + e.i2 - e.i3), -2.0 * rate * one, 2.0 * rate}};
 }
 
 // The second Piola-Kirchhoff stress of the conjugate of E: dW/dE turned into 2 dW/dC. E's series

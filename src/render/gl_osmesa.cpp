@@ -8,6 +8,12 @@
 
 #include "render/gl_provider.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// What the library keeps for good is not ours to give back.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:OSMesaMakeCurrent\n"; }
+#endif
+
 namespace swage {
 
 namespace {
