@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "base/text.h"
+#include "geometry/mesh_check.h"
 #include "geometry/mesh_write.h"
 #include "machines/machine.h"
 #include "pipeline/curves.h"
@@ -14,6 +15,7 @@
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "sim/advance.h"
+#include "sim/own_overlap.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
 
@@ -22,6 +24,8 @@ namespace swage {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr double kOverlap = 0.5;  // spacings that a body may lie in itself untold
 
 // Warnings that come back frame after frame are told once, with the frames they came in.
 class WarningBook {
@@ -255,6 +259,16 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     outcome.warning = warnings.told(stage.name);
     if (!machine.apparatus.tool.empty() && totals.tool_contacts == 0 && !outcome.stopped) {
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
+    }
+    if (stage.sim.solver == Solver::quasistatic) {
+        Aggregate& body = bodies.front().matter;
+        const double deep = own_overlap(body);
+        if (deep > kOverlap * body.lattice.spacing) {
+            outcome.warning.push_back(fmt::format(
+                "{}: the work-piece has gone into itself, by {} at the end: quasi-static stages "
+                "have no self-contact, explicit ones do (self_contact)",
+                stage.name, length_text(deep)));
+        }
     }
     outcome.steps = totals.iterations + totals.steps;
     Json by_body = Json::array();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/advance.h"
+#include "sim/own_overlap.h"
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
@@ -15,6 +16,20 @@ Material soft() {
     return {.young_modulus = 1e6, .poisson_ratio = 0.25, .density = 1000, .damping_ratio = 0};
 }
 
+// A strip along x into a U whose legs, 0.1 thick, are 0.3 apart.
+void bend_to_u(Aggregate& strip) {
+    const double bend = 0.2, arc = std::numbers::pi * bend;
+    deform(strip, [&](const Vec3& x) -> Vec3 {
+        const double s = x.x(), y = x.y();
+        if (std::abs(s) < arc / 2) {
+            const double angle = s / bend;
+            return Vec3((bend - y) * std::cos(angle), (bend - y) * std::sin(angle), x.z());
+        }
+        const double side = s < 0 ? -1 : 1;
+        return Vec3(-(std::abs(s) - arc / 2), side * (bend - y), x.z());
+    });
+}
+
 }  // namespace
 
 TEST_CASE("a strip that folds onto itself does not pass through itself") {
@@ -24,17 +39,7 @@ TEST_CASE("a strip that folds onto itself does not pass through itself") {
         Aggregate strip = make_block(48, 2, 4, 0.05, m);
         SimSettings settings = motion_settings();
         settings.self_contact = meets;
-        // A U whose legs, 0.3 apart, go for each other.
-        const double bend = 0.2, arc = std::numbers::pi * bend;
-        deform(strip, [&](const Vec3& x) -> Vec3 {
-            const double s = x.x(), y = x.y();
-            if (std::abs(s) < arc / 2) {
-                const double angle = s / bend;
-                return Vec3((bend - y) * std::cos(angle), (bend - y) * std::sin(angle), x.z());
-            }
-            const double side = s < 0 ? -1 : 1;
-            return Vec3(-(std::abs(s) - arc / 2), side * (bend - y), x.z());
-        });
+        bend_to_u(strip);  // its legs go for each other
         for (std::size_t p = 0; p < strip.particle_count(); ++p) {
             const Vec3 x = strip.particle_position.at(p);
             if (x.x() < -0.2) strip.particle_velocity.set(p, Vec3(0, x.y() < 0 ? 2.5 : -2.5, 0));
@@ -57,6 +62,19 @@ TEST_CASE("a strip that folds onto itself does not pass through itself") {
         INFO("nearest " << nearest);
         CHECK((nearest > 0.05) == meets);
     }
+}
+
+TEST_CASE("a body that has gone into itself is told how deep, a bent one is not") {
+    Aggregate strip = make_block(48, 2, 4, 0.05, soft());
+    CHECK(own_overlap(strip) == 0);
+    bend_to_u(strip);
+    CHECK(own_overlap(strip) < 0.01);
+    for (std::size_t p = 0; p < strip.particle_count(); ++p) {
+        if (strip.particle_position.x[p] > -0.2) continue;
+        double& y = strip.particle_position.y[p];
+        y -= y < 0 ? -0.165 : 0.165;
+    }
+    CHECK(own_overlap(strip) == Approx(0.03).margin(0.005));
 }
 
 TEST_CASE("pieces after a cut do not pass through each other") {
