@@ -437,6 +437,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         return;
     }
 
+    stay(to);
     const bool breaks = commit(outcome);
     outcome.body[0].friction_work += contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);

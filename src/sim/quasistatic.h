@@ -62,6 +62,7 @@ class QuasistaticSolver {
     bool draws_back(const Drive& from, const Drive& to, const std::vector<double>& motion) const;
     void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome);
     void let_crack(const Drive& to, MoveOutcome& outcome);
+    void stay(const Drive& to);
     bool commit(MoveOutcome& outcome);
 
     Aggregate& matter_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two small machines for tests of the simulation: a bender and a twister around a bar along x.
+// Small machines for tests of the simulation: a press; a bender and a twister around a bar along x.
 #pragma once
 
 #include "matter/drive.h"
@@ -33,6 +33,28 @@ struct Bender {
             const Vec3 arm(side * overhang, height + radius + pusher, 0);
             d.world_from_tool.push_back({turn, centre + turn * arm + Vec3(0, lift, 0)});
         }
+        return d;
+    }
+};
+
+// Two plates about a block with this side, of which the upper one comes down.
+struct Press {
+    double side;
+
+    Apparatus apparatus() const {
+        Apparatus a;
+        a.name = "press";
+        for (const char* name : {"anvil", "plate"}) {
+            a.tool.push_back({name, BoxShape{Vec3(3 * side, side, 3 * side), side / 20}, 0.1});
+        }
+        return a;
+    }
+    // `down`: share of the side.
+    Drive drive_at(double time, double down) const {
+        Drive d;
+        d.time = time;
+        d.world_from_tool.push_back({Quat::Identity(), Vec3(0, -side, 0)});
+        d.world_from_tool.push_back({Quat::Identity(), Vec3(0, side * (1 - down), 0)});
         return d;
     }
 };

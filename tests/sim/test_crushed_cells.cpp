@@ -6,8 +6,8 @@
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
 #include "sim/lattice_forces.h"
-#include "sim/quasistatic.h"
 #include "tests/catch.h"
+#include "tests/sim/machines.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -93,24 +93,14 @@ TEST_CASE("forces of crushed matter are minus the slope of its energy, whatever 
 TEST_CASE("clay that is pressed flat keeps its volume, to a fifth of its height") {
     const Material clay{.young_modulus = 3e6, .poisson_ratio = 0.45, .yield_stress = 3e4};
     Aggregate m = make_block(4, 4, 4, kSide / 4, clay);
-    Apparatus press;
-    press.name = "press";
-    for (const char* name : {"anvil", "plate"}) {
-        press.tool.push_back({name, BoxShape{Vec3(0.3, 0.05, 0.3), 0.005}, 0.1});
-    }
-    const auto drive_at = [](double t) {
-        Drive d;
-        d.time = t;
-        d.world_from_tool.push_back({Quat::Identity(), Vec3(0, -kSide / 2 - 0.05, 0)});
-        d.world_from_tool.push_back(
-            {Quat::Identity(), Vec3(0, kSide / 2 + 0.05 - 0.8 * kSide * t, 0)});
-        return d;
-    };
-    Simulation simulation(m, press, SimSettings{});
+    const Press press{kSide};
+    const Apparatus apparatus = press.apparatus();
+    Simulation simulation(m, apparatus, SimSettings{});
     constexpr int kFrames = 16;
     for (int n = 0; n < kFrames; ++n) {
+        const double from = double(n) / kFrames, to = double(n + 1) / kFrames;
         const FrameReport r =
-            simulation.advance(drive_at(double(n) / kFrames), drive_at(double(n + 1) / kFrames));
+            simulation.advance(press.drive_at(from, 0.8 * from), press.drive_at(to, 0.8 * to));
         CHECK(r.elastic >= 0);
     }
     double volume = 0;

@@ -210,3 +210,24 @@ TEST_CASE("bending gives the same bits at any thread count") {
     }
     set_thread_count(0);
 }
+
+TEST_CASE("a body that nothing holds any more lies where it was let go") {
+    for (const Material& material : {kElastic, kPlastic}) {
+        Aggregate m = make_block(6, 6, 6, kHeight / 6, material);
+        const Press press{kHeight};
+        const Apparatus apparatus = press.apparatus();
+        Simulation simulation(m, apparatus, SimSettings{});
+        const double down[] = {0, 0.1, 0.2, 0.3, 0.3, 0.15, 0, -0.2, -0.4};
+        for (int n = 0; n + 1 < 9; ++n) {
+            simulation.advance(press.drive_at(n, down[n]), press.drive_at(n + 1, down[n + 1]));
+        }
+        double low = 1;
+        Vec3 center = Vec3::Zero();
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            low = std::min(low, m.particle_position.y[p]);
+            center += m.particle_position.at(p) / double(m.particle_count());
+        }
+        CHECK(low == Approx(-kHeight / 2).margin(0.01 * kHeight));
+        CHECK(std::hypot(center.x(), center.z()) < 0.01 * kHeight);
+    }
+}
