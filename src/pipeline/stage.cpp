@@ -260,7 +260,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     if (!machine.apparatus.tool.empty() && totals.tool_contacts == 0 && !outcome.stopped) {
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
     }
-    if (stage.sim.solver == Solver::quasistatic) {
+    if (stage.sim.solver == Solver::quasistatic && last.pieces == 1) {
         Aggregate& body = bodies.front().matter;
         const double deep = own_overlap(body);
         if (deep > kOverlap * body.lattice.spacing) {
