@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "laws/volume_guard.h"
-#include "sim/cell_history.h"
 #include "sim/cell_volume.h"
 #include "sim/mixed_cells.h"
 
@@ -154,9 +153,7 @@ double guard_energy_of(const Aggregate& matter) {
     if (crushed.empty()) return 0;
     const std::vector<MaterialLaw> laws = guard_laws(matter, Flow::none);
     double sum = 0;
-    for (const SmallCell& cell : crushed) {
-        sum += Crushed(matter, laws, cell).energy();
-    }
+    for (const SmallCell& cell : crushed) sum += Crushed(matter, laws, cell).energy();
     return sum;
 }
 

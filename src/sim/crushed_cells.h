@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What cells do that have lost half of their volume (laws/volume_guard.h).
+//
+// NOTE: the work of flow in such a cell is booked whole, though its own law acts by 1 - b of it.
 #pragma once
 
 #include "matter/aggregate.h"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "sim/crushed_cells.h"
 #include "sim/cracking.h"
+#include "sim/crushed_cells.h"
 
 namespace swage {
 

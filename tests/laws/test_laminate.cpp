@@ -58,7 +58,8 @@ struct Cell {
             const CellStrain<double> e = cell_strain(f);
             sum += volume * fill[p] * strain_energy(law[p], e, history[p]) + modes;
             if (kind[p] != CellKind::yielding) continue;
-            const CellFlowed<double> flowed = flow_cell(law[p], history[p], e.log, s.modes, fill[p]);
+            const CellFlowed<double> flowed =
+                flow_cell(law[p], history[p], e.log, s.modes, fill[p]);
             const double over = std::max(0.0, flowed.over);
             sum -= volume * fill[p] * over * over / (2 * (3 * law[p].shear + law[p].hardening));
         }
