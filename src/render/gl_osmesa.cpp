@@ -11,7 +11,7 @@
 #ifdef __SANITIZE_ADDRESS__
 // What the library keeps for good is not ours to give back.
 extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:OSMesaMakeCurrent\n"; }
+extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa\n"; }
 #endif
 
 namespace swage {
