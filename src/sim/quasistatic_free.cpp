@@ -2,7 +2,6 @@
 // A body that nothing holds any more can be at rest anywhere. It stays where it was let go, as near
 // as tools leave it room.
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include "sim/quasistatic.h"
 
@@ -12,31 +11,10 @@ namespace {
 
 constexpr int kHalvings = 8;
 
-// Of the particles from one place to the other, by mass.
-struct RigidMotion {
-    Vec3 from, to;  // of the centre
-    Mat3 turn;
-};
-RigidMotion rigid_motion(const Aggregate& matter, const Vec3Array& from, const Vec3Array& to) {
-    RigidMotion r{Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
-    double mass = 0;
-    for (std::size_t p = 0; p < from.size(); ++p) {
-        const double m = matter.particle_mass[p];
-        mass += m;
-        r.from += m * from.at(p);
-        r.to += m * to.at(p);
-    }
-    r.from /= mass;
-    r.to /= mass;
-    Mat3 spread = Mat3::Zero();
-    for (std::size_t p = 0; p < from.size(); ++p) {
-        spread += matter.particle_mass[p] * (to.at(p) - r.to) * (from.at(p) - r.from).transpose();
-    }
-    const Eigen::JacobiSVD<Mat3> split(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 upright = Mat3::Identity();
-    upright(2, 2) = (split.matrixU() * split.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    r.turn = split.matrixU() * upright * split.matrixV().transpose();
-    return r;
+Eigen::Matrix3Xd columns(const Vec3Array& x) {
+    Eigen::Matrix3Xd m(3, x.size());
+    for (std::size_t p = 0; p < x.size(); ++p) m.col(Eigen::Index(p)) = x.at(p);
+    return m;
 }
 
 }  // namespace
@@ -54,13 +32,15 @@ void QuasistaticSolver::stay(const Drive& to) {
     };
     if (!is_free()) return;
     const Vec3Array free = matter_.particle_position;
-    const RigidMotion gone = rigid_motion(matter_, start_, free);
-    const Eigen::AngleAxisd turn(gone.turn);
+    const Eigen::Matrix3Xd from = columns(start_), now = columns(free);
+    if (from == now) return;
+    const Vec3 start_center = from.rowwise().mean(), free_center = now.rowwise().mean();
+    const Eigen::AngleAxisd turn(Mat3(Eigen::umeyama(from, now, false).topLeftCorner<3, 3>()));
     const auto go_back = [&](double share) {
         const Mat3 back = Eigen::AngleAxisd(-share * turn.angle(), turn.axis()).toRotationMatrix();
-        const Vec3 center = gone.to + share * (gone.from - gone.to);
+        const Vec3 center = free_center + share * (start_center - free_center);
         for (std::size_t p = 0; p < free.size(); ++p) {
-            matter_.particle_position.set(p, center + back * (free.at(p) - gone.to));
+            matter_.particle_position.set(p, center + back * (free.at(p) - free_center));
         }
     };
     double clear = 0, touches = 1;

@@ -8,20 +8,11 @@
 #include <map>
 #include <utility>
 
-#include "geometry/trimesh.h"
+#include "geometry/box_mesh.h"
 
 namespace swage::fixtures {
 
-inline TriMesh box_mesh(const Vec3& low, const Vec3& high) {
-    TriMesh mesh;
-    for (int c = 0; c < 8; ++c) {
-        mesh.position.emplace_back(c & 1 ? high.x() : low.x(), c & 2 ? high.y() : low.y(),
-                                   c & 4 ? high.z() : low.z());
-    }
-    mesh.triangle = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
-                     {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
-    return mesh;
-}
+using swage::box_mesh;
 
 // 20 * 4^divisions triangles.
 inline TriMesh sphere_mesh(double radius, int divisions) {

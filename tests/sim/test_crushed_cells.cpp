@@ -5,8 +5,8 @@
 
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
-#include "sim/lattice_forces.h"
 #include "tests/catch.h"
+#include "tests/sim/energy_slope.h"
 #include "tests/sim/machines.h"
 #include "tests/sim/motion.h"
 
@@ -75,16 +75,7 @@ TEST_CASE("forces of crushed matter are minus the slope of its energy, whatever 
         for (std::size_t p = 0; p < f.size(); ++p) largest = std::max(largest, f.at(p).norm());
         const double h = 1e-5 * kSide;
         for (std::size_t p = 0; p < m.particle_count(); p += 3) {
-            double& y = m.particle_position.y[p];
-            const double here = y;
-            const auto energy_at = [&](double by) {
-                y = here + by;
-                return forces.elastic_energy(m);
-            };
-            const double slope =
-                (8 * (energy_at(h) - energy_at(-h)) - (energy_at(2 * h) - energy_at(-2 * h))) /
-                (12 * h);
-            y = here;
+            const double slope = energy_slope(forces, m, p, 1, h);
             CHECK(f.y[p] == Approx(-slope).margin(1e-6 * largest));
         }
     }
