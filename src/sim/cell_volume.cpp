@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "base/parallel.h"
-#include "laws/cell.h"
+#include "sim/cell_batch.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -15,28 +16,77 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 256;
 
-// Component, row: position of the row's low end in the first cell.
-struct CellRows {
-    const double* at[3][4];
-};
+CornerRows<const double> rows_of(const Aggregate& matter, const CellRun& run, int at) {
+    const Vec3Array& x = matter.particle_position;
+    CornerRows<const double> rows;
+    for (int q = 0; q < 4; ++q) {
+        rows.at[0][q] = x.x.data() + run.row[q] + at;
+        rows.at[1][q] = x.y.data() + run.row[q] + at;
+        rows.at[2][q] = x.z.data() + run.row[q] + at;
+    }
+    return rows;
+}
+// Particles that may be read behind the beginnings of its rows.
+int room_of(const Aggregate& matter, const CellRun& run, int at) {
+    return static_cast<int>(matter.particle_count()) - run.row[3] - at;
+}
 
-SWAGE_VECTOR_CLONES
-void volume_block(const CellRows& rows, int count, double scale, double* __restrict volume) {
-    for (int n = 0; n < count; ++n) {
-        double f[3][3];
-        for (int i = 0; i < 3; ++i) {
-            const double* const* r = rows.at[i];
-            const double a0 = r[0][n], a1 = r[0][n + 1], b0 = r[1][n], b1 = r[1][n + 1];
-            const double c0 = r[2][n], c1 = r[2][n + 1], d0 = r[3][n], d1 = r[3][n + 1];
-            f[i][0] = scale * ((a1 - a0) + (b1 - b0) + (c1 - c0) + (d1 - d0));
-            f[i][1] = scale * ((b0 - a0) + (b1 - a1) + (d0 - c0) + (d1 - c1));
-            f[i][2] = scale * ((c0 - a0) + (c1 - a1) + (d0 - b0) + (d1 - b1));
-        }
-        volume[n] = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) -
-                    f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
-                    f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+// 64 a^3 times the volume ratios of a batch of cells, at their middles.
+template <typename V>
+SWAGE_INLINE V batch_volumes(const CornerRows<const double>& rows, int begin, int count, int room) {
+    const CornerSums<V> c = gather<V>(rows, begin, count, room);
+    return dot(c.x, cross(c.y, c.z));
+}
+
+struct VolumeTask {
+    CornerRows<const double> rows;
+    int count, room;
+    double scale;
+    double* volume;  // in whole vectors
+};
+template <int kWidth>
+SWAGE_INLINE void find_volumes(const VolumeTask& task) {
+    typedef LanesOf<kWidth> V;
+    for (int begin = 0; begin < task.count; begin += kWidth) {
+        const int count = std::min(kWidth, task.count - begin);
+        const V volume = task.scale * batch_volumes<V>(task.rows, begin, count, task.room);
+        std::memcpy(task.volume + begin, &volume, sizeof volume);
     }
 }
+SWAGE_WIDE_VECTORS void wide_volumes(const VolumeTask& task) { find_volumes<8>(task); }
+SWAGE_MIDDLE_VECTORS void middle_volumes(const VolumeTask& task) { find_volumes<4>(task); }
+void narrow_volumes(const VolumeTask& task) { find_volumes<2>(task); }
+
+// Runs with any cell below a volume, at the cells' middles.
+struct SmallRunsTask {
+    const Aggregate& matter;
+    const CellRun *run, *run_end;
+    double limit;  // times 64 a^3
+    std::vector<const CellRun*>& found;
+};
+template <int kWidth>
+SWAGE_INLINE void find_small_runs(const SmallRunsTask& task) {
+    typedef LanesOf<kWidth> V;
+    typename LaneBatch<kWidth>::Indices lane;
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    for (const CellRun* run = task.run; run != task.run_end; ++run) {
+        const CornerRows<const double> rows = rows_of(task.matter, *run, 0);
+        const int room = room_of(task.matter, *run, 0);
+        const V enough = V{} + task.limit;
+        V smallest = enough;
+        for (int begin = 0; begin < run->count; begin += kWidth) {
+            const int count = std::min(kWidth, run->count - begin);
+            const V volume = batch_volumes<V>(rows, begin, count, room);
+            smallest = lane < count && volume < smallest ? volume : smallest;
+        }
+        bool small = false;
+        for (int l = 0; l < kWidth; ++l) small = small || smallest[l] < task.limit;
+        if (small) task.found.push_back(run);
+    }
+}
+SWAGE_WIDE_VECTORS void wide_small_runs(const SmallRunsTask& task) { find_small_runs<8>(task); }
+SWAGE_MIDDLE_VECTORS void middle_small_runs(const SmallRunsTask& task) { find_small_runs<4>(task); }
+void narrow_small_runs(const SmallRunsTask& task) { find_small_runs<2>(task); }
 
 // Whether a cell's law looks at it from its middle.
 bool is_centred(const Aggregate& matter, CellId cell) {
@@ -66,13 +116,26 @@ void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
 
 std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const bool springs = matter.material.mechanics == Mechanics::springs;
+    const double spacing = matter.lattice.spacing, full = 64 * spacing * spacing * spacing;
     const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
     std::vector<std::vector<SmallCell>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
-        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
-            add_cells_below(matter, runs[r], limit, part[chunk]);
+        const CellRun* const begin = runs.data() + chunk * kRunsPerChunk;
+        const CellRun* const end = runs.data() + std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
+        if (!springs) {  // not all cells are looked at from their middles
+            for (const CellRun* run = begin; run != end; ++run) {
+                add_cells_below(matter, *run, limit, part[chunk]);
+            }
+            return;
         }
+        std::vector<const CellRun*> small;
+        const SmallRunsTask task{matter, begin, end, limit * full * (1 + 1e-12), small};
+        const int width = vector_width();
+        width == 8   ? wide_small_runs(task)
+        : width == 4 ? middle_small_runs(task)
+                     : narrow_small_runs(task);
+        for (const CellRun* run : small) add_cells_below(matter, *run, limit, part[chunk]);
     });
     std::vector<SmallCell> found;
     for (const auto& p : part) found.insert(found.end(), p.begin(), p.end());
@@ -80,13 +143,11 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
 }
 
 void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count, double* volume) {
-    CellRows rows;
-    for (int q = 0; q < 4; ++q) {
-        rows.at[0][q] = matter.particle_position.x.data() + run.row[q] + at;
-        rows.at[1][q] = matter.particle_position.y.data() + run.row[q] + at;
-        rows.at[2][q] = matter.particle_position.z.data() + run.row[q] + at;
-    }
-    volume_block(rows, count, 0.25 / matter.lattice.spacing, volume);
+    const double spacing = matter.lattice.spacing;
+    const VolumeTask task{rows_of(matter, run, at), count, room_of(matter, run, at),
+                          1 / (64 * spacing * spacing * spacing), volume};
+    const int width = vector_width();
+    width == 8 ? wide_volumes(task) : width == 4 ? middle_volumes(task) : narrow_volumes(task);
 }
 
 Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {

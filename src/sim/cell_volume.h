@@ -12,8 +12,8 @@ namespace swage {
 // Cells looked at in one go.
 inline constexpr int kCellBlock = 64;
 
-// Volume ratios, 1 at molding, of `count` cells of a run from cell `at` on; count <= kCellBlock. At
-// the cells' middles.
+// Volume ratios, 1 at molding, of `count` cells of a run from cell `at` on, at the cells'
+// middles; count <= kCellBlock, and volume has room for that many.
 void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count, double* volume);
 
 // Deformation gradient of cell n of a run, at its middle.

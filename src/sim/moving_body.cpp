@@ -261,9 +261,15 @@ std::vector<double> MovingBody::stiffness_bound() const {
 
 double MovingBody::top_speed() const {
     const Vec3Array& v = matter_.particle_velocity;
-    double most = 0;
-    for (std::size_t p = 0; p < v.size(); ++p) most = std::max(most, v.at(p).squaredNorm());
-    return std::sqrt(most);
+    std::vector<double> most(vector_chunks(v.size()), 0.0);
+    parallel_for(most.size(), [&](std::size_t chunk) {
+        const std::size_t begin = chunk * kVectorChunk,
+                          end = std::min(v.size(), begin + kVectorChunk);
+        for (std::size_t p = begin; p < end; ++p) {
+            most[chunk] = std::max(most[chunk], v.at(p).squaredNorm());
+        }
+    });
+    return std::sqrt(*std::max_element(most.begin(), most.end()));
 }
 
 double MovingBody::present_step() {

@@ -111,28 +111,34 @@ struct SpringKernel {
             }
         }
         if constexpr (kDamped) {
+            V stretch[3], before[3]{}, after[3]{};
             for (int n = 0; n < 3; ++n) {
                 const int c = direction[n];
                 const Triple<V> speed = load_triple<V>(at.v[kRowAbove[c]], kForward[c][0]) - v;
-                V stretch = task.stretch_scale[kind(c)] * (dot(speed, way[n]) * y[n]);
+                stretch[n] = task.stretch_scale[kind(c)] * (dot(speed, way[n]) * y[n]);
                 if constexpr (kKind != BatchKind::plain) {
-                    stretch = weight[n] > 0.0 ? stretch : V{};
+                    stretch[n] = weight[n] > 0.0 ? stretch[n] : V{};
                 }
-                V before{}, after{};
-                float* own = strain + c * task.branches * kLanes;
-                for (int j = 0; j < task.branches; ++j, own += kLanes) {
+            }
+            for (int j = 0; j < task.branches; ++j) {
+                const double keep = task.keep[j], gain = task.gain[j];
+                for (int n = 0; n < 3; ++n) {
+                    float* const own = strain + (direction[n] * task.branches + j) * kLanes;
                     const V m = load<V>(own);
-                    const V next = task.keep[j] * m + task.gain[j] * stretch;
+                    const V next = keep * m + gain * stretch[n];
                     const auto stored =
                         __builtin_convertvector(next, typename LaneBatch<kWidth>::Floats);
                     std::memcpy(own, &stored, sizeof stored);
-                    before += m;
-                    after += next;
+                    before[n] += m;
+                    after[n] += next;
                 }
-                V given = (c < kEdgeCount ? 0.5 : 1.0) * ((before + after) * stretch);
+            }
+            for (int n = 0; n < 3; ++n) {
+                V given =
+                    (direction[n] < kEdgeCount ? 0.5 : 1.0) * ((before[n] + after[n]) * stretch[n]);
                 if constexpr (kKind != BatchKind::plain) given = weight[n] * given;
                 work += given;
-                pulled[n] += after * y[n];
+                pulled[n] += after[n] * y[n];
             }
         }
         for (int n = 0; n < 3; ++n) {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the springs of a whole lattice hold, and how fast they can be.
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "sim/cell_batch.h"
+#include "sim/lattice_sweep.h"
+#include "sim/vector_clones.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kSpansPerChunk = 512;
+constexpr int kBlock = 64;  // connections
+
+// Consecutive connections of a span: their lower and upper ends, by component.
+struct SpanPlaces {
+    const double *low[3], *high[3];
+    const float *weight, *plastic;  // kBlock of each, in order; no weight behind the last
+};
+
+// Sum of weight times strain squared.
+SWAGE_VECTOR_CLONES
+double block_energy(const SpanPlaces& at, int count, int room, double length) {
+    Lanes sum{};
+    for (int n = 0; n < count; n += kLanes) {
+        double copy[6][kLanes];
+        Lanes square{};
+        for (int i = 0; i < 3; ++i) {
+            const double *low = at.low[i] + n, *high = at.high[i] + n;
+            if (n + kLanes > room) [[unlikely]] {
+                std::fill_n(copy[i], kLanes, 0.0), std::fill_n(copy[3 + i], kLanes, 0.0);
+                std::copy_n(low, count - n, copy[i]);
+                std::copy_n(high, count - n, copy[3 + i]);
+                low = copy[i], high = copy[3 + i];
+            }
+            const Lanes reach = load<Lanes>(high) - load<Lanes>(low);
+            square += reach * reach;
+        }
+        const Lanes strain = root(square) / length - 1.0 - load<Lanes>(at.plastic + n);
+        sum += load<Lanes>(at.weight + n) * (strain * strain);
+    }
+    double all = 0;
+    for (int l = 0; l < kLanes; ++l) all += sum[l];
+    return all;
+}
+
+}  // namespace
+
+double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
+                      const ConnectionShares& shares) {
+    const std::vector<Span>& spans = matter.lattice.span;
+    const Vec3Array& x = matter.particle_position;
+    const int particles = static_cast<int>(x.size());
+    return ordered_sum(
+        (spans.size() + kSpansPerChunk - 1) / kSpansPerChunk, [&](std::size_t chunk) {
+            const std::size_t end = std::min(spans.size(), (chunk + 1) * kSpansPerChunk);
+            double sum = 0;
+            float weight[kBlock + kLanes], flowed[kBlock + kLanes] = {};
+            for (std::size_t s = chunk * kSpansPerChunk; s < end; ++s) {
+                const Span& span = spans[s];
+                const std::vector<float>& plastic = matter.connection[span.direction].plastic;
+                const double length = reference_length(matter.lattice, span.direction);
+                double own = 0;
+                for (int begin = 0; begin < span.count; begin += kBlock) {
+                    const int count = std::min(kBlock, span.count - begin);
+                    const ParticleId low = span.lower + begin, high = span.upper + begin;
+                    for (int n = count / kLanes * kLanes; n < count + kLanes; ++n) weight[n] = 0;
+                    shares.copy(matter, span.direction, low, count, weight);
+                    if (!plastic.empty()) std::copy_n(plastic.data() + low, count, flowed);
+                    const SpanPlaces at{{x.x.data() + low, x.y.data() + low, x.z.data() + low},
+                                        {x.x.data() + high, x.y.data() + high, x.z.data() + high},
+                                        weight,
+                                        flowed};
+                    own += block_energy(at, count, particles - std::max(low, high), length);
+                }
+                sum += 0.5 * law.stiffness * length * length * own;
+            }
+            return sum;
+        });
+}
+
+std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law,
+                                    const ConnectionShares& shares) {
+    // A spring's energy k (n.(u1 - u2))^2 / 2 is at most k ((n.u1)^2 + (n.u2)^2): each end may be
+    // given the matrix 2 k n n^T of its own. Bounded by the row sums of their sum.
+    std::vector<Mat3> block(matter.particle_count(), Mat3::Zero());
+    for (const Span& span : matter.lattice.span) {
+        const auto& f = kForward[span.direction];
+        const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
+        const Mat3 dyad = n * n.transpose();
+        for (int i = 0; i < span.count; ++i) {
+            const double k = law.stiffness * shares.of(matter, span.direction, span.lower + i);
+            block[span.lower + i] += 2 * k * dyad;
+            block[span.upper + i] += 2 * k * dyad;
+        }
+    }
+    std::vector<double> bound(block.size());
+    for (std::size_t p = 0; p < block.size(); ++p) {
+        bound[p] = block[p].cwiseAbs().rowwise().sum().maxCoeff();
+    }
+    return bound;
+}
+
+}  // namespace swage
