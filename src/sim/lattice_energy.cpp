@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the springs of a whole lattice hold, and how fast they can be.
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.h"
 #include "sim/cell_batch.h"

@@ -261,15 +261,17 @@ std::vector<double> MovingBody::stiffness_bound() const {
 
 double MovingBody::top_speed() const {
     const Vec3Array& v = matter_.particle_velocity;
-    std::vector<double> most(vector_chunks(v.size()), 0.0);
-    parallel_for(most.size(), [&](std::size_t chunk) {
+    std::vector<double> part(vector_chunks(v.size()), 0.0);
+    parallel_for(part.size(), [&](std::size_t chunk) {
         const std::size_t begin = chunk * kVectorChunk,
                           end = std::min(v.size(), begin + kVectorChunk);
         for (std::size_t p = begin; p < end; ++p) {
-            most[chunk] = std::max(most[chunk], v.at(p).squaredNorm());
+            part[chunk] = std::max(part[chunk], v.at(p).squaredNorm());
         }
     });
-    return std::sqrt(*std::max_element(most.begin(), most.end()));
+    double most = 0;
+    for (double one : part) most = std::max(most, one);
+    return std::sqrt(most);
 }
 
 double MovingBody::present_step() {
