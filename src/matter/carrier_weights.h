@@ -9,6 +9,11 @@
 
 namespace swage {
 
+// A cell filled less than this does not carry surface where a fuller one lies within reach: pressed
+// hard, the far corners of a sliver, which hardly anything holds, are driven through the body, all
+// the more when the material yields.
+inline constexpr float kFirmFill = 0.4f;
+
 // Trilinear weights of a place in the cell, 0 to 1 or a little outside, in steps of 2^-23, so that
 // as floats they still sum to exactly one.
 inline std::array<float, 8> carrier_weights(const Vec3& local) {

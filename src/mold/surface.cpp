@@ -19,11 +19,7 @@ constexpr std::size_t kChunk = 2048;  // patches
 // How far from its carrier a point may lie, in cells. Farther ones are drawn in: the weights would
 // grow and with them the stiffness that contact puts on the carrier's far corners.
 constexpr double kOverhang = 0.25;
-// A cell filled less than this does not carry its points where a fuller one lies within reach, in
-// cells: pressed hard, the far corners of a sliver, which hardly anything holds, are driven through
-// the body, all the more when the material yields.
-constexpr float kFirmFill = 0.4f;
-constexpr double kReach = 0.5;
+constexpr double kReach = 0.5;  // of a firm cell, in cells, for points of one that is not
 
 double distance_squared(const Vec3& point, const Vec3i& cell) {
     const Vec3 low = cell.cast<double>();

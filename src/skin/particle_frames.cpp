@@ -11,9 +11,17 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  // particles
 
-Vec3 displacement(const Aggregate& matter, const FrameStencil& stencil, ParticleId p) {
-    return matter.particle_position.at(p) - stencil.reference.at(p);
-}
+// What frames are made of.
+struct Field {
+    const Aggregate& matter;
+    const FrameStencil& stencil;
+    std::vector<Vec3> loose;  // displacements of the loose particles
+
+    Vec3 displacement(ParticleId p) const {
+        if (!loose.empty() && stencil.loose.slot[p] >= 0) return loose[stencil.loose.slot[p]];
+        return matter.particle_position.at(p) - stencil.reference.at(p);
+    }
+};
 
 // Which of a particle's neighbours are still connected to it; -1 elsewhere.
 std::array<ParticleId, 12> connected_on_axes(const Aggregate& matter, const FrameStencil& stencil,
@@ -82,14 +90,15 @@ bool solve_fit(const Fit& fit, Mat3& gradient) {
     return known == 3;
 }
 
-Mat3 fitted_gradient(const Aggregate& matter, const FrameStencil& stencil, ParticleId p) {
-    const Vec3 place = stencil.reference.at(p), moved = displacement(matter, stencil, p);
+Mat3 fitted_gradient(const Field& field, ParticleId p) {
+    const auto& [matter, stencil, loose] = field;
+    const Vec3 place = stencil.reference.at(p), moved = field.displacement(p);
     const double a = matter.lattice.spacing;
     Fit fit;
     const auto add = [&](ParticleId n) {
         const Vec3 way = (stencil.reference.at(n) - place) / a;
         fit.spread += way * way.transpose();
-        fit.change += (displacement(matter, stencil, n) - moved) / a * way.transpose();
+        fit.change += (field.displacement(n) - moved) / a * way.transpose();
     };
     Mat3 gradient;
     for_each_connected(matter, stencil, p, add);
@@ -100,29 +109,28 @@ Mat3 fitted_gradient(const Aggregate& matter, const FrameStencil& stencil, Parti
     return gradient;
 }
 
-ParticleFrame particle_frame(const Aggregate& matter, const FrameStencil& stencil, ParticleId p) {
+ParticleFrame particle_frame(const Field& field, ParticleId p) {
+    const auto& [matter, stencil, loose] = field;
     const std::array<ParticleId, 12> axis = connected_on_axes(matter, stencil, p);
     ParticleFrame frame;
-    const Vec3 u = displacement(matter, stencil, p);
+    const Vec3 u = field.displacement(p);
     frame.tail<3>() = u;
     for (int d = 0; d < 3; ++d) {
         const ParticleId* const line = axis.data() + 4 * d;
         const auto at = [&](ParticleId n) { return stencil.reference.at(n)[d]; };
         Vec3 slope;
         if (line[1] >= 0 && line[2] >= 0) {
-            slope =
-                (displacement(matter, stencil, line[2]) - displacement(matter, stencil, line[1])) /
-                (at(line[2]) - at(line[1]));
+            slope = (field.displacement(line[2]) - field.displacement(line[1])) /
+                    (at(line[2]) - at(line[1]));
         } else if (line[1] < 0 && line[2] < 0) {
-            frame.head<9>() = fitted_gradient(matter, stencil, p).reshaped();
+            frame.head<9>() = fitted_gradient(field, p).reshaped();
             return frame;
         } else {
             const ParticleId one = line[2] >= 0 ? line[2] : line[1];
             const ParticleId two = line[2] >= 0 ? line[3] : line[0];
-            const Vec3 first = displacement(matter, stencil, one);
+            const Vec3 first = field.displacement(one);
             if (two >= 0) {
-                slope =
-                    (4 * first - 3 * u - displacement(matter, stencil, two)) / (at(two) - at(p));
+                slope = (4 * first - 3 * u - field.displacement(two)) / (at(two) - at(p));
             } else {
                 slope = (first - u) / (at(one) - at(p));
             }
@@ -138,6 +146,7 @@ FrameStencil make_frame_stencil(const Aggregate& matter) {
     const std::size_t count = matter.particle_count();
     FrameStencil stencil;
     stencil.reference = matter.particle_reference.all();
+    stencil.loose = find_loose(matter);
     std::array<ParticleId, 12> none;
     none.fill(-1);
     stencil.axis.assign(count, none);
@@ -169,10 +178,14 @@ void particle_frames(const Aggregate& matter, const FrameStencil& stencil,
                      const std::vector<ParticleId>& particle, std::vector<ParticleFrame>& frame) {
     const std::size_t count = particle.size();
     frame.resize(count);
+    Field field{matter, stencil, {}};
+    if (!stencil.loose.particle.empty()) {
+        field.loose = loose_displacements(stencil.loose, matter, stencil.reference);
+    }
     parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
         const std::size_t end = std::min(count, (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            frame[n] = particle_frame(matter, stencil, particle[n]);
+            frame[n] = particle_frame(field, particle[n]);
         }
     });
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "geometry/mesh_check.h"
+#include "geometry/mesh_read.h"
 #include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
@@ -202,4 +204,17 @@ TEST_CASE("a run that cannot be written is refused before it is simulated") {
         run_swage({"run", scene.string(), "--out", (scratch.path() / "no/parent").string()}).code ==
         5);
     CHECK(run_swage({"run", scene.string(), "--out", scratch.path().string()}).code == 8);
+}
+
+TEST_CASE("the skin of clay pressed to a quarter of its height keeps the volume") {
+    const Scratch scratch;
+    const fs::path run = scratch.path() / "run";
+    const fs::path scene = fs::path(SWAGE_SOURCE_DIR) / "assets/scenes/clay-press.toml";
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const double rest = signed_volume(swage::read_mesh(scene.parent_path() / "../meshes/ball.obj"));
+    CHECK(signed_volume(swage::read_mesh(run / "meshes/1-press.obj")) ==
+          Approx(rest).epsilon(.003));
 }

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/loose_particles.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "base/parallel.h"
+#include "matter/carrier_weights.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kAway = 0.15;  // spacings that a loose particle may be from its place
+constexpr std::size_t kChunk = 128;
+
+struct SliverCorner {
+    ParticleId particle;
+    CellId cell;
+    int corner;
+};
+
+bool is_firm(const Aggregate& matter, CellId cell) { return matter.cell_fill[cell] >= kFirmFill; }
+
+// Each particle that no firm cell holds, with each cell that does, in their order.
+std::vector<SliverCorner> sliver_corners(const Aggregate& matter) {
+    std::vector<char> held(matter.particle_count(), 0);
+    std::vector<SliverCorner> sliver;
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            const bool firm = is_firm(matter, run.first + n);
+            for (int c = 0; c < 8; ++c) {
+                const ParticleId p = run.row[c >> 1] + n + (c & 1);
+                if (firm) held[p] = 1;
+                if (!firm) sliver.push_back({p, run.first + n, c});
+            }
+        }
+    }
+    std::erase_if(sliver, [&](const SliverCorner& s) { return held[s.particle]; });
+    std::sort(sliver.begin(), sliver.end(), [](const SliverCorner& a, const SliverCorner& b) {
+        return std::pair(a.particle, a.cell) < std::pair(b.particle, b.cell);
+    });
+    return sliver;
+}
+
+Vec3i step_to(int neighbor) { return {neighbor % 3 - 1, neighbor / 3 % 3 - 1, neighbor / 9 - 1}; }
+
+// A bit for each of the 27 cells around this one that is firm.
+std::uint32_t firm_around(const Aggregate& matter, CellId cell) {
+    const Vec3i site = matter.lattice.cell_site(cell);
+    std::uint32_t firm = 0;
+    for (int n = 0; n < 27; ++n) {
+        const Vec3i at = site + step_to(n);
+        const CellId next = matter.lattice.cell_at(at.x(), at.y(), at.z());
+        if (next >= 0 && is_firm(matter, next)) firm |= 1u << n;
+    }
+    return firm;
+}
+
+// The firm cells nearest to a particle among those around its slivers; nothing where there is none
+// around one of these.
+std::vector<CellId> nearest_firm(const Aggregate& matter, std::span<const SliverCorner> slivers,
+                                 const std::vector<std::uint32_t>& around) {
+    std::vector<CellId> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (const SliverCorner& sliver : slivers) {
+        const std::uint32_t firm = around[sliver.cell];
+        if (firm == 0) return {};
+        const Vec3 own(sliver.corner & 1, sliver.corner >> 1 & 1, sliver.corner >> 2);
+        for (int n = 0; n < 27; ++n) {
+            if (!(firm >> n & 1)) continue;
+            const Vec3i step = step_to(n);
+            const double d = (own - step.cast<double>() - Vec3::Constant(0.5)).squaredNorm();
+            if (d > least) continue;
+            if (d < least) nearest.clear(), least = d;
+            const Vec3i at = matter.lattice.cell_site(sliver.cell) + step;
+            nearest.push_back(matter.lattice.cell_at(at.x(), at.y(), at.z()));
+        }
+    }
+    std::sort(nearest.begin(), nearest.end());
+    nearest.erase(std::unique(nearest.begin(), nearest.end()), nearest.end());
+    return nearest;
+}
+
+// What these cells, each strained as in its mean, make of a place: adds to `share`.
+void add_shares(const Aggregate& matter, const std::vector<CellId>& cells, const Vec3& place,
+                std::vector<LooseParticles::Share>& share) {
+    const std::size_t first = share.size();
+    for (CellId cell : cells) {
+        const auto corner = matter.lattice.cell_corners(cell);
+        const Vec3 low = matter.particle_reference.at(corner[0]);
+        const Vec3 size = matter.particle_reference.at(corner[7]) - low;
+        const Vec3 from_center = (place - low).cwiseQuotient(size) - Vec3::Constant(0.5);
+        for (int c = 0; c < 8; ++c) {
+            double w = 0.125;  // and the mean of the four edges' slopes along each axis
+            for (int d = 0; d < 3; ++d) w += 0.25 * (c >> d & 1 ? 1 : -1) * from_center[d];
+            w /= static_cast<double>(cells.size());
+            const auto same = std::find_if(share.begin() + first, share.end(),
+                                           [&](const auto& s) { return s.particle == corner[c]; });
+            if (same == share.end()) {
+                share.push_back({corner[c], w});
+            } else {
+                same->weight += w;
+            }
+        }
+    }
+}
+
+bool all_edges_hold(const Aggregate& matter, CellId cell) {
+    const auto corner = matter.lattice.cell_corners(cell);
+    for (const CellConnection& link : kCellConnection) {
+        if (link.direction >= kEdgeCount) break;
+        if (matter.connection[link.direction].weight[corner[link.corner]] <= 0) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+LooseParticles find_loose(const Aggregate& matter) {
+    LooseParticles loose;
+    const std::vector<SliverCorner> slivers = sliver_corners(matter);
+    if (slivers.empty()) return loose;
+    std::vector<std::uint32_t> around(matter.cell_fill.size(), 0);
+    std::vector<CellId> cells;
+    for (const SliverCorner& sliver : slivers) cells.push_back(sliver.cell);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    parallel_for((cells.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(cells.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < end; ++n) {
+            around[cells[n]] = firm_around(matter, cells[n]);
+        }
+    });
+    for (std::size_t begin = 0, end = 0; begin < slivers.size(); begin = end) {
+        const ParticleId particle = slivers[begin].particle;
+        while (end < slivers.size() && slivers[end].particle == particle) ++end;
+        const auto own = std::span(slivers).subspan(begin, end - begin);
+        const std::vector<CellId> firm = nearest_firm(matter, own, around);
+        if (firm.empty()) continue;
+        loose.particle.push_back(particle);
+        loose.first_share.push_back(static_cast<int>(loose.share.size()));
+        add_shares(matter, firm, matter.particle_reference.at(particle), loose.share);
+        loose.first_need.push_back(static_cast<int>(loose.need.size()));
+        for (const SliverCorner& sliver : own) loose.need.push_back(sliver.cell);
+        loose.need.insert(loose.need.end(), firm.begin(), firm.end());
+    }
+    if (loose.particle.empty()) return loose;
+    loose.first_share.push_back(static_cast<int>(loose.share.size()));
+    loose.first_need.push_back(static_cast<int>(loose.need.size()));
+    loose.slot.assign(matter.particle_count(), -1);
+    for (std::size_t n = 0; n < loose.particle.size(); ++n) {
+        loose.slot[loose.particle[n]] = static_cast<int>(n);
+    }
+    return loose;
+}
+
+std::vector<Vec3> loose_displacements(const LooseParticles& loose, const Aggregate& matter,
+                                      const Vec3Array& reference) {
+    const double most = kAway * matter.lattice.spacing;
+    const auto displacement = [&](ParticleId p) -> Vec3 {
+        return matter.particle_position.at(p) - reference.at(p);
+    };
+    std::vector<Vec3> moved(loose.particle.size());
+    parallel_for((moved.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(moved.size(), (chunk + 1) * kChunk);
+        for (std::size_t n = chunk * kChunk; n < end; ++n) {
+            moved[n] = displacement(loose.particle[n]);
+            Vec3 should = Vec3::Zero();
+            for (int k = loose.first_share[n]; k < loose.first_share[n + 1]; ++k) {
+                should += loose.share[k].weight * displacement(loose.share[k].particle);
+            }
+            const Vec3 away = moved[n] - should;
+            if (away.squaredNorm() <= most * most) continue;
+            const bool hangs =
+                std::all_of(loose.need.begin() + loose.first_need[n],
+                            loose.need.begin() + loose.first_need[n + 1],
+                            [&](CellId cell) { return all_edges_hold(matter, cell); });
+            if (hangs) moved[n] = should + most / away.norm() * away;
+        }
+    });
+    return moved;
+}
+
+}  // namespace swage

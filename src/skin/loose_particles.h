@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Particles that only slivers hold: corners of cells that hold next to no material (kFirmFill). The
+// material is not where they are but between them and firm cells, and where it flows far they are
+// driven about by as much as a cell, which a skin must not follow.
+#pragma once
+
+#include <vector>
+
+#include "matter/aggregate.h"
+
+namespace swage {
+
+struct LooseParticles {
+    struct Share {
+        ParticleId particle;
+        double weight;
+    };
+    std::vector<ParticleId> particle;  // ascending
+    std::vector<int> slot;             // of every particle, -1: firmly held. Empty: all are
+    // Where the firm cells nearest to a loose particle, each going on as it is strained in the
+    // mean, would have it: into share, one more at the end. Exact for what is linear in the place.
+    std::vector<int> first_share;
+    std::vector<Share> share;
+    std::vector<int> first_need;  // into need, one more at the end
+    std::vector<CellId> need;     // cells that have to be whole for that
+};
+
+// Loose are those of whose cells none is firm while each adjoins one that is: so a fin thinner than
+// a sliver, on a body, is left to itself.
+LooseParticles find_loose(const Aggregate& matter);
+
+// Displacements [m] of the loose particles that a skin follows: their own, as long as they stay
+// within 0.15 spacings of where firm matter would have them, else at that distance from it. Their
+// own too where matter is severed or broken in between.
+std::vector<Vec3> loose_displacements(const LooseParticles& loose, const Aggregate& matter,
+                                      const Vec3Array& reference);
+
+}  // namespace swage
