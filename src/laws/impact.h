@@ -165,9 +165,12 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
         if (T.norm() < k * reach.norm()) {
             result.reach = T / k;
             // Of the spring as far as it was stretched, less what it had not pulled yet on the way.
+            // From one equilibrium to the next it has never pulled more than it may.
             const Vec3 slip = reach - result.reach;
             result.friction =
-                0.5 * k * (slip.dot(reach + result.reach) + at.step * slip.dot(at.now));
+                at.step > 0
+                    ? 0.5 * k * (slip.dot(reach + result.reach) + at.step * slip.dot(at.now))
+                    : k * slip.dot(result.reach);
         }
     }
     result.stored = 0.5 * k * (at.depth * at.depth + result.reach.squaredNorm());

@@ -260,14 +260,17 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     if (!machine.apparatus.tool.empty() && totals.tool_contacts == 0 && !outcome.stopped) {
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
     }
-    if (stage.sim.solver == Solver::quasistatic && last.pieces == 1) {
+    double overlap = 0;  // [m]
+    const bool meets = stage.sim.self_contact;
+    if (stage.sim.solver == Solver::quasistatic && (last.pieces == 1 || meets)) {
         Aggregate& body = bodies.front().matter;
-        const double deep = own_overlap(body);
-        if (deep > kOverlap * body.lattice.spacing) {
-            outcome.warning.push_back(fmt::format(
-                "{}: the work-piece has gone into itself, by {} at the end: quasi-static stages "
-                "have no self-contact, explicit ones do (self_contact)",
-                stage.name, length_text(deep)));
+        overlap = own_overlap(body);
+        if (overlap > kOverlap * body.lattice.spacing) {
+            outcome.warning.push_back(
+                fmt::format("{}: the work-piece has gone into itself, by {} at the end: {}",
+                            stage.name, length_text(overlap),
+                            meets ? "it is pressed together harder than its contact_stiffness holds"
+                                  : "self_contact = true in this stage keeps it from that"));
         }
     }
     outcome.steps = totals.iterations + totals.steps;
@@ -297,6 +300,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         {"shortest_step_s", totals.shortest_step},
         {"largest_residual", totals.residual},
         {"deepest_penetration_m", totals.penetration},
+        {"own_overlap_m", overlap},
         {"energies_J", energies_json(last)},
         {"energies_by_body_J", by_body},
         {"notes", machine.notes},

@@ -89,7 +89,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
              is_explicit);
     only_for("retry_limit", table.whole("retry_limit", 0, 20, sim.retry_limit),
              is_explicit || is_implicit);
-    const bool meets = is_explicit || sim.solver == Solver::energy_stepped;
+    const bool meets = !is_implicit;
     only_for("self_contact", table.truth("self_contact", sim.self_contact), meets);
     if (!meets) sim.self_contact = false;
     only_for("sleep", table.truth("sleep", sim.sleep), is_explicit || is_implicit);

@@ -45,7 +45,7 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
             if (a == b && !settings.self_contact) continue;
             const std::size_t row = bodies.size() - !settings.self_contact;
             pair_.push_back({a, b, b * row + a - (!settings.self_contact && a > b)});
-            way_.emplace_back(side_[a], side_[b], settings.contact_stiffness);
+            way_.emplace_back(side_[a], side_[b], settings);
         }
     }
 }
@@ -174,6 +174,14 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
         sums[pair_[w].from].join(way_[w].sums());
         sums[pair_[w].onto].join(way_[w].sums());
     }
+}
+
+void BodyContact::add_stiffness(std::vector<double>& stiffness) const {
+    for (const ContactWay& way : way_) way.add_stiffness(stiffness);
+}
+
+void BodyContact::meet_anew() {
+    for (ContactWay& way : way_) way.meet_anew();
 }
 
 void BodyContact::commit() {

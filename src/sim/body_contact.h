@@ -49,8 +49,9 @@ class BodyContact {
     std::vector<std::size_t> groups() const;
 
     // Adds the forces at the present positions, from which `step` [s] goes on with the forces so
-    // far, which must be all others, and gravity [m/s2]. By body; sums likewise, set anew. Between
-    // bodies that sleep nothing changes.
+    // far, which must be all others, and gravity [m/s2]; 0: from one equilibrium to another, where
+    // nothing has a speed. By body; sums likewise, set anew. Between bodies that sleep nothing
+    // changes.
     void add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
                     const std::vector<char>& asleep, std::vector<ContactSums>& sums);
     // The step is kept: remembers where points stick and how they met.
@@ -65,6 +66,11 @@ class BodyContact {
     void connections_changed(std::size_t body);
 
     std::size_t candidates() const;
+
+    // For equilibria, of one body: see sim/contact_way.h; adds to each particle what its contacts
+    // can add to its stiffness [N/m].
+    void meet_anew();
+    void add_stiffness(std::vector<double>& stiffness) const;
 
   private:
     struct Pair {

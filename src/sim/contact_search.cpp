@@ -39,7 +39,7 @@ ContactList find_contacts(const ContactSide& from, const ContactSide& onto, doub
     std::vector<Vec3i> site;
     std::vector<Box> box;
     auto run = other.lattice.cell_run.begin();
-    for (CellId id : onto.surface().skin()) {
+    for (CellId id : onto.rim()) {
         if (!onto.is_whole(id)) continue;
         while (id >= run->first + run->count) ++run;
         const int n = id - run->first;
@@ -79,7 +79,7 @@ ContactList find_contacts(const ContactSide& from, const ContactSide& onto, doub
         for (; n < pair.size() && pair[n].point == p; ++n) {
             const int b = pair[n].box;
             if (!from.meets(p)) continue;
-            if (&from == &onto && from.is_neighbour(p, site[b])) continue;
+            if (&from == &onto && from.is_own_place(p, site[b])) continue;
             const double far = (box[b].center() - point[p]).squaredNorm();
             bool is_new = true;
             for (std::size_t m = first; m < found.size() && is_new; ++m) {

@@ -2,6 +2,7 @@
 #include "sim/contact_side.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/parallel.h"
 #include "sim/edge_points.h"
@@ -10,9 +11,13 @@ namespace swage {
 
 namespace {
 
-constexpr int kNear = 3;  // cells in the body that never meet
+constexpr int kNear = 4;  // cells to each side that a point's neighbourhood is sought in
 constexpr int kBox = 2 * kNear + 1;
-constexpr std::size_t kSets = 64;  // a chunk
+// Cells from a point at rest, within its neighbourhood: where it meets nothing, where it meets all,
+// which is nearer than the neighbourhood ends, and where cells begin that it is sought in first.
+constexpr double kNone = 2.5, kAll = 3.5, kSeed = 3.0;
+constexpr double kClosed = 1.0, kApart = 1.5;  // the same of faces of one crack
+constexpr std::size_t kSets = 64;              // a chunk
 
 int bit_of(const Vec3i& at) {
     return (at.x() + kNear) + kBox * ((at.y() + kNear) + kBox * (at.z() + kNear));
@@ -23,7 +28,11 @@ bool in_box(const Vec3i& at) { return (at.array().abs() <= kNear).all(); }
 }  // namespace
 
 ContactSide::ContactSide(Aggregate& matter, bool itself)
-    : matter_(&matter), patch_(matter), itself_(itself), own_(matter.surface) {
+    : matter_(&matter),
+      patch_(matter),
+      itself_(itself),
+      own_(matter.surface),
+      molded_(std::make_shared<const RestSurface>(matter.lattice, matter.surface)) {
     add_edge_points(matter.lattice, own_);
     connections_changed();
 }
@@ -31,9 +40,16 @@ ContactSide::ContactSide(Aggregate& matter, bool itself)
 void ContactSide::connections_changed() {
     find_whole();
     find_points();
-    surface_ = std::make_shared<const RestSurface>(matter_->lattice, faces());
+    rim_ = molded_->skin();
+    if (points_.size() > own_points()) {
+        faces_ = std::make_shared<const RestSurface>(matter_->lattice, faces());
+        std::vector<CellId> both;
+        std::set_union(rim_.begin(), rim_.end(), faces_->skin().begin(), faces_->skin().end(),
+                       std::back_inserter(both));
+        rim_ = std::move(both);
+    }
     std::vector<char> taken(matter_->particle_count(), 0);
-    for (CellId cell : surface_->skin()) {
+    for (CellId cell : rim_) {
         for (ParticleId p : matter_->lattice.cell_corners(cell)) taken[p] = 1;
     }
     skin_.clear();
@@ -43,18 +59,36 @@ void ContactSide::connections_changed() {
     if (itself_) find_near();
 }
 
-// What the depth below the surface is told from: points as molded and those of new surface.
+// Of new surface alone.
 SurfacePoints ContactSide::faces() const {
     SurfacePoints all;
-    all.reference_position = matter_->surface.reference_position;
-    all.reference_normal = matter_->surface.reference_normal;
     const auto from = std::ptrdiff_t(own_points());
-    all.reference_position.insert(all.reference_position.end(),
-                                  points_.reference_position.begin() + from,
+    all.reference_position.assign(points_.reference_position.begin() + from,
                                   points_.reference_position.end());
-    all.reference_normal.insert(all.reference_normal.end(), points_.reference_normal.begin() + from,
+    all.reference_normal.assign(points_.reference_normal.begin() + from,
                                 points_.reference_normal.end());
     return all;
+}
+
+RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
+                                            const Vec3& place) const {
+    CellId at = cell;
+    Vec3 local = place;
+    const Vec3i out =
+        Vec3i((place.array() > 1).cast<int>()) - Vec3i((place.array() < 0).cast<int>());
+    if (!out.isZero()) {
+        const Vec3i next = site + out;
+        const CellId beside = matter_->lattice.cell_at(next.x(), next.y(), next.z());
+        if (beside >= 0 && molded_->is_rim(beside)) {
+            at = beside;
+            local -= out.cast<double>();
+        }
+    }
+    if (!faces_->is_rim(cell)) return molded_->at(at, local);
+    const RestSurface::Depth face = faces_->at(cell, place);
+    if (!molded_->is_rim(at)) return face;
+    const RestSurface::Depth own = molded_->at(at, local);
+    return own.distance > face.distance ? own : face;
 }
 
 void ContactSide::find_whole() {
@@ -169,12 +203,26 @@ bool ContactSide::is_neighbour(int point, const Vec3i& site) const {
     return near_[near_set_[point]][bit / 64] >> (bit % 64) & 1;
 }
 
-bool ContactSide::is_closed_crack(int point, const Vec3& place) const {
-    if (static_cast<std::size_t>(point) < own_points()) return false;
-    if (matter_->connection[0].damage.empty()) return false;  // no load has broken anything
-    const Vec3 own =
-        (points_.reference_position[point] - matter_->lattice.origin) / matter_->lattice.spacing;
-    return (own - place).squaredNorm() < 1;
+bool ContactSide::is_own_place(int point, const Vec3i& site) const {
+    const Vec3 middle = site.cast<double>() + Vec3::Constant(0.5);
+    return (middle - own_place(point)).squaredNorm() < kSeed * kSeed && is_neighbour(point, site);
+}
+
+ContactSide::OwnShare ContactSide::own_share(int point, const Vec3i& site,
+                                             const Vec3& place) const {
+    const Vec3 way = site.cast<double>() + place - own_place(point);
+    const double far = way.norm();
+    const auto from = [&](double none, double all) -> OwnShare {
+        const double t = std::clamp((far - none) / (all - none), 0.0, 1.0);
+        return {t * t * (3 - 2 * t), 6 * t * (1 - t) / ((all - none) * std::max(far, 1e-9)) * way};
+    };
+    if (far < kAll && is_neighbour(point, site)) return from(kNone, kAll);
+    // Faces of a crack that loads have broken, not yet apart: a closed crack is the fracture law's.
+    const bool is_face = static_cast<std::size_t>(point) >= own_points();
+    if (is_face && far < kApart && !matter_->connection[0].damage.empty()) {
+        return from(kClosed, kApart);
+    }
+    return {1, Vec3::Zero()};
 }
 
 }  // namespace swage

@@ -42,24 +42,47 @@ class ContactSide {
     // Of all ways that this side is part of.
     ContactPatch& patch() { return patch_; }
     const ContactPatch& patch() const { return patch_; }
-    const RestSurface& surface() const { return *surface_; }
+    // How deep a place of a cell lies below the surface as molded or, where matter is cut or
+    // broken, below the new one, whichever is nearer. Before a new face it may lie half a cell
+    // outside.
+    RestSurface::Depth depth(const Vec3i& site, CellId cell, const Vec3& place) const {
+        return faces_ == nullptr ? molded_->at(cell, place) : least_depth(site, cell, place);
+    }
+    // Cells less than a spacing deep, in their order.
+    const std::vector<CellId>& rim() const { return rim_; }
     // A whole cell not deep inside, which a point may meet.
-    bool may_hold(CellId cell) const { return cell >= 0 && whole_[cell] && surface_->is_rim(cell); }
+    bool may_hold(CellId cell) const {
+        return cell >= 0 && whole_[cell] &&
+               (molded_->is_rim(cell) || (faces_ != nullptr && faces_->is_rim(cell)));
+    }
     bool is_whole(CellId cell) const { return whole_[cell] != 0; }
     // Particles of cells near the surface.
     const std::vector<ParticleId>& skin() const { return skin_; }
 
+    // How much a point meets a place of its own body, from 0 to 1, and how that changes with the
+    // place, both in cells. What in the shape at rest is near it and connected to it there it does
+    // not meet, and from there on more and more: were it cut off at once, a point that slides
+    // along a crease would lose or gain what it presses with.
+    struct OwnShare {
+        double value;
+        Vec3 gradient;
+    };
+    OwnShare own_share(int point, const Vec3i& site, const Vec3& place) const;
+    // Whether a point meets next to nothing in this cell and around it.
+    bool is_own_place(int point, const Vec3i& site) const;
     // Whether the point is within three cells of this one and connected to it within that distance.
     bool is_neighbour(int point, const Vec3i& site) const;
-    // Whether the point and this place, in cells, are the faces of one crack, not yet apart. A
-    // closed crack is the fracture law's.
-    bool is_closed_crack(int point, const Vec3& place) const;
 
   private:
     void find_whole();
     void find_points();
     SurfacePoints faces() const;
+    RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;
     void find_near();
+    Vec3 own_place(int point) const {
+        return (points_.reference_position[point] - matter_->lattice.origin) /
+               matter_->lattice.spacing;
+    }
 
     Aggregate* matter_;
     ContactPatch patch_;
@@ -67,12 +90,13 @@ class ContactSide {
     SurfacePoints own_, points_;
     std::vector<Vec3i> home_;  // of each point, the cell that it lies in or just outside of
     std::vector<char> meets_;
-    std::shared_ptr<const RestSurface> surface_;
+    std::shared_ptr<const RestSurface> molded_, faces_;  // faces_: null where all is whole
+    std::vector<CellId> rim_;
     std::vector<char> whole_;  // of each cell
     std::vector<ParticleId> skin_;
     // Of each point a set, of each set a bit for each cell of the box around its home.
     std::vector<int> near_set_;
-    std::vector<std::array<std::uint64_t, 6>> near_;
+    std::vector<std::array<std::uint64_t, 12>> near_;
 };
 
 }  // namespace swage

@@ -16,14 +16,25 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // contacts
+constexpr double kBeside = 0.6;      // cells that a point may go beyond the one that it has met
 constexpr double kTurned = 0.1;  // of a reach squared, across a surface that has turned, that holds
 
 std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
 }  // namespace
 
-ContactWay::ContactWay(ContactSide& from, ContactSide& onto, double stiffness)
-    : from_(&from), onto_(&onto), scale_(stiffness) {
+std::size_t ContactWay::begin_of(std::size_t chunk) const {
+    std::size_t n = std::min(list_.size(), chunk * kChunk);
+    if (from_ != onto_ || n == 0) return n;
+    while (n < list_.size() && list_.contact[n].point == list_.contact[n - 1].point) ++n;
+    return n;
+}
+
+ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& settings)
+    : from_(&from),
+      onto_(&onto),
+      scale_(settings.contact_stiffness),
+      is_static_(settings.solver == Solver::quasistatic) {
     const Material &m = from.matter().material, &n = onto.matter().material;
     const double soft = surface_modulus(from.matter()) / from.matter().lattice.spacing,
                  other = surface_modulus(onto.matter()) / onto.matter().lattice.spacing;
@@ -35,17 +46,24 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, double stiffness)
             .friction = 0.5 * (m.friction + n.friction),
             .holding = 0.5 * (m.holding_friction() + n.holding_friction()),
             .hold = 0};
+    if (is_static_) law_.holding = law_.friction;
     set_stiffness(0);
 }
 
 void ContactWay::set_contacts(const ContactList& contacts) {
     list_ = contacts;
     is_found_ = false;
+    if (is_static_) meet_anew();
 }
 
 void ContactWay::search(double margin) {
     list_ = find_contacts(*from_, *onto_, margin, list_);
     is_found_ = false;
+    // An equilibrium is sought by any way: what it finds deep has been pressed in.
+    if (!is_static_) return;
+    meet_anew();
+    if (has_changed_) return;
+    for (ContactMemory& memory : list_.memory) memory.is_new = false;
 }
 
 void ContactWay::resolve() {
@@ -77,7 +95,7 @@ void ContactWay::resolve() {
 }
 
 void ContactWay::surfaces_changed(bool points_too, double step) {
-    has_broken_ = true;
+    has_broken_ = has_changed_ = true;
     for (ContactMemory& memory : list_.memory) memory.is_new = true;
     is_found_ = false;
     if (!points_too) return;
@@ -86,6 +104,7 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
     while (kept < list_.size() && list_.contact[kept].point < own) ++kept;
     list_.contact.resize(kept);
     list_.memory.resize(kept);
+    if (is_static_) meet_anew();
     set_stiffness(step);
 }
 
@@ -94,7 +113,7 @@ void ContactWay::set_stiffness(double step) {
     const SurfacePoints& points = from_->points();
     const std::vector<double> modulus = surface_moduli(a, points);
     const double other = surface_modulus(b) / b.lattice.spacing;
-    const double hold = 0.5 * (a.material.stickiness + b.material.stickiness);
+    const double hold = is_static_ ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
     stiffness_.clear();
     stiffest_.clear();
     hold_.clear();
@@ -125,14 +144,28 @@ struct ContactWay::Kernel {
         return std::min(way.stiffness_[point] * stretch * stretch, way.stiffest_[point]);
     }
 
-    // Where the point lies in the other side.
-    SWAGE_INLINE void find(Contact& contact, const ContactMemory& last, CellCorners& corner,
-                           CellGradient& gradient, Meeting& at) const {
-        const double hold = way.hold_[contact.point];
-        Vec4 x{};
-        for (int c = 0; c < contact.carriers; ++c) {
-            x += double(contact.share[c]) * a.motion(contact.carrier[c]).place;
+    // How deep the point lies as it goes on from where it has met; false where it has left the
+    // cell and what is around it.
+    SWAGE_INLINE bool find_by_plane(Contact& contact, Vec4 x, Plane& plane,
+                                    const CellCorners& corner, CellGradient& gradient,
+                                    RestSurface::Depth& depth) const {
+        const bool found =
+            find_in_cell(corner, x, onto.matter().lattice.spacing, contact.place, gradient);
+        const Vec3& p = contact.place;
+        if (!found || (p.array() < -kBeside).any() || (p.array() > 1 + kBeside).any()) {
+            contact.place = p.cwiseMax(0.0).cwiseMin(1.0);
+            plane.is_met = false;
+            return false;
         }
+        depth = {plane.distance + plane.gradient.dot(p - plane.place), plane.gradient};
+        return true;
+    }
+
+    // How deep it lies below the surface; false where it lies outside.
+    SWAGE_INLINE bool find_depth(Contact& contact, const ContactMemory& last, Vec4 x,
+                                 CellCorners& corner, CellGradient& gradient,
+                                 RestSurface::Depth& depth) const {
+        const double hold = way.hold_[contact.point];
         const Vec3 was = contact.place;
         if (!find_place(onto, x, contact, corner, gradient)) {
             const Vec3 p = contact.place;
@@ -141,11 +174,35 @@ struct ContactWay::Kernel {
                               (p.array() < 1.3).all();
             if (!held) {
                 contact.place = was.cwiseMax(0.0).cwiseMin(1.0);
-                return;
+                return false;
             }
         }
-        if (!onto.may_hold(contact.cell) || !(gradient.volume > 0)) return;
-        const RestSurface::Depth depth = onto.surface().at(contact.cell, contact.place);
+        if (!onto.may_hold(contact.cell) || !(gradient.volume > 0)) return false;
+        depth = onto.depth(contact.site, contact.cell, contact.place);
+        if (way.from_ == way.onto_) {
+            const auto own = onto.own_share(contact.point, contact.site, contact.place);
+            depth.gradient = own.value * depth.gradient + depth.distance * own.gradient;
+            depth.distance *= own.value;
+        }
+        return true;
+    }
+
+    // Where the point lies in the other side.
+    SWAGE_INLINE void find(Contact& contact, const ContactMemory& last, Plane* plane,
+                           CellCorners& corner, CellGradient& gradient, Meeting& at) const {
+        const double hold = way.hold_[contact.point];
+        Vec4 x{};
+        for (int c = 0; c < contact.carriers; ++c) {
+            x += double(contact.share[c]) * a.motion(contact.carrier[c]).place;
+        }
+        RestSurface::Depth depth;
+        if (plane == nullptr || !plane->is_met ||
+            !find_by_plane(contact, x, *plane, corner, gradient, depth)) {
+            if (!find_depth(contact, last, x, corner, gradient, depth)) return;
+            if (plane != nullptr && depth.distance < 0) {
+                *plane = {true, contact.place, depth.gradient, depth.distance};
+            }
+        }
         const double share = 1 / gradient.volume;
         Vec4 slope{};
         for (int i = 0; i < 3; ++i) {
@@ -156,10 +213,6 @@ struct ContactWay::Kernel {
         const double size = std::sqrt(dot3(slope, slope));
         if (!(size > 0)) return;
         at.inverse[2][3] = stiffness(contact.point, size);
-        if (way.from_ == way.onto_ &&
-            onto.is_closed_crack(contact.point, contact.site.cast<double>() + contact.place)) {
-            return;
-        }
         at.normal = slope / size;
         at.normal[3] = -depth.distance / size;
         at.inverse[0][3] = 1;
@@ -187,7 +240,9 @@ struct ContactWay::Kernel {
         const double hold = way.hold_[contact.point];
         if (way.has_broken_ && is_known(at)) {
             const double pressed = last.history.touches ? last.pressed : 0;
-            const double could = last.is_new ? 0 : 2 * step * std::sqrt(dot3(at.now, at.now));
+            const double could = last.is_new ? 0
+                                 : step > 0  ? 2 * step * std::sqrt(dot3(at.now, at.now))
+                                             : std::numeric_limits<double>::infinity();
             double& depth = at.normal[3];
             const double sunk = std::max(last.is_new ? 0 : last.sunk, depth - pressed - could);
             at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, depth));
@@ -226,12 +281,21 @@ struct ContactWay::Kernel {
         sums.stored += 0.5 / k * dot3(at.spring, at.spring);
     }
 
+    // Whether an earlier contact of its point has come into the same cell by another way.
+    bool is_twice(std::size_t begin, std::size_t n) const {
+        const auto& all = way.list_.contact;
+        for (std::size_t m = n; m-- > begin && all[m].point == all[n].point;) {
+            if (all[m].cell == all[n].cell && meets(way.meeting_[m])) return true;
+        }
+        return false;
+    }
+
     SWAGE_INLINE void find_chunk(std::size_t chunk, double step) const {
         Chunk& result = way.chunk_[chunk];
         result.moved.clear();
         result.took = result.stored = result.lost = 0;
-        const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
+        const std::size_t begin = way.begin_of(chunk), end = way.begin_of(chunk + 1);
+        for (std::size_t n = begin; n < end; ++n) {
             Contact& contact = way.list_.contact[n];
             const ContactMemory& last = way.list_.memory[n];
             Meeting& at = way.meeting_[n];
@@ -239,8 +303,10 @@ struct ContactWay::Kernel {
             const CellId was = contact.cell;
             CellCorners corner(b, contact);
             CellGradient gradient;
-            find(contact, last, corner, gradient, at);
+            find(contact, last, way.plane_.empty() ? nullptr : &way.plane_[n], corner, gradient,
+                 at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
+            if (way.from_ == way.onto_ && meets(at) && is_twice(begin, n)) at.inverse[1][3] = 0;
             if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
             prepare(contact, last, corner, gradient, step, at, result);
         }
@@ -257,8 +323,8 @@ struct ContactWay::Kernel {
 
     SWAGE_INLINE void push_chunk(std::size_t chunk) const {
         Pushed &point = way.point_push_, &cell = way.cell_push_;
-        const std::size_t stop = std::min(way.list_.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
+        const std::size_t end = way.begin_of(chunk + 1);
+        for (std::size_t n = way.begin_of(chunk); n < end; ++n) {
             const Contact& contact = way.list_.contact[n];
             if (!meets(way.meeting_[n])) continue;
             const std::array<double, 8> weight = trilinear_weights(contact.place);
@@ -405,9 +471,26 @@ void ContactWay::respond(double step) {
     is_found_ = true;
 }
 
+void ContactWay::add_stiffness(std::vector<double>& stiffness) const {
+    const SurfacePoints& points = from_->points();
+    for (const Contact& contact : list_.contact) {
+        const double k = share_ * stiffness_[contact.point];
+        for (int c = 0; c < 8; ++c) {
+            stiffness[points.corner[contact.point][c]] +=
+                k * std::abs(points.weight[contact.point][c]);
+        }
+        // Until candidates are found anew the place may move by half a cell.
+        const std::array<double, 8> weight = trilinear_weights(contact.place);
+        const auto corner = onto_->matter().lattice.cell_corners(contact.cell);
+        for (int c = 0; c < 8; ++c) {
+            stiffness[corner[c]] += k * std::clamp(weight[c] + 0.3, 0.0, 1.0);
+        }
+    }
+}
+
 void ContactWay::commit() {
     if (is_found_) std::swap(list_.memory, next_);
-    is_found_ = false;
+    is_found_ = has_changed_ = false;
 }
 
 }  // namespace swage

@@ -25,13 +25,14 @@
 #include <algorithm>
 
 #include "sim/contact_list.h"
+#include "sim/settings.h"
 
 namespace swage {
 
 class ContactWay {
   public:
-    // The sides, which may be one, must outlive it; `stiffness` is SimSettings::contact_stiffness.
-    ContactWay(ContactSide& from, ContactSide& onto, double stiffness);
+    // The sides, which may be one, must outlive it.
+    ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& settings);
 
     const ContactList& contacts() const { return list_; }
     void set_contacts(const ContactList& contacts);
@@ -51,6 +52,13 @@ class ContactWay {
     void push(double share);
     // Dashpots and friction, one contact after the other, given what all springs do.
     void respond(double step);
+    // Adds what its contacts can add to the stiffness of its one body's particles [N/m], about.
+    void add_stiffness(std::vector<double>& stiffness) const;
+    // For equilibria: from here on each point that comes to press presses against the plane that it
+    // has met, until the next time. NOTE: surfaces are bent from cell to cell, and a point that
+    // rests in a crease of them has a force to either side and none between, which no relaxation
+    // finds: it was thrown from one to the other for ever.
+    void meet_anew() { plane_.assign(list_.size(), {}); }
     // While nothing moves.
     void freeze() { sums_.freeze(); }
     // Of each side, less the power that forces have: the patches' matter.
@@ -96,7 +104,16 @@ class ContactWay {
         }
         void add_to(ContactPatch& patch, double share) const;
     };
+    // In one cell, which holds the place or lies beside it: depth as it goes on from one place.
+    struct Plane {
+        bool is_met = false;
+        Vec3 place, gradient;
+        double distance;
+    };
     struct Kernel;
+    // Where a chunk of contacts begins: a point's own stay together where several may end in one
+    // cell.
+    std::size_t begin_of(std::size_t chunk) const;
     void find_chunk(std::size_t chunk, double step);
     void middle_find_chunk(std::size_t chunk, double step);
     void push_chunk(std::size_t chunk);
@@ -105,13 +122,16 @@ class ContactWay {
 
     ContactSide *from_, *onto_;
     double scale_;                                           // contact_stiffness
+    bool is_static_;                                         // equilibria: nothing has a speed
     bool has_broken_ = false;                                // one of them
+    bool has_changed_ = false;                               // since the last commit
     ImpactLaw law_{};                                        // stiffness and hold: of each point
     std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
     double share_ = 0.5;                                     // of what this way would do alone
     ContactList list_;
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit
+    std::vector<Plane> plane_{};         // of each contact; empty: not for equilibria
     bool is_found_ = false;              // since the last commit
     std::vector<Chunk> chunk_;
     Pushed point_push_{}, cell_push_{};

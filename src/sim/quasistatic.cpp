@@ -32,8 +32,6 @@ constexpr double kSmallestCellVolume = 0.05;
 // cells thick and 10 times as long (an estimate). At the first touch of a slender body the true
 // push is next to nothing.
 constexpr double kLeastPush = 1e-3;
-// Shares of the most that a tool has carried: loaded, and not any more.
-constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
 constexpr int kCheckInterval = 10;
 constexpr double kFastest = 0.1;  // spacings a step, on the whole
 constexpr double kLetGo =
@@ -41,6 +39,9 @@ constexpr double kLetGo =
 // How much lighter a coarse mode may be: no one number suits all bodies, so they take turns.
 constexpr double kGain[] = {100, 10, 300, 1};
 constexpr int kRenewInterval = 200;
+// In which points that press on their own body meet it anew once all is at rest. NOTE: a point in
+// the crease between two planes meets now the one and now the other, so this need not end.
+constexpr int kMostRounds = 4;
 constexpr double kStaleStiffness =
     0.5;  // spacings that a particle moves until the modes are found anew
 double largest_extent(const Aggregate& matter) {
@@ -66,17 +67,23 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       coarse_(matter),
       contacts_(matter, apparatus, settings, 0),
       pushes_(apparatus, settings, 0),
+      self_(matter, settings),
       body_size_(largest_extent(matter)),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       most_load_(load_.size(), 0.0),
       carries_(apparatus.tool.size(), false),
       pressing_motion_(6 * apparatus.tool.size(), 0.0) {
     velocity_.resize(matter.particle_count());
-    connections_changed();
+    find_bounds();
 }
 
 void QuasistaticSolver::connections_changed(std::size_t) {
     lattice_.connections_changed(matter_);
+    self_.connections_changed();
+    find_bounds();
+}
+
+void QuasistaticSolver::find_bounds() {
     lattice_bound_ = lattice_.stiffness_bound(matter_);
     probed_.resize(0);
     const std::vector<float>* cells = lattice_.cells_alone();
@@ -95,6 +102,7 @@ void QuasistaticSolver::find_masses() {
     const std::size_t n = matter_.particle_count();
     std::vector<double> contact(n, 0.0);
     contacts_.add_stiffness(matter_, contact);
+    self_.add_stiffness(contact);
     std::vector<double> guard(n, 0.0);
     add_guard_stiffness(matter_, guard);
     mass_.resize(n);
@@ -121,6 +129,7 @@ void QuasistaticSolver::evaluate(const Drive& to) {
             force_.z[p] += m * g.z() - c * (x.z[p] - held_.z[p]);
         }
     });
+    self_.add_forces(force_);
 }
 
 // The measure of the residual. Where tools or grips have moved, it is the largest force that any of
@@ -185,7 +194,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
 
     FireSchedule schedule;
     Relaxation result;
-    int renewed = 0, weighted_mirrors = 0;
+    int renewed = 0, weighted_mirrors = 0, rounds = 0;
     const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
     std::vector<double> farthest(vector_chunks(n));
     Patience patience(settings_.iteration_limit, x);
@@ -195,7 +204,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         if (iteration % turn == 1) coarse_.limit_gain(kGain[iteration / turn % std::size(kGain)]);
         patience.watch(iteration, x, a, result.residual);
         evaluate(to);
-        if (mirrored_ > weighted_mirrors) {
+        if (mirrored_ > weighted_mirrors || self_.has_found_more()) {
             find_masses();
             weighted_mirrors = mirrored_;
         }
@@ -204,7 +213,11 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
             if (!std::isfinite(result.residual)) return result;
             if (result.residual <= settings_.tolerance) {
                 result.converged = true;
-                return result;
+                if (rounds++ == kMostRounds || !self_.meet_anew()) return result;
+                evaluate(to);
+                result.residual = residual_of(f, to);
+                if (result.residual <= settings_.tolerance) return result;
+                result.converged = false;
             }
         }
         const double power = chunked_sum(
@@ -273,14 +286,14 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = start_;
     contacts_.find_candidates(matter_, to);
-    bool smooth = newton_ && !contacts_.tools_near() && !floats_under_pressure(apparatus_);
+    bool smooth = newton_ && !touches() && !floats_under_pressure(apparatus_);
     for (hold_ = smooth ? kSmoothHold : 1;; hold_ *= kLetGo) {
         Relaxation round;
         if (smooth) {
             const Vec3Array before = matter_.particle_position;
             round = solve_smooth(to);
             contacts_.find_candidates(matter_, to);
-            if (!round.converged || contacts_.tools_near()) {
+            if (!round.converged || touches()) {
                 matter_.particle_position = before;
                 smooth = false;
                 hold_ = 1;
@@ -304,7 +317,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
                                                               MoveOutcome& outcome) {
     Relaxation result = relax(to);
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged; ++turn) {
-        if (floats_under_pressure(apparatus_)) break;
+        if (floats_under_pressure(apparatus_) || self_.presses()) break;
         NewtonProblem problem = problem_of(to);
         // Whether the matter itself gives way is asked: what slides now would stick if turned back.
         for (HeldPoint& h : problem.held) {
@@ -334,77 +347,11 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     return result;
 }
 
-// How the drive moves, as one vector: translations; turns and strengths times the body's size.
-std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive& to) const {
-    std::vector<double> motion;
-    const auto add = [&](const std::vector<Pose>& a, const std::vector<Pose>& b) {
-        for (std::size_t n = 0; n < a.size(); ++n) {
-            const Vec3 way = b[n].translation - a[n].translation;
-            const Vec3 turn = body_size_ * turn_between(a[n], b[n]);
-            motion.insert(motion.end(), {way.x(), way.y(), way.z(), turn.x(), turn.y(), turn.z()});
-        }
-    };
-    add(from.world_from_tool, to.world_from_tool);
-    add(from.world_from_grip, to.world_from_grip);
-    for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
-        motion.push_back(body_size_ * (to.load_strength[l] - from.load_strength[l]));
-    }
-    motion.push_back(body_size_ * (to.gravity_strength - from.gravity_strength));
-    return motion;
-}
-
-// Goes on as in the move before, by at most half a spacing. Nothing is foreseen where the drive
-// starts, stops or turns back.
-void QuasistaticSolver::predict(const std::vector<double>& motion) {
-    if (previous_motion_.empty()) return;
-    double along = 0, square = 0;
-    for (std::size_t n = 0; n < motion.size(); ++n) {
-        along += motion[n] * previous_motion_[n];
-        square += previous_motion_[n] * previous_motion_[n];
-    }
-    if (!(along > 0)) return;
-    const double most = 0.5 * matter_.lattice.spacing, ratio = along / square;
-    const auto extrapolate = [&](std::vector<double>& now, const std::vector<double>& before) {
-        for (std::size_t p = 0; p < now.size(); ++p) {
-            now[p] += std::clamp(ratio * (now[p] - before[p]), -most, most);
-        }
-    };
-    Vec3Array& x = matter_.particle_position;
-    extrapolate(x.x, previous_.x);
-    extrapolate(x.y, previous_.y);
-    extrapolate(x.z, previous_.z);
-}
-
-// Whether any tool moves otherwise than it did when it last pressed, or a load is taken off.
-bool QuasistaticSolver::draws_back(const Drive& from, const Drive& to,
-                                   const std::vector<double>& motion) const {
-    if (pushes_.eases(from, to)) return true;
-    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        double along = 0, now = 0, then = 0;
-        for (std::size_t n = 6 * t; n < 6 * t + 6; ++n) {
-            along += motion[n] * pressing_motion_[n];
-            now += motion[n] * motion[n];
-            then += pressing_motion_[n] * pressing_motion_[n];
-        }
-        if (now > 0 && then > 0 && along < 0.1 * std::sqrt(now * then)) return true;
-    }
-    return false;
-}
-
-// A tool that loses its load while none draws back has lost the work-piece.
-void QuasistaticSolver::check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) {
-    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
-        if (after[t].size > kLoadedShare * most_load_[t]) carries_[t] = true;
-        if (!carries_[t] || after[t].size > kUnloadedShare * most_load_[t]) continue;
-        carries_[t] = false;
-        outcome.lost.push_back(apparatus_.tool[t].name);
-    }
-}
-
 void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome) {
     start_ = matter_.particle_position;
     contacts_.begin_move(matter_, from);
+    self_.begin_move();
     std::vector<double> motion = motion_of(from, to);
     const bool released = draws_back(from, to, motion);
     predict(motion);
@@ -417,8 +364,13 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     outcome.residual = relaxed.residual;
     const bool whole = relaxed.converged && smallest_cell_volume(matter_) > kSmallestCellVolume;
     if (!whole) {
-        const std::string hardest = contacts_.hardest_point(matter_, to);
+        std::string hardest = contacts_.hardest_point(matter_, to);
+        if (self_.presses()) {
+            hardest += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
+                                   self_.sums().penetration / matter_.lattice.spacing);
+        }
         matter_.particle_position = start_;
+        self_.take_back();
         previous_motion_.clear();
         if (depth >= settings_.halving_limit) {
             fail(ExitCode::stopped,
@@ -438,6 +390,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     }
 
     stay(to);
+    outcome.body[0].friction_work += self_.commit();
     const bool breaks = commit(outcome);
     outcome.body[0].friction_work += contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
@@ -471,7 +424,9 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     outcome.body.emplace_back(apparatus_, pushes_.count());
     pushes_.start(matter_, from);
     if (!begun_) {
-        outcome.body[0].before = {0, elastic_energy(), contacts_.stored_energy(matter_, from)};
+        self_.presses();
+        outcome.body[0].before = {0, elastic_energy(),
+                                  contacts_.stored_energy(matter_, from) + self_.sums().stored};
         begun_ = true;
     }
     const double travel = contacts_.travel(matter_, from, to);
@@ -485,7 +440,8 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
         before = after;
     }
     outcome.body[0].load = load_;
-    outcome.body[0].after = {0, elastic_energy(), contacts_.stored_energy(matter_, to)};
+    outcome.body[0].after = {0, elastic_energy(),
+                             contacts_.stored_energy(matter_, to) + self_.sums().stored};
     return outcome;
 }
 

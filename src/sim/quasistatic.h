@@ -24,6 +24,7 @@
 #include "sim/load_set.h"
 #include "sim/move_outcome.h"
 #include "sim/newton.h"
+#include "sim/self_contact.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -54,8 +55,10 @@ class QuasistaticSolver {
     Relaxation solve_smooth(const Drive& to);
     NewtonProblem problem_of(const Drive& to);
     double residual_of(const Vec3Array& force, const Drive& to) const;
+    void find_bounds();
     void find_masses();
     void evaluate(const Drive& to);
+    bool touches() { return contacts_.tools_near() || self_.presses(); }
     double push_limit(const Drive& to) const;
     std::vector<double> motion_of(const Drive& from, const Drive& to) const;
     void predict(const std::vector<double>& motion);
@@ -74,6 +77,7 @@ class QuasistaticSolver {
     Vec3Array probed_;  // positions at which its stiffness was found
     ContactSet contacts_;
     LoadSet pushes_;
+    SelfContact self_;
     double body_size_;  // [m]
     std::vector<double> lattice_bound_;
     std::vector<double> mass_, inverse_mass_, drag_;

@@ -20,6 +20,7 @@ constexpr double kSupport = 0.6;        // from a place's foot to its side's nea
 constexpr double kSameSide = 0.7;       // least cosine between normals of one side of an edge
 constexpr double kInterpolates = 0.03;  // error of interpolated distances that serves
 constexpr double kDeep = 0.999;         // nothing comes as deep: a spacing, but for round-off
+constexpr double kFacing = 1e-6;        // of a convex edge: faces of a cut lie on each other
 constexpr int kMostSides = 4;
 constexpr std::size_t kChunk = 64;
 
@@ -174,6 +175,17 @@ double RestSurface::distance(const Vec3& g, const Near& near) const {
             if (s.side < 0 && (nearest == nullptr || s.far < nearest->far)) nearest = &s;
         }
         if (nearest == nullptr) break;
+        const auto is_outside = [&](const Seen& s) {
+            return normal_[s.point].dot(g - point_[s.point]) > 0;
+        };
+        // Of two faces of a cut that lie on each other, the one whose matter this is.
+        if (side == 0 && is_outside(*nearest)) {
+            for (const Seen& s : seen) {
+                if (s.far > nearest->far + kFacing || is_outside(s)) continue;
+                nearest = &s;
+                break;
+            }
+        }
         const int begin = nearest->point;
         double sum = 0, own = 0, foot = std::numeric_limits<double>::infinity();
         Vec3 normal = Vec3::Zero(), arm = Vec3::Zero();
@@ -199,7 +211,7 @@ double RestSurface::distance(const Vec3& g, const Near& near) const {
             continue;
         }
         const double convex = (normal_[begin] - normal_[first]).dot(point_[begin] - point_[first]);
-        if (convex < 0) {
+        if (convex < kFacing) {
             result = std::min(result, d);
         } else if (foot < kSupport * kSupport) {
             result = std::max(result, d);

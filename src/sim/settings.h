@@ -41,12 +41,13 @@ struct SimSettings {
     int halving_limit = 4;         // 0 to 8
     double contact_stiffness = 2;  // k_n = this * E * area / spacing; 0.5 to 100
     double grip_stiffness = 20;    // the same for gripped points; 1 to 100
+    bool self_contact = false;     // a body's surface meets what is not its neighbourhood in the
+                                   // body; not in implicit steps
 
     // Explicit steps.
-    double step_safety = 0.8;   // share of the stable step, 0 to 1
-    int retry_limit = 10;       // halvings of a step that goes wrong (sim/motion_guard.h); 0 to 20
-    bool self_contact = false;  // a body's surface meets what is not its neighbourhood in the body
-    bool sleep = true;          // bodies that have come to rest cost nothing (sim/sleeping.h)
+    double step_safety = 0.8;  // share of the stable step, 0 to 1
+    int retry_limit = 10;      // halvings of a step that goes wrong (sim/motion_guard.h); 0 to 20
+    bool sleep = true;         // bodies that have come to rest cost nothing (sim/sleeping.h)
 
     // What the medium around does to the surface (laws/ambient_drag.h, laws/directional_drag.h);
     // explicit steps only.

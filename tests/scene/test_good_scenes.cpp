@@ -109,6 +109,7 @@ iteration_limit = 900
 halving_limit = 2
 contact_stiffness = 3
 grip_stiffness = 30
+self_contact = true
 gravity = "9.81 m/s2"
 gravity_strength = "0.5 + t/2"
 angle = "-0.5 turn"
@@ -183,6 +184,7 @@ meshes_per_frame = true
     CHECK(stage.sim.grip_stiffness == 30);
     CHECK(stage.sim.gravity == Vec3(0, -9.81, 0));
     CHECK(stage.parameter.at("angle") == Approx(-kPi));
+    CHECK(stage.sim.self_contact);
     CHECK(stage.machine.gravity_strength == "0.5 + t/2");
     REQUIRE(stage.machine.load.size() == 2);
     const LoadSpec& books = stage.machine.load[0];

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the quasi-static solver reads from how the drive moves.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/quasistatic.h"
+
+namespace swage {
+
+namespace {
+
+// Shares of the most that a tool has carried: loaded, and not any more.
+constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
+
+}  // namespace
+
+// How the drive moves, as one vector: translations; turns and strengths times the body's size.
+std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive& to) const {
+    std::vector<double> motion;
+    const auto add = [&](const std::vector<Pose>& a, const std::vector<Pose>& b) {
+        for (std::size_t n = 0; n < a.size(); ++n) {
+            const Vec3 way = b[n].translation - a[n].translation;
+            const Vec3 turn = body_size_ * turn_between(a[n], b[n]);
+            motion.insert(motion.end(), {way.x(), way.y(), way.z(), turn.x(), turn.y(), turn.z()});
+        }
+    };
+    add(from.world_from_tool, to.world_from_tool);
+    add(from.world_from_grip, to.world_from_grip);
+    for (std::size_t l = 0; l < apparatus_.load.size(); ++l) {
+        motion.push_back(body_size_ * (to.load_strength[l] - from.load_strength[l]));
+    }
+    motion.push_back(body_size_ * (to.gravity_strength - from.gravity_strength));
+    return motion;
+}
+
+// Goes on as in the move before, by at most half a spacing. Nothing is foreseen where the drive
+// starts, stops or turns back.
+void QuasistaticSolver::predict(const std::vector<double>& motion) {
+    if (previous_motion_.empty()) return;
+    double along = 0, square = 0;
+    for (std::size_t n = 0; n < motion.size(); ++n) {
+        along += motion[n] * previous_motion_[n];
+        square += previous_motion_[n] * previous_motion_[n];
+    }
+    if (!(along > 0)) return;
+    const double most = 0.5 * matter_.lattice.spacing, ratio = along / square;
+    const auto extrapolate = [&](std::vector<double>& now, const std::vector<double>& before) {
+        for (std::size_t p = 0; p < now.size(); ++p) {
+            now[p] += std::clamp(ratio * (now[p] - before[p]), -most, most);
+        }
+    };
+    Vec3Array& x = matter_.particle_position;
+    extrapolate(x.x, previous_.x);
+    extrapolate(x.y, previous_.y);
+    extrapolate(x.z, previous_.z);
+}
+
+// Whether any tool moves otherwise than it did when it last pressed, or a load is taken off.
+bool QuasistaticSolver::draws_back(const Drive& from, const Drive& to,
+                                   const std::vector<double>& motion) const {
+    if (pushes_.eases(from, to)) return true;
+    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
+        double along = 0, now = 0, then = 0;
+        for (std::size_t n = 6 * t; n < 6 * t + 6; ++n) {
+            along += motion[n] * pressing_motion_[n];
+            now += motion[n] * motion[n];
+            then += pressing_motion_[n] * pressing_motion_[n];
+        }
+        if (now > 0 && then > 0 && along < 0.1 * std::sqrt(now * then)) return true;
+    }
+    return false;
+}
+
+// A tool that loses its load while none draws back has lost the work-piece.
+void QuasistaticSolver::check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome) {
+    for (std::size_t t = 0; t < apparatus_.tool.size(); ++t) {
+        if (after[t].size > kLoadedShare * most_load_[t]) carries_[t] = true;
+        if (!carries_[t] || after[t].size > kUnloadedShare * most_load_[t]) continue;
+        carries_[t] = false;
+        outcome.lost.push_back(apparatus_.tool[t].name);
+    }
+}
+
+}  // namespace swage

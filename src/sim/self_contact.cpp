@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/self_contact.h"
+
+namespace swage {
+
+namespace {
+
+const std::vector<char> kAwake = {0};
+
+}  // namespace
+
+SelfContact::SelfContact(Aggregate& matter, const SimSettings& settings) {
+    if (!settings.self_contact) return;
+    contact_ = std::make_unique<BodyContact>(std::vector<Aggregate*>{&matter}, settings);
+    unused_.resize(matter.particle_count());
+}
+
+void SelfContact::begin_move() {
+    if (contact_ != nullptr) start_ = contact_->save();
+}
+
+void SelfContact::take_back() {
+    if (contact_ != nullptr) contact_->restore(*start_);
+}
+
+// Forces were last found anywhere: a try of another way, a step back.
+void SelfContact::find() { add_forces(unused_); }
+
+bool SelfContact::presses() {
+    if (contact_ == nullptr) return false;
+    contact_->renew(kAwake);
+    if (!is_near()) return false;
+    find();
+    return sums_.contacts > 0;
+}
+
+bool SelfContact::meet_anew() {
+    if (contact_ == nullptr || sums_.contacts == 0) return false;
+    contact_->meet_anew();
+    return true;
+}
+
+double SelfContact::commit() {
+    if (contact_ == nullptr) return 0;
+    find();
+    contact_->commit();
+    return sums_.friction;
+}
+
+void SelfContact::connections_changed() {
+    if (contact_ == nullptr) return;
+    contact_->connections_changed(0);
+    find();
+    contact_->commit();
+}
+
+void SelfContact::add_forces(Vec3Array& force) {
+    if (contact_ == nullptr) return;
+    contact_->renew(kAwake);
+    std::vector<ContactSums> sums;
+    contact_->add_forces({&force}, Vec3::Zero(), 0, kAwake, sums);
+    sums_ = sums[0];
+}
+
+void SelfContact::add_stiffness(std::vector<double>& stiffness) {
+    if (contact_ == nullptr) return;
+    contact_->add_stiffness(stiffness);
+    weighed_ = contact_->candidates();
+}
+
+}  // namespace swage

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A body that comes to rest against itself.
+#include "base/parallel.h"
+#include "sim/advance.h"
+#include "sim/own_overlap.h"
+#include "sim/self_contact.h"
+#include "tests/catch.h"
+#include "tests/shared/lattice_fixture.h"
+#include "tests/sim/machines.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kSpacing = 0.05;
+
+Material soft(double friction = 0.3) {
+    return {.young_modulus = 1e6, .poisson_ratio = 0.25, .density = 1000, .friction = friction};
+}
+
+double box_distance(const Vec3& x, const Vec3& low, const Vec3& high) {
+    const Vec3 q = (x - 0.5 * (low + high)).cwiseAbs() - 0.5 * (high - low);
+    return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+// A block of 0.6 x 0.4 x 0.2 m with a slot 0.1 high and 0.4 m deep from one end along x: its arms
+// are 0.15 m thick.
+Aggregate make_c(const Material& material, bool slot = true) {
+    const Vec3 half(0.3, 0.2, 0.1);
+    Aggregate m = make_shape(
+        [&](const Vec3& x) {
+            const double block = box_distance(x, -half, half);
+            const double gap = box_distance(x, Vec3(-0.1, -0.05, -1), Vec3(1, 0.05, 1));
+            return slot ? std::max(block, -gap) : block;
+        },
+        -half, Vec3i(12, 8, 4), kSpacing);
+    m.material = material;
+    return m;
+}
+
+SimSettings settings_of(bool meets) {
+    SimSettings s;
+    s.self_contact = meets;
+    s.tolerance = 1e-3;
+    return s;
+}
+
+struct Pressed {
+    std::vector<double> force, overlap;  // of the plate [N]; in spacings
+    FrameReport last;
+    std::uint64_t hash = 0;
+};
+
+// Between plates much larger than itself, by `down` of its height in so many frames.
+Pressed press(Aggregate& body, double height, double down, int frames,
+              const SimSettings& settings) {
+    const Press press{height};
+    Apparatus apparatus = press.apparatus();
+    for (Tool& tool : apparatus.tool) {
+        tool.shape = BoxShape{Vec3(3 * height, height, 3 * height), height / 20};
+    }
+    Simulation simulation(body, apparatus, settings);
+    Pressed result;
+    for (int f = 0; f < frames; ++f) {
+        result.last = simulation.advance(press.drive_at(f, down * f / frames),
+                                         press.drive_at(f + 1, down * (f + 1) / frames));
+        result.force.push_back(-result.last.load[1].force.y());
+        result.overlap.push_back(own_overlap(body) / body.lattice.spacing);
+    }
+    result.hash = state_hash(body);
+    return result;
+}
+
+double slope_at(const std::vector<double>& force, std::size_t n) {
+    return force[n + 1] - force[n - 1];
+}
+
+}  // namespace
+
+TEST_CASE("a C pressed shut bears as a block does from then on") {
+    Aggregate block = make_c(soft(), false), c = make_c(soft()), ghost = make_c(soft());
+    const Pressed whole = press(block, 0.4, 0.1, 4, settings_of(false));
+    const Pressed shut = press(c, 0.4, 0.375, 15, settings_of(true));
+    const Pressed open = press(ghost, 0.4, 0.375, 15, settings_of(false));
+    // Until its arms meet it bears the same, and stiffens by as much as lies on each other then.
+    for (std::size_t n = 0; n < 4; ++n) CHECK(shut.force[n] == Approx(open.force[n]).epsilon(2e-3));
+    CHECK(open.overlap.back() > 0.8);
+    CHECK(shut.overlap.back() < 0.35);
+    for (std::size_t n = 0; n < 10; ++n) CHECK(shut.overlap[n] < 0.05);
+    INFO("block " << slope_at(whole.force, 2) << ", open " << slope_at(open.force, 12) << ", shut "
+                  << slope_at(shut.force, 12));
+    CHECK(slope_at(open.force, 12) < 0.6 * slope_at(whole.force, 2));
+    CHECK(slope_at(shut.force, 12) == Approx(slope_at(whole.force, 2)).epsilon(0.2));
+    CHECK(std::abs(shut.last.remainder) < 3e-3 * shut.last.work);
+    CHECK(shut.last.friction > open.last.friction);
+}
+
+TEST_CASE("halves of a cut bar bear as the whole one does when pressed together") {
+    const auto pressed = [](bool cut, bool meets) {
+        Aggregate bar = make_block(5, 8, 5, 0.1, soft());
+        if (cut) sever_plane(bar, Vec3(0, 0.05, 0), Vec3::UnitY());
+        return press(bar, 0.8, 0.1, 5, settings_of(meets));
+    };
+    const Pressed whole = pressed(false, false), two = pressed(true, true),
+                  ghost = pressed(true, false);
+    for (std::size_t n = 0; n < 5; ++n) {
+        // What gives in the faces of the cut is a tenth of the bar.
+        CHECK(two.force[n] > 0.75 * whole.force[n]);
+        CHECK(two.force[n] < whole.force[n]);
+        CHECK(two.overlap[n] < 0.08);
+        CHECK(ghost.force[n] < 1);
+    }
+    CHECK(std::abs(two.last.remainder) < 3e-3 * two.last.work);
+}
+
+TEST_CASE("what a blade has parted is met by its faces, half a cell before what is whole") {
+    for (const double by : {-0.02, 0.01, 0.03, 0.06, 0.1}) {
+        Aggregate bar = make_block(5, 8, 5, 0.1, soft());
+        sever_plane(bar, Vec3(0, 0.05, 0), Vec3::UnitY());
+        for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+            if (bar.particle_reference.at(p).y() > 0.05) bar.particle_position.y[p] -= by;
+        }
+        CHECK(own_overlap(bar) == Approx(std::max(by, 0.0)).margin(1e-9));
+    }
+}
+
+TEST_CASE("forces of a body on itself are the slope of their energy, and in balance") {
+    Aggregate c = make_c(soft(0));
+    // The arms go through each other, most at their ends, askew and ruffled.
+    for (std::size_t p = 0; p < c.particle_count(); ++p) {
+        const Vec3 x = c.particle_reference.at(p);
+        const double side = x.y() > 0 ? 1 : -1, out = std::max(0.0, x.x() + 0.1);
+        c.particle_position.add(
+            p, Vec3(0.02 * std::sin(40 * x.z()), -side * 0.2 * out + 0.004 * std::sin(31 * x.x()),
+                    0.01 * side + 0.003 * std::cos(57 * x.y())));
+    }
+    SelfContact self(c, settings_of(true));
+    Vec3Array force;
+    force.resize(c.particle_count());
+    self.add_forces(force);
+    REQUIRE(self.sums().contacts > 100);
+    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+    double size = 0;
+    for (std::size_t p = 0; p < c.particle_count(); ++p) {
+        sum += force.at(p);
+        moment += c.particle_position.at(p).cross(force.at(p));
+        size += force.at(p).norm();
+    }
+    CHECK(sum.norm() < 1e-8 * size);  // weights are floats
+    CHECK(moment.norm() < 1e-8 * size);
+    Vec3Array unused;
+    unused.resize(c.particle_count());
+    const double h = 1e-4 * kSpacing;
+    int pressed = 0;
+    for (std::size_t p = 0; p < c.particle_count(); p += 7) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 here = c.particle_position.at(p);
+            const auto at = [&](double by) {
+                c.particle_position.set(p, here + by * Vec3::Unit(axis));
+                self.add_forces(unused);
+                return self.sums().stored;
+            };
+            const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+            c.particle_position.set(p, here);
+            CHECK(force.at(p)[axis] == Approx(-slope).margin(1e-5 * size / 100));
+            pressed += std::abs(slope) > 1e-3 * size;
+        }
+    }
+    CHECK(pressed > 10);
+}
+
+TEST_CASE("what presses in a fold goes on without a jump as its sides slide along each other") {
+    // The strip lies on itself; the crease, at rest 2 cells thick, is drawn along the upper side.
+    Aggregate strip = make_block(40, 2, 4, kSpacing, soft(0));
+    const auto stored = [&](double slide) {
+        deform(strip, [&](const Vec3& x) -> Vec3 {
+            const double s = x.x() - slide, thick = x.y() + kSpacing;
+            if (s < 0) return Vec3(s, thick, x.z());
+            return Vec3(-s, -thick + 0.3 * kSpacing, x.z());
+        });
+        SelfContact self(strip, settings_of(true));
+        Vec3Array force;
+        force.resize(strip.particle_count());
+        self.add_forces(force);
+        return self.sums().stored;
+    };
+    double last = stored(0), most = 0, largest = 0;
+    for (double slide = 0.01; slide < 2; slide += 0.01) {
+        const double now = stored(slide * kSpacing);
+        most = std::max(most, std::abs(now - last));
+        largest = std::max(largest, now);
+        last = now;
+    }
+    INFO("largest " << largest << ", jumps by " << most);
+    CHECK(largest > 0);
+    CHECK(most < 0.02 * largest);
+}
+
+TEST_CASE("a body pressed against itself has the same bits at any thread count") {
+    std::vector<std::uint64_t> hash;
+    for (int threads : {1, 2, 3}) {
+        set_thread_count(threads);
+        Aggregate c = make_c(soft());
+        hash.push_back(press(c, 0.4, 0.2, 4, settings_of(true)).hash);
+    }
+    set_thread_count(0);
+    CHECK(hash[0] == hash[1]);
+    CHECK(hash[0] == hash[2]);
+}
