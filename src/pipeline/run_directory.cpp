@@ -116,12 +116,7 @@ void make_folder(const fs::path& folder) {
     if (fs::exists(folder, error)) {
         fail(ExitCode::output, "{}: is a file, not a directory", folder.string());
     }
-    const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
-    if (!fs::is_directory(parent, error)) {
-        fail(ExitCode::output, "{}: cannot be made: there is no directory {}", folder.string(),
-             parent.string());
-    }
-    if (!fs::create_directory(folder, error) && error) {
+    if (!fs::create_directories(folder, error) && error) {
         fail(ExitCode::output, "{}: cannot be made: {}", folder.string(), error.message());
     }
 }

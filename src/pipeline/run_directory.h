@@ -57,7 +57,8 @@ struct DrawnFiles {
     std::filesystem::path contact_sheet() const { return root / "contact.png"; }
 };
 
-// Makes one folder; Error(output) when that fails or something else has the name.
+// Makes a folder and those that it lies in; Error(output) when that fails or something else has the
+// name.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace swage

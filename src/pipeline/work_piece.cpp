@@ -162,6 +162,9 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, SkinKind skin)
     make_solid(input, body.mold.kind);
     BodySpec as_it_stands = body;
     as_it_stands.start = {};
+    // Bent, its box says nothing of how thick it is.
+    as_it_stands.mold.across.reset();
+    as_it_stands.mold.spacing = piece.matter.lattice.spacing;
     return make_work_piece(input, as_it_stands, skin);
 }
 

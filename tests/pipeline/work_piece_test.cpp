@@ -76,6 +76,23 @@ TEST_CASE("a body that is told no start is left as it was molded") {
           std::vector<double>(piece.matter.particle_count(), 0.0));
 }
 
+TEST_CASE("matter molded anew keeps the size of its cells, whatever its box has become") {
+    WorkPiece piece = block({}, SkinKind::mount);
+    // Round a quarter of a ring: the box is as high as it is long then.
+    Aggregate& m = piece.matter;
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p);
+        const double turn = x.x() / 0.4 * kPi / 2, radius = 0.4 / (kPi / 2) + x.y();
+        m.particle_position.set(p, {radius * std::sin(turn), radius * std::cos(turn), x.z()});
+    }
+    follow_matter(piece, SkinKind::mount);
+    BodySpec body;
+    body.mold.across = 3;
+    const WorkPiece anew = mold_anew(piece, body, SkinKind::mount);
+    CHECK(anew.matter.lattice.spacing == m.lattice.spacing);
+    CHECK(anew.matter.volume() == Approx(0.008).epsilon(0.05));
+}
+
 TEST_CASE("velocity and spin at the start are those of the body's centre of mass") {
     StartSpec start;
     start.velocity = {1, -2, 0.5};
