@@ -159,7 +159,9 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     }
     const bool breaks = std::any_of(scene.body.begin(), scene.body.end(),
                                     [](const BodySpec& b) { return b.material.breaks(); });
-    if (breaks && scene.skin.kind != SkinKind::boundary) cost.note.push_back(kTornSkin);
+    const bool cuts = std::any_of(scene.stage.begin(), scene.stage.end(),
+                                  [](const StageSpec& s) { return !s.machine.blade.empty(); });
+    if (breaks && cuts && scene.skin.kind != SkinKind::boundary) cost.note.push_back(kTornSkin);
     add_up(cost, scene, input, options, {});
     return cost;
 }

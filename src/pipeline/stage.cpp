@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kOpenSkin = "the skin could not be closed everywhere that matter broke";
 constexpr double kOverlap = 0.5;  // spacings that a body may lie in itself untold
 
 // Warnings that come back frame after frame are told once, with the frames they came in.
@@ -139,6 +140,7 @@ bool cut_ahead(const StageSpec& stage, const Machine& machine, const std::vector
         }
     }
     const CutResult cut = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, path);
+    piece.skin_is_cut = true;
     follow_matter(piece, kind);
     if (cut.open_parts > 0) {
         log_warning("{}: {} open part{} of the skin could not be closed where it is cut",
@@ -233,11 +235,16 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         }
         {
             const auto lap = context.watch.lap("skin");
-            if (last.broken > 0 && skin != SkinKind::boundary) {
-                tears = true;
-                warnings.add(number, kTornSkin);
-            }
             for (WorkPiece& body : bodies) {
+                if (last.broken > 0 && skin != SkinKind::boundary) {
+                    const std::optional<int> open = show_breaks(body);
+                    if (!open) {
+                        tears = true;
+                        warnings.add(number, kTornSkin);
+                    } else if (*open > 0) {
+                        warnings.add(number, kOpenSkin);
+                    }
+                }
                 follow_matter(body, skin);
                 if (tears) remove_torn_triangles(body.skin, body.mount, body.matter);
             }

@@ -10,6 +10,7 @@
 #include "geometry/mesh_repair.h"
 #include "mold/mold.h"
 #include "skin/boundary.h"
+#include "skin/broken_skin.h"
 
 namespace swage {
 
@@ -176,6 +177,19 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies) {
         hasher.add_bytes(&own, sizeof own);
     }
     return hasher.value();
+}
+
+std::optional<int> show_breaks(WorkPiece& piece) {
+    if (!is_broken(piece.matter)) return 0;
+    if (piece.skin_is_cut) return std::nullopt;
+    if (!piece.whole_skin) {
+        piece.whole_skin = piece.skin;
+        piece.whole_mount = piece.mount;
+    }
+    BrokenSkin broken = break_skin(*piece.whole_skin, piece.whole_mount, piece.matter);
+    piece.skin = std::move(broken.mesh);
+    piece.mount = std::move(broken.mount);
+    return broken.open_faces;
 }
 
 void follow_matter(WorkPiece& piece, SkinKind kind) {

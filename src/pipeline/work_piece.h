@@ -48,6 +48,10 @@ struct WorkPiece {
     TriMesh skin;                // its positions: as mounted
     Mount mount;                 // unless the skin is a boundary
     std::vector<Vec3> position;  // of the skin now [m]
+    bool skin_is_cut = false;    // by a blade
+    // Once matter broke by load: what skin and mount were made from since.
+    std::optional<TriMesh> whole_skin;
+    Mount whole_mount;
 
     // The skin as a mesh where it is now.
     TriMesh deformed() const;
@@ -69,8 +73,13 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 // Brings the skin to where the matter is.
 void follow_matter(WorkPiece& piece, SkinKind kind);
 
-// What a mounted skin comes to.
+// Parts a mounted skin where matter broke by load, and closes it. Returns in how many places that
+// was not possible; nothing where a blade has cut the skin before: it can only be torn.
+std::optional<int> show_breaks(WorkPiece& piece);
+
+// What a skin comes to that a blade has cut.
 inline constexpr const char* kTornSkin =
-    "where matter breaks the mounted skin is torn open; [skin] kind = \"boundary\" closes it";
+    "where matter breaks a mounted skin that a blade has cut before is torn open; [skin] kind = "
+    "\"boundary\" closes it";
 
 }  // namespace swage

@@ -185,24 +185,38 @@ TEST_CASE("check tells what a run will cost, and the run costs it") {
     }
 }
 
-TEST_CASE("a mounted skin that will be torn open is told before and after") {
+TEST_CASE("a mounted skin is closed where matter breaks; that a cut one may be torn is told") {
     const Scratch scratch;
     const fs::path mesh = scratch.path() / "bar.obj", scene = scratch.path() / "glass.toml";
     run_swage({"make", "bar", "--length", "10 cm", "--out", mesh.string()});
-    for (bool closed : {false, true}) {
+    const auto put = [&](const std::string& machine, bool boundary) {
         put_text(scene,
-                 std::string("[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"glass\"\n[mold]\n"
-                             "across = 2\n[[stage]]\nmachine = \"stretch\"\nframes = 2\n") +
-                     (closed ? "[skin]\nkind = \"boundary\"\n" : ""));
-        const std::string said = "torn open";
+                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"glass\"\n[mold]\nacross = 2\n"
+                 "[[stage]]\nmachine = \"" +
+                     machine + "\"\nframes = 2\n" +
+                     (boundary ? "[skin]\nkind = \"boundary\"\n" : ""));
+    };
+    const std::string said = "torn open";
+    for (bool boundary : {false, true}) {
+        put("cut", boundary);
+        const Outcome cut = run_swage({"check", scene.string()});
+        REQUIRE(cut.code == 0);
+        CHECK((cut.out.find(said) == std::string::npos) == boundary);
+        put("stretch", boundary);
         const Outcome check = run_swage({"check", scene.string()});
         REQUIRE(check.code == 0);
-        CHECK((check.out.find(said) == std::string::npos) == closed);
-        const std::string out = (scratch.path() / (closed ? "closed" : "mounted")).string();
-        const Outcome run = run_swage({"run", scene.string(), "--no-render", "--out", out});
+        CHECK(check.out.find(said) == std::string::npos);
+        const fs::path out = scratch.path() / (boundary ? "boundary" : "mounted");
+        const Outcome run =
+            run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
         INFO(run.err);
         REQUIRE(run.code == 0);
-        CHECK((run.err.find(said) == std::string::npos) == closed);
+        CHECK(run.err.find(said) == std::string::npos);
+        CHECK(Json::parse(bytes_of(out / "run.json")).at("stages").at(0).at("pieces") > 1);
+        const Json info =
+            Json::parse(run_swage({"info", (out / "meshes/1-stretch.obj").string(), "--json"}).out);
+        CHECK(info.at("watertight") == true);
+        CHECK(info.at("components") > 1);
     }
 }
 

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who is joined to whom around a vertex is told by its cubes alone, one around each particle: a
+// copy of the vertex for each group of them that hangs together there. So the surface comes out
+// closed, without edges of four faces, whatever the crack. A new face is a square between two
+// cubes, as far as it is inside the mesh; it follows the mesh's edges on it, and goes round along
+// its own rim from where these leave it to where they come in next (K. Weiler and P. Atherton,
+// "Hidden surface removal using polygon area sorting", 1977).
+#include "skin/broken_skin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "geometry/triangle_tree.h"
+#include "skin/cut_mesh.h"
+#include "skin/parted_skin.h"
+#include "skin/section.h"
+
+namespace swage {
+
+namespace {
+
+class Breaker {
+  public:
+    Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter)
+        : whole_(whole),
+          matter_(matter),
+          faces_(broken_faces(matter)),
+          skin_(whole, mount, matter) {}
+
+    BrokenSkin run() {
+        prepare_attributes();
+        collect_rims();
+        for (std::size_t f = 0; f < faces_.size(); ++f) close(faces_[f], rim_[f], part_[f]);
+        skin_.part_touching_edges();
+        result_.mesh = std::move(skin_.mesh);
+        result_.mount = std::move(skin_.mount);
+        finish_mount(result_.mount, matter_);
+        return std::move(result_);
+    }
+
+  private:
+    using Segment = std::array<int, 2>;
+    using Face = BrokenFace;
+
+    void prepare_attributes() {
+        TriMesh& mesh = skin_.mesh;
+        const std::size_t count = mesh.triangle.size();
+        if (mesh.material.empty()) mesh.material.emplace_back();
+        mesh.triangle_material.resize(count, 0);
+        const auto known =
+            std::find_if(mesh.material.begin(), mesh.material.end(),
+                         [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
+        material_ = static_cast<int>(known - mesh.material.begin());
+        if (known == mesh.material.end()) {
+            SurfaceMaterial material;
+            material.name = kCutMaterial;
+            material.color = {0.86, 0.82, 0.76};
+            material.roughness = 0.7;
+            mesh.material.push_back(material);
+        }
+        polygon_ = mesh.triangle_polygon.empty() ? 0 : mesh.triangle_polygon.back() + 1;
+    }
+
+    // Of each broken face the edges of the surface that lie on it, the inside on the left as seen
+    // from the upper cube.
+    void collect_rims() {
+        rim_.resize(faces_.size());
+        part_.assign(faces_.size(), 0);
+        const auto key = [](const Vec3i& site, int axis) {
+            return std::array<int, 4>{site.x(), site.y(), site.z(), axis};
+        };
+        std::map<std::array<int, 4>, std::size_t> number;
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            number[key(faces_[f].site, faces_[f].axis)] = f;
+        }
+        const DicedSkin& diced = skin_.diced();
+        for (std::size_t t = 0; t < diced.mesh.triangle.size(); ++t) {
+            const Corners& c = diced.mesh.triangle[t];
+            for (int axis = 0; axis < 3; ++axis) {
+                if (skin_.joined(diced.site[t], axis)) continue;
+                for (int k = 0; k < 3; ++k) {
+                    const int from = c[k], to = c[(k + 1) % 3], at = diced.site[t][axis];
+                    if (skin_.plane(from)[axis] != at || skin_.plane(to)[axis] != at) continue;
+                    const std::size_t face = number.at(key(diced.site[t], axis));
+                    rim_[face].push_back({to, from});
+                    if (!diced.mesh.triangle_part.empty()) {
+                        part_[face] = diced.mesh.triangle_part[t];
+                    }
+                }
+            }
+        }
+    }
+
+    Vec2 on_square(const Face& face, int v) const {
+        const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
+        const Lattice& lattice = matter_.lattice;
+        const Vec3& p = skin_.mesh.position[v];
+        return {(p[a] - middle_plane(lattice, a, face.site[a] - 1)) / lattice.spacing,
+                (p[b] - middle_plane(lattice, b, face.site[b] - 1)) / lattice.spacing};
+    }
+
+    // How far a vertex lies along the square's rim, counter-clockwise; nothing if it is inside.
+    std::optional<double> along_rim(const Face& face, int v) const {
+        const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
+        const Vec2 at = on_square(face, v);
+        if (skin_.plane(v)[b] == face.site[b] - 1) return at[0];
+        if (skin_.plane(v)[a] == face.site[a]) return 1 + at[1];
+        if (skin_.plane(v)[b] == face.site[b]) return 3 - at[0];
+        if (skin_.plane(v)[a] == face.site[a] - 1) return 4 - at[1];
+        return std::nullopt;
+    }
+
+    // A corner of squares that lies inside the mesh.
+    int inner_corner(const std::array<int, 3>& plane) {
+        const auto known = corner_.find(plane);
+        if (known != corner_.end()) return known->second;
+        Vec3 place;
+        for (int d = 0; d < 3; ++d) place[d] = middle_plane(matter_.lattice, d, plane[d]);
+        return corner_[plane] = skin_.add_vertex(place, plane, Eigen::Vector3f::Ones());
+    }
+    int corner_at(const Face& face, int n) {  // counter-clockwise from the low one
+        const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
+        std::array<int, 3> plane;
+        plane[face.axis] = face.site[face.axis];
+        plane[a] = face.site[a] - (n == 0 || n == 3);
+        plane[b] = face.site[b] - (n == 0 || n == 1);
+        return inner_corner(plane);
+    }
+
+    // `site`: of the cell in whose middle the place is.
+    bool is_inside(const Vec3& place, const Vec3i& site) {
+        const CellId cell = matter_.lattice.cell_at(site.x(), site.y(), site.z());
+        if (cell >= 0 && matter_.cell_fill[cell] > 0.9999f) return true;
+        if (!tree_) tree_ = std::make_unique<TriangleTree>(whole_);
+        return tree_->winding_number(place) > 0.5;
+    }
+
+    // The square's rim where it is inside the mesh; false where the surface does not close.
+    bool go_round(const Face& face, std::vector<Segment>& segments) {
+        struct Event {
+            double at;
+            int vertex, balance;  // 1: edges of the surface begin here, -1: end
+        };
+        std::map<int, int> balance;
+        for (const Segment& s : segments) --balance[s[1]], ++balance[s[0]];
+        std::vector<Event> events;
+        for (const auto& [v, b] : balance) {
+            if (b == 0) continue;
+            const std::optional<double> at = along_rim(face, v);
+            if (!at || std::abs(b) != 1) return false;
+            events.push_back({*at, v, b});
+        }
+        std::sort(events.begin(), events.end(), [](const Event& p, const Event& q) {
+            return std::pair(p.at, p.vertex) < std::pair(q.at, q.vertex);
+        });
+        if (events.empty()) {
+            const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
+            Vec3 low;
+            low[face.axis] = middle_plane(matter_.lattice, face.axis, face.site[face.axis]);
+            low[a] = middle_plane(matter_.lattice, a, face.site[a] - 1);
+            low[b] = middle_plane(matter_.lattice, b, face.site[b] - 1);
+            Vec3i site;
+            site[face.axis] = face.site[face.axis];
+            site[a] = face.site[a] - 1, site[b] = face.site[b] - 1;
+            if (!is_inside(low, site)) return true;
+            for (int n = 0; n < 4; ++n) {
+                segments.push_back({corner_at(face, n), corner_at(face, (n + 1) % 4)});
+            }
+            return true;
+        }
+        for (std::size_t n = 0; n < events.size(); ++n) {
+            const Event& here = events[n];
+            const Event& next = events[(n + 1) % events.size()];
+            if (here.balance == next.balance) return false;
+            if (here.balance > 0) continue;
+            int from = here.vertex;
+            const double end = next.at > here.at ? next.at : next.at + 4;
+            for (int corner = static_cast<int>(std::floor(here.at)) + 1; corner < end; ++corner) {
+                const int to = corner_at(face, corner % 4);
+                segments.push_back({from, to});
+                from = to;
+            }
+            segments.push_back({from, next.vertex});
+        }
+        return true;
+    }
+
+    // Triangles within closed loops; where the plane's own fill does not serve, a fan of each.
+    std::vector<Corners> fill(const Face& face, const std::vector<Segment>& segments) const {
+        Section section;
+        section.spacing = 4;  // no points inside
+        std::map<int, int> number;
+        std::vector<int> vertex;
+        for (const Segment& s : segments) {
+            for (int v : s) {
+                if (!number.emplace(v, static_cast<int>(vertex.size())).second) continue;
+                vertex.push_back(v);
+                section.point.push_back(on_square(face, v));
+            }
+            section.segment.push_back({number[s[0]], number[s[1]]});
+        }
+        std::vector<Corners> triangles;
+        const std::optional<SectionTriangles> filled = fill_section(section);
+        if (filled && filled->added.empty()) {
+            for (const Corners& t : filled->triangle) {
+                triangles.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
+            }
+            return triangles;
+        }
+        std::multimap<int, int> next;
+        for (const Segment& s : segments) next.emplace(s[0], s[1]);
+        while (!next.empty()) {
+            const int start = next.begin()->first;
+            int at = next.begin()->second;
+            next.erase(next.begin());
+            while (at != start) {
+                const auto on = next.find(at);
+                if (on == next.end()) break;
+                if (on->second != start) triangles.push_back({start, at, on->second});
+                at = on->second;
+                next.erase(on);
+            }
+        }
+        return triangles;
+    }
+
+    void close(const Face& face, std::vector<Segment>& segments, int part) {
+        if (!go_round(face, segments)) {
+            ++result_.open_faces;
+            return;
+        }
+        if (segments.empty()) return;
+        Vec3i upper = face.site;
+        ++upper[face.axis];
+        for (const Corners& t : fill(face, segments)) {
+            add(face.site, t, part);
+            add(upper, {t[0], t[2], t[1]}, part);
+        }
+    }
+
+    void add(const Vec3i& site, const Corners& raw, int part) {
+        TriMesh& mesh = skin_.mesh;
+        Corners own, smooth;
+        for (int k = 0; k < 3; ++k) {
+            own[k] = skin_.copy_of(raw[k], site);
+            const auto [at, fresh] = smooth_.emplace(own[k], mesh.smooth_group_count);
+            mesh.smooth_group_count += fresh && !mesh.triangle_smooth.empty();
+            smooth[k] = at->second;
+        }
+        mesh.triangle.push_back(own);
+        skin_.add_site(site);
+        mesh.triangle_material.push_back(material_);
+        if (!mesh.triangle_uv.empty()) mesh.triangle_uv.push_back({-1, -1, -1});
+        if (!mesh.triangle_smooth.empty()) mesh.triangle_smooth.push_back(smooth);
+        if (!mesh.triangle_polygon.empty()) mesh.triangle_polygon.push_back(polygon_++);
+        if (!mesh.triangle_part.empty()) mesh.triangle_part.push_back(part);
+        ++result_.faces;
+    }
+
+    const TriMesh& whole_;
+    const Aggregate& matter_;
+    const std::vector<Face> faces_;
+    PartedSkin skin_;
+    std::map<std::array<int, 3>, int> corner_;
+    std::map<int, int> smooth_;  // of new faces, by vertex
+    std::vector<std::vector<Segment>> rim_;
+    std::vector<int> part_;  // of the mesh, at each broken face
+    std::unique_ptr<TriangleTree> tree_;
+    int material_ = 0, polygon_ = 0;
+    BrokenSkin result_;
+};
+
+}  // namespace
+
+bool is_broken(const Aggregate& matter) { return !broken_faces(matter).empty(); }
+
+BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter) {
+    return Breaker(whole, mount, matter).run();
+}
+
+}  // namespace swage

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A skin whose triangles are split along the planes half-way between the particles' sites, so that
+// each belongs to one particle: where matter breaks between two of them, the skin can part.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "geometry/trimesh.h"
+#include "matter/aggregate.h"
+
+namespace swage {
+
+inline constexpr int kNoPlane = std::numeric_limits<int>::min();
+
+// The middle plane number k of an axis lies between the sites k and k + 1, off the middle by about
+// a millionth of a spacing: so it runs through no vertex and along no face.
+double middle_plane(const Lattice& lattice, int axis, int number);
+
+// The site of triangles that were left whole: far from all others.
+inline const Vec3i kNoSite = Vec3i::Constant(1 << 18);
+
+struct DicedSkin {
+    TriMesh mesh;                           // positions at molding; the old vertices first
+    std::vector<std::array<int, 3>> plane;  // a vertex each: middle plane that it was made on, by
+                                            // axis, or kNoPlane
+    std::vector<Vec3i> site;                // a triangle each: in the cube around this site
+};
+
+// `mesh`: positions at molding. What it carries (texture coordinates, smoothing, colours,
+// materials, parts) goes on linearly over the parts. A triangle with no part in a cube that is
+// `wanted` stays whole, but for what its neighbours' new vertices on its edges ask.
+DicedSkin dice_skin(const TriMesh& mesh, const Lattice& lattice,
+                    const std::function<bool(const Vec3i&)>& wanted);
+
+}  // namespace swage

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The vertices of a diced skin, parted where matter broke by load: a copy for each group of the
+// cubes around a vertex, one around each particle, that hang together there.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <unordered_set>
+#include <vector>
+
+#include "skin/diced_skin.h"
+#include "skin/mount.h"
+
+namespace swage {
+
+// Between the cube around a site and the next one along the axis.
+struct BrokenFace {
+    Vec3i site;
+    int axis;
+};
+
+// Where a connection along the lattice's axes broke by load.
+std::vector<BrokenFace> broken_faces(const Aggregate& matter);
+
+class PartedSkin {
+  public:
+    PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter);
+
+    const DicedSkin& diced() const { return diced_; }
+    bool joined(const Vec3i& lower, int axis) const;
+    const std::array<int, 3>& plane(int v) const { return plane_[v]; }
+
+    // A new vertex, not yet parted; place at molding [m].
+    int add_vertex(const Vec3& place, const std::array<int, 3>& plane,
+                   const Eigen::Vector3f& color);
+    // The copy of a vertex that those have who hang together with the cube at `site`.
+    int copy_of(int v, const Vec3i& site);
+    // To be called for each triangle that is added to the mesh.
+    void add_site(const Vec3i& site) { site_.push_back(site); }
+    // To be called last. Both sides of a small crack may share the ends of an edge and not the
+    // edge: it gets a vertex half-way, which parts.
+    void part_touching_edges();
+
+    TriMesh mesh;
+    Mount mount;  // but for what finish_mount makes
+
+  private:
+    using Segment = std::array<int, 2>;
+    using Mask = std::uint8_t;  // of the cubes around a vertex: a bit for each of the eight ways
+                                // to take the upper one along the axes
+
+    Mask group_of(int v, const Vec3i& site) const;
+    static Mask all_around(const std::array<int, 3>& plane);
+    void take_sides(int copy, int v, const Vec3i& site, Mask group);
+    void part_vertices();
+    std::array<int, 3> common_planes(int v, int w) const;
+    int half_way(int low, int high);
+    void bisect(std::size_t t, int k, int middle);
+
+    const Aggregate& matter_;
+    std::unordered_set<std::uint64_t> broken_;  // faces; looked up only
+    DicedSkin diced_;
+    std::vector<std::array<int, 3>> plane_;  // of vertices, copies left out
+    std::vector<int> source_;                // of each copy the vertex
+    std::vector<Vec3i> site_;                // a triangle each
+    std::vector<char> used_;
+    std::vector<CornerMask> whole_side_;
+    std::map<std::pair<int, Mask>, int> taken_;
+    std::map<std::array<int, 3>, int> half_smooth_;
+};
+
+}  // namespace swage

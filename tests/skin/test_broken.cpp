@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/broken_skin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "geometry/box_mesh.h"
+#include "geometry/edges.h"
+#include "skin/boundary.h"
+#include "skin/cut_mesh.h"
+#include "skin/diced_skin.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
+
+using namespace swage;
+
+namespace {
+
+bool closed(const TriMesh& mesh) {
+    bool sound = true;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        sound = sound && uses.size() == 2 && uses[0].forward != uses[1].forward;
+    });
+    return sound;
+}
+
+// Breaks by load what `broken` says of a connection's two ends.
+void break_where(Aggregate& m, const std::function<bool(const Vec3&, const Vec3&)>& broken) {
+    for (ConnectionArrays& all : m.connection) all.damage.assign(m.particle_count(), 0.0f);
+    for (const Span& span : m.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            const ParticleId lower = span.lower + n, upper = span.upper + n;
+            if (!broken(m.particle_reference.at(lower), m.particle_reference.at(upper))) continue;
+            m.connection[span.direction].weight.set(lower, 0);
+            m.connection[span.direction].damage[lower] = 1;
+        }
+    }
+}
+
+void break_along(Aggregate& m, const Vec3& point, const Vec3& normal) {
+    break_where(m, [&](const Vec3& p, const Vec3& q) {
+        return (normal.dot(p - point) >= 0) != (normal.dot(q - point) >= 0);
+    });
+}
+
+struct Fixture {
+    Aggregate matter;
+    TriMesh mesh;
+    Mount mount;
+    BrokenSkin broken;
+
+    Fixture(Aggregate body, TriMesh skin) : matter(std::move(body)), mesh(std::move(skin)) {
+        mount = mount_mesh(mesh.position, matter, SkinKind::mount);
+    }
+    void break_it() { broken = break_skin(mesh, mount, matter); }
+    TriMesh now() const {
+        TriMesh moved = broken.mesh;
+        skin_positions(broken.mount, matter, moved.position);
+        return moved;
+    }
+};
+
+// Textured by place, four big triangles... a box of twelve triangles and a bar of its cells.
+Fixture bar() {
+    TriMesh mesh = box_mesh(Vec3(-.5, -.15, -.15), Vec3(.5, .15, .15));
+    for (const Corners& t : mesh.triangle) {
+        Corners uv;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3& p = mesh.position[t[k]];
+            uv[k] = static_cast<int>(mesh.uv.size());
+            mesh.uv.push_back({p.x() + 2 * p.y(), p.z() - p.x()});
+        }
+        mesh.triangle_uv.push_back(uv);
+    }
+    smooth_by_crease_angle(mesh, 0.6);
+    return {test::make_block(20, 6, 6, 0.05, Material{}), mesh};
+}
+
+Fixture ball() {
+    const double a = 1.0 / 9;
+    Aggregate matter = test::make_shape([](const Vec3& p) { return p.norm() - .5; },
+                                        Vec3::Constant(-.5 - .07 * a), Vec3i::Constant(10), a);
+    TriMesh mesh = boundary_skin(matter);
+    return {std::move(matter), std::move(mesh)};
+}
+
+Fixture body(int number) { return number == 0 ? bar() : ball(); }
+
+}  // namespace
+
+TEST_CASE("a diced skin is the skin, each triangle around one particle") {
+    const Fixture f = body(GENERATE(0, 1));
+    const bool part = GENERATE(false, true);
+    const auto wanted = [&](const Vec3i& site) { return !part || site.x() == 4; };
+    const DicedSkin diced = dice_skin(f.mesh, f.matter.lattice, wanted);
+    CHECK(closed(diced.mesh));
+    CHECK(signed_volume(diced.mesh) == Approx(signed_volume(f.mesh)).epsilon(1e-12));
+    CHECK(surface_area(diced.mesh) == Approx(surface_area(f.mesh)).epsilon(1e-12));
+    const Lattice& lattice = f.matter.lattice;
+    double outside = 0, off = 0;
+    for (std::size_t t = 0; t < diced.mesh.triangle.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 p = diced.mesh.position[diced.mesh.triangle[t][k]];
+            for (int d = 0; d < 3 && diced.site[t] != kNoSite; ++d) {
+                outside = std::max(outside, p[d] - middle_plane(lattice, d, diced.site[t][d]));
+                outside = std::max(outside, middle_plane(lattice, d, diced.site[t][d] - 1) - p[d]);
+            }
+            if (diced.mesh.triangle_uv.empty()) continue;
+            const Vec2 uv = diced.mesh.uv[diced.mesh.triangle_uv[t][k]];
+            off = std::max(off, (uv - Vec2(p.x() + 2 * p.y(), p.z() - p.x())).norm());
+        }
+    }
+    const auto left = std::count(diced.site.begin(), diced.site.end(), kNoSite);
+    CHECK((left > 0) == part);
+    CHECK(outside < 1e-14);
+    CHECK(off < 1e-14);
+}
+
+TEST_CASE("what broke in two shows two closed surfaces that move on their own, all volume kept") {
+    Fixture f = body(GENERATE(0, 1));
+    const Vec3 n = GENERATE(Vec3(1, 0, 0), Vec3(1, .5, 0), Vec3(1, .31, -.44), Vec3(1, 1, 1),
+                            Vec3(0, 1, 0), Vec3(.1, .2, 1))
+                       .normalized();
+    const Vec3 point(.0371, .011, -.0083);
+    const double whole = signed_volume(f.mesh);
+    break_along(f.matter, point, n);
+    REQUIRE(find_pieces(f.matter).count == 2);
+    f.break_it();
+    CHECK(f.broken.open_faces == 0);
+    CHECK(f.broken.faces > 0);
+    CHECK(closed(f.broken.mesh));
+    CHECK(surface_components(f.broken.mesh).count == 2);
+    CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
+    for (std::size_t v = 0; v < f.mesh.position.size(); ++v) {
+        CHECK(f.broken.mesh.position[v] == f.mesh.position[v]);
+    }
+    const Quat turn(Eigen::AngleAxisd(.7, Vec3(1, 2, 3).normalized()));
+    test::deform(f.matter, [&](const Vec3& p) -> Vec3 {
+        return n.dot(p - point) >= 0 ? Vec3(turn * p + n) : p;
+    });
+    const TriMesh moved = f.now();
+    CHECK(signed_volume(moved) == Approx(whole).epsilon(1e-9));
+    const Components parts = surface_components(moved);
+    double worst = 0;
+    std::array<double, 2> rides = {0, 0};
+    for (std::size_t t = 0; t < moved.triangle.size(); ++t) {
+        for (int v : moved.triangle[t]) {
+            const Vec3 p = f.broken.mesh.position[v];
+            const double stays = (moved.position[v] - p).norm();
+            const double rode = (moved.position[v] - (turn * p + n)).norm();
+            worst = std::max(worst, std::min(stays, rode));
+            rides[parts.triangle_component[t]] += rode < stays ? 1 : -1e9;
+        }
+    }
+    CHECK(worst < 1e-12);
+    CHECK((rides[0] > 0) != (rides[1] > 0));
+}
+
+TEST_CASE("a crack that ends inside is a slit, and opens like a mouth") {
+    Fixture f = body(GENERATE(0, 1));
+    const double whole = signed_volume(f.mesh);
+    break_where(f.matter, [](const Vec3& p, const Vec3& q) {
+        return (p.x() > .013) != (q.x() > .013) && p.y() + q.y() > .02;
+    });
+    f.break_it();
+    CHECK(f.broken.faces > 0);
+    CHECK(f.broken.open_faces == 0);
+    CHECK(closed(f.broken.mesh));
+    CHECK(surface_components(f.broken.mesh).count == 1);
+    CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
+    test::deform(f.matter, [](const Vec3& p) -> Vec3 {
+        const double open = .2 * std::max(0., p.y() - .01);
+        return p + Vec3(p.x() > .013 ? open : -open, 0, 0);
+    });
+    CHECK(signed_volume(f.now()) == Approx(whole).epsilon(2e-2));  // of big flat triangles
+}
+
+TEST_CASE(
+    "matter broken anywhere, down to single particles, shows closed surfaces of all its volume") {
+    Fixture f = body(GENERATE(0, 1));
+    const double share = GENERATE(.02, .2, .5, .9, 1.);
+    std::mt19937 random(5);
+    break_where(f.matter,
+                [&](const Vec3&, const Vec3&) { return random() < share * std::mt19937::max(); });
+    f.break_it();
+    CHECK(f.broken.open_faces == 0);
+    CHECK(closed(f.broken.mesh));
+    CHECK(signed_volume(f.broken.mesh) == Approx(signed_volume(f.mesh)).epsilon(1e-9));
+    std::mt19937 shake(6);
+    test::deform(f.matter, [&](const Vec3& p) -> Vec3 {
+        return p + .01 * Vec3(shake() % 7, shake() % 7, shake() % 7);
+    });
+    for (const Vec3& p : f.now().position) CHECK(p.allFinite());
+}
+
+TEST_CASE("new faces carry no texture, the old surface keeps its own, also along the break") {
+    Fixture f = bar();
+    break_along(f.matter, {.0371, .011, -.0083}, Vec3(1, .31, -.44).normalized());
+    f.break_it();
+    const TriMesh& mesh = f.broken.mesh;
+    double off = 0, area = 0;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const Corners& c = mesh.triangle[t];
+        const Vec3 p = mesh.position[c[0]];
+        const bool is_new = mesh.material[mesh.triangle_material[t]].name == kCutMaterial;
+        for (int k = 0; k < 3; ++k) {
+            CHECK((mesh.triangle_uv[t][k] < 0) == is_new);
+            if (is_new) continue;
+            const Vec3 at = mesh.position[c[k]];
+            off = std::max(
+                off, (mesh.uv[mesh.triangle_uv[t][k]] - Vec2(at.x() + 2 * at.y(), at.z() - at.x()))
+                         .norm());
+        }
+        if (!is_new) {
+            area += (mesh.position[c[1]] - p).cross(mesh.position[c[2]] - p).norm() / 2;
+        }
+    }
+    CHECK(off < 1e-14);
+    CHECK(area == Approx(surface_area(f.mesh)).epsilon(1e-12));
+    for (const Vec3& n : smooth_normals(mesh, mesh.position)) CHECK(n.allFinite());
+}
