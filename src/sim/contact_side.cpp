@@ -42,9 +42,9 @@ void ContactSide::connections_changed() {
     find_points();
     rim_ = molded_->skin();
     if (points_.size() > own_points()) {
-        faces_ = std::make_shared<const RestSurface>(matter_->lattice, faces());
+        cut_ = std::make_shared<const CutSurface>(matter_->lattice, whole_);
         std::vector<CellId> both;
-        std::set_union(rim_.begin(), rim_.end(), faces_->skin().begin(), faces_->skin().end(),
+        std::set_union(rim_.begin(), rim_.end(), cut_->skin().begin(), cut_->skin().end(),
                        std::back_inserter(both));
         rim_ = std::move(both);
     }
@@ -57,17 +57,6 @@ void ContactSide::connections_changed() {
         if (taken[p]) skin_.push_back(static_cast<ParticleId>(p));
     }
     if (itself_) find_near();
-}
-
-// Of new surface alone.
-SurfacePoints ContactSide::faces() const {
-    SurfacePoints all;
-    const auto from = std::ptrdiff_t(own_points());
-    all.reference_position.assign(points_.reference_position.begin() + from,
-                                  points_.reference_position.end());
-    all.reference_normal.assign(points_.reference_normal.begin() + from,
-                                points_.reference_normal.end());
-    return all;
 }
 
 RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
@@ -84,8 +73,15 @@ RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
             local -= out.cast<double>();
         }
     }
-    if (!faces_->is_rim(cell)) return molded_->at(at, local);
-    const RestSurface::Depth face = faces_->at(cell, place);
+    if (!cut_->is_rim(cell)) return molded_->at(at, local);
+    RestSurface::Depth face = cut_->at(cell, place);
+    // The new surface is half a cell before the face at most, so that nothing that is held there
+    // is let go at once.
+    if (!out.isZero()) {
+        const Vec3 beyond = place - place.cwiseMax(0.0).cwiseMin(1.0);
+        const double far = beyond.norm();
+        if (far - 0.5 > face.distance) face = {far - 0.5, beyond / far};
+    }
     if (!molded_->is_rim(at)) return face;
     const RestSurface::Depth own = molded_->at(at, local);
     return own.distance > face.distance ? own : face;

@@ -13,6 +13,7 @@
 
 #include "matter/aggregate.h"
 #include "sim/contact_patch.h"
+#include "sim/cut_surface.h"
 #include "sim/rest_surface.h"
 
 namespace swage {
@@ -46,14 +47,14 @@ class ContactSide {
     // broken, below the new one, whichever is nearer. Before a new face it may lie half a cell
     // outside.
     RestSurface::Depth depth(const Vec3i& site, CellId cell, const Vec3& place) const {
-        return faces_ == nullptr ? molded_->at(cell, place) : least_depth(site, cell, place);
+        return cut_ == nullptr ? molded_->at(cell, place) : least_depth(site, cell, place);
     }
     // Cells less than a spacing deep, in their order.
     const std::vector<CellId>& rim() const { return rim_; }
     // A whole cell not deep inside, which a point may meet.
     bool may_hold(CellId cell) const {
         return cell >= 0 && whole_[cell] &&
-               (molded_->is_rim(cell) || (faces_ != nullptr && faces_->is_rim(cell)));
+               (molded_->is_rim(cell) || (cut_ != nullptr && cut_->is_rim(cell)));
     }
     bool is_whole(CellId cell) const { return whole_[cell] != 0; }
     // Particles of cells near the surface.
@@ -76,7 +77,6 @@ class ContactSide {
   private:
     void find_whole();
     void find_points();
-    SurfacePoints faces() const;
     RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;
     void find_near();
     Vec3 own_place(int point) const {
@@ -90,7 +90,8 @@ class ContactSide {
     SurfacePoints own_, points_;
     std::vector<Vec3i> home_;  // of each point, the cell that it lies in or just outside of
     std::vector<char> meets_;
-    std::shared_ptr<const RestSurface> molded_, faces_;  // faces_: null where all is whole
+    std::shared_ptr<const RestSurface> molded_;
+    std::shared_ptr<const CutSurface> cut_;  // null where all is whole
     std::vector<CellId> rim_;
     std::vector<char> whole_;  // of each cell
     std::vector<ParticleId> skin_;

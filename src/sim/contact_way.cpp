@@ -239,14 +239,18 @@ struct ContactWay::Kernel {
         sums.took -= dot3(at.now, vec4(contact.dashed));
         const double hold = way.hold_[contact.point];
         if (way.has_broken_ && is_known(at)) {
-            const double pressed = last.history.touches ? last.pressed : 0;
-            const double could = last.is_new ? 0
-                                 : step > 0  ? 2 * step * std::sqrt(dot3(at.now, at.now))
-                                             : std::numeric_limits<double>::infinity();
+            // At rest as long as in the shape at rest: strain must not change what is stored.
+            const double stretch =
+                way.is_static_ ? std::sqrt(at.inverse[2][3] / way.stiffness_[contact.point]) : 1;
             double& depth = at.normal[3];
-            const double sunk = std::max(last.is_new ? 0 : last.sunk, depth - pressed - could);
-            at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, depth));
-            depth -= at.now[3];
+            const double whole = stretch * depth, pressed = last.history.touches ? last.pressed : 0;
+            double sunk = last.is_new ? 0 : last.sunk;
+            if (last.is_new || !way.is_static_) {
+                const double could = last.is_new ? 0 : 2 * step * std::sqrt(dot3(at.now, at.now));
+                sunk = std::max(sunk, whole - pressed - could);
+            }
+            at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, whole));
+            depth -= at.now[3] / stretch;
             if (!(depth > 0 || hold > 0)) at.inverse[1][3] = 0;
         }
         if (!meets(at)) return;

@@ -286,6 +286,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = start_;
     contacts_.find_candidates(matter_, to);
+    self_.meet_anew();
     bool smooth = newton_ && !touches() && !floats_under_pressure(apparatus_);
     for (hold_ = smooth ? kSmoothHold : 1;; hold_ *= kLetGo) {
         Relaxation round;
@@ -293,6 +294,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             const Vec3Array before = matter_.particle_position;
             round = solve_smooth(to);
             contacts_.find_candidates(matter_, to);
+            self_.meet_anew();  // not what steps that were not kept have met
             if (!round.converged || touches()) {
                 matter_.particle_position = before;
                 smooth = false;

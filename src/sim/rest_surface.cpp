@@ -20,7 +20,6 @@ constexpr double kSupport = 0.6;        // from a place's foot to its side's nea
 constexpr double kSameSide = 0.7;       // least cosine between normals of one side of an edge
 constexpr double kInterpolates = 0.03;  // error of interpolated distances that serves
 constexpr double kDeep = 0.999;         // nothing comes as deep: a spacing, but for round-off
-constexpr double kFacing = 1e-6;        // of a convex edge: faces of a cut lie on each other
 constexpr int kMostSides = 4;
 constexpr std::size_t kChunk = 64;
 
@@ -31,17 +30,6 @@ std::uint64_t key_of(const Vec3i& site) {
 
 Vec3i floor_of(const Vec3& g) { return g.array().floor().cast<int>(); }
 
-RestSurface::Depth interpolate(const std::array<float, 8>& d, const Vec3& p) {
-    const Vec3 q = Vec3::Ones() - p;
-    const double d00 = q.x() * d[0] + p.x() * d[1], d10 = q.x() * d[2] + p.x() * d[3],
-                 d01 = q.x() * d[4] + p.x() * d[5], d11 = q.x() * d[6] + p.x() * d[7];
-    const double d0 = q.y() * d00 + p.y() * d10, d1 = q.y() * d01 + p.y() * d11;
-    const double gx0 = q.y() * (d[1] - d[0]) + p.y() * (d[3] - d[2]),
-                 gx1 = q.y() * (d[5] - d[4]) + p.y() * (d[7] - d[6]);
-    return {q.z() * d0 + p.z() * d1,
-            Vec3(q.z() * gx0 + p.z() * gx1, q.z() * (d10 - d00) + p.z() * (d11 - d01), d1 - d0)};
-}
-
 template <typename Body>
 void in_chunks(std::size_t count, const Body& body) {
     parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
@@ -51,6 +39,17 @@ void in_chunks(std::size_t count, const Body& body) {
 }
 
 }  // namespace
+
+SurfaceDepth interpolate_depth(const std::array<float, 8>& d, const Vec3& p) {
+    const Vec3 q = Vec3::Ones() - p;
+    const double d00 = q.x() * d[0] + p.x() * d[1], d10 = q.x() * d[2] + p.x() * d[3],
+                 d01 = q.x() * d[4] + p.x() * d[5], d11 = q.x() * d[6] + p.x() * d[7];
+    const double d0 = q.y() * d00 + p.y() * d10, d1 = q.y() * d01 + p.y() * d11;
+    const double gx0 = q.y() * (d[1] - d[0]) + p.y() * (d[3] - d[2]),
+                 gx1 = q.y() * (d[5] - d[4]) + p.y() * (d[7] - d[6]);
+    return {q.z() * d0 + p.z() * d1,
+            Vec3(q.z() * gx0 + p.z() * gx1, q.z() * (d10 - d00) + p.z() * (d11 - d01), d1 - d0)};
+}
 
 RestSurface::RestSurface(const Lattice& lattice, const SurfacePoints& surface) {
     const CellRun& last = lattice.cell_run.back();
@@ -175,17 +174,6 @@ double RestSurface::distance(const Vec3& g, const Near& near) const {
             if (s.side < 0 && (nearest == nullptr || s.far < nearest->far)) nearest = &s;
         }
         if (nearest == nullptr) break;
-        const auto is_outside = [&](const Seen& s) {
-            return normal_[s.point].dot(g - point_[s.point]) > 0;
-        };
-        // Of two faces of a cut that lie on each other, the one whose matter this is.
-        if (side == 0 && is_outside(*nearest)) {
-            for (const Seen& s : seen) {
-                if (s.far > nearest->far + kFacing || is_outside(s)) continue;
-                nearest = &s;
-                break;
-            }
-        }
         const int begin = nearest->point;
         double sum = 0, own = 0, foot = std::numeric_limits<double>::infinity();
         Vec3 normal = Vec3::Zero(), arm = Vec3::Zero();
@@ -211,7 +199,7 @@ double RestSurface::distance(const Vec3& g, const Near& near) const {
             continue;
         }
         const double convex = (normal_[begin] - normal_[first]).dot(point_[begin] - point_[first]);
-        if (convex < kFacing) {
+        if (convex < 0) {
             result = std::min(result, d);
         } else if (foot < kSupport * kSupport) {
             result = std::max(result, d);
@@ -295,7 +283,7 @@ void RestSurface::find_fine(std::vector<char>& is_fine) const {
             const Vec3 p = s == 8
                                ? Vec3::Constant(0.5)
                                : Vec3(Vec3::Constant(0.2) + 0.6 * Vec3(s & 1, s >> 1 & 1, s >> 2));
-            const double mean = interpolate(corner_[n], p).distance;
+            const double mean = interpolate_depth(corner_[n], p).distance;
             double exact = distance(site + p, near);
             if (std::isnan(exact)) exact = distance(site + p);
             is_fine[n] =
@@ -350,7 +338,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
             }
             double& sample = fine_[f].sample[s];
             if (is_coarse || side(0) * side(1) * side(2) != 0) {
-                sample = interpolate(corner_[n], p).distance;
+                sample = interpolate_depth(corner_[n], p).distance;
                 continue;
             }
             sample = distance(site + p, near);
@@ -361,7 +349,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
 
 RestSurface::Depth RestSurface::at(CellId cell, const Vec3& p) const {
     const int n = slot_[cell], f = fine_of_[n];
-    if (f < 0) return interpolate(corner_[n], p);
+    if (f < 0) return interpolate_depth(corner_[n], p);
     const Fine& fine = fine_[f];
     // Of the six tetrahedra of the cube between samples, the one along whose edges the place lies.
     const Vec3i at = floor_of(kFine * p).cwiseMax(0).cwiseMin(kFine - 1);

@@ -26,14 +26,19 @@
 
 namespace swage {
 
+struct SurfaceDepth {
+    double distance;  // less than zero inside
+    Vec3 gradient;
+};
+
+// From those at a cell's corners, 0 to 1 along each axis.
+SurfaceDepth interpolate_depth(const std::array<float, 8>& corner, const Vec3& place);
+
 class RestSurface {
   public:
     RestSurface(const Lattice& lattice, const SurfacePoints& points);
 
-    struct Depth {
-        double distance;  // less than zero inside
-        Vec3 gradient;
-    };
+    using Depth = SurfaceDepth;
     // `place` in the cell, each 0 to 1, or a little outside. Nothing is known of cells that lie
     // deeper than three spacings: they are no rim.
     Depth at(CellId cell, const Vec3& place) const;

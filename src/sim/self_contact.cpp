@@ -35,9 +35,9 @@ bool SelfContact::presses() {
 }
 
 bool SelfContact::meet_anew() {
-    if (contact_ == nullptr || sums_.contacts == 0) return false;
+    if (contact_ == nullptr) return false;
     contact_->meet_anew();
-    return true;
+    return sums_.contacts > 0;
 }
 
 double SelfContact::commit() {
