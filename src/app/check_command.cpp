@@ -10,6 +10,8 @@ namespace swage {
 
 namespace {
 
+constexpr double kLeastCells = 1.5;  // of a part whose stiffness the measured table tells
+
 struct CheckArguments {
     SceneArgument scene;
     bool json = false;
@@ -25,6 +27,27 @@ Json mistakes_json(const std::vector<Mistake>& mistakes) {
                         {"warning", mistake.warning}});
     }
     return list;
+}
+
+// Of [mold], with which the work-piece's thinnest parts come within 1 %.
+double across_for_percent(const RunCost& cost) {
+    return std::ceil(accuracy_at(cost.thickness).cells_for_percent *
+                     cost.mold.cell_count.minCoeff() / cost.thickness);
+}
+
+std::string accuracy_text(const RunCost& cost) {
+    const Accuracy accuracy = accuracy_at(cost.thickness);
+    const double enough = across_for_percent(cost);
+    const std::string part =
+        cost.has_thin_parts ? fmt::format("its thin parts, about {:.2g} cells thick", cost.thickness)
+                       : fmt::format("a part {:g} cells thick", cost.thickness);
+    if (cost.thickness < kLeastCells) {
+        return fmt::format("{}: too few for its bending and torsion; 1 % at across = {:g}", part,
+                           enough);
+    }
+    return fmt::format(
+        "stiffness of {}: bending about {:.2g} %, torsion {:.2g} %; 1 % at across = {:g}", part,
+        100 * accuracy.bending, 100 * accuracy.torsion, enough);
 }
 
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
@@ -43,13 +66,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     line("particles", about + count_text(cost.mold.particles));
     line("connections", about + count_text(cost.mold.connections));
     if (material.mechanics == Mechanics::cells) {
-        const double across = cost.mold.cell_count.minCoeff();
-        const Accuracy accuracy = accuracy_at(across);
-        line("accuracy",
-             fmt::format("stiffness of a part {:g} cells thick: bending about {:.2g} %, "
-                         "torsion {:.2g} %; 1 % at {} cells",
-                         across, 100 * accuracy.bending, 100 * accuracy.torsion,
-                         accuracy.cells_for_percent));
+        line("accuracy", accuracy_text(cost));
     } else {
         line("accuracy", "springs: stretch alone is right; bending and torsion are too stiff");
     }
@@ -62,7 +79,8 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     line("memory", fmt::format("about {}, the matter itself {}", bytes_text(cost.memory_bytes),
                                bytes_text(cost.mold.bytes)));
     line("disk", "about " + bytes_text(cost.disk_bytes));
-    line("time", "about " + seconds_text(cost.seconds));
+    line("time", "about " + seconds_text(cost.seconds) +
+                     (cost.relaxes ? "; parts that are slender may take ten times that" : ""));
     for (const std::string& note : cost.note) line("note", note);
     return text;
 }
@@ -85,10 +103,10 @@ int check(const CheckArguments& given) {
         for (const InputMesh& one : input) json["meshes"].push_back(mesh_json(one));
         json["cost"] = cost_json(cost);
         if (material.mechanics == Mechanics::cells) {
-            const Accuracy accuracy = accuracy_at(cost.mold.cell_count.minCoeff());
+            const Accuracy accuracy = accuracy_at(cost.thickness);
             json["accuracy"] = {{"bending", accuracy.bending},
                                 {"torsion", accuracy.torsion},
-                                {"across_for_percent", accuracy.cells_for_percent}};
+                                {"across_for_percent", across_for_percent(cost)}};
         }
         const Resolved strength =
             resolved_strength(material, cost.mold.spacing, cost.mold.cell_count.minCoeff());

@@ -18,8 +18,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Measured on shipped scenes; good to a factor of two or so.
-constexpr double kIterationsPerFrame = 350;
+// Measured on shipped scenes; good to a factor of two or so, relaxation to one of three.
+constexpr double kSmoothWork = 350,
+                 kYieldingWork = 1500;  // iterations that Newton's method is worth
+constexpr double kLeastIterations = 100, kSlenderIterations = 0.7;
+constexpr double kEquilibriaPerFrame = 2;          // under tools, where they are not counted
+constexpr int kSampledFrames = 200;                // of the first stage, for how far its tools go
+constexpr double kThin = 0.3;                      // of the box's thinnest side
 constexpr double kSecondsPerParticleStep = 60e-9;  // one core
 constexpr double kSecondsPerPixel = 1.8e-7;        // drawing and writing, two cores
 constexpr double kEnergyStepsPerStep = 100;        // while a body swings
@@ -71,15 +76,39 @@ double steps_per_second(const SceneSpec& scene, const RunCost& cost,
     return most;
 }
 
-// `matter`: of each body, or empty.
+// Of walls 2 V / A; of a bar or ball half of how thick it is, or a third.
+void find_thickness(RunCost& cost, const TriMesh& mesh) {
+    const double across = cost.mold.cell_count.minCoeff();
+    const double mean = 2 * std::abs(signed_volume(mesh)) / surface_area(mesh) / cost.mold.spacing;
+    cost.has_thin_parts = mean < kThin * across;
+    cost.thickness = cost.has_thin_parts ? mean : across;
+}
+
+// Iterations to an equilibrium: what bends slowly under tools takes the square of its slenderness.
+double iterations_to_rest(const StageSpec& stage, const SceneSpec& scene, const RunCost& cost) {
+    if (stage.machine.tool.empty()) {
+        const bool yields = std::isfinite(scene.work_piece().material.yield_stress);
+        return yields ? kYieldingWork : kSmoothWork;
+    }
+    const double length = cost.mold.cell_count.maxCoeff();
+    return kLeastIterations + kSlenderIterations * length * length / std::max(1.0, cost.thickness);
+}
+
+// `matter`: of each body, or empty. `equilibria`: of the first stage, 0: not known.
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
-            const RunOptions& options, const std::vector<Aggregate>& matter) {
+            const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
     cost.frames = frame_count(scene);
     cost.steps = 0;
+    cost.relaxes = false;
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
         if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
-            cost.steps += kIterationsPerFrame * stage.frames;
+            const bool tools = !stage.machine.tool.empty();
+            const bool counted = equilibria > 0 && &stage == &scene.stage.front();
+            cost.steps += iterations_to_rest(stage, scene, cost) *
+                          (counted ? static_cast<double>(equilibria)
+                                   : (tools ? kEquilibriaPerFrame : 1) * stage.frames);
+            cost.relaxes = cost.relaxes || (tools && solver == Solver::quasistatic);
         } else {
             const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
                                    : solver == Solver::euler
@@ -162,7 +191,8 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     const bool cuts = std::any_of(scene.stage.begin(), scene.stage.end(),
                                   [](const StageSpec& s) { return !s.machine.blade.empty(); });
     if (breaks && cuts && scene.skin.kind != SkinKind::boundary) cost.note.push_back(kTornSkin);
-    add_up(cost, scene, input, options, {});
+    find_thickness(cost, input.front().to_mold());
+    add_up(cost, scene, input, options, {}, 0);
     return cost;
 }
 
@@ -188,7 +218,15 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         build_machine(first.machine, first.parameter,
                       place_work_frame(matter[0], first.axis, first.up), matter[0]);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
-    add_up(cost, scene, input, options, matter);
+    const int sampled = std::min(first.frames, kSampledFrames);
+    const long equilibria =
+        first.sim.solver == Solver::quasistatic
+            ? std::max<long>(
+                  first.frames,
+                  equilibria_along(matter[0], machine.apparatus, first.sim,
+                                   drives_of(machine, sampled, stage_duration(first, scene))))
+            : 0;
+    add_up(cost, scene, input, options, matter, equilibria);
     return cost;
 }
 
@@ -204,6 +242,8 @@ Json cost_json(const RunCost& cost) {
             {"frames", cost.frames},
             {"steps", cost.steps},
             {"seconds", cost.seconds},
+            {"relaxes", cost.relaxes},
+            {"thickness_cells", cost.thickness},
             {"notes", cost.note}};
 }
 

@@ -187,10 +187,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     const WorkFrame frame = place_work_frame(work_piece, stage.axis, stage.up);
     const Machine machine = build_machine(stage.machine, stage.parameter, frame, work_piece);
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
-    std::vector<Drive> drives;
-    for (int n = 0; n <= stage.frames; ++n) {
-        drives.push_back(drive_at(machine, static_cast<double>(n) / stage.frames, duration));
-    }
+    const std::vector<Drive> drives = drives_of(machine, stage.frames, duration);
     const Drive& start = drives.front();
     context.recorder.set_machine(machine.apparatus);
     if (last_frame == 0) {

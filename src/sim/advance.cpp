@@ -361,4 +361,14 @@ double explicit_steps_per_second(const Aggregate& matter, const SimSettings& set
     return 1 / explicit_step(matter, settings);
 }
 
+long equilibria_along(const Aggregate& matter, const Apparatus& apparatus,
+                      const SimSettings& settings, const std::vector<Drive>& drives) {
+    const ContactSet contacts(matter, apparatus, settings);
+    long count = 0;
+    for (std::size_t n = 1; n < drives.size(); ++n) {
+        count += increments_between(contacts, matter, drives[n - 1], drives[n]);
+    }
+    return count;
+}
+
 }  // namespace swage

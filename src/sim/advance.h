@@ -94,5 +94,8 @@ class Simulation {
 
 // About how many explicit steps a second of machine time takes; for estimates.
 double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings);
+// How many equilibria a quasi-static stage takes along these drives where none has to be halved.
+long equilibria_along(const Aggregate& matter, const Apparatus& apparatus,
+                      const SimSettings& settings, const std::vector<Drive>& drives);
 
 }  // namespace swage

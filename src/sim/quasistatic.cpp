@@ -431,9 +431,8 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
                                   contacts_.stored_energy(matter_, from) + self_.sums().stored};
         begun_ = true;
     }
-    const double travel = contacts_.travel(matter_, from, to);
-    moved_ = moved_ || travel > 0;
-    const int count = std::max(1, static_cast<int>(std::ceil(travel / matter_.lattice.spacing)));
+    moved_ = moved_ || contacts_.travel(matter_, from, to) > 0;
+    const int count = increments_between(contacts_, matter_, from, to);
     Drive before = from;
     for (int n = 1; n <= count; ++n) {
         const Drive after = n == count ? to : drive_between(from, to, double(n) / count);

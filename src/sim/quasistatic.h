@@ -29,6 +29,10 @@
 
 namespace swage {
 
+// The moves in which a drive's way is solved: none takes a tool or grip farther than one spacing.
+int increments_between(const ContactSet& contacts, const Aggregate& matter, const Drive& from,
+                       const Drive& to);
+
 class QuasistaticSolver {
   public:
     QuasistaticSolver(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);

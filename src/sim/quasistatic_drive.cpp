@@ -14,6 +14,12 @@ constexpr double kLoadedShare = 0.3, kUnloadedShare = 0.1;
 
 }  // namespace
 
+int increments_between(const ContactSet& contacts, const Aggregate& matter, const Drive& from,
+                       const Drive& to) {
+    const double travel = contacts.travel(matter, from, to);
+    return std::max(1, static_cast<int>(std::ceil(travel / matter.lattice.spacing)));
+}
+
 // How the drive moves, as one vector: translations; turns and strengths times the body's size.
 std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive& to) const {
     std::vector<double> motion;

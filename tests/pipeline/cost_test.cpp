@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/cost.h"
+
+#include "geometry/make_shape.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+RunCost cost_of(const std::string& shape, const std::map<std::string, double>& size) {
+    InputMesh input;
+    input.mesh = make_shape(shape, size).mesh;
+    SceneSpec scene;
+    scene.body.resize(1);
+    scene.body[0].mold.across = 6;
+    return estimate_cost(scene, {input}, {});
+}
+
+}  // namespace
+
+TEST_CASE("a body's thin parts are told in cells, and a solid one has none") {
+    const RunCost tube = cost_of("tube", {{"length", 0.3}, {"diameter", 0.06}, {"wall", 0.005}});
+    CHECK(tube.has_thin_parts);
+    CHECK(tube.thickness == Approx(0.5).epsilon(0.05));  // cells of 1 cm
+    for (const char* solid : {"bar", "rod", "sphere", "sheet"}) {
+        const RunCost cost = cost_of(solid, {});
+        INFO(solid);
+        CHECK_FALSE(cost.has_thin_parts);
+        CHECK(cost.thickness == Approx(6));
+    }
+}
