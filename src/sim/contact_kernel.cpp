@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What contacts do, one after the other: where each meets, what its springs do, what it does then.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/contact_way.h"
+#include "sim/vector_clones.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kBeside = 0.6;  // cells that a point may go beyond the one that it has met
+constexpr double kTurned = 0.1;  // of a reach squared, across a surface that has turned, that holds
+
+}  // namespace
+
+// What is done with each contact, for the width of vectors that the caller is built for.
+struct ContactWay::Kernel {
+    ContactWay& way;
+    const ContactSide& onto = *way.onto_;
+    ContactPatch &a = way.from_->patch(), &b = way.onto_->patch();
+
+    static bool is_known(const Meeting& at) { return at.inverse[0][3] != 0; }
+    static bool meets(const Meeting& at) { return at.inverse[1][3] != 0; }
+
+    // Of a depth that is counted as it is now where the depth at rest is stretched by 1 / slope
+    // [m].
+    SWAGE_INLINE double stiffness(int point, double slope) const {
+        const double stretch = onto.matter().lattice.spacing * slope;
+        return std::min(way.stiffness_[point] * stretch * stretch, way.stiffest_[point]);
+    }
+
+    // How deep the point lies as it goes on from where it has met; false where it has left the
+    // cell and what is around it.
+    SWAGE_INLINE bool find_by_plane(Contact& contact, Vec4 x, Plane& plane,
+                                    const CellCorners& corner, CellGradient& gradient,
+                                    RestSurface::Depth& depth) const {
+        const bool found =
+            find_in_cell(corner, x, onto.matter().lattice.spacing, contact.place, gradient);
+        const Vec3& p = contact.place;
+        if (!found || (p.array() < -kBeside).any() || (p.array() > 1 + kBeside).any()) {
+            contact.place = p.cwiseMax(0.0).cwiseMin(1.0);
+            plane.is_met = false;
+            return false;
+        }
+        depth = {plane.distance + plane.gradient.dot(p - plane.place), plane.gradient};
+        return true;
+    }
+
+    // How deep it lies below the surface; false where it lies outside. kOwn: of one body.
+    template <bool kOwn>
+    SWAGE_INLINE bool find_depth(Contact& contact, const ContactMemory& last, Vec4 x,
+                                 CellCorners& corner, CellGradient& gradient,
+                                 RestSurface::Depth& depth) const {
+        const double hold = way.hold_[contact.point];
+        const Vec3 was = contact.place;
+        if (!find_place(onto, x, contact, corner, gradient)) {
+            const Vec3 p = contact.place;
+            // Outside, but what sticks may still hold it.
+            const bool held = last.history.touches && hold > 0 && (p.array() > -0.3).all() &&
+                              (p.array() < 1.3).all();
+            if (!held) {
+                contact.place = was.cwiseMax(0.0).cwiseMin(1.0);
+                return false;
+            }
+        }
+        if (!onto.may_hold(contact.cell) || !(gradient.volume > 0)) return false;
+        depth = onto.depth(contact.site, contact.cell, contact.place);
+        if constexpr (kOwn) {
+            const auto own = onto.own_share(contact.point, contact.site, contact.place);
+            depth.gradient = own.value * depth.gradient + depth.distance * own.gradient;
+            depth.distance *= own.value;
+        }
+        return true;
+    }
+
+    // Where the point lies in the other side.
+    template <bool kOwn>
+    SWAGE_INLINE void find(Contact& contact, const ContactMemory& last, Plane* plane,
+                           CellCorners& corner, CellGradient& gradient, Meeting& at) const {
+        const double hold = way.hold_[contact.point];
+        Vec4 x{};
+        for (int c = 0; c < contact.carriers; ++c) {
+            x += double(contact.share[c]) * a.motion(contact.carrier[c]).place;
+        }
+        RestSurface::Depth depth;
+        if (!kOwn || plane == nullptr || !plane->is_met ||
+            !find_by_plane(contact, x, *plane, corner, gradient, depth)) {
+            if (!find_depth<kOwn>(contact, last, x, corner, gradient, depth)) return;
+            if (kOwn && plane != nullptr && depth.distance < 0) {
+                *plane = {true, contact.place, depth.gradient, depth.distance};
+            }
+        }
+        const double share = 1 / gradient.volume;
+        Vec4 slope{};
+        for (int i = 0; i < 3; ++i) {
+            at.inverse[i] = share * gradient.r[i];
+            slope += depth.gradient[i] * at.inverse[i];
+            at.inverse[i][3] = 0;
+        }
+        const double size = std::sqrt(dot3(slope, slope));
+        if (!(size > 0)) return;
+        at.inverse[2][3] = stiffness(contact.point, size);
+        at.normal = slope / size;
+        at.normal[3] = -depth.distance / size;
+        at.inverse[0][3] = 1;
+        at.inverse[1][3] = at.normal[3] > 0 || (last.history.touches && hold > 0);
+    }
+
+    // All that does not depend on forces.
+    SWAGE_INLINE void prepare(const Contact& contact, const ContactMemory& last,
+                              const CellCorners& corner, const CellGradient& gradient, double step,
+                              Meeting& at, Chunk& sums) const {
+        const std::array<double, 8> weight = trilinear_weights(contact.place);
+        double give = 0;
+        at.now = Vec4{};
+        for (int c = 0; c < contact.carriers; ++c) {
+            const double w = contact.share[c];
+            const ContactPatch::Motion& motion = a.motion(contact.carrier[c]);
+            at.now += w * motion.speed;
+            give += w * w * motion.place[3];
+        }
+        for (int c = 0; c < 8; ++c) {
+            at.now -= weight[c] * corner.now[c]->speed;
+            give += weight[c] * weight[c] * corner.now[c]->place[3];
+        }
+        sums.took -= dot3(at.now, vec4(contact.dashed));
+        const double hold = way.hold_[contact.point];
+        if (way.has_broken_ && is_known(at)) {
+            // At rest as long as in the shape at rest: strain must not change what is stored.
+            const double stretch =
+                way.is_static_ ? std::sqrt(at.inverse[2][3] / way.stiffness_[contact.point]) : 1;
+            double& depth = at.normal[3];
+            const double whole = stretch * depth, pressed = last.history.touches ? last.pressed : 0;
+            double sunk = last.is_new ? 0 : last.sunk;
+            if (last.is_new || !way.is_static_) {
+                const double could = last.is_new ? 0 : 2 * step * std::sqrt(dot3(at.now, at.now));
+                sunk = std::max(sunk, whole - pressed - could);
+            }
+            at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, whole));
+            depth -= at.now[3] / stretch;
+            if (!(depth > 0 || hold > 0)) at.inverse[1][3] = 0;
+        }
+        if (!meets(at)) return;
+        const double k = at.inverse[2][3];
+        const double push = std::max(k * at.normal[3], -hold);
+        at.spring = push * at.normal;
+        at.reach = Vec4{};
+        if (last.history.touches) {
+            const Vec3 back = last.place - contact.site.cast<double>() - contact.place;
+            const auto turned = [&](const Vec3& way) __attribute__((always_inline)) {
+                return gradient.g[0] * way.x() + gradient.g[1] * way.y() + gradient.g[2] * way.z();
+            };
+            Vec4 held = turned(last.reach);
+            const double whole = dot3(held, held);
+            held -= dot3(at.normal, held) * at.normal;
+            const double left = dot3(held, held);
+            if (left > kTurned * whole) {
+                held *= std::sqrt(2 * last.held / (k * left));
+            } else {
+                held = Vec4{};
+                sums.lost += last.held;
+            }
+            at.reach = turned(back) + held;
+            const Vec4 along = k * (at.reach - dot3(at.normal, at.reach) * at.normal);
+            const double limit =
+                (last.history.slides ? way.law_.friction : way.law_.holding) * (push + hold);
+            const double size = std::sqrt(dot3(along, along));
+            at.spring += size > limit ? limit / size * along : along;
+        }
+        at.spring[3] = 0;
+        at.reach[3] = give;
+        sums.stored += 0.5 / k * dot3(at.spring, at.spring);
+    }
+
+    // Whether an earlier contact of its point has come into the same cell by another way.
+    bool is_twice(std::size_t begin, std::size_t n) const {
+        const auto& all = way.list_.contact;
+        for (std::size_t m = n; m-- > begin && all[m].point == all[n].point;) {
+            if (all[m].cell == all[n].cell && meets(way.meeting_[m])) return true;
+        }
+        return false;
+    }
+
+    template <bool kOwn>
+    SWAGE_INLINE void find_chunk(std::size_t chunk, double step) const {
+        Chunk& result = way.chunk_[chunk];
+        result.moved.clear();
+        result.took = result.stored = result.lost = 0;
+        const std::size_t begin = way.begin_of(chunk), end = way.begin_of(chunk + 1);
+        for (std::size_t n = begin; n < end; ++n) {
+            Contact& contact = way.list_.contact[n];
+            const ContactMemory& last = way.list_.memory[n];
+            Meeting& at = way.meeting_[n];
+            at.normal = at.now = at.inverse[0] = at.inverse[1] = Vec4{};
+            const CellId was = contact.cell;
+            CellCorners corner(b, contact);
+            CellGradient gradient;
+            find<kOwn>(contact, last, way.plane_.empty() ? nullptr : &way.plane_[n], corner,
+                       gradient, at);
+            if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
+            if (kOwn && meets(at) && is_twice(begin, n)) at.inverse[1][3] = 0;
+            if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
+            prepare(contact, last, corner, gradient, step, at, result);
+        }
+    }
+
+    // Adds a force on the point and its opposite on the cell that holds it.
+    SWAGE_INLINE void spread(const Contact& contact, const std::array<double, 8>& weight,
+                             Vec4 f) const {
+        for (int c = 0; c < contact.carriers; ++c) {
+            a.force(contact.carrier[c]) += double(contact.share[c]) * f;
+        }
+        for (int c = 0; c < 8; ++c) b.force(contact.corner[c]) -= weight[c] * f;
+    }
+
+    SWAGE_INLINE void push_chunk(std::size_t chunk) const {
+        Pushed &point = way.point_push_, &cell = way.cell_push_;
+        const std::size_t end = way.begin_of(chunk + 1);
+        for (std::size_t n = way.begin_of(chunk); n < end; ++n) {
+            const Contact& contact = way.list_.contact[n];
+            if (!meets(way.meeting_[n])) continue;
+            const std::array<double, 8> weight = trilinear_weights(contact.place);
+            const Vec4 f = way.meeting_[n].spring;
+            for (int c = 0; c < contact.carriers; ++c) {
+                point.force[contact.carrier[c] - point.low].value += double(contact.share[c]) * f;
+            }
+            for (int c = 0; c < 8; ++c) {
+                cell.force[contact.corner[c] - cell.low].value -= weight[c] * f;
+            }
+        }
+    }
+
+    SWAGE_INLINE ImpactForce impact(const Contact& contact, const ContactMemory& last,
+                                    const Meeting& at, double step) const {
+        const std::array<double, 8> weight = trilinear_weights(contact.place);
+        const double give = at.reach[3];
+        const Vec4 spring = way.share_ * at.spring;
+        Vec4 push = -give * spring;  // of all others, over the mass
+        for (int c = 0; c < contact.carriers; ++c) {
+            const Vec4& f = a.force(contact.carrier[c]);
+            push += contact.share[c] * f[3] * f;
+        }
+        for (int c = 0; c < 8; ++c) {
+            const Vec4& f = b.force(contact.corner[c]);
+            push -= weight[c] * f[3] * f;
+        }
+        ImpactLaw law = way.law_;
+        law.stiffness = way.share_ * at.inverse[2][3];
+        law.hold = way.share_ * way.hold_[contact.point];
+        const ImpactForce f = impact_force(law,
+                                           {.depth = at.normal[3],
+                                            .normal = vec3(at.normal),
+                                            .now = vec3(at.now),
+                                            .velocity = vec3(at.now + step * push),
+                                            .reach = vec3(at.reach),
+                                            .give = give,
+                                            .step = step},
+                                           last.history);
+        spread(contact, weight, vec4(f.force) - spring);
+        return f;
+    }
+
+    SWAGE_INLINE void respond(double step) const {
+        ContactSums& sums = way.sums_ = {};
+        for (const Chunk& chunk : way.chunk_) {
+            sums.took += 0.5 * chunk.took;
+            sums.friction += 0.5 * way.share_ * chunk.lost;
+        }
+        for (std::size_t n = 0; n < way.list_.size(); ++n) {
+            Contact& contact = way.list_.contact[n];
+            const ContactMemory& last = way.list_.memory[n];
+            const Meeting& at = way.meeting_[n];
+            ContactMemory& next = way.next_[n];
+            ImpactForce f;
+            if (meets(at)) f = impact(contact, last, at, step);
+            next.history = f.history;
+            next.bond = f.bond;
+            next.stiffness = way.share_ * at.inverse[2][3];
+            next.sunk = at.now[3];
+            next.pressed = at.normal[3];
+            next.is_new = last.is_new && !is_known(at);
+            contact.dashed = f.force - f.elastic;
+            if (f.history.touches) {
+                const Vec4 reach = vec4(f.reach);
+                next.place = contact.site.cast<double>() + contact.place;
+                next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
+                                  dot3(at.inverse[2], reach));
+                next.held = 0.5 * at.inverse[2][3] * dot3(reach, reach);
+                sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
+                sums.stored += 0.5 * f.stored;
+                sums.friction += 0.5 * f.friction;
+                sums.penetration = std::max(sums.penetration, at.normal[3]);
+                ++sums.contacts;
+                sums.sliding += f.history.slides;
+            } else if (last.history.touches) {
+                sums.damped += 0.5 * parting_loss(last.stiffness, last.bond, vec3(at.now), step);
+            }
+        }
+    }
+};
+
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_find_chunk(std::size_t chunk, double step) {
+    from_ == onto_ ? Kernel{*this}.find_chunk<true>(chunk, step)
+                   : Kernel{*this}.find_chunk<false>(chunk, step);
+}
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk) {
+    Kernel{*this}.push_chunk(chunk);
+}
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step) { Kernel{*this}.respond(step); }
+
+void ContactWay::find_chunk(std::size_t chunk, double step) {
+    if (vector_width() >= 4) return middle_find_chunk(chunk, step);
+    from_ == onto_ ? Kernel{*this}.find_chunk<true>(chunk, step)
+                   : Kernel{*this}.find_chunk<false>(chunk, step);
+}
+
+void ContactWay::push_chunk(std::size_t chunk) {
+    if (vector_width() >= 4) return middle_push_chunk(chunk);
+    Kernel{*this}.push_chunk(chunk);
+}
+
+void ContactWay::respond(double step) {
+    next_.resize(list_.size());
+    vector_width() >= 4 ? middle_respond(step) : Kernel{*this}.respond(step);
+    is_found_ = true;
+}
+
+}  // namespace swage
