@@ -14,7 +14,7 @@ namespace swage {
 
 namespace {
 
-constexpr std::size_t kRunsPerChunk = 256;
+constexpr std::size_t kRunsPerChunk = 32;
 
 CornerRows<const double> rows_of(const Aggregate& matter, const CellRun& run, int at) {
     const Vec3Array& x = matter.particle_position;

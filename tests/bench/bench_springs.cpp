@@ -82,7 +82,8 @@ double step_ns(double particles, const Material& material) {
     const Apparatus nothing;
     const SimSettings settings{.solver = Solver::explicit_steps};
     ExplicitSolver solver({&m}, nothing, settings);
-    const int steps = std::max(10, static_cast<int>(1e6 / particles));
+    // A whole block at least: what is done once a block is not to weigh more than it does.
+    const int steps = std::max(64, static_cast<int>(1e6 / particles));
     const double frame = (steps - 0.5) * explicit_step(m, settings);
     Drive from, to;
     to.time = frame;
