@@ -40,7 +40,8 @@ std::string strength_warning(const Material& material, double spacing, double ce
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
         "breaks at {} instead of {}; [mold] across = {} would do",
-        quantity_text(spacing, Quantity::length), material.name,
+        quantity_text(spacing, Quantity::length),
+        material.name == Material{}.name ? "the material" : material.name,
         quantity_text(resolved.strength, Quantity::stress),
         quantity_text(material.strength, Quantity::stress), resolved.cells_for_whole);
 }
