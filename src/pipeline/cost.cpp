@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // Measured on shipped scenes; good to a factor of two or so, relaxation to one of three.
-constexpr double kSmoothWork = 350,
-                 kYieldingWork = 1500;  // iterations that Newton's method is worth
+constexpr double kSmoothWork = 350;     // iterations that Newton's method is worth
+constexpr double kYieldingWork = 1500;  // likewise, where matter yields
 constexpr double kLeastIterations = 100, kSlenderIterations = 0.7;
 constexpr double kEquilibriaPerFrame = 2;          // under tools, where they are not counted
 constexpr int kSampledFrames = 200;                // of the first stage, for how far its tools go
