@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include "app/command.h"
 #include "app/scene_argument.h"
 #include "base/log.h"
@@ -30,23 +32,24 @@ Json mistakes_json(const std::vector<Mistake>& mistakes) {
 }
 
 // Of [mold], with which the work-piece's thinnest parts come within 1 %.
-double across_for_percent(const RunCost& cost) {
-    return std::ceil(accuracy_at(cost.thickness).cells_for_percent *
-                     cost.mold.cell_count.minCoeff() / cost.thickness);
+int across_for_percent(const RunCost& cost) {
+    return static_cast<int>(std::ceil(accuracy_at(cost.thickness).cells_for_percent *
+                                      cost.mold.cell_count.minCoeff() / cost.thickness));
 }
 
 std::string accuracy_text(const RunCost& cost) {
     const Accuracy accuracy = accuracy_at(cost.thickness);
-    const double enough = across_for_percent(cost);
+    const int enough = across_for_percent(cost);
     const std::string part =
-        cost.has_thin_parts ? fmt::format("its thin parts, about {:.2g} cells thick", cost.thickness)
-                       : fmt::format("a part {:g} cells thick", cost.thickness);
+        cost.has_thin_parts()
+            ? fmt::format("its thin parts, about {:.2g} cells thick", cost.thickness)
+            : fmt::format("a part {:g} cells thick", cost.thickness);
     if (cost.thickness < kLeastCells) {
-        return fmt::format("{}: too few for its bending and torsion; 1 % at across = {:g}", part,
+        return fmt::format("{}: too few for its bending and torsion; 1 % at across = {}", part,
                            enough);
     }
     return fmt::format(
-        "stiffness of {}: bending about {:.2g} %, torsion {:.2g} %; 1 % at across = {:g}", part,
+        "stiffness of {}: bending about {:.2g} %, torsion {:.2g} %; 1 % at across = {}", part,
         100 * accuracy.bending, 100 * accuracy.torsion, enough);
 }
 

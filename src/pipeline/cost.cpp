@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 
@@ -80,13 +81,12 @@ double steps_per_second(const SceneSpec& scene, const RunCost& cost,
 void find_thickness(RunCost& cost, const TriMesh& mesh) {
     const double across = cost.mold.cell_count.minCoeff();
     const double mean = 2 * std::abs(signed_volume(mesh)) / surface_area(mesh) / cost.mold.spacing;
-    cost.has_thin_parts = mean < kThin * across;
-    cost.thickness = cost.has_thin_parts ? mean : across;
+    cost.thickness = mean < kThin * across ? mean : across;
 }
 
 // Iterations to an equilibrium: what bends slowly under tools takes the square of its slenderness.
 double iterations_to_rest(const StageSpec& stage, const SceneSpec& scene, const RunCost& cost) {
-    if (stage.machine.tool.empty()) {
+    if (stage.machine.tool.empty() || stage.sim.solver == Solver::implicit_steps) {
         const bool yields = std::isfinite(scene.work_piece().material.yield_stress);
         return yields ? kYieldingWork : kSmoothWork;
     }
@@ -103,12 +103,12 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
         if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
-            const bool tools = !stage.machine.tool.empty();
+            const bool relaxes = solver == Solver::quasistatic && !stage.machine.tool.empty();
             const bool counted = equilibria > 0 && &stage == &scene.stage.front();
             cost.steps += iterations_to_rest(stage, scene, cost) *
                           (counted ? static_cast<double>(equilibria)
-                                   : (tools ? kEquilibriaPerFrame : 1) * stage.frames);
-            cost.relaxes = cost.relaxes || (tools && solver == Solver::quasistatic);
+                                   : (relaxes ? kEquilibriaPerFrame : 1) * stage.frames);
+            cost.relaxes = cost.relaxes || relaxes;
         } else {
             const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
                                    : solver == Solver::euler

@@ -18,7 +18,6 @@ struct RunCost {
     std::vector<double> spacing;    // of each body [m]
     bool counted = false;           // the mold was made, so its numbers are no estimate
     double thickness = 0;           // of the work-piece, or of its thin parts, in cells: about
-    bool has_thin_parts = false;    // most of it is far thinner than its box
     int frames = 0;                 // stills, the start included
     double steps = 0;               // relaxation iterations and explicit steps, about
     double seconds = 0;             // of simulation and drawing on this machine, about
@@ -26,6 +25,9 @@ struct RunCost {
     double memory_bytes = 0;        // at the peak, about
     double disk_bytes = 0;          // of the run directory, about
     std::vector<std::string> note;  // of the first machine at the work-piece; of the skin
+
+    // Most of it is far thinner than its box.
+    bool has_thin_parts() const { return thickness < mold.cell_count.minCoeff(); }
 };
 
 int frame_count(const SceneSpec& scene);

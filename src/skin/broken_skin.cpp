@@ -14,9 +14,9 @@
 #include <optional>
 
 #include "geometry/triangle_tree.h"
-#include "skin/cut_mesh.h"
 #include "skin/parted_skin.h"
 #include "skin/section.h"
+#include "skin/split_attributes.h"
 
 namespace swage {
 
@@ -28,7 +28,7 @@ class Breaker {
         : whole_(whole),
           matter_(matter),
           faces_(broken_faces(matter)),
-          skin_(whole, mount, matter) {}
+          skin_(whole, mount, matter, faces_) {}
 
     BrokenSkin run() {
         prepare_attributes();
@@ -48,19 +48,8 @@ class Breaker {
     void prepare_attributes() {
         TriMesh& mesh = skin_.mesh;
         const std::size_t count = mesh.triangle.size();
-        if (mesh.material.empty()) mesh.material.emplace_back();
         mesh.triangle_material.resize(count, 0);
-        const auto known =
-            std::find_if(mesh.material.begin(), mesh.material.end(),
-                         [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
-        material_ = static_cast<int>(known - mesh.material.begin());
-        if (known == mesh.material.end()) {
-            SurfaceMaterial material;
-            material.name = kCutMaterial;
-            material.color = {0.86, 0.82, 0.76};
-            material.roughness = 0.7;
-            mesh.material.push_back(material);
-        }
+        material_ = cut_material(mesh);
         polygon_ = mesh.triangle_polygon.empty() ? 0 : mesh.triangle_polygon.back() + 1;
     }
 

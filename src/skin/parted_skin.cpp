@@ -34,10 +34,11 @@ std::vector<BrokenFace> broken_faces(const Aggregate& matter) {
     return faces;
 }
 
-PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter)
+PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter,
+                       const std::vector<BrokenFace>& faces)
     : matter_(matter) {
     std::unordered_set<std::uint64_t> beside;  // cubes at broken faces
-    for (const BrokenFace& face : broken_faces(matter)) {
+    for (const BrokenFace& face : faces) {
         broken_.insert(key_of(face.site, face.axis));
         Vec3i upper = face.site;
         ++upper[face.axis];

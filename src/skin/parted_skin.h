@@ -24,7 +24,9 @@ std::vector<BrokenFace> broken_faces(const Aggregate& matter);
 
 class PartedSkin {
   public:
-    PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter);
+    // `faces`: those of broken_faces().
+    PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter,
+               const std::vector<BrokenFace>& faces);
 
     const DicedSkin& diced() const { return diced_; }
     bool joined(const Vec3i& lower, int axis) const;

@@ -132,23 +132,9 @@ void carry_polygons(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& out
 void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& out) {
     const bool has_cap = !split.triangle.empty() && split.triangle.back().parent < 0;
     if (!has_cap && mesh.triangle_material.empty()) return;
-    int cut_material = -1;
-    if (has_cap) {
-        if (out.material.empty()) out.material.emplace_back();
-        const auto known =
-            std::find_if(out.material.begin(), out.material.end(),
-                         [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
-        cut_material = static_cast<int>(known - out.material.begin());
-        if (known == out.material.end()) {
-            SurfaceMaterial material;
-            material.name = kCutMaterial;
-            material.color = {0.86, 0.82, 0.76};
-            material.roughness = 0.7;
-            out.material.push_back(material);
-        }
-    }
+    const int cut = has_cap ? cut_material(out) : -1;
     for (const SplitTriangle& triangle : split.triangle) {
-        int material = cut_material;
+        int material = cut;
         if (triangle.parent >= 0) {
             material = mesh.triangle_material.empty() ? 0 : mesh.triangle_material[triangle.parent];
         }
@@ -157,6 +143,22 @@ void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& ou
 }
 
 }  // namespace
+
+int cut_material(TriMesh& mesh) {
+    if (mesh.material.empty()) mesh.material.emplace_back();
+    const auto known =
+        std::find_if(mesh.material.begin(), mesh.material.end(),
+                     [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
+    const auto number = static_cast<int>(known - mesh.material.begin());
+    if (known == mesh.material.end()) {
+        SurfaceMaterial material;
+        material.name = kCutMaterial;
+        material.color = {0.86, 0.82, 0.76};
+        material.roughness = 0.7;
+        mesh.material.push_back(material);
+    }
+    return number;
+}
 
 TriMesh apply_split(const TriMesh& mesh, const SurfaceSplit& split,
                     const std::vector<Vec3>& reference, const std::vector<double>& share) {

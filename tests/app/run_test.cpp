@@ -200,9 +200,8 @@ TEST_CASE("a run that cannot be written is refused before it is simulated") {
     put_text(scratch.path() / "file", "");
     CHECK(run_swage({"run", scene.string(), "--out", (scratch.path() / "file").string()}).code ==
           5);
-    CHECK(
-        run_swage({"run", scene.string(), "--out", (scratch.path() / "file/below").string()}).code ==
-        5);
+    CHECK(run_swage({"run", scene.string(), "--out", (scratch.path() / "file/below").string()})
+              .code == 5);
     CHECK(run_swage({"run", scene.string(), "--out", scratch.path().string()}).code == 8);
 }
 

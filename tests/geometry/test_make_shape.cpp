@@ -9,9 +9,9 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
-#include "geometry/edges.h"
 #include "geometry/make_shape.h"
 #include "tests/catch.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
 
@@ -20,14 +20,6 @@ namespace {
 MadeShape make_small(const std::string& name, std::map<std::string, double> values = {}) {
     if (name == "calf") values.try_emplace("texture", 64);
     return make_shape(name, values);
-}
-
-bool is_closed(const TriMesh& mesh) {
-    bool closed = true;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        closed = closed && uses.size() == 2 && uses[0].forward != uses[1].forward;
-    });
-    return closed;
 }
 
 int handles(const TriMesh& mesh) {  // genus of a closed connected surface
@@ -67,7 +59,7 @@ TEST_CASE("every shape is one closed outward surface with even triangles") {
         INFO(info.name);
         const MadeShape made = make_small(info.name);
         const TriMesh& mesh = made.mesh;
-        CHECK(is_closed(mesh));
+        CHECK(fixtures::is_closed(mesh));
         CHECK(surface_components(mesh).count == 1);
         CHECK(signed_volume(mesh) > 0);
         CHECK(mesh.triangle.size() > 1500);

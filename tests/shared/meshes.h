@@ -9,10 +9,20 @@
 #include <utility>
 
 #include "geometry/box_mesh.h"
+#include "geometry/edges.h"
 
 namespace swage::fixtures {
 
 using swage::box_mesh;
+
+// Every edge has two triangles, in opposite directions.
+inline bool is_closed(const TriMesh& mesh) {
+    bool closed = true;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        closed = closed && uses.size() == 2 && uses[0].forward != uses[1].forward;
+    });
+    return closed;
+}
 
 // 20 * 4^divisions triangles.
 inline TriMesh sphere_mesh(double radius, int divisions) {

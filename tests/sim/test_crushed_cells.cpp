@@ -6,7 +6,7 @@
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
 #include "tests/catch.h"
-#include "tests/sim/energy_slope.h"
+#include "tests/sim/force_checks.h"
 #include "tests/sim/machines.h"
 #include "tests/sim/motion.h"
 

@@ -10,6 +10,7 @@
 #include "sim/vector_clones.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/force_checks.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -82,13 +83,7 @@ TEST_CASE("forces inside matter neither push nor turn it, and vanish under a rig
         LatticeForces forces(m);
         Vec3Array f;
         forces.find(m, Flow::trial, f);
-        Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
-        double size = 0;
-        for (std::size_t p = 0; p < f.size(); ++p) {
-            sum += f.at(p);
-            torque += m.particle_position.at(p).cross(f.at(p));
-            size += f.at(p).norm();
-        }
+        const auto [sum, torque, size] = balance_of(m, f);
         CHECK(sum.norm() < 1e-13 * size);
         CHECK(torque.norm() < 1e-13 * size);
         const Pose moved{Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())), Vec3(3, -1, 2)};

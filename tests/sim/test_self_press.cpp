@@ -6,6 +6,7 @@
 #include "sim/self_contact.h"
 #include "tests/catch.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/force_checks.h"
 #include "tests/sim/machines.h"
 
 using namespace swage;
@@ -140,13 +141,7 @@ TEST_CASE("forces of a body on itself are the slope of their energy, and in bala
     force.resize(c.particle_count());
     self.add_forces(force);
     REQUIRE(self.sums().contacts > 100);
-    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
-    double size = 0;
-    for (std::size_t p = 0; p < c.particle_count(); ++p) {
-        sum += force.at(p);
-        moment += c.particle_position.at(p).cross(force.at(p));
-        size += force.at(p).norm();
-    }
+    const auto [sum, moment, size] = balance_of(c, force);
     CHECK(sum.norm() < 1e-8 * size);  // weights are floats
     CHECK(moment.norm() < 1e-8 * size);
     Vec3Array unused;
@@ -155,14 +150,11 @@ TEST_CASE("forces of a body on itself are the slope of their energy, and in bala
     int pressed = 0;
     for (std::size_t p = 0; p < c.particle_count(); p += 7) {
         for (int axis = 0; axis < 3; ++axis) {
-            const Vec3 here = c.particle_position.at(p);
-            const auto at = [&](double by) {
-                c.particle_position.set(p, here + by * Vec3::Unit(axis));
+            const auto stored = [&](const Aggregate&) {
                 self.add_forces(unused);
                 return self.sums().stored;
             };
-            const double slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
-            c.particle_position.set(p, here);
+            const double slope = slope_of(stored, c, p, axis, h);
             CHECK(force.at(p)[axis] == Approx(-slope).margin(1e-5 * size / 100));
             pressed += std::abs(slope) > 1e-3 * size;
         }

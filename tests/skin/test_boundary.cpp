@@ -8,18 +8,11 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
 
 namespace {
-
-bool closed(const TriMesh& mesh) {
-    bool sound = true;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        sound = sound && uses.size() == 2 && uses[0].forward != uses[1].forward;
-    });
-    return sound;
-}
 
 int euler_number(const TriMesh& mesh) {
     int edges = 0;
@@ -73,7 +66,7 @@ double cut_area(const TriMesh& mesh) {
 TEST_CASE("the boundary of a block of whole cells is the block") {
     const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
     const TriMesh mesh = boundary_skin(block);
-    CHECK(closed(mesh));
+    CHECK(fixtures::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(.7 * .4 * .3).epsilon(1e-12));
     CHECK(surface_area(mesh) == Approx(2 * (.7 * .4 + .7 * .3 + .4 * .3)).epsilon(1e-12));
@@ -84,7 +77,7 @@ TEST_CASE("round shapes get round boundaries of their true volume") {
         GENERATE(table<int, double>({{4, .01}, {8, .003}, {13, .003}}));
     const Aggregate matter = rod(across);
     const TriMesh mesh = boundary_skin(matter);
-    CHECK(closed(mesh));
+    CHECK(fixtures::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(volume_bar));
     double worst = 0;
@@ -97,7 +90,7 @@ TEST_CASE("round shapes get round boundaries of their true volume") {
 
 TEST_CASE("handles are kept") {
     const TriMesh mesh = boundary_skin(torus());
-    CHECK(closed(mesh));
+    CHECK(fixtures::is_closed(mesh));
     CHECK(euler_number(mesh) == 0);
     CHECK(surface_components(mesh).count == 1);
     CHECK(signed_volume(mesh) == Approx(2 * kPi * kPi * .16).epsilon(.01));
@@ -113,7 +106,7 @@ TEST_CASE("thin sheets keep both sides") {
         },
         Vec3(-6, -5, -.93), Vec3i(12, 10, 2), 1.0);
     const TriMesh mesh = boundary_skin(sheet);
-    CHECK(closed(mesh));
+    CHECK(fixtures::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(sheet.volume()).epsilon(.02));
 }
@@ -127,7 +120,7 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
     test::sever_plane(matter, point, n);
     REQUIRE(find_pieces(matter).count == 2);
     TriMesh mesh = boundary_skin(matter);
-    CHECK(closed(mesh));
+    CHECK(fixtures::is_closed(mesh));
     const Components halves = surface_components(mesh);
     CHECK(halves.count == 2);
     CHECK(signed_volume(mesh) == Approx(whole).epsilon(.01));
@@ -180,7 +173,7 @@ TEST_CASE("a body half severed stays in one piece, with a slit") {
     const TriMesh mesh = boundary_skin(matter);
     CHECK(surface_components(mesh).count == 1);
     CHECK(euler_number(mesh) == 2);
-    CHECK(closed(mesh));
+    CHECK(fixtures::is_closed(mesh));
     CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(1e-9));
     CHECK(cut_area(mesh) > 0);
 }
@@ -193,7 +186,7 @@ TEST_CASE("cells that only touch at an edge or a corner get separate vertices") 
     const Aggregate matter = test::make_matter(Vec3::Zero(), 1, Vec3i(4, 3, 3), cells,
                                                std::vector<float>(cells.size(), 1.f));
     const TriMesh mesh = boundary_skin(matter);
-    CHECK(closed(mesh));
+    CHECK(fixtures::is_closed(mesh));
     CHECK(surface_components(mesh).count == 6);
     CHECK(euler_number(mesh) == 12);
     CHECK(signed_volume(mesh) == Approx(6).epsilon(1e-12));

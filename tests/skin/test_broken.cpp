@@ -6,25 +6,17 @@
 #include <random>
 
 #include "geometry/box_mesh.h"
-#include "geometry/edges.h"
 #include "skin/boundary.h"
 #include "skin/cut_mesh.h"
 #include "skin/diced_skin.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
 
 namespace {
-
-bool closed(const TriMesh& mesh) {
-    bool sound = true;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        sound = sound && uses.size() == 2 && uses[0].forward != uses[1].forward;
-    });
-    return sound;
-}
 
 // Breaks by load what `broken` says of a connection's two ends.
 void break_where(Aggregate& m, const std::function<bool(const Vec3&, const Vec3&)>& broken) {
@@ -95,7 +87,7 @@ TEST_CASE("a diced skin is the skin, each triangle around one particle") {
     const bool part = GENERATE(false, true);
     const auto wanted = [&](const Vec3i& site) { return !part || site.x() == 4; };
     const DicedSkin diced = dice_skin(f.mesh, f.matter.lattice, wanted);
-    CHECK(closed(diced.mesh));
+    CHECK(fixtures::is_closed(diced.mesh));
     CHECK(signed_volume(diced.mesh) == Approx(signed_volume(f.mesh)).epsilon(1e-12));
     CHECK(surface_area(diced.mesh) == Approx(surface_area(f.mesh)).epsilon(1e-12));
     const Lattice& lattice = f.matter.lattice;
@@ -130,7 +122,7 @@ TEST_CASE("what broke in two shows two closed surfaces that move on their own, a
     f.break_it();
     CHECK(f.broken.open_faces == 0);
     CHECK(f.broken.faces > 0);
-    CHECK(closed(f.broken.mesh));
+    CHECK(fixtures::is_closed(f.broken.mesh));
     CHECK(surface_components(f.broken.mesh).count == 2);
     CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
     for (std::size_t v = 0; v < f.mesh.position.size(); ++v) {
@@ -167,7 +159,7 @@ TEST_CASE("a crack that ends inside is a slit, and opens like a mouth") {
     f.break_it();
     CHECK(f.broken.faces > 0);
     CHECK(f.broken.open_faces == 0);
-    CHECK(closed(f.broken.mesh));
+    CHECK(fixtures::is_closed(f.broken.mesh));
     CHECK(surface_components(f.broken.mesh).count == 1);
     CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
     test::deform(f.matter, [](const Vec3& p) -> Vec3 {
@@ -186,7 +178,7 @@ TEST_CASE(
                 [&](const Vec3&, const Vec3&) { return random() < share * std::mt19937::max(); });
     f.break_it();
     CHECK(f.broken.open_faces == 0);
-    CHECK(closed(f.broken.mesh));
+    CHECK(fixtures::is_closed(f.broken.mesh));
     CHECK(signed_volume(f.broken.mesh) == Approx(signed_volume(f.mesh)).epsilon(1e-9));
     std::mt19937 shake(6);
     test::deform(f.matter, [&](const Vec3& p) -> Vec3 {

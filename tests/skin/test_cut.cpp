@@ -2,11 +2,11 @@
 #include <map>
 #include <set>
 
-#include "geometry/edges.h"
 #include "skin/cut_mesh.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
 
@@ -78,16 +78,8 @@ void dress(TriMesh& mesh) {
     smooth_by_crease_angle(mesh, 0.6);
 }
 
-bool every_edge_has_two_sides(const TriMesh& mesh) {
-    bool closed = true;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        closed = closed && uses.size() == 2 && uses[0].forward != uses[1].forward;
-    });
-    return closed;
-}
-
 void check_sound(const TriMesh& mesh, const std::vector<Vec3>& position) {
-    CHECK(every_edge_has_two_sides(mesh));
+    CHECK(fixtures::is_closed(mesh));
     std::set<Corners> seen;
     double least_area = 1e30;
     for (Corners t : mesh.triangle) {
@@ -154,7 +146,7 @@ TEST_CASE("a cut through gives closed halves whose volumes add up to the whole")
     CHECK(parts.size() >= 2);
     double sum = 0;
     for (const TriMesh& part : parts) {
-        CHECK(every_edge_has_two_sides(part));
+        CHECK(fixtures::is_closed(part));
         CHECK(signed_volume(part) > 0);
         sum += signed_volume(part);
     }
@@ -287,7 +279,7 @@ TEST_CASE("a blade that stops inside the body leaves the surface in one piece") 
     CHECK(result.planes == 1);
     CHECK(result.cap_triangles > 0);
     CHECK(parts_of(f.mesh).size() == 1);
-    CHECK(every_edge_has_two_sides(f.mesh));
+    CHECK(fixtures::is_closed(f.mesh));
     CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
     // It opens like a mouth when the matter does.
     test::sever_plane(f.matter, {0.0137, 0, 0}, Vec3::UnitX(),

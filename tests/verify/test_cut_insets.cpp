@@ -7,7 +7,7 @@
 #include "sim/lattice_forces.h"
 #include "sim/sever.h"
 #include "tests/catch.h"
-#include "tests/sim/energy_slope.h"
+#include "tests/sim/force_checks.h"
 
 using namespace swage;
 

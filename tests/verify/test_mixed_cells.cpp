@@ -11,7 +11,7 @@
 #include "sim/node_stiffness.h"
 #include "sim/vector_clones.h"
 #include "tests/catch.h"
-#include "tests/sim/energy_slope.h"
+#include "tests/sim/force_checks.h"
 
 using namespace swage;
 
