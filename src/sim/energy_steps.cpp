@@ -276,7 +276,7 @@ void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutco
         }
         outcome.body[group[n]] = t.so_far[n];
         m.before = std::move(t.earlier[n]);
-        m.body.restore(m.state);
+        m.body.restore(m.state, outcome.body[group[n]]);
         m.body.restore_forces(std::move(t.force[n]), t.gravity[n]);
         m.step = 0.5 * t.step;
         m.held = true;

@@ -330,7 +330,7 @@ void ExplicitSolver::take_back(const Block& block, const Finding& found,
     const std::vector<BodyOutcome> gone_wrong = std::exchange(outcome.body, so_far);
     in_block_ = false;
     for_each_awake([&](std::size_t b) {
-        body_[b].restore(state_[b]);
+        body_[b].restore(state_[b], outcome.body[b]);
         body_[b].begin_step(block.begin);
         body_[b].find_forces(block.begin, 0, outcome.body[b]);
         if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace swage {
 
@@ -60,37 +59,17 @@ std::vector<BranchStep> InternalDamping::step(const Aggregate& matter, LatticeFo
     return steps;
 }
 
+void InternalDamping::let_go() {
+    for (Part& part : part_) part.strain.clear();
+}
+
 double InternalDamping::stored_energy(const Aggregate& matter, LatticeForces& lattice) const {
-    const double k = lattice_law(matter).stiffness;
-    double scale[kForwardCount];
-    for (int d = 0; d < kForwardCount; ++d) {
-        const double length = reference_length(matter.lattice, d);
-        scale[d] = 0.5 * k * length * length;
-    }
     double stored = 0;
     for (std::size_t n = 0; n < part_.size(); ++n) {
-        const auto& [branches, strains] = part_[n];
-        if (strains.empty()) continue;
-        double share[kMostBranches];
-        for (int j = 0; j < branches.count; ++j) share[j] = 1 / branches.share[j];
-        double sum[kLanes] = {};
-        lattice.sweep(matter, n).for_each_branched(
-            strains, branches.count,
-            [&](ParticleId, int count, const float* strain, const float* weight) {
-                for (int d = 0; d < kForwardCount; ++d) {
-                    double square[kLanes] = {};
-                    for (int j = 0; j < branches.count; ++j, strain += kLanes) {
-                        for (int l = 0; l < kLanes; ++l) {
-                            square[l] += share[j] * (double(strain[l]) * double(strain[l]));
-                        }
-                    }
-                    for (int l = 0; l < count; ++l) {
-                        const double whole = weight == nullptr ? 1 : double(weight[d * kLanes + l]);
-                        sum[l] += scale[d] * whole * square[l];
-                    }
-                }
-            });
-        stored += std::accumulate(sum, sum + kLanes, 0.0);
+        const auto& [branches, strain] = part_[n];
+        if (strain.empty()) continue;
+        stored +=
+            lattice.sweep(matter, n).branch_energy(matter, lattice_law(matter), branches, strain);
     }
     return stored;
 }

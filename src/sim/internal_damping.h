@@ -29,6 +29,7 @@ class InternalDamping {
     // A step of this length [s], for LatticeForces::find(): 0 to leave the branches as they are.
     // `lattice` is the one that takes it.
     std::vector<BranchStep> step(const Aggregate& matter, LatticeForces& lattice, double duration);
+    void let_go();  // all branches carry nothing from now on
 
     double stored_energy(const Aggregate& matter, LatticeForces& lattice) const;  // [J]
 

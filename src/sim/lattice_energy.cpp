@@ -46,6 +46,39 @@ double block_energy(const SpanPlaces& at, int count, int room, double length) {
     return all;
 }
 
+// The branches of a slab.
+struct BranchPlaces {
+    double inverse_share[kMostBranches] = {};
+    int count = 0;
+    double scale[kForwardCount] = {};  // energy of a strain of one in a share of one [J]
+    const SpringRun *run = nullptr, *run_end = nullptr;
+    const std::int32_t* batch = nullptr;
+    const float *weight = nullptr, *strain = nullptr;
+};
+
+SWAGE_VECTOR_CLONES
+double slab_energy(const BranchPlaces& own) {
+    const float* strain = own.strain;
+    const std::int32_t* batch = own.batch;
+    Lanes sum{};
+    for (const SpringRun* run = own.run; run != own.run_end; ++run) {
+        for (int n = 0; n < run->count; n += kLanes, ++batch) {
+            for (int d = 0; d < kForwardCount; ++d) {
+                Lanes square{};
+                for (int j = 0; j < own.count; ++j, strain += kLanes) {
+                    const Lanes one = load<Lanes>(strain);
+                    square += own.inverse_share[j] * (one * one);
+                }
+                if (*batch >= 0) square *= load<Lanes>(own.weight + *batch + d * kLanes);
+                sum += own.scale[d] * square;
+            }
+        }
+    }
+    double all = 0;
+    for (int l = 0; l < kLanes; ++l) all += sum[l];
+    return all;
+}
+
 }  // namespace
 
 double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
@@ -79,6 +112,27 @@ double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
             }
             return sum;
         });
+}
+
+double LatticeSweep::branch_energy(const Aggregate& matter, const LatticeLaw& law,
+                                   const DampingBranches& branches,
+                                   const std::vector<float>& strain) const {
+    BranchPlaces whole{.count = branches.count};
+    for (int j = 0; j < branches.count; ++j) whole.inverse_share[j] = 1 / branches.share[j];
+    whole.weight = branches_soften() ? softened_.data() : weight_.data();
+    for (int d = 0; d < kForwardCount; ++d) {
+        const double length = reference_length(matter.lattice, d);
+        whole.scale[d] = 0.5 * law.stiffness * length * length;
+    }
+    const std::size_t each = kForwardCount * kLanes * static_cast<std::size_t>(branches.count);
+    return ordered_sum(slab_.size(), [&](std::size_t index) {
+        const RowSlab& slab = slab_[index];
+        BranchPlaces own = whole;
+        own.run = run_.data() + slab.run_begin, own.run_end = run_.data() + slab.run_end;
+        own.batch = batch_.data() + slab_batch_[index];
+        own.strain = strain.data() + slab_batch_[index] * each;
+        return slab_energy(own);
+    });
 }
 
 std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law,

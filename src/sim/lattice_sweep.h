@@ -58,23 +58,9 @@ class LatticeSweep {
     std::size_t branch_floats(int count) const {
         return batch_.size() * kForwardCount * static_cast<std::size_t>(count) * kLanes;
     }
-    // Calls act(first, count, strain, weight) with branch_floats() of `count` particles side by
-    // side, kLanes at most: [direction * branches + branch] of the n-th at
-    // strain[that * kLanes + n]. weight: share of the full connection's section whose branches are
-    // whole, [direction] of the n-th at weight[that * kLanes + n]; null: all are one.
-    template <typename Act>
-    void for_each_branched(const std::vector<float>& strain, int branches, const Act& act) const {
-        const float* own = strain.data();
-        const float* const weight = branches_soften() ? softened_.data() : weight_.data();
-        const std::int32_t* batch = batch_.data();
-        for (const SpringRun& run : run_) {
-            for (int n = 0; n < run.count; n += kLanes, ++batch) {
-                act(run.first + n, std::min(kLanes, run.count - n), own,
-                    *batch < 0 ? nullptr : weight + *batch);
-                own += kForwardCount * branches * kLanes;
-            }
-        }
-    }
+    // Energy stored in branches with these strains [J].
+    double branch_energy(const Aggregate& matter, const LatticeLaw& law,
+                         const DampingBranches& branches, const std::vector<float>& strain) const;
 
     // Runs of the last sweep with a strain above the limit, slab by slab.
     const std::vector<std::vector<const SpringRun*>>& stretched_runs() const { return stretched_; }

@@ -113,7 +113,8 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       touches_(!apparatus.tool.empty()),
       remembers_(false),
       breaks_(false),
-      implicit_(settings.solver == Solver::implicit_steps) {
+      implicit_(settings.solver == Solver::implicit_steps),
+      saves_branches_(settings.solver == Solver::energy_stepped) {
     for (std::size_t m = 0; m < matter.material_count(); ++m) {
         const Material& material = matter.material_at(m);
         breaks_ = breaks_ || material.breaks();
@@ -122,7 +123,9 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
 }
 
 double MovingBody::branch_energy() {
-    return damping_.acts() ? damping_.stored_energy(matter_, lattice_) : 0;
+    if (!damping_.acts()) return 0;
+    if (branch_energy_ < 0) branch_energy_ = damping_.stored_energy(matter_, lattice_);
+    return branch_energy_;
 }
 
 double MovingBody::elastic_energy() { return lattice_.elastic_energy(matter_) + branch_energy(); }
@@ -175,12 +178,23 @@ double MovingBody::move(double kick, double step) {
     return step * std::sqrt(most);
 }
 
+void MovingBody::let_go() {
+    damping_.let_go();
+    branch_energy_ = -1;
+}
+
+void MovingBody::set_implicit(bool implicit) {
+    implicit_ = implicit;
+    if (implicit) let_go();
+}
+
 // Of the lattice and its damping.
 void MovingBody::find_inner_forces(double step, BodyOutcome& outcome) {
-    if (!damping_.acts()) {
+    if (!damping_.acts() || implicit_) {
         inside_out_ = lattice_.find(matter_, Flow::trial, force_);
         return;
     }
+    branch_energy_ = -1;
     const std::vector<BranchStep> branches = damping_.step(matter_, lattice_, step);
     inside_out_ = lattice_.find(matter_, Flow::trial, force_, branches, &outcome.damped_work);
 }
@@ -201,6 +215,7 @@ void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome
 // What flows, softens and cracks at the present positions, whose forces were just found.
 bool MovingBody::remember(BodyOutcome& outcome) {
     if (!remembers_) return false;
+    branch_energy_ = -1;  // branches soften too
     const Committed lost = lattice_.commit(matter_, true);
     outcome.plastic_work += lost.plastic;
     outcome.fracture_work += lost.fracture;
@@ -305,11 +320,11 @@ void MovingBody::save(State& state) const {
     }
     state.contacts.assign(1, contacts_);
     state.pushes.assign(1, pushes_);
-    state.damping.assign(1, damping_);
+    if (saves_branches_) state.damping.assign(1, damping_);
     state.load = load_;
 }
 
-void MovingBody::restore(const State& state) {
+void MovingBody::restore(const State& state, BodyOutcome& outcome) {
     matter_.particle_position = state.position;
     matter_.particle_velocity = state.velocity;
     if (remembers_) {
@@ -329,7 +344,13 @@ void MovingBody::restore(const State& state) {
     }
     contacts_ = state.contacts[0];
     pushes_ = state.pushes[0];
-    damping_ = state.damping[0];
+    if (saves_branches_) {
+        damping_ = state.damping[0];
+        branch_energy_ = -1;
+    } else {
+        let_go();
+        outcome.damped_work += block_energy_;
+    }
     load_ = state.load;
 }
 

@@ -33,11 +33,14 @@ class MovingBody {
     void start(const Drive& from, BodyOutcome& outcome);
     void find_candidates(const Drive& now);
     // What is done on the branches of the damping between these, and they do not store, is lost.
-    void begin_block(BodyOutcome& outcome) { outcome.damped_work += branch_energy(); }
+    void begin_block(BodyOutcome& outcome) {
+        block_energy_ = branch_energy();
+        outcome.damped_work += block_energy_;
+    }
     void end_block(BodyOutcome& outcome) { outcome.damped_work -= branch_energy(); }
 
-    // Whether the steps that follow are implicit: tools then act without rates.
-    void set_implicit(bool implicit) { implicit_ = implicit; }
+    // Whether the steps that follow are implicit: tools then act without rates, and nothing damps.
+    void set_implicit(bool implicit);
 
     // A step from the present positions and drive begins.
     void begin_step(const Drive& before);
@@ -79,7 +82,10 @@ class MovingBody {
         return force_.at(p) / matter_.particle_mass[p] + gravity_;
     }
 
-    void connections_changed() { lattice_.connections_changed(matter_); }
+    void connections_changed() {
+        lattice_.connections_changed(matter_);
+        branch_energy_ = -1;
+    }
     // In the lattice and in the branches of its damping [J].
     double elastic_energy();
 
@@ -108,14 +114,18 @@ class MovingBody {
         std::vector<MixedCell> mixed;
         std::vector<ContactSet> contacts;      // one
         std::vector<LoadSet> pushes;           // one
-        std::vector<InternalDamping> damping;  // one
+        std::vector<InternalDamping> damping;  // one, or none
         std::vector<LoadSum> load;
     };
     void save(State& state) const;
-    void restore(const State& state);
+    // NOTE: but for energy-stepped ones, which are often taken back, no copy is kept of what the
+    // branches of the damping remember, which is more than all else: they give way. What they held
+    // when the block began is booked as damped.
+    void restore(const State& state, BodyOutcome& outcome);
 
   private:
     double branch_energy();
+    void let_go();  // the branches
     void find_inner_forces(double step, BodyOutcome& outcome);
     bool remember(BodyOutcome& outcome);  // whether the forces have changed by it
 
@@ -133,6 +143,9 @@ class MovingBody {
     bool remembers_;   // its matter yields or breaks
     bool breaks_;
     bool implicit_;
+    bool saves_branches_;
+    // In the branches [J]: now, negative where it is not known; when the block began.
+    double branch_energy_ = -1, block_energy_ = 0;
     Vec3 gravity_ = Vec3::Zero();
     int inside_out_ = 0;
 };
