@@ -4,6 +4,7 @@
 #include "geometry/shape.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/distance_field.h"
 
@@ -14,14 +15,14 @@ namespace {
 double sign_of(double value) { return value < 0 ? -1.0 : 1.0; }
 
 Distance distance(const CylinderShape& cylinder, const Vec3& p) {
-    const double from_axis = std::hypot(p.x(), p.y());
+    const double from_axis = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const Vec3 radial =
         from_axis > 0 ? Vec3(p.x() / from_axis, p.y() / from_axis, 0) : Vec3::UnitX();
     const Vec3 axial(0, 0, sign_of(p.z()));
     const double beyond_side = from_axis - cylinder.radius;
     const double beyond_end = std::abs(p.z()) - 0.5 * cylinder.length;
     if (beyond_side > 0 && beyond_end > 0) {
-        const double value = std::hypot(beyond_side, beyond_end);
+        const double value = std::sqrt(beyond_side * beyond_side + beyond_end * beyond_end);
         return {value, (beyond_side * radial + beyond_end * axial) / value};
     }
     return beyond_side >= beyond_end ? Distance{beyond_side, radial} : Distance{beyond_end, axial};

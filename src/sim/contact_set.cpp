@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
@@ -17,13 +18,9 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 4096;
-
-// The distance is the tool's, the normal is turned into the world.
-Distance world_distance(const Tool& tool, const Pose& world_from_tool, const Vec3& point) {
-    Distance d = distance_to(tool.shape, world_from_tool.inverse() * point);
-    d.normal = world_from_tool.turn(d.normal);
-    return d;
-}
+// Of a tool's distance, that can be relied upon: between its grid points that of a mesh is not
+// quite as steep as it should be, or steeper by up to sqrt(3).
+constexpr double kSureShare = 0.5;
 
 // The farthest that any corner of the tool's bounds moves.
 double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
@@ -98,6 +95,11 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
     const std::size_t points = matter.surface.size();
     const std::size_t chunks = (points + kPointsPerChunk - 1) / kPointsPerChunk;
     std::vector<Pair> found;
+    std::vector<double> clearances;
+    const auto keep = [&](const Pair& pair) {
+        found.push_back(pair);
+        clearances.push_back(0);
+    };
     auto old = pair_.begin();
     for (std::size_t t = 0; t < apparatus_->tool.size(); ++t) {
         const Tool& tool = apparatus_->tool[t];
@@ -105,7 +107,11 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
         Box reach = bounds_of(tool.shape);
         reach.low.array() -= spacing_;
         reach.high.array() += spacing_;
-        std::vector<std::vector<int>> near(chunks);
+        struct Near {
+            int point;
+            double clearance;
+        };
+        std::vector<std::vector<Near>> near(chunks);
         parallel_for(chunks, [&](std::size_t chunk) {
             const std::size_t end = std::min(points, (chunk + 1) * kPointsPerChunk);
             for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
@@ -114,19 +120,23 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                     (local.array() > reach.high.array()).any()) {
                     continue;
                 }
-                if (distance_to(tool.shape, local).value < spacing_) {
-                    near[chunk].push_back(static_cast<int>(p));
-                }
+                const double distance = distance_to(tool.shape, local).value;
+                if (distance >= spacing_) continue;
+                double reach = 0;
+                for (float w : matter.surface.weight[p]) reach += std::abs(w);
+                near[chunk].push_back(
+                    {static_cast<int>(p), kSureShare * distance / (std::sqrt(3.0) * reach)});
             }
         });
         const int tool_id = static_cast<int>(t);
-        for (const std::vector<int>& part : near) {
-            for (int p : part) {
+        for (const std::vector<Near>& part : near) {
+            for (const auto& [p, clearance] : part) {
                 for (;
                      old != pair_.end() && std::pair(old->tool, old->point) < std::pair(tool_id, p);
                      ++old) {
-                    if (old->stuck) found.push_back(*old);
+                    if (old->stuck) keep(*old);
                 }
+                clearances.push_back(clearance);
                 if (old != pair_.end() && old->tool == tool_id && old->point == p) {
                     found.push_back(*old++);
                 } else {
@@ -137,9 +147,10 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
         }
     }
     for (; old != pair_.end(); ++old) {
-        if (old->stuck) found.push_back(*old);
+        if (old->stuck) keep(*old);
     }
     pair_ = std::move(found);
+    clearance_ = std::move(clearances);
 }
 
 void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
@@ -198,25 +209,34 @@ Vec3 ContactSet::anchor_of(const Pair& pair) const {
 }
 
 template <typename Act>
-void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const {
+void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const Act& act,
+                                double moved) const {
+    std::vector<Pose> tool_from_world;
+    for (const Pose& pose : now.world_from_tool) tool_from_world.push_back(pose.inverse());
     for (std::size_t n = 0; n < pair_.size(); ++n) {
+        if (clearance_[n] > moved) continue;
         const Pair& pair = pair_[n];
         const Tool& tool = apparatus_->tool[pair.tool];
         const Pose& pose = now.world_from_tool[pair.tool];
         const Vec3 x = matter.surface_position(pair.point);
-        const Distance d = world_distance(tool, pose, x);
+        Distance d = distance_to(tool.shape, tool_from_world[pair.tool] * x);
         if (d.value >= 0) continue;
+        d.normal = pose.turn(d.normal);
         const double k = point_stiffness(matter, pair.point, settings_.contact_stiffness);
         act(n, x, d, k,
             contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k, tool.friction));
     }
 }
 
-void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
+void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force,
+                            double moved) const {
     const auto push = [&](int point, const Vec3& f) { spread(matter.surface, point, f, force); };
-    for_each_touch(matter, now,
-                   [&](std::size_t n, const Vec3&, const Distance&, double,
-                       const ContactForce& contact) { push(pair_[n].point, contact.force); });
+    for_each_touch(
+        matter, now,
+        [&](std::size_t n, const Vec3&, const Distance&, double, const ContactForce& contact) {
+            push(pair_[n].point, contact.force);
+        },
+        moved);
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];

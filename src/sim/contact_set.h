@@ -17,6 +17,7 @@
 // and only widen the bound of the step, as laws/impact.h says.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ struct ToolLosses {
 };
 
 class ContactSet {
+    static constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
   public:
     // `body`: the matter's number among the bodies, by which grips name it.
     ContactSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
@@ -69,8 +72,10 @@ class ContactSet {
     // gripped ones.
     std::vector<HeldPoint> held_points(const Aggregate& matter, const Drive& now) const;
 
-    // Adds all contact and grip forces.
-    void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;
+    // Adds all contact and grip forces. `moved`: the farthest that any component of a particle's
+    // place is from where it was when candidates were found for this very drive [m].
+    void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force,
+                    double moved = kAnywhere) const;
 
     // Sums by tool, then by grip, for the present state; zero for grips that hold another body.
     std::vector<LoadSum> loads(const Aggregate& matter, const Drive& now) const;
@@ -138,7 +143,8 @@ class ContactSet {
     Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame
     // Calls act(pair, position, distance, stiffness, contact) for each point inside a tool.
     template <typename Act>
-    void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act) const;
+    void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act,
+                        double moved = kAnywhere) const;
 
     bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
     void hold_by_grips(const Aggregate& matter, const Drive& now, Vec3Array& force);
@@ -150,6 +156,7 @@ class ContactSet {
     std::vector<double> point_modulus_;    // of bodies of several materials [Pa]
     std::vector<double> stiffness_limit_;  // one a point [N/m]; empty: none
     std::vector<Pair> pair_;               // sorted by tool, then point
+    std::vector<double> clearance_;        // by pair: it cannot touch while particles move by less
     std::vector<Vec3> start_position_;     // of every surface point when the move began
     std::vector<Pose> tool_from_world_at_start_;
 

@@ -15,6 +15,7 @@
 #include "sim/cell_volume.h"
 #include "sim/crushed_cells.h"
 #include "sim/fire_schedule.h"
+#include "sim/relaxation_passes.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -114,21 +115,12 @@ void QuasistaticSolver::find_masses() {
     }
 }
 
-void QuasistaticSolver::evaluate(const Drive& to) {
+void QuasistaticSolver::evaluate(const Drive& to, double moved) {
     mirrored_ = lattice_.find(matter_, Flow::trial, force_);
-    contacts_.add_forces(matter_, to, force_);
+    contacts_.add_forces(matter_, to, force_, moved);
     pushes_.add_forces(matter_, to, force_);
-    const Vec3 g = pushes_.gravity(to);
-    const Vec3Array& x = matter_.particle_position;
-    parallel_for(vector_chunks(x.size()), [&](std::size_t chunk) {
-        const std::size_t end = std::min(x.size(), (chunk + 1) * kVectorChunk);
-        for (std::size_t p = chunk * kVectorChunk; p < end; ++p) {
-            const double c = hold_ * drag_[p], m = matter_.particle_mass[p];
-            force_.x[p] += m * g.x() - c * (x.x[p] - held_.x[p]);
-            force_.y[p] += m * g.y() - c * (x.y[p] - held_.y[p]);
-            force_.z[p] += m * g.z() - c * (x.z[p] - held_.z[p]);
-        }
-    });
+    add_restraint(matter_.particle_position,
+                  {held_, drag_, hold_, matter_.particle_mass, pushes_.gravity(to)}, force_);
     self_.add_forces(force_);
 }
 
@@ -174,11 +166,11 @@ QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
 }
 
 QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
-    const std::size_t n = matter_.particle_count();
     const double a = matter_.lattice.spacing, longest = 0.2 * a;
     Vec3Array& x = matter_.particle_position;
     Vec3Array &v = velocity_, &f = force_;
     for (auto* component : {&v.x, &v.y, &v.z}) std::fill(component->begin(), component->end(), 0.0);
+    double moved = 0;  // components, since the candidates were listed [m]
     const auto list_candidates = [&] {
         contacts_.find_candidates(matter_, to);
         if (farthest_move(probed_, x) > kStaleStiffness * a) {
@@ -189,6 +181,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         find_masses();
         coarse_.find_modes(matter_, mass_, contacts_.held_points(matter_, to));
         listed_ = x;
+        moved = 0;
     };
     list_candidates();
 
@@ -196,14 +189,13 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     Relaxation result;
     int renewed = 0, weighted_mirrors = 0, rounds = 0;
     const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
-    std::vector<double> farthest(vector_chunks(n));
     Patience patience(settings_.iteration_limit, x);
     const int turn = settings_.iteration_limit / int(std::size(kGain));
     for (int iteration = 1; iteration <= patience.limit; ++iteration) {
         result.iterations = iteration;
         if (iteration % turn == 1) coarse_.limit_gain(kGain[iteration / turn % std::size(kGain)]);
         patience.watch(iteration, x, a, result.residual);
-        evaluate(to);
+        evaluate(to, moved);
         if (mirrored_ > weighted_mirrors || self_.has_found_more()) {
             find_masses();
             weighted_mirrors = mirrored_;
@@ -214,25 +206,20 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
             if (result.residual <= settings_.tolerance) {
                 result.converged = true;
                 if (rounds++ == kMostRounds || !self_.meet_anew()) return result;
-                evaluate(to);
+                evaluate(to, moved);
                 result.residual = residual_of(f, to);
                 if (result.residual <= settings_.tolerance) return result;
                 result.converged = false;
             }
         }
-        const double power = chunked_sum(
-            n, [&](std::size_t p) { return v.x[p] * f.x[p] + v.y[p] * f.y[p] + v.z[p] * f.z[p]; });
+        const RelaxationSums sums = relaxation_sums(v, f, mass_, inverse_mass_);
         double keep = 0, pull = 0;  // v = keep v + pull f / m
         CoarseModes::Vector total;
         const bool coarse = coarse_.gains() && mirrored_ == 0;
         if (coarse) total = coarse_.restricted(f);
-        if (power > 0) {
-            const double vv = chunked_sum(n, [&](std::size_t p) {
-                return mass_[p] * (v.x[p] * v.x[p] + v.y[p] * v.y[p] + v.z[p] * v.z[p]);
-            });
-            double ff = chunked_sum(n, [&](std::size_t p) {
-                return inverse_mass_[p] * (f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
-            });
+        if (sums.power > 0) {
+            const double vv = sums.motion;
+            double ff = sums.push;
             if (coarse) ff += coarse_.gain_size(total);
             keep = 1 - schedule.mixing;
             // A body that is let go must not run into the next tool at full tilt.
@@ -252,25 +239,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         const double dt = schedule.step;
         if (coarse) coarse_.add(coarse_.gain((pull + dt) * total), keep, v);
         const double kept = coarse ? 1 : keep;  // else done just now
-        parallel_for(vector_chunks(n), [&](std::size_t chunk) {
-            const std::size_t end = std::min(n, (chunk + 1) * kVectorChunk);
-            const auto move = [&](std::vector<double>& xs, std::vector<double>& vs,
-                                  const std::vector<double>& fs, const std::vector<double>& from) {
-                double most = 0;
-                for (std::size_t p = chunk * kVectorChunk; p < end; ++p) {
-                    vs[p] = kept * vs[p] + (pull + dt) * fs[p] * inverse_mass_[p];
-                    const double way = dt * vs[p];
-                    xs[p] += way > longest ? longest : way < -longest ? -longest : way;
-                    const double gone = std::abs(xs[p] - from[p]);
-                    most = gone > most ? gone : most;
-                }
-                return most;
-            };
-            farthest[chunk] =
-                std::max({move(x.x, v.x, f.x, listed_.x), move(x.y, v.y, f.y, listed_.y),
-                          move(x.z, v.z, f.z, listed_.z)});
-        });
-        if (*std::max_element(farthest.begin(), farthest.end()) > 0.45 * a) list_candidates();
+        moved = move_on({kept, pull + dt, dt, longest}, f, inverse_mass_, listed_, v, x);
+        if (moved > 0.45 * a) list_candidates();
     }
     return result;
 }

@@ -12,6 +12,7 @@
 // lost, and an unstable equilibrium that nothing disturbs is not left.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -61,7 +62,8 @@ class QuasistaticSolver {
     double residual_of(const Vec3Array& force, const Drive& to) const;
     void find_bounds();
     void find_masses();
-    void evaluate(const Drive& to);
+    // `moved`: as ContactSet::add_forces() takes it.
+    void evaluate(const Drive& to, double moved = std::numeric_limits<double>::infinity());
     bool touches() { return contacts_.tools_near() || self_.presses(); }
     double push_limit(const Drive& to) const;
     std::vector<double> motion_of(const Drive& from, const Drive& to) const;

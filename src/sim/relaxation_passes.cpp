@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/relaxation_passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "sim/cell_batch.h"
+#include "sim/vector_clones.h"
+#include "sim/vector_sums.h"
+
+namespace swage {
+
+namespace {
+
+SWAGE_INLINE Lanes bounded(const Lanes& value, double most) {
+    const Lanes high = Lanes{} + most;
+    const Lanes below = value > high ? high : value;
+    return below < -high ? -high : below;
+}
+
+SWAGE_INLINE Lanes positive(const Lanes& value) { return larger(value, -value); }
+
+SWAGE_INLINE void put(const Lanes& value, double* to) { std::memcpy(to, &value, sizeof value); }
+
+// As many numbers as there are, the rest zero.
+SWAGE_INLINE Lanes some(const double* from, std::size_t count) {
+    Lanes value{};
+    if (count >= std::size_t(kLanes)) return load<Lanes>(from);
+    for (std::size_t l = 0; l < count; ++l) value[l] = from[l];
+    return value;
+}
+SWAGE_INLINE void put_some(const Lanes& value, std::size_t count, double* to) {
+    if (count >= std::size_t(kLanes)) return put(value, to);
+    for (std::size_t l = 0; l < count; ++l) to[l] = value[l];
+}
+
+double sum_of(const Lanes& lanes) {
+    double sum = 0;
+    for (int l = 0; l < kLanes; ++l) sum += lanes[l];
+    return sum;
+}
+
+SWAGE_VECTOR_CLONES
+void restrain(const double* x, const double* held, const double* drag, const double* mass,
+              double share, double gravity, std::size_t count, double* force) {
+    for (std::size_t p = 0; p < count; p += kLanes) {
+        const std::size_t left = count - p;
+        const Lanes pull =
+            share * some(drag + p, left) * (some(x + p, left) - some(held + p, left));
+        put_some(some(force + p, left) + (some(mass + p, left) * gravity - pull), left, force + p);
+    }
+}
+
+SWAGE_VECTOR_CLONES
+RelaxationSums chunk_sums(const double* const (&v)[3], const double* const (&f)[3],
+                          const double* mass, const double* inverse_mass, std::size_t count) {
+    Lanes power{}, motion{}, push{};
+    for (std::size_t p = 0; p < count; p += kLanes) {
+        const std::size_t left = count - p;
+        Lanes along{}, speed{}, size{};
+        for (int i = 0; i < 3; ++i) {
+            const Lanes vi = some(v[i] + p, left), fi = some(f[i] + p, left);
+            along += vi * fi, speed += vi * vi, size += fi * fi;
+        }
+        power += along;
+        motion += some(mass + p, left) * speed;
+        push += some(inverse_mass + p, left) * size;
+    }
+    return {sum_of(power), sum_of(motion), sum_of(push)};
+}
+
+SWAGE_VECTOR_CLONES
+double move_component(const RelaxationMove& move, const double* f, const double* inverse_mass,
+                      const double* listed, std::size_t count, double* v, double* x) {
+    Lanes farthest{};
+    for (std::size_t p = 0; p < count; p += kLanes) {
+        const std::size_t left = count - p;
+        const Lanes speed = move.keep * some(v + p, left) +
+                            move.kick * some(f + p, left) * some(inverse_mass + p, left);
+        const Lanes now = some(x + p, left) + bounded(move.step * speed, move.longest);
+        put_some(speed, left, v + p);
+        put_some(now, left, x + p);
+        farthest = larger(farthest, positive(now - some(listed + p, left)));
+    }
+    double most = 0;
+    for (int l = 0; l < kLanes; ++l) most = std::max(most, farthest[l]);
+    return most;
+}
+
+}  // namespace
+
+void add_restraint(const Vec3Array& position, const Restraint& restraint, Vec3Array& force) {
+    const auto& [held, drag, share, mass, gravity] = restraint;
+    for_each_chunk(position.size(), [&](std::size_t begin, std::size_t end) {
+        const auto component = [&](const std::vector<double>& x, const std::vector<double>& from,
+                                   double g, std::vector<double>& f) {
+            restrain(x.data() + begin, from.data() + begin, drag.data() + begin,
+                     mass.data() + begin, share, g, end - begin, f.data() + begin);
+        };
+        component(position.x, held.x, gravity.x(), force.x);
+        component(position.y, held.y, gravity.y(), force.y);
+        component(position.z, held.z, gravity.z(), force.z);
+    });
+}
+
+RelaxationSums relaxation_sums(const Vec3Array& velocity, const Vec3Array& force,
+                               const std::vector<double>& mass,
+                               const std::vector<double>& inverse_mass) {
+    std::vector<RelaxationSums> part(vector_chunks(velocity.size()));
+    for_each_chunk(velocity.size(), [&](std::size_t begin, std::size_t end) {
+        const double* const v[3] = {velocity.x.data() + begin, velocity.y.data() + begin,
+                                    velocity.z.data() + begin};
+        const double* const f[3] = {force.x.data() + begin, force.y.data() + begin,
+                                    force.z.data() + begin};
+        part[begin / kVectorChunk] =
+            chunk_sums(v, f, mass.data() + begin, inverse_mass.data() + begin, end - begin);
+    });
+    RelaxationSums all;
+    for (const RelaxationSums& one : part) {
+        all.power += one.power, all.motion += one.motion, all.push += one.push;
+    }
+    return all;
+}
+
+double move_on(const RelaxationMove& move, const Vec3Array& force,
+               const std::vector<double>& inverse_mass, const Vec3Array& listed,
+               Vec3Array& velocity, Vec3Array& position) {
+    std::vector<double> farthest(vector_chunks(position.size()), 0.0);
+    for_each_chunk(position.size(), [&](std::size_t begin, std::size_t end) {
+        const auto component = [&](const std::vector<double>& f, const std::vector<double>& from,
+                                   std::vector<double>& v, std::vector<double>& x) {
+            return move_component(move, f.data() + begin, inverse_mass.data() + begin,
+                                  from.data() + begin, end - begin, v.data() + begin,
+                                  x.data() + begin);
+        };
+        farthest[begin / kVectorChunk] =
+            std::max({component(force.x, listed.x, velocity.x, position.x),
+                      component(force.y, listed.y, velocity.y, position.y),
+                      component(force.z, listed.z, velocity.z, position.z)});
+    });
+    double most = 0;
+    for (double one : farthest) most = std::max(most, one);
+    return most;
+}
+
+}  // namespace swage
