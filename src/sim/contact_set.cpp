@@ -18,8 +18,8 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 4096;
-// Of a tool's distance, that can be relied upon: between its grid points that of a mesh is not
-// quite as steep as it should be, or steeper by up to sqrt(3).
+// Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
+// grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
 
 // The farthest that any corner of the tool's bounds moves.
@@ -122,10 +122,10 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                 }
                 const double distance = distance_to(tool.shape, local).value;
                 if (distance >= spacing_) continue;
-                double reach = 0;
-                for (float w : matter.surface.weight[p]) reach += std::abs(w);
+                double carried = 0;  // at most, of how far its particles move
+                for (float w : matter.surface.weight[p]) carried += std::abs(w);
                 near[chunk].push_back(
-                    {static_cast<int>(p), kSureShare * distance / (std::sqrt(3.0) * reach)});
+                    {static_cast<int>(p), kSureShare * distance / (std::sqrt(3.0) * carried)});
             }
         });
         const int tool_id = static_cast<int>(t);

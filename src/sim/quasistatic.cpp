@@ -6,12 +6,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "sim/cell_volume.h"
 #include "sim/crushed_cells.h"
 #include "sim/fire_schedule.h"
