@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "pipeline/action_box.h"
 #include "pipeline/interrupt.h"
 #include "render/canvas.h"
 #include "render/contact_sheet.h"
@@ -93,87 +94,6 @@ int sheet_columns(int pictures) {
 void check_drawing(const RenderSettings& settings) {
     const Canvas canvas(settings.gl, thread_count());
     log_verbose("drawing by {}", canvas.renderer_string());
-}
-
-namespace {
-
-// The farthest points along many directions: what a camera has to keep in the picture.
-class Outline {
-  public:
-    Outline() {
-        // Evenly spread over the sphere by the golden angle.
-        constexpr int kDirections = 96;
-        for (int n = 0; n < kDirections; ++n) {
-            const double y = 1 - (2 * n + 1.0) / kDirections, r = std::sqrt(1 - y * y);
-            const double turn = n * kPi * (3 - std::sqrt(5.0));
-            direction_.emplace_back(r * std::cos(turn), y, r * std::sin(turn));
-        }
-        reach_.assign(direction_.size(), -std::numeric_limits<double>::infinity());
-        point_.resize(direction_.size());
-    }
-    void grow(const Vec3& p) {
-        for (std::size_t d = 0; d < direction_.size(); ++d) {
-            const double reach = direction_[d].dot(p);
-            if (!(reach > reach_[d])) continue;
-            reach_[d] = reach;
-            point_[d] = p;
-        }
-    }
-    bool empty() const { return !(reach_.front() > -std::numeric_limits<double>::infinity()); }
-    const std::vector<Vec3>& points() const { return point_; }
-
-  private:
-    std::vector<Vec3> direction_, point_;
-    std::vector<double> reach_;
-};
-
-}  // namespace
-
-ActionBox find_action(const FrameStore& store, bool tools) {
-    Box skin, machines;
-    Outline outline;
-    std::vector<Vec3> tool_corners;
-    std::vector<std::vector<Box>> part_box;  // of each machine's parts, in their own frames
-    for (int m = 0; m < store.machine_count(); ++m) {
-        part_box.emplace_back();
-        for (const DrawnPart& part : store.machine(m)) {
-            part_box.back().push_back(box_of(part.surface.position));
-        }
-    }
-    for (int f = 0; f < store.frame_count(); ++f) {
-        const StoredFrame frame = store.frame(f);
-        for (const StoredBody& body : frame.body) {
-            for (const Eigen::Vector3f& p : body.position) {
-                skin.grow(p.cast<double>());
-                outline.grow(p.cast<double>());
-            }
-        }
-        const std::vector<Box>& boxes = part_box.at(static_cast<std::size_t>(frame.machine));
-        for (std::size_t b = 0; b < boxes.size() && b < frame.pose.size(); ++b) {
-            if (boxes[b].empty()) continue;
-            for (int corner = 0; corner < 8; ++corner) {
-                const Vec3 at =
-                    frame.pose[b] * Vec3(corner & 1 ? boxes[b].high[0] : boxes[b].low[0],
-                                         corner & 2 ? boxes[b].high[1] : boxes[b].low[1],
-                                         corner & 4 ? boxes[b].high[2] : boxes[b].low[2]);
-                machines.grow(at);
-                tool_corners.push_back(at);
-            }
-        }
-    }
-    ActionBox action{skin, skin.empty() ? 0 : skin.low.y(), {}};
-    if (!outline.empty()) action.outline = outline.points();
-    if (!tools || machines.empty() || skin.empty()) return action;
-    // A tool that waits far away, or is very long, must not make the work-piece small.
-    const Vec3 reach = Vec3::Constant(0.12 * skin.size().maxCoeff());
-    action.bounds.grow(machines.low.cwiseMax(skin.low - reach).cwiseMin(skin.high));
-    action.bounds.grow(machines.high.cwiseMin(skin.high + reach).cwiseMax(skin.low));
-    action.ground_height = action.bounds.low.y();
-    for (const Vec3& corner : tool_corners) {
-        outline.grow(corner.cwiseMax(action.bounds.low).cwiseMin(action.bounds.high));
-    }
-    action.outline = outline.points();
-    return action;
 }
 
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& settings,

@@ -23,15 +23,6 @@ struct DrawOutcome {
 // simulated. Throws Error(output).
 void check_drawing(const RenderSettings& settings);
 
-// What the pictures frame: the skin in all frames of the run, whichever of them are drawn, and as
-// much of the machines as lies near.
-struct ActionBox {
-    Box bounds;
-    double ground_height = 0;   // world y
-    std::vector<Vec3> outline;  // points that together reach as far as the action
-};
-ActionBox find_action(const FrameStore& store, bool tools);
-
 // Throws Error(command_line) when the run has no such frames, Error(output), Interrupted. Only
 // whole files appear.
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& settings,

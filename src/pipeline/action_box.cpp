@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/action_box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "base/math.h"
+#include "geometry/disjoint_sets.h"
+
+namespace swage {
+
+namespace {
+
+// The farthest points along many directions: what a camera has to keep in the picture.
+class Outline {
+  public:
+    Outline() {
+        // Evenly spread over the sphere by the golden angle.
+        constexpr int kDirections = 96;
+        for (int n = 0; n < kDirections; ++n) {
+            const double y = 1 - (2 * n + 1.0) / kDirections, r = std::sqrt(1 - y * y);
+            const double turn = n * kPi * (3 - std::sqrt(5.0));
+            direction_.emplace_back(r * std::cos(turn), y, r * std::sin(turn));
+        }
+        reach_.assign(direction_.size(), -std::numeric_limits<double>::infinity());
+        point_.resize(direction_.size());
+    }
+    void grow(const Vec3& p) {
+        for (std::size_t d = 0; d < direction_.size(); ++d) {
+            const double reach = direction_[d].dot(p);
+            if (!(reach > reach_[d])) continue;
+            reach_[d] = reach;
+            point_[d] = p;
+        }
+    }
+    bool empty() const { return !(reach_.front() > -std::numeric_limits<double>::infinity()); }
+    const std::vector<Vec3>& points() const { return point_; }
+
+  private:
+    std::vector<Vec3> direction_, point_;
+    std::vector<double> reach_;
+};
+
+// The pieces of a skin, by the vertices that its triangles share.
+struct SkinPieces {
+    std::vector<int> of_vertex;
+    std::vector<double> area;  // at rest [m2]
+};
+
+SkinPieces find_pieces_of(const TriMesh& skin) {
+    DisjointSets sets(skin.position.size());
+    for (const Corners& c : skin.triangle) sets.unite(c[0], c[1]), sets.unite(c[1], c[2]);
+    SkinPieces pieces;
+    pieces.area.resize(sets.number_sets(pieces.of_vertex));
+    for (const Corners& c : skin.triangle) {
+        const Vec3 &p = skin.position[c[0]], &q = skin.position[c[1]], &r = skin.position[c[2]];
+        pieces.area[pieces.of_vertex[c[0]]] += 0.5 * (q - p).cross(r - p).norm();
+    }
+    return pieces;
+}
+
+constexpr double kStray = 0.05;  // of the surface that may leave the picture
+
+constexpr double kReach = 0.12;  // of the action's size, that what lies near it may add
+
+// Which pieces the picture frames: all but the farthest from the middle.
+std::vector<char> framed(const SkinPieces& pieces, const std::vector<Eigen::Vector3f>& position) {
+    const std::size_t count = pieces.area.size();
+    std::vector<Vec3> middle(count, Vec3::Zero());
+    std::vector<int> vertices(count, 0);
+    for (std::size_t v = 0; v < position.size(); ++v) {
+        middle[pieces.of_vertex[v]] += position[v].cast<double>();
+        ++vertices[pieces.of_vertex[v]];
+    }
+    for (std::size_t p = 0; p < count; ++p) middle[p] /= vertices[p];
+    const double all = std::accumulate(pieces.area.begin(), pieces.area.end(), 0.0);
+    std::vector<int> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    const auto sort_by = [&](auto&& value) {
+        std::sort(order.begin(), order.end(),
+                  [&](int a, int b) { return std::pair(value(a), a) < std::pair(value(b), b); });
+    };
+    Vec3 centre;  // half of the surface on either side, by axis
+    for (int d = 0; d < 3; ++d) {
+        sort_by([&](int p) { return middle[p][d]; });
+        double below = 0;
+        for (std::size_t n = 0; n < count && below < 0.5 * all; ++n) {
+            below += pieces.area[order[n]];
+            centre[d] = middle[order[n]][d];
+        }
+    }
+    sort_by([&](int p) { return (middle[p] - centre).norm(); });
+    std::vector<char> is_framed(count, 1);
+    double stray = 0;
+    for (std::size_t n = count; n-- > 1;) {
+        stray += pieces.area[order[n]];
+        if (stray > kStray * all) break;
+        is_framed[order[n]] = 0;
+    }
+    // What stays close is shown all the same.
+    Box kept;
+    for (std::size_t v = 0; v < position.size(); ++v) {
+        if (is_framed[pieces.of_vertex[v]]) kept.grow(position[v].cast<double>());
+    }
+    const Vec3 reach = Vec3::Constant(kReach * kept.size().maxCoeff());
+    for (std::size_t p = 0; p < count; ++p) {
+        const Vec3& m = middle[p];
+        is_framed[p] |=
+            ((m - kept.low + reach).minCoeff() > 0) && ((kept.high + reach - m).minCoeff() > 0);
+    }
+    return is_framed;
+}
+
+// The vertices of a frame that the picture is to show.
+class FramedSkin {
+  public:
+    explicit FramedSkin(const FrameStore& store) : store_(store) {}
+
+    template <class Use>
+    void for_each(const StoredFrame& frame, Use&& use) {
+        if (at_start_.empty()) {
+            for (const StoredBody& body : frame.body) {
+                at_start_.push_back(pieces(body.skin).area.size());
+            }
+        }
+        for (std::size_t b = 0; b < frame.body.size(); ++b) {
+            const StoredBody& body = frame.body[b];
+            const SkinPieces& own = pieces(body.skin);
+            // Parts that the mesh came in are no chips.
+            const bool broke = own.area.size() > at_start_[b];
+            const std::vector<char> is_framed =
+                broke ? framed(own, body.position) : std::vector<char>();
+            for (std::size_t v = 0; v < body.position.size(); ++v) {
+                if (!broke || is_framed[own.of_vertex[v]]) use(body.position[v].cast<double>());
+            }
+        }
+    }
+
+  private:
+    const SkinPieces& pieces(int skin) {
+        const auto known = pieces_.find(skin);
+        if (known != pieces_.end()) return known->second;
+        return pieces_[skin] = find_pieces_of(store_.skin(skin));
+    }
+
+    const FrameStore& store_;
+    std::vector<std::size_t> at_start_;  // how many pieces, a body each
+    std::map<int, SkinPieces> pieces_;
+};
+
+}  // namespace
+
+ActionBox find_action(const FrameStore& store, bool tools) {
+    Box skin, machines;
+    Outline outline;
+    FramedSkin framed_skin(store);
+    std::vector<Vec3> tool_corners;
+    std::vector<std::vector<Box>> part_box;  // of each machine's parts, in their own frames
+    for (int m = 0; m < store.machine_count(); ++m) {
+        part_box.emplace_back();
+        for (const DrawnPart& part : store.machine(m)) {
+            part_box.back().push_back(box_of(part.surface.position));
+        }
+    }
+    for (int f = 0; f < store.frame_count(); ++f) {
+        const StoredFrame frame = store.frame(f);
+        framed_skin.for_each(frame, [&](const Vec3& p) {
+            skin.grow(p);
+            outline.grow(p);
+        });
+        const std::vector<Box>& boxes = part_box.at(static_cast<std::size_t>(frame.machine));
+        for (std::size_t b = 0; b < boxes.size() && b < frame.pose.size(); ++b) {
+            if (boxes[b].empty()) continue;
+            for (int corner = 0; corner < 8; ++corner) {
+                const Vec3 at =
+                    frame.pose[b] * Vec3(corner & 1 ? boxes[b].high[0] : boxes[b].low[0],
+                                         corner & 2 ? boxes[b].high[1] : boxes[b].low[1],
+                                         corner & 4 ? boxes[b].high[2] : boxes[b].low[2]);
+                machines.grow(at);
+                tool_corners.push_back(at);
+            }
+        }
+    }
+    ActionBox action{skin, skin.empty() ? 0 : skin.low.y(), {}};
+    if (!outline.empty()) action.outline = outline.points();
+    if (!tools || machines.empty() || skin.empty()) return action;
+    // A tool that waits far away, or is very long, must not make the work-piece small.
+    const Vec3 reach = Vec3::Constant(kReach * skin.size().maxCoeff());
+    action.bounds.grow(machines.low.cwiseMax(skin.low - reach).cwiseMin(skin.high));
+    action.bounds.grow(machines.high.cwiseMin(skin.high + reach).cwiseMax(skin.low));
+    action.ground_height = action.bounds.low.y();
+    for (const Vec3& corner : tool_corners) {
+        outline.grow(corner.cwiseMax(action.bounds.low).cwiseMin(action.bounds.high));
+    }
+    action.outline = outline.points();
+    return action;
+}
+
+}  // namespace swage

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the pictures of a run frame.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/frame_store.h"
+
+namespace swage {
+
+// The skin in all frames of the run, whichever of them are drawn, and as much of the machines as
+// lies near. Of what broke into pieces, the farthest ones that together have a twentieth of a
+// body's surface may leave the picture: chips fly far.
+struct ActionBox {
+    Box bounds;
+    double ground_height = 0;   // world y
+    std::vector<Vec3> outline;  // points that together reach as far as the action
+};
+ActionBox find_action(const FrameStore& store, bool tools);
+
+}  // namespace swage

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/action_box.h"
+
+#include "geometry/box_mesh.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A cube of 1 m and, broken off it or beside it from the start, one of `size` that lies `away`.
+ActionBox action_of(double size, double away, bool broken_off) {
+    const TriMesh cube = box_mesh(Vec3::Zero(), Vec3::Ones());
+    TriMesh both = cube;
+    for (const Vec3& p : cube.position) both.position.push_back(size * p);
+    for (const Corners& c : cube.triangle) both.triangle.push_back({c[0] + 8, c[1] + 8, c[2] + 8});
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion";
+    FrameStoreWriter writer(file);
+    writer.add_skin(cube);
+    writer.add_skin(both);
+    const auto frame = [&](int skin, double at) {
+        StoredFrame stored;
+        stored.body.push_back({skin, {}});
+        for (std::size_t v = 0; v < (skin == 0 ? 8u : 16u); ++v) {
+            const Vec3 p = both.position[v] + (v < 8 ? Vec3(0, 0, 0) : Vec3(at, -0.1 * at, 0));
+            stored.body[0].position.push_back(p.cast<float>());
+        }
+        return stored;
+    };
+    writer.add_machine({});
+    writer.add_frame(frame(broken_off ? 0 : 1, 1));
+    writer.add_frame(frame(1, away));
+    writer.finish();
+    return find_action(FrameStore(file), true);
+}
+
+}  // namespace
+
+TEST_CASE("a chip that flies off does not make the picture small; a part that goes does") {
+    const ActionBox chip = action_of(0.1, 50, true);
+    CHECK(chip.bounds.high.x() == 1);
+    CHECK(chip.ground_height == 0);
+    CHECK(action_of(0.3, 50, true).bounds.high.x() == Approx(50.3));
+    // Near by it is shown, and so is what the mesh came with.
+    CHECK(action_of(0.1, 1, true).bounds.high.x() == Approx(1.1));
+    CHECK(action_of(0.1, 50, false).bounds.high.x() == Approx(50.1));
+}
