@@ -186,11 +186,6 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         cost.mold.connections += mold.connections;
         cost.mold.bytes += mold.bytes;
     }
-    const bool breaks = std::any_of(scene.body.begin(), scene.body.end(),
-                                    [](const BodySpec& b) { return b.material.breaks(); });
-    const bool cuts = std::any_of(scene.stage.begin(), scene.stage.end(),
-                                  [](const StageSpec& s) { return !s.machine.blade.empty(); });
-    if (breaks && cuts && scene.skin.kind != SkinKind::boundary) cost.note.push_back(kTornSkin);
     find_thickness(cost, input.front().to_mold());
     add_up(cost, scene, input, options, {}, 0);
     return cost;

@@ -139,8 +139,7 @@ bool cut_ahead(const StageSpec& stage, const Machine& machine, const std::vector
             path.insert(path.end(), swept.begin(), swept.end());
         }
     }
-    const CutResult cut = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, path);
-    piece.skin_is_cut = true;
+    const CutResult cut = cut_skins(piece, path);
     follow_matter(piece, kind);
     if (cut.open_parts > 0) {
         log_warning("{}: {} open part{} of the skin could not be closed where it is cut",
@@ -233,14 +232,9 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         {
             const auto lap = context.watch.lap("skin");
             for (WorkPiece& body : bodies) {
-                if (last.broken > 0 && skin != SkinKind::boundary) {
-                    const std::optional<int> open = show_breaks(body);
-                    if (!open) {
-                        tears = true;
-                        warnings.add(number, kTornSkin);
-                    } else if (*open > 0) {
-                        warnings.add(number, kOpenSkin);
-                    }
+                const bool parts = last.broken + last.severed > 0;
+                if (parts && skin != SkinKind::boundary && show_breaks(body) > 0) {
+                    warnings.add(number, kOpenSkin);
                 }
                 follow_matter(body, skin);
                 if (tears) remove_torn_triangles(body.skin, body.mount, body.matter);

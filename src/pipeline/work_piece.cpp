@@ -179,9 +179,8 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies) {
     return hasher.value();
 }
 
-std::optional<int> show_breaks(WorkPiece& piece) {
+int show_breaks(WorkPiece& piece) {
     if (!is_broken(piece.matter)) return 0;
-    if (piece.skin_is_cut) return std::nullopt;
     if (!piece.whole_skin) {
         piece.whole_skin = piece.skin;
         piece.whole_mount = piece.mount;
@@ -190,6 +189,16 @@ std::optional<int> show_breaks(WorkPiece& piece) {
     piece.skin = std::move(broken.mesh);
     piece.mount = std::move(broken.mount);
     return broken.open_faces;
+}
+
+CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep) {
+    const CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
+    if (!piece.whole_skin) return shown;
+    std::vector<Vec3> now;
+    skin_positions(piece.whole_mount, piece.matter, now);
+    CutResult whole = cut_skin(*piece.whole_skin, now, piece.whole_mount, piece.matter, sweep);
+    whole.open_parts = std::max(whole.open_parts, shown.open_parts);
+    return whole;
 }
 
 void follow_matter(WorkPiece& piece, SkinKind kind) {

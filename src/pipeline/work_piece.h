@@ -3,6 +3,7 @@
 // and the skin that follows the matter.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "matter/aggregate.h"
 #include "mold/mold.h"
 #include "scene/spec.h"
+#include "skin/cut_mesh.h"
 #include "skin/mount.h"
 
 namespace swage {
@@ -48,7 +50,6 @@ struct WorkPiece {
     TriMesh skin;                // its positions: as mounted
     Mount mount;                 // unless the skin is a boundary
     std::vector<Vec3> position;  // of the skin now [m]
-    bool skin_is_cut = false;    // by a blade
     // Once matter broke by load: what skin and mount were made from since.
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;
@@ -74,12 +75,11 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 void follow_matter(WorkPiece& piece, SkinKind kind);
 
 // Parts a mounted skin where matter broke by load, and closes it. Returns in how many places that
-// was not possible; nothing where a blade has cut the skin before: it can only be torn.
-std::optional<int> show_breaks(WorkPiece& piece);
+// was not possible. To be called when matter has broken or been severed.
+int show_breaks(WorkPiece& piece);
 
-// What a skin comes to that a blade has cut.
-inline constexpr const char* kTornSkin =
-    "where matter breaks a mounted skin that a blade has cut before is torn open; [skin] kind = "
-    "\"boundary\" closes it";
+// Cuts a mounted skin along all that blades will sweep (skin/cut_mesh.h), that which is parted
+// where matter broke as well as the whole one that it is made from.
+CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep);
 
 }  // namespace swage

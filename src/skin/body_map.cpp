@@ -96,6 +96,19 @@ std::optional<BodyPlace> BodyMap::place_at(const Vec3& world,
     return best;
 }
 
+BodyPlace BodyMap::beside(const Vec3& reference, std::span<const BodyPlace> others) const {
+    BodyPlace place{reference, carrying_cell(matter_, reference)};
+    if (is_whole(matter_, matter_.lattice.cell_corners(place.cell))) return place;
+    for (const BodyPlace& other : others) {
+        if (other.cell == place.cell) {
+            place.side = other.side;
+            return place;
+        }
+    }
+    place.side = side_of_piece(place.cell, reference, piece_of(others.front()));
+    return place;
+}
+
 int BodyMap::piece_of(const BodyPlace& place) const {
     const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(place.cell);
     const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -33,6 +34,8 @@ class BodyMap {
     // Corners of the cell that belong to one piece and hang together with the one next to the
     // place.
     CornerMask side_of_piece(CellId cell, const Vec3& reference, int piece) const;
+    // A place between others of one side of every cut: in a severed cell it follows what they do.
+    BodyPlace beside(const Vec3& reference, std::span<const BodyPlace> others) const;
     int piece_of(const BodyPlace& place) const;  // of the particle that weighs most
 
   private:

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+#include "geometry/edges.h"
 #include "geometry/triangle_tree.h"
 #include "skin/parted_skin.h"
 #include "skin/section.h"
@@ -22,19 +23,34 @@ namespace swage {
 
 namespace {
 
+constexpr double kSamePlace = 1e-3;  // of a square's side
+
+int open_edges(const TriMesh& mesh) {
+    int open = 0;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
+                  [&](auto uses) { open += uses.size() % 2; });
+    return open;
+}
+
 class Breaker {
   public:
     Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter)
         : whole_(whole),
           matter_(matter),
-          faces_(broken_faces(matter)),
+          faces_(faces_to_part(matter)),
           skin_(whole, mount, matter, faces_) {}
 
     BrokenSkin run() {
         prepare_attributes();
         collect_rims();
-        for (std::size_t f = 0; f < faces_.size(); ++f) close(faces_[f], rim_[f], part_[f]);
+        // First those that the surface crosses: they tell on which side of a cut corners lie.
+        for (bool crossed : {true, false}) {
+            for (std::size_t f = 0; f < faces_.size(); ++f) {
+                if (rim_[f].empty() != crossed) close(faces_[f], rim_[f], part_[f]);
+            }
+        }
         skin_.part_touching_edges();
+        if (open_edges(whole_) == 0) result_.open_faces += open_edges(skin_.mesh);
         result_.mesh = std::move(skin_.mesh);
         result_.mount = std::move(skin_.mount);
         finish_mount(result_.mount, matter_);
@@ -103,20 +119,21 @@ class Breaker {
     }
 
     // A corner of squares that lies inside the mesh.
-    int inner_corner(const std::array<int, 3>& plane) {
+    int inner_corner(const std::array<int, 3>& plane, int beside) {
         const auto known = corner_.find(plane);
         if (known != corner_.end()) return known->second;
         Vec3 place;
         for (int d = 0; d < 3; ++d) place[d] = middle_plane(matter_.lattice, d, plane[d]);
-        return corner_[plane] = skin_.add_vertex(place, plane, Eigen::Vector3f::Ones());
+        return corner_[plane] = skin_.add_vertex(place, plane, Eigen::Vector3f::Ones(), beside);
     }
-    int corner_at(const Face& face, int n) {  // counter-clockwise from the low one
+    // Counter-clockwise from the low one. `beside`: a vertex next to it along the rim, or -1.
+    int corner_at(const Face& face, int n, int beside) {
         const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
         std::array<int, 3> plane;
         plane[face.axis] = face.site[face.axis];
         plane[a] = face.site[a] - (n == 0 || n == 3);
         plane[b] = face.site[b] - (n == 0 || n == 1);
-        return inner_corner(plane);
+        return inner_corner(plane, beside);
     }
 
     // `site`: of the cell in whose middle the place is.
@@ -145,6 +162,14 @@ class Breaker {
         std::sort(events.begin(), events.end(), [](const Event& p, const Event& q) {
             return std::pair(p.at, p.vertex) < std::pair(q.at, q.vertex);
         });
+        // The two faces of a cut, or of a crack of old, meet the rim at nearly one place: there the
+        // stretch of the rim that ends comes before the one that begins.
+        for (std::size_t n = 0; n + 1 < events.size(); ++n) {
+            Event &one = events[n], &other = events[n + 1];
+            if (one.balance > 0 || other.balance < 0 || other.at - one.at >= kSamePlace) continue;
+            std::swap(one, other);
+            other.at = one.at;
+        }
         if (events.empty()) {
             const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
             Vec3 low;
@@ -156,7 +181,7 @@ class Breaker {
             site[a] = face.site[a] - 1, site[b] = face.site[b] - 1;
             if (!is_inside(low, site)) return true;
             for (int n = 0; n < 4; ++n) {
-                segments.push_back({corner_at(face, n), corner_at(face, (n + 1) % 4)});
+                segments.push_back({corner_at(face, n, -1), corner_at(face, (n + 1) % 4, -1)});
             }
             return true;
         }
@@ -168,13 +193,32 @@ class Breaker {
             int from = here.vertex;
             const double end = next.at > here.at ? next.at : next.at + 4;
             for (int corner = static_cast<int>(std::floor(here.at)) + 1; corner < end; ++corner) {
-                const int to = corner_at(face, corner % 4);
+                const int to = corner_at(face, corner % 4, from);
                 segments.push_back({from, to});
                 from = to;
             }
             segments.push_back({from, next.vertex});
         }
         return true;
+    }
+
+    static bool has_rim(const std::vector<Corners>& triangles,
+                        const std::vector<Segment>& segments) {
+        std::map<Segment, int> missing;
+        for (const Segment& s : segments) ++missing[s];
+        for (const Corners& t : triangles) {
+            for (int k = 0; k < 3; ++k) {
+                const int from = t[k], to = t[(k + 1) % 3];
+                const auto turned = missing.find({to, from});
+                if (turned != missing.end() && turned->second < 0) {
+                    ++turned->second;
+                } else {
+                    --missing[{from, to}];
+                }
+            }
+        }
+        return std::all_of(missing.begin(), missing.end(),
+                           [](const auto& entry) { return entry.second == 0; });
     }
 
     // Triangles within closed loops; where the plane's own fill does not serve, a fan of each.
@@ -197,7 +241,8 @@ class Breaker {
             for (const Corners& t : filled->triangle) {
                 triangles.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
             }
-            return triangles;
+            if (has_rim(triangles, segments)) return triangles;
+            triangles.clear();
         }
         std::multimap<int, int> next;
         for (const Segment& s : segments) next.emplace(s[0], s[1]);

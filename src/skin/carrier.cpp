@@ -97,17 +97,37 @@ bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner) 
     return corner_groups(matter, corner)[0] == kAllCorners;
 }
 
-CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
+namespace {
+
+template <class Joined>
+CornerGroups grouped(Joined&& is_joined) {
     CornerGroups group;
     for (int c = 0; c < 8; ++c) group[c] = static_cast<CornerMask>(1 << c);
     for (const CellConnection& link : kCellConnection) {
-        if (matter.connection[link.direction].weight[corner[link.corner]] <= 0) continue;
+        if (!is_joined(link)) continue;
         const CornerMask joined = group[link.corner] | group[high_corner(link)];
         for (int c = 0; c < 8; ++c) {
             if (joined >> c & 1) group[c] = joined;
         }
     }
     return group;
+}
+
+}  // namespace
+
+CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
+    return grouped([&](const CellConnection& link) {
+        return matter.connection[link.direction].weight[corner[link.corner]] > 0;
+    });
+}
+
+CornerGroups corner_groups_of_cut(const Aggregate& matter,
+                                  const std::array<ParticleId, 8>& corner) {
+    return grouped([&](const CellConnection& link) {
+        const ConnectionArrays& all = matter.connection[link.direction];
+        const ParticleId lower = corner[link.corner];
+        return all.weight[lower] > 0 || (!all.damage.empty() && all.damage[lower] >= 1);
+    });
 }
 
 CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const Vec3& local) {

@@ -41,6 +41,8 @@ std::array<double, 8> corner_weights(const Vec3& local);
 // entry is kAllCorners in a whole cell.
 using CornerGroups = std::array<CornerMask, 8>;
 CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
+// As if nothing had broken by load: what blades have left together.
+CornerGroups corner_groups_of_cut(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
 bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
 
 // The corners that a place follows: all of them in a whole cell, else those of `side` that hang

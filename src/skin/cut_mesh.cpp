@@ -69,7 +69,7 @@ class PlaneCut {
             own[old + n] = split.added[n].side;
             BodyPlace place;
             if (raw < old) {
-                place = {mount_.reference[raw], mount_.cell[raw], mount_.side[raw]};
+                place = place_of(raw);
                 world.push_back(position_[raw]);
             } else {
                 const std::size_t at = raw - old;
@@ -91,21 +91,12 @@ class PlaneCut {
 
   private:
     BodyPlace on_edge(const CutPoint& cut, double share) const {
-        BodyPlace place;
-        const Vec3 from = mount_.reference[cut.low], to = mount_.reference[cut.high];
-        place.reference = from + share * (to - from);
-        place.cell = carrying_cell(matter_, place.reference);
-        // In a cell that an earlier blade severed: the same side as the ends of the edge.
-        if (is_whole(matter_, matter_.lattice.cell_corners(place.cell))) return place;
-        for (int v : {cut.low, cut.high}) {
-            if (mount_.cell[v] == place.cell) {
-                place.side = mount_.side[v];
-                return place;
-            }
-        }
-        const BodyPlace low{from, mount_.cell[cut.low], mount_.side[cut.low]};
-        place.side = map_.side_of_piece(place.cell, place.reference, map_.piece_of(low));
-        return place;
+        const std::array<BodyPlace, 2> ends = {place_of(cut.low), place_of(cut.high)};
+        return map_.beside(ends[0].reference + share * (ends[1].reference - ends[0].reference),
+                           ends);
+    }
+    BodyPlace place_of(int v) const {
+        return {mount_.reference[v], mount_.cell[v], mount_.side[v]};
     }
 
     // Where each edge of the mesh, straight at molding and curved by now, meets the plane. Regula
@@ -185,7 +176,7 @@ class PlaneCut {
     // None of the cell's corners is on the vertex's side: the nearest cell that has one takes it.
     void change_cell(int v, int own) {
         const Vec3& reference = mount_.reference[v];
-        const int piece = map_.piece_of({reference, mount_.cell[v], mount_.side[v]});
+        const int piece = map_.piece_of(place_of(v));
         const Vec3i site = matter_.lattice.cell_site(mount_.cell[v]);
         double least = std::numeric_limits<double>::infinity();
         CellId best = -1;

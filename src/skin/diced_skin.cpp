@@ -130,6 +130,7 @@ class Dicer {
             plane[axis] = number;
             skin_.plane.push_back(plane);
             edge_.push_back(old_edge(from, to));
+            skin_.on_triangle.push_back(piece.parent);
             if (!mesh.position_color.empty()) {
                 const Eigen::Vector3f low = mesh.position_color[from],
                                       high = mesh.position_color[to];
@@ -265,6 +266,7 @@ class Dicer {
             number[v] = static_cast<int>(count);
             skin_.mesh.position[count] = skin_.mesh.position[v];
             skin_.plane[count] = skin_.plane[v];
+            if (v >= old) skin_.on_triangle[count - old] = skin_.on_triangle[v - old];
             if (!skin_.mesh.position_color.empty()) {
                 skin_.mesh.position_color[count] = skin_.mesh.position_color[v];
             }
@@ -272,6 +274,7 @@ class Dicer {
         }
         skin_.mesh.position.resize(count);
         skin_.plane.resize(count);
+        skin_.on_triangle.resize(count - old);
         if (!skin_.mesh.position_color.empty()) skin_.mesh.position_color.resize(count);
         for (Piece& piece : pieces) {
             for (int& v : piece.vertex) v = number[v];
@@ -317,7 +320,7 @@ class Dicer {
 }  // namespace
 
 double middle_plane(const Lattice& lattice, int axis, int number) {
-    constexpr std::array<double, 3> kOff = {1.3e-6, 1.7e-6, 0.9e-6};
+    constexpr std::array<double, 3> kOff = {-3.1e-5, -2.3e-5, -4.7e-5};
     return lattice.origin[axis] + lattice.spacing * (number + 0.5 + kOff[axis]);
 }
 

@@ -14,8 +14,9 @@ namespace swage {
 
 inline constexpr int kNoPlane = std::numeric_limits<int>::min();
 
-// The middle plane number k of an axis lies between the sites k and k + 1, off the middle by about
-// a millionth of a spacing: so it runs through no vertex and along no face.
+// The middle plane number k of an axis lies between the sites k and k + 1, off the middle by a few
+// hundred-thousandths of a spacing: so it runs through no vertex and along no face, not even that
+// of a blade's cut through the middle (cut_mesh.cpp).
 double middle_plane(const Lattice& lattice, int axis, int number);
 
 // The site of triangles that were left whole: far from all others.
@@ -25,6 +26,7 @@ struct DicedSkin {
     TriMesh mesh;                           // positions at molding; the old vertices first
     std::vector<std::array<int, 3>> plane;  // a vertex each: middle plane that it was made on, by
                                             // axis, or kNoPlane
+    std::vector<int> on_triangle;           // a vertex each beyond the old: of the old mesh
     std::vector<Vec3i> site;                // a triangle each: in the cube around this site
 };
 

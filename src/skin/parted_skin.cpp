@@ -2,7 +2,9 @@
 #include "skin/parted_skin.h"
 
 #include <algorithm>
+#include <limits>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
 
 namespace swage {
@@ -34,6 +36,55 @@ std::vector<BrokenFace> broken_faces(const Aggregate& matter) {
     return faces;
 }
 
+std::vector<BrokenFace> faces_to_part(const Aggregate& matter) {
+    std::vector<BrokenFace> faces = broken_faces(matter);
+    std::unordered_set<std::uint64_t> known;
+    for (const BrokenFace& face : faces) known.insert(key_of(face.site, face.axis));
+    const auto add = [&](const Vec3i& site, int axis) {
+        if (known.insert(key_of(site, axis)).second) faces.push_back({site, axis});
+    };
+    const auto corner_site = [](const Vec3i& cell, int c) -> Vec3i {
+        return cell + Vec3i(c & 1, c >> 1 & 1, c >> 2);
+    };
+    const std::size_t broken = faces.size();
+    for (std::size_t f = 0; f < broken; ++f) {
+        const BrokenFace face = faces[f];
+        const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3, end = 1 << face.axis;
+        for (int own = 0; own < 4; ++own) {  // the connection's place in a cell around it
+            const auto corner = [&](int at) { return (at & 1) << a | (at >> 1) << b; };
+            const Vec3i low = face.site - corner_site(Vec3i::Zero(), corner(own));
+            const CellId cell = matter.lattice.cell_at(low.x(), low.y(), low.z());
+            if (cell < 0) continue;
+            const CornerGroups group =
+                corner_groups_of_cut(matter, matter.lattice.cell_corners(cell));
+            if (group[0] == kAllCorners) continue;
+            for (int at = 0; at < 4; ++at) {
+                const bool here = group[corner(own)] >> corner(at) & 1 &&
+                                  group[corner(own) | end] >> (corner(at) | end) & 1;
+                if (!here) add(corner_site(low, corner(at)), face.axis);
+            }
+        }
+    }
+    return faces;
+}
+
+namespace {
+
+Aggregate without_cracks(const Aggregate& cracked) {
+    Aggregate matter = cracked;
+    for (ConnectionArrays& all : matter.connection) {
+        for (std::size_t p = 0; p < all.damage.size(); ++p) {
+            if (all.damage[p] >= 1) all.weight.set(p, 1);
+        }
+    }
+    return matter;
+}
+
+}  // namespace
+
+PartedSkin::Uncracked::Uncracked(const Aggregate& cracked)
+    : matter(without_cracks(cracked)), map(matter) {}
+
 PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter,
                        const std::vector<BrokenFace>& faces)
     : matter_(matter) {
@@ -50,14 +101,31 @@ PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Agg
     plane_ = diced_.plane;
     site_ = diced_.site;
     mount.kind = whole_mount.kind;
+    const bool is_cut = std::any_of(whole_mount.side.begin(), whole_mount.side.end(),
+                                    [](CornerMask side) { return side != kAllCorners; });
+    if (is_cut) uncracked_ = std::make_unique<Uncracked>(matter);
+    const std::size_t old = whole_mount.reference.size();
     for (std::size_t v = 0; v < mesh.position.size(); ++v) {
-        const bool old = v < whole_mount.reference.size();
-        mount.reference.push_back(mesh.position[v]);
-        mount.cell.push_back(old ? whole_mount.cell[v] : carrying_cell(matter, mesh.position[v]));
-        mount.side.push_back(old ? whole_mount.side[v] : kAllCorners);
+        const Vec3& at = mesh.position[v];
         source_.push_back(static_cast<int>(v));
+        if (v < old) {
+            mount_at({at, whole_mount.cell[v], whole_mount.side[v]});
+        } else if (is_cut) {
+            const Corners& c = whole.triangle[diced_.on_triangle[v - old]];
+            const std::array<BodyPlace, 3> corner = {place_of(c[0]), place_of(c[1]),
+                                                     place_of(c[2])};
+            mount_at(uncracked_->map.beside(at, corner));
+        } else {
+            mount_at({at, carrying_cell(matter, at)});
+        }
     }
     part_vertices();
+}
+
+void PartedSkin::mount_at(const BodyPlace& place) {
+    mount.reference.push_back(place.reference);
+    mount.cell.push_back(place.cell);
+    mount.side.push_back(place.side);
 }
 
 bool PartedSkin::joined(const Vec3i& lower, int axis) const {
@@ -118,9 +186,7 @@ int PartedSkin::copy_of(int v, const Vec3i& site) {
             const Eigen::Vector3f color = mesh.position_color[v];
             mesh.position_color.push_back(color);
         }
-        mount.reference.push_back(mesh.position[v]);
-        mount.cell.push_back(mount.cell[v]);
-        mount.side.push_back(whole_side_[v]);
+        mount_at({mesh.position[v], whole_cell_[v], whole_side_[v]});
         source_.push_back(v);
     }
     used_[v] = 1;
@@ -153,12 +219,92 @@ void PartedSkin::take_sides(int copy, int v, const Vec3i& site, Mask group) {
             }
         }
     }
-    if (side & whole_side_[v]) mount.side[copy] = static_cast<CornerMask>(side & whole_side_[v]);
+    side &= whole_side_[v];
+    if (side == 0) {
+        if (uncracked_) change_cell(copy, v, site, group);
+        return;
+    }
+    if (uncracked_) {  // cracks that go on through the other side of a cut part nothing there
+        const CornerGroups held =
+            corner_groups(matter_, matter_.lattice.cell_corners(mount.cell[copy]));
+        int with = 0;
+        for (int c = 0; c < 8; ++c) with |= side >> c & 1 ? held[c] : 0;
+        side |= with & whole_side_[v];
+    }
+    mount.side[copy] = static_cast<CornerMask>(side);
+}
+
+// None of the cell's corners is both with the group and on the vertex's side of a blade's cut: the
+// nearest of the cells around takes the copy that has one which is.
+void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
+    const Lattice& lattice = matter_.lattice;
+    const Vec3i low =
+        lattice.cell_site(mount.cell[copy]) - Vec3i::Ones();  // of four sites each way
+    const auto number = [&](const Vec3i& at) {
+        const Vec3i n = at - low;
+        return (n.array() < 0).any() || (n.array() > 3).any() ? -1 : n[0] + 4 * (n[1] + 4 * n[2]);
+    };
+    const auto corner_site = [&](const Vec3i& cell, int c) -> Vec3i {
+        return cell + Vec3i(c & 1, c >> 1 & 1, c >> 2);
+    };
+    struct Near {
+        CellId cell;
+        Vec3i site;
+    };
+    std::vector<Near> near;
+    DisjointSets uncracked(64), uncut(64);
+    for (int n = 0; n < 27; ++n) {
+        const Vec3i at = low + Vec3i(n % 3, n / 3 % 3, n / 9);
+        const CellId cell = lattice.cell_at(at.x(), at.y(), at.z());
+        if (cell < 0) continue;
+        near.push_back({cell, at});
+        const std::array<ParticleId, 8> corner = lattice.cell_corners(cell);
+        for (int c = 0; c < 8; ++c) {
+            for (int d = 0; d < 3; ++d) {
+                if (c >> d & 1) continue;
+                const Vec3i lower = corner_site(at, c), upper = lower + Vec3i::Unit(d);
+                if (joined(lower, d)) uncracked.unite(number(lower), number(upper));
+                if (uncracked_->matter.connection[d].weight[corner[c]] > 0) {
+                    uncut.unite(number(lower), number(upper));
+                }
+            }
+        }
+    }
+    std::array<char, 64> in_group{}, on_side{};
+    Vec3i cube = site;
+    for (int d = 0; d < 3; ++d) {
+        if (plane_[v][d] != kNoPlane) cube[d] = plane_[v][d];
+    }
+    for (int c = 0; c < 8; ++c) {
+        const int own = number(corner_site(cube, c));
+        if (group >> c & 1 && own >= 0) in_group[uncracked.root(own)] = 1;
+        if (whole_side_[v] >> c & 1) {
+            on_side[uncut.root(number(corner_site(low + Vec3i::Ones(), c)))] = 1;
+        }
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const Near& other : near) {
+        CornerMask side = 0;
+        for (int c = 0; c < 8; ++c) {
+            const int own = number(corner_site(other.site, c));
+            const bool is = in_group[uncracked.root(own)] && on_side[uncut.root(own)];
+            side |= static_cast<CornerMask>(is << c);
+        }
+        const CellBox box = cell_box(matter_, other.cell);
+        const Vec3& place = mount.reference[copy];
+        const Vec3 nearest = place.cwiseMax(box.low).cwiseMin(box.low + box.size);
+        const double distance = (place - nearest).norm();
+        if (side == 0 || distance >= least) continue;
+        least = distance;
+        mount.cell[copy] = other.cell;
+        mount.side[copy] = side;
+    }
 }
 
 void PartedSkin::part_vertices() {
     used_.assign(plane_.size(), 0);
     whole_side_ = mount.side;
+    whole_cell_ = mount.cell;
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         for (int& v : mesh.triangle[t]) v = copy_of(v, site_[t]);
     }
@@ -179,18 +325,25 @@ void PartedSkin::part_vertices() {
 }
 
 int PartedSkin::add_vertex(const Vec3& place, const std::array<int, 3>& plane,
-                           const Eigen::Vector3f& color) {
+                           const Eigen::Vector3f& color, int beside) {
     const std::size_t v = mesh.position.size();
     mesh.position.push_back(place);
     if (!mesh.position_color.empty()) mesh.position_color.push_back(color);
-    mount.reference.push_back(place);
-    mount.cell.push_back(carrying_cell(matter_, place));
-    mount.side.push_back(kAllCorners);
+    if (uncracked_ && beside >= 0) {
+        const int source = source_[beside];
+        const BodyPlace near{mount.reference[beside], whole_cell_[source], whole_side_[source]};
+        mount_at(uncracked_->map.beside(place, {&near, 1}));
+    } else {
+        mount_at({place, carrying_cell(matter_, place)});
+    }
     source_.push_back(static_cast<int>(v));
     plane_.resize(v + 1, {kNoPlane, kNoPlane, kNoPlane});
     plane_[v] = plane;
     used_.resize(v + 1, 0);
     whole_side_.resize(v + 1, kAllCorners);
+    whole_side_[v] = mount.side[v];
+    whole_cell_.resize(v + 1, 0);
+    whole_cell_[v] = mount.cell[v];
     return static_cast<int>(v);
 }
 
@@ -239,7 +392,7 @@ int PartedSkin::half_way(int low, int high) {
         color = 0.5f * (mesh.position_color[low] + mesh.position_color[high]);
     }
     return add_vertex(0.5 * (mesh.position[low] + mesh.position[high]), common_planes(low, high),
-                      color);
+                      color, low);
 }
 
 void PartedSkin::bisect(std::size_t t, int k, int middle) {

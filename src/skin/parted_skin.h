@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <unordered_set>
 #include <vector>
 
+#include "skin/body_map.h"
 #include "skin/diced_skin.h"
 #include "skin/mount.h"
 
@@ -21,10 +23,14 @@ struct BrokenFace {
 
 // Where a connection along the lattice's axes broke by load.
 std::vector<BrokenFace> broken_faces(const Aggregate& matter);
+// And beside them in cells that a blade has severed. The surface of one side of its cut reaches
+// into cubes of the other there: the crack goes on through these, so that this surface parts too;
+// that of the other side is slit, its two faces staying together.
+std::vector<BrokenFace> faces_to_part(const Aggregate& matter);
 
 class PartedSkin {
   public:
-    // `faces`: those of broken_faces().
+    // `faces`: those of faces_to_part().
     PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter,
                const std::vector<BrokenFace>& faces);
 
@@ -32,9 +38,10 @@ class PartedSkin {
     bool joined(const Vec3i& lower, int axis) const;
     const std::array<int, 3>& plane(int v) const { return plane_[v]; }
 
-    // A new vertex, not yet parted; place at molding [m].
-    int add_vertex(const Vec3& place, const std::array<int, 3>& plane,
-                   const Eigen::Vector3f& color);
+    // A new vertex, not yet parted; place at molding [m]. Where blades have cut it is on the side
+    // of vertex `beside`, if there is one.
+    int add_vertex(const Vec3& place, const std::array<int, 3>& plane, const Eigen::Vector3f& color,
+                   int beside = -1);
     // The copy of a vertex that those have who hang together with the cube at `site`.
     int copy_of(int v, const Vec3i& site);
     // To be called for each triangle that is added to the mesh.
@@ -51,21 +58,32 @@ class PartedSkin {
     using Mask = std::uint8_t;  // of the cubes around a vertex: a bit for each of the eight ways
                                 // to take the upper one along the axes
 
+    // The matter as if nothing had broken by load: tells the sides of a blade's cut.
+    struct Uncracked {
+        explicit Uncracked(const Aggregate& cracked);
+        Aggregate matter;
+        BodyMap map;
+    };
+    BodyPlace place_of(int v) const { return {mount.reference[v], mount.cell[v], mount.side[v]}; }
+    void mount_at(const BodyPlace& place);
     Mask group_of(int v, const Vec3i& site) const;
     static Mask all_around(const std::array<int, 3>& plane);
     void take_sides(int copy, int v, const Vec3i& site, Mask group);
+    void change_cell(int copy, int v, const Vec3i& site, Mask group);
     void part_vertices();
     std::array<int, 3> common_planes(int v, int w) const;
     int half_way(int low, int high);
     void bisect(std::size_t t, int k, int middle);
 
     const Aggregate& matter_;
+    std::unique_ptr<Uncracked> uncracked_;      // where blades have cut
     std::unordered_set<std::uint64_t> broken_;  // faces; looked up only
     DicedSkin diced_;
     std::vector<std::array<int, 3>> plane_;  // of vertices, copies left out
     std::vector<int> source_;                // of each copy the vertex
     std::vector<Vec3i> site_;                // a triangle each
     std::vector<char> used_;
+    std::vector<CellId> whole_cell_;  // before it parted
     std::vector<CornerMask> whole_side_;
     std::map<std::pair<int, Mask>, int> taken_;
     std::map<std::array<int, 3>, int> half_smooth_;
