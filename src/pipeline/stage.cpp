@@ -58,7 +58,7 @@ struct Totals {
          severed = 0, broken = 0;
     double shortest_step = 0;  // [s]
     double residual = 0, penetration = 0;
-    long tool_contacts = 0;
+    bool touched = false;  // by a tool
 
     void add(const FrameReport& report, std::size_t tools) {
         iterations += report.iterations;
@@ -76,7 +76,7 @@ struct Totals {
         residual = std::max(residual, report.residual);
         for (std::size_t n = 0; n < report.load.size(); ++n) {
             penetration = std::max(penetration, report.load[n].penetration);
-            if (n < tools) tool_contacts += report.load[n].contacts;
+            touched = touched || (n < tools && report.load[n].touched);
         }
     }
 };
@@ -255,7 +255,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     for (std::size_t b = 0; b < bodies.size(); ++b) write_meshes(bodies[b].deformed(), meshes[b]);
     write_curves(curves, context);
     outcome.warning = warnings.told(stage.name);
-    if (!machine.apparatus.tool.empty() && totals.tool_contacts == 0 && !outcome.stopped) {
+    if (!machine.apparatus.tool.empty() && !totals.touched && !outcome.stopped) {
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
     }
     double overlap = 0;  // [m]

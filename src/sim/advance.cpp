@@ -339,6 +339,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
             load.torque += body.load[n].torque;
             load.penetration = std::max(load.penetration, body.load[n].penetration);
             load.contacts += body.load[n].contacts;
+            load.touched = load.touched || body.touched[n] || body.load[n].contacts > 0;
         }
         load.work = r.work[n];
     }

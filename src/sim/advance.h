@@ -22,6 +22,7 @@ struct ToolLoad {
     double work = 0;             // done by it since the stage began [J]
     double penetration = 0;      // of the deepest point [m]
     int contacts = 0;
+    bool touched = false;  // there were some in this frame
 };
 
 // The energy books of one body, or of all.

@@ -31,12 +31,15 @@ struct BodyOutcome {
     double damped_work = 0;         // [J]; in motion only
     double drag_work = 0;           // [J]; in motion only
     std::vector<double> work;       // by tool, then grip [J]
+    std::vector<char> touched;      // likewise: at the end of any step; in motion only
     std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
     ContactSums met;                // with other bodies and itself
 
     BodyOutcome(const Apparatus& apparatus, std::size_t pushes)
-        : work(apparatus.tool.size() + apparatus.grip.size(), 0.0), push_work(pushes, 0.0) {}
+        : work(apparatus.tool.size() + apparatus.grip.size(), 0.0),
+          touched(work.size(), 0),
+          push_work(pushes, 0.0) {}
 
     // On the body by tools, grips, loads and gravity [J].
     double done() const {

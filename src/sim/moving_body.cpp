@@ -241,6 +241,7 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
     std::vector<LoadSum> load =
         implicit_ ? contacts_.loads(matter_, now) : contacts_.motion_loads();
     add_work(before, now, load_, load, outcome.work);
+    for (std::size_t n = 0; n < load.size(); ++n) outcome.touched[n] |= load[n].contacts > 0;
     pushes_.commit(matter_, now, outcome.push_work);
     load_ = std::move(load);
 }
