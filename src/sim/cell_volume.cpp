@@ -14,7 +14,7 @@ namespace swage {
 
 namespace {
 
-constexpr std::size_t kRunsPerChunk = 32;
+constexpr std::size_t kCellsPerChunk = 4096;  // about; fewer take less than handing over
 
 CornerRows<const double> rows_of(const Aggregate& matter, const CellRun& run, int at) {
     const Vec3Array& x = matter.particle_position;
@@ -118,11 +118,11 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const bool springs = matter.material.mechanics == Mechanics::springs;
     const double spacing = matter.lattice.spacing, full = 64 * spacing * spacing * spacing;
-    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
+    const std::size_t chunks = matter.cell_fill.size() / kCellsPerChunk + 1;
     std::vector<std::vector<SmallCell>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
-        const CellRun* const begin = runs.data() + chunk * kRunsPerChunk;
-        const CellRun* const end = runs.data() + std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
+        const CellRun* const begin = runs.data() + runs.size() * chunk / chunks;
+        const CellRun* const end = runs.data() + runs.size() * (chunk + 1) / chunks;
         if (!springs) {  // not all cells are looked at from their middles
             for (const CellRun* run = begin; run != end; ++run) {
                 add_cells_below(matter, *run, limit, part[chunk]);
