@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 
 #include "base/math.h"
@@ -63,7 +62,6 @@ SkinPieces find_pieces_of(const TriMesh& skin) {
 }
 
 constexpr double kStray = 0.05;  // of the surface that may leave the picture
-
 constexpr double kReach = 0.12;  // of the action's size, that what lies near it may add
 
 // Which pieces the picture frames: all but the farthest from the middle.
@@ -114,23 +112,25 @@ std::vector<char> framed(const SkinPieces& pieces, const std::vector<Eigen::Vect
     return is_framed;
 }
 
-// The vertices of a frame that the picture is to show.
+// The vertices of a frame that the picture is to show; frames in their order.
 class FramedSkin {
   public:
     explicit FramedSkin(const FrameStore& store) : store_(store) {}
 
     template <class Use>
     void for_each(const StoredFrame& frame, Use&& use) {
-        if (at_start_.empty()) {
-            for (const StoredBody& body : frame.body) {
-                at_start_.push_back(pieces(body.skin).area.size());
-            }
-        }
+        last_.resize(frame.body.size());
         for (std::size_t b = 0; b < frame.body.size(); ++b) {
             const StoredBody& body = frame.body[b];
-            const SkinPieces& own = pieces(body.skin);
+            Last& last = last_[b];
+            if (last.skin != body.skin) {
+                last.pieces = find_pieces_of(store_.skin(body.skin));
+                if (last.skin < 0) last.at_start = last.pieces.area.size();
+                last.skin = body.skin;
+            }
+            const SkinPieces& own = last.pieces;
             // Parts that the mesh came in are no chips.
-            const bool broke = own.area.size() > at_start_[b];
+            const bool broke = own.area.size() > last.at_start;
             const std::vector<char> is_framed =
                 broke ? framed(own, body.position) : std::vector<char>();
             for (std::size_t v = 0; v < body.position.size(); ++v) {
@@ -140,15 +140,13 @@ class FramedSkin {
     }
 
   private:
-    const SkinPieces& pieces(int skin) {
-        const auto known = pieces_.find(skin);
-        if (known != pieces_.end()) return known->second;
-        return pieces_[skin] = find_pieces_of(store_.skin(skin));
-    }
-
+    struct Last {
+        int skin = -1;
+        SkinPieces pieces;
+        std::size_t at_start = 0;  // how many pieces there were
+    };
     const FrameStore& store_;
-    std::vector<std::size_t> at_start_;  // how many pieces, a body each
-    std::map<int, SkinPieces> pieces_;
+    std::vector<Last> last_;  // a body each
 };
 
 }  // namespace

@@ -37,7 +37,7 @@ class Breaker {
     Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter)
         : whole_(whole),
           matter_(matter),
-          faces_(faces_to_part(matter)),
+          faces_(faces_to_part(matter, mount)),
           skin_(whole, mount, matter, faces_) {}
 
     BrokenSkin run() {
@@ -50,7 +50,8 @@ class Breaker {
             }
         }
         skin_.part_touching_edges();
-        if (open_edges(whole_) == 0) result_.open_faces += open_edges(skin_.mesh);
+        const int open = open_edges(skin_.mesh);
+        if (open > 0 && open_edges(whole_) == 0) result_.open_faces += open;
         result_.mesh = std::move(skin_.mesh);
         result_.mount = std::move(skin_.mount);
         finish_mount(result_.mount, matter_);
@@ -202,25 +203,6 @@ class Breaker {
         return true;
     }
 
-    static bool has_rim(const std::vector<Corners>& triangles,
-                        const std::vector<Segment>& segments) {
-        std::map<Segment, int> missing;
-        for (const Segment& s : segments) ++missing[s];
-        for (const Corners& t : triangles) {
-            for (int k = 0; k < 3; ++k) {
-                const int from = t[k], to = t[(k + 1) % 3];
-                const auto turned = missing.find({to, from});
-                if (turned != missing.end() && turned->second < 0) {
-                    ++turned->second;
-                } else {
-                    --missing[{from, to}];
-                }
-            }
-        }
-        return std::all_of(missing.begin(), missing.end(),
-                           [](const auto& entry) { return entry.second == 0; });
-    }
-
     // Triangles within closed loops; where the plane's own fill does not serve, a fan of each.
     std::vector<Corners> fill(const Face& face, const std::vector<Segment>& segments) const {
         Section section;
@@ -241,8 +223,7 @@ class Breaker {
             for (const Corners& t : filled->triangle) {
                 triangles.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
             }
-            if (has_rim(triangles, segments)) return triangles;
-            triangles.clear();
+            return triangles;
         }
         std::multimap<int, int> next;
         for (const Segment& s : segments) next.emplace(s[0], s[1]);

@@ -12,7 +12,7 @@ struct BrokenSkin {
     TriMesh mesh;  // positions at molding; new faces have the material kCutMaterial and no texture
     Mount mount;
     int faces = 0;       // triangles of the break, both sides together
-    int open_faces = 0;  // places where the surface is not closed: left open
+    int open_faces = 0;  // squares and edges where the surface is not closed: left open
 };
 
 // Whether any connection along the lattice's axes broke by load.

@@ -17,6 +17,11 @@ std::uint64_t key_of(const Vec3i& site, int axis) {
            static_cast<std::uint64_t>(axis) << 60;
 }
 
+bool is_cut(const Mount& mount) {  // by a blade
+    return std::any_of(mount.side.begin(), mount.side.end(),
+                       [](CornerMask side) { return side != kAllCorners; });
+}
+
 }  // namespace
 
 std::vector<BrokenFace> broken_faces(const Aggregate& matter) {
@@ -36,8 +41,9 @@ std::vector<BrokenFace> broken_faces(const Aggregate& matter) {
     return faces;
 }
 
-std::vector<BrokenFace> faces_to_part(const Aggregate& matter) {
+std::vector<BrokenFace> faces_to_part(const Aggregate& matter, const Mount& mount) {
     std::vector<BrokenFace> faces = broken_faces(matter);
+    if (!is_cut(mount)) return faces;
     std::unordered_set<std::uint64_t> known;
     for (const BrokenFace& face : faces) known.insert(key_of(face.site, face.axis));
     const auto add = [&](const Vec3i& site, int axis) {
@@ -101,16 +107,14 @@ PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Agg
     plane_ = diced_.plane;
     site_ = diced_.site;
     mount.kind = whole_mount.kind;
-    const bool is_cut = std::any_of(whole_mount.side.begin(), whole_mount.side.end(),
-                                    [](CornerMask side) { return side != kAllCorners; });
-    if (is_cut) uncracked_ = std::make_unique<Uncracked>(matter);
+    if (is_cut(whole_mount)) uncracked_ = std::make_unique<Uncracked>(matter);
     const std::size_t old = whole_mount.reference.size();
     for (std::size_t v = 0; v < mesh.position.size(); ++v) {
         const Vec3& at = mesh.position[v];
         source_.push_back(static_cast<int>(v));
         if (v < old) {
             mount_at({at, whole_mount.cell[v], whole_mount.side[v]});
-        } else if (is_cut) {
+        } else if (uncracked_) {
             const Corners& c = whole.triangle[diced_.on_triangle[v - old]];
             const std::array<BodyPlace, 3> corner = {place_of(c[0]), place_of(c[1]),
                                                      place_of(c[2])};

@@ -25,8 +25,8 @@ struct BrokenFace {
 std::vector<BrokenFace> broken_faces(const Aggregate& matter);
 // And beside them in cells that a blade has severed. The surface of one side of its cut reaches
 // into cubes of the other there: the crack goes on through these, so that this surface parts too;
-// that of the other side is slit, its two faces staying together.
-std::vector<BrokenFace> faces_to_part(const Aggregate& matter);
+// that of the other side is slit, its two faces staying together. `mount`: of the whole skin.
+std::vector<BrokenFace> faces_to_part(const Aggregate& matter, const Mount& mount);
 
 class PartedSkin {
   public:
