@@ -251,17 +251,18 @@ class Breaker {
         Vec3i upper = face.site;
         ++upper[face.axis];
         for (const Corners& t : fill(face, segments)) {
-            add(face.site, t, part);
-            add(upper, {t[0], t[2], t[1]}, part);
+            add(face.site, face.axis, t, part);
+            add(upper, 3 + face.axis, {t[0], t[2], t[1]}, part);
         }
     }
 
-    void add(const Vec3i& site, const Corners& raw, int part) {
+    // `way`: which of the six that it looks; faces are smooth among those that look the same.
+    void add(const Vec3i& site, int way, const Corners& raw, int part) {
         TriMesh& mesh = skin_.mesh;
         Corners own, smooth;
         for (int k = 0; k < 3; ++k) {
             own[k] = skin_.copy_of(raw[k], site);
-            const auto [at, fresh] = smooth_.emplace(own[k], mesh.smooth_group_count);
+            const auto [at, fresh] = smooth_.emplace(std::array{own[k], way}, mesh.smooth_group_count);
             mesh.smooth_group_count += fresh && !mesh.triangle_smooth.empty();
             smooth[k] = at->second;
         }
@@ -280,7 +281,7 @@ class Breaker {
     const std::vector<Face> faces_;
     PartedSkin skin_;
     std::map<std::array<int, 3>, int> corner_;
-    std::map<int, int> smooth_;  // of new faces, by vertex
+    std::map<std::array<int, 2>, int> smooth_;  // of new faces, by vertex and way
     std::vector<std::vector<Segment>> rim_;
     std::vector<int> part_;  // of the mesh, at each broken face
     std::unique_ptr<TriangleTree> tree_;
