@@ -262,7 +262,8 @@ class Breaker {
         Corners own, smooth;
         for (int k = 0; k < 3; ++k) {
             own[k] = skin_.copy_of(raw[k], site);
-            const auto [at, fresh] = smooth_.emplace(std::array{own[k], way}, mesh.smooth_group_count);
+            const auto [at, fresh] =
+                smooth_.emplace(std::array{own[k], way}, mesh.smooth_group_count);
             mesh.smooth_group_count += fresh && !mesh.triangle_smooth.empty();
             smooth[k] = at->second;
         }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The middles of the severed edges scatter evenly about the blade's path, so a plane fitted to them
 // has no bias. One plane is taken for a whole cut when it parts the ends of all its severed edges,
-// else a plane around each point.
+// else a plane around each point, where that parts what is severed nearest to it. NOTE: in rubble
+// no plane does; drawn to one all the same, corners of crumbs went off by several cells.
 #include "skin/cut_faces.h"
 
 #include <Eigen/Eigenvalues>
@@ -14,6 +15,12 @@
 namespace swage {
 
 namespace {
+
+// Spacings.
+constexpr double kReach = 3;         // of the edges that tell a plane around a point
+constexpr double kNear = 1.5;        // of those that it has to part
+constexpr double kWholeSlack = 0.2;  // how far beside an edge a plane may pass
+constexpr double kSlack = 0.4;
 
 struct Severed {
     Vec3 middle;  // of the edge
@@ -53,11 +60,12 @@ std::vector<Severed> severed_edges(const Aggregate& matter, const VoxelSurface& 
     return edges;
 }
 
+// `slack`: spacings.
 bool parts_all(const CutTarget& plane, const std::vector<Severed>& edges,
-               const std::vector<int>& members, const Vec3& origin, double a) {
+               const std::vector<int>& members, const Vec3& origin, double a, double slack) {
     return std::all_of(members.begin(), members.end(), [&](int e) {
         const double off = std::abs(plane.normal.dot(edges[e].middle - origin) - plane.height);
-        return off <= a * (0.5 * std::abs(plane.normal[edges[e].axis]) + 0.2);
+        return off <= a * (0.5 * std::abs(plane.normal[edges[e].axis]) + slack);
     });
 }
 
@@ -90,7 +98,7 @@ std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
         PlaneFit fit;
         for (int e : members[p]) fit.add(edges[e].middle - origin, 1);
         const CutTarget plane = fit.plane();
-        if (!parts_all(plane, edges, members[p], origin, a)) continue;
+        if (!parts_all(plane, edges, members[p], origin, a, kWholeSlack)) continue;
         whole[p] = CutTarget{plane.normal, plane.height + plane.normal.dot(origin)};
     }
     for (std::size_t s = 0; s < target.size(); ++s) {
@@ -98,15 +106,17 @@ std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
         const int patch = patches.root(static_cast<int>(s));
         target[s] = whole[patch];
         if (target[s]) continue;
-        constexpr double kReach = 3;  // spacings
         PlaneFit fit;
+        std::vector<int> near;
         for (int e : members[patch]) {
             const Vec3 way = edges[e].middle - place[s];
             const double d2 = way.squaredNorm() / (a * a);
             if (d2 < kReach * kReach) fit.add(way, std::exp(-d2 / 2.25));
+            if (d2 < kNear * kNear) near.push_back(e);
         }
         if (fit.weight <= 0) continue;
         const CutTarget plane = fit.plane();
+        if (!parts_all(plane, edges, near, place[s], a, kSlack)) continue;
         target[s] = CutTarget{plane.normal, plane.height + plane.normal.dot(place[s])};
     }
     return target;

@@ -15,7 +15,8 @@ struct CutTarget {
     double height;  // normal . x on the target plane [m]
 };
 
-// For each site the plane that its part of a cut face should lie in; none off the cuts.
+// For each site the plane that its part of a cut face should lie in; none off the cuts and in
+// rubble.
 std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
                                                   const VoxelSurface& surface,
                                                   const std::vector<Vec3>& place);

@@ -65,10 +65,12 @@ class Placer {
     // Whether a point lies on the outer surface, exactly so or only near it.
     void find_kinds() {
         outer_.assign(count(), 0);
+        on_cut_.assign(count(), 0);
         exact_.assign(count(), 1);
         fixed_axis_.assign(count(), 0);
         normal_.assign(count(), Vec3::Zero());
         for (const VoxelFace& face : surface_.face) {
+            for (int p : face.point) on_cut_[p] |= face.cut;
             if (face.cut) continue;
             bool full = samples_.empty() || matter_.cell_fill[face.cell] > 1 - 1e-5f;
             for (int p : face.point) full = full && !near_dropped(surface_.site[p]);
@@ -172,6 +174,7 @@ class Placer {
             if (only_at_cuts && !slides_[s]) return;
             Vec3& p = next[s];
             const bool cut = target_[s].has_value();
+            if (on_cut_[s] && !cut) return;  // rubble keeps the lattice's steps
             if (outer_[s] && exact_[s]) {
                 if (cut) {
                     to_cut(s, p);
@@ -270,7 +273,7 @@ class Placer {
                                           [](char kept) { return !kept; });
     std::vector<Vec3> place_, normal_;
     std::vector<Vec3> facing_;  // normals of the voxels' faces, which tell edges from sides
-    std::vector<char> outer_, exact_, fixed_axis_, slides_;
+    std::vector<char> outer_, on_cut_, exact_, fixed_axis_, slides_;
     std::vector<std::optional<CutTarget>> target_;
     std::vector<int> first_, neighbor_;
 };

@@ -2,6 +2,7 @@
 #include "skin/boundary.h"
 
 #include <algorithm>
+#include <random>
 #include <tuple>
 
 #include "geometry/edges.h"
@@ -176,6 +177,46 @@ TEST_CASE("a body half severed stays in one piece, with a slit") {
     CHECK(fixtures::is_closed(mesh));
     CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(1e-9));
     CHECK(cut_area(mesh) > 0);
+}
+
+TEST_CASE("rubble keeps its volume, each piece about its own particles") {
+    const double share = GENERATE(1., .6, .3);  // of the connections that are gone
+    const double a = .1;
+    Aggregate matter = test::make_block(8, 5, 6, a, Material{});
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> draw(0, 1);
+    for (const Span& span : matter.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            if (draw(random) > share) continue;
+            matter.connection[span.direction].weight.set(span.lower + n, 0);
+        }
+    }
+    const TriMesh rest = boundary_skin(matter);
+    int open = 0;  // slits may meet in an edge of four faces
+    for_each_edge(edge_uses(rest.triangle, rest.position.size()), [&](auto uses) {
+        int balance = 0;
+        for (const auto& use : uses) balance += use.forward ? 1 : -1;
+        open += balance != 0;
+    });
+    CHECK(open == 0);
+    CHECK(signed_volume(rest) == Approx(matter.volume()).epsilon(share == 1 ? 1e-9 : .01));
+    const Pieces pieces = find_pieces(matter);
+    REQUIRE((share < 1 || pieces.count == static_cast<int>(matter.particle_count())));
+    std::vector<Vec3> way(pieces.count);
+    for (Vec3& w : way) w = 10 * Vec3(draw(random), draw(random), draw(random));
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        matter.particle_position.add(p, way[pieces.particle_piece[p]]);
+    }
+    const TriMesh scattered = boundary_skin(matter);
+    CHECK(signed_volume(scattered) == Approx(signed_volume(rest)).epsilon(1e-9));
+    double longest = 0;
+    for (const Corners& c : scattered.triangle) {
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 edge = scattered.position[c[k]] - scattered.position[c[(k + 1) % 3]];
+            longest = std::max(longest, edge.norm());
+        }
+    }
+    CHECK(longest < 2 * a);
 }
 
 TEST_CASE("cells that only touch at an edge or a corner get separate vertices") {
