@@ -5,12 +5,19 @@
 
 #include "sim/cracking.h"
 #include "sim/crushed_cells.h"
+#include "sim/hinges.h"
 
 namespace swage {
 
 namespace {
+
 constexpr double kNearOnset = 1 - 1e-9;  // of the strain at which a cell is looked at
-}
+
+// How far a connection may have turned, over the strain at which it breaks. At a crack that opens,
+// what softens is off by as much as it is strained.
+constexpr double kMostBent = 3;
+
+}  // namespace
 
 LatticeForces::LatticeForces(const Aggregate& matter)
     : spring_law_(lattice_law(matter)), loose_(matter) {
@@ -100,7 +107,10 @@ Committed LatticeForces::commit(Aggregate& matter, bool in_motion) {
     const Broken broken = loose_.commit(matter, nullptr);
     result.fracture = broken.lost;
     result.broken = broken.count;
-    if (broken.count > 0) {
+    if (broken.count > 0 && cells_) {
+        // Sound cells beside what broke turn into springs too.
+        result.fracture += energy_of_change(matter, elastic_energy(matter));
+    } else if (broken.count > 0) {
         connections_changed(matter);
     } else {
         if (spring_sweep_) spring_sweep_->soften(matter);
@@ -126,9 +136,31 @@ Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
     const double before = elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);
     for (CellId cell : cells) matter.cell_cracked[cell] = 1;
+    return {static_cast<int>(cells.size()), energy_of_change(matter, before)};
+}
+
+double LatticeForces::energy_of_change(Aggregate& matter, double before) {
     connections_changed(matter);
-    return {static_cast<int>(cells.size()),
-            before - elastic_energy(matter) - loose_.trial_loss(matter)};
+    return before - elastic_energy(matter) - loose_.trial_loss(matter);
+}
+
+bool LatticeForces::may_snap(const Aggregate& matter) const {
+    return loose_.law().onset > 0 && !loose_.empty() &&
+           !std::isfinite(matter.material.yield_stress);
+}
+
+Committed LatticeForces::snap(Aggregate& matter) {
+    const std::vector<Hinge> hinges =
+        find_hinges(matter, loose_.ends(matter), kMostBent * loose_.law().broken);
+    if (hinges.empty()) return {};
+    const double before = elastic_energy(matter);
+    for (ConnectionArrays& all : matter.connection) all.damage.resize(all.weight.size(), 0.0f);
+    for (const Hinge& h : hinges) {
+        matter.connection[h.direction].damage[h.lower] = 1;
+        matter.connection[h.direction].weight.set(h.lower, 0);
+    }
+    return {.fracture = energy_of_change(matter, before),
+            .broken = static_cast<int>(hinges.size())};
 }
 
 double LatticeForces::elastic_energy(const Aggregate& matter) {

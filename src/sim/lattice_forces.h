@@ -56,6 +56,13 @@ class LatticeForces {
     // In motion: as for commit().
     Cracked crack(Aggregate& matter, bool in_motion = false);
 
+    // Whether snap() can find anything: cracked matter that breaks and does not flow. What flows
+    // bends, and has no lengths at rest by which to tell.
+    bool may_snap(const Aggregate& matter) const;
+    // Breaks connections that have been bent by more than what they could be stretched
+    // (sim/hinges.h), as far as the committed state shows. What they held counts as fracture.
+    Committed snap(Aggregate& matter);
+
     double elastic_energy(const Aggregate& matter);  // [J]
 
     // What the cells carry, where forces are theirs alone; else null.
@@ -71,6 +78,10 @@ class LatticeForces {
   private:
     double add_branches(const Aggregate& matter, std::span<const BranchStep> branches,
                         Vec3Array& force);
+
+    // After cells or connections have become others: energy that this took, beyond what softening
+    // on to the present positions will [J].
+    double energy_of_change(Aggregate& matter, double before);
 
     LatticeLaw spring_law_;
     std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act

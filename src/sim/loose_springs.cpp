@@ -133,6 +133,12 @@ std::vector<char> LooseSprings::softening_ends(const Aggregate& matter) const {
     return ends;
 }
 
+std::vector<char> LooseSprings::ends(const Aggregate& matter) const {
+    std::vector<char> ends(matter.particle_count(), 0);
+    for (const Spring& s : spring_) ends[s.lower] = ends[s.upper] = 1;
+    return ends;
+}
+
 void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest) {
     const Vec3Array& x = matter.particle_position;
     now_.resize(spring_.size());

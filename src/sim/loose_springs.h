@@ -34,6 +34,9 @@ class LooseSprings {
     // Of each particle, whether it is the lower end of any that softens; empty: none is.
     std::vector<char> softening_ends(const Aggregate& matter) const;
 
+    // Of each particle, whether any spring ends there.
+    std::vector<char> ends(const Aggregate& matter) const;
+
     // Adds the springs' forces. `rest`: as for LatticeSweep; read with mechanics "springs" only,
     // whose sweep carries every connection as if sound: what it carries too much is taken off.
     void add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest, Vec3Array& force);

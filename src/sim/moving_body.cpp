@@ -38,7 +38,8 @@ double stable_step(const Aggregate& matter, const SimSettings& settings,
 }
 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
-constexpr double kCalm = 0.5;  // of the speed that crushed matter deforms by, in a stable step
+constexpr double kCalm = 0.5;     // of the speed that crushed matter deforms by, in a stable step
+constexpr double kTurned = 0.05;  // spacings that particles go between looks at what is bent
 constexpr std::size_t kMoved = 8192;  // particles at a time: fewer take less than handing over
 
 struct Movers {
@@ -212,17 +213,28 @@ void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome
     }
 }
 
-// What flows, softens and cracks at the present positions, whose forces were just found.
-bool MovingBody::remember(BodyOutcome& outcome) {
+// What flows, softens, cracks and snaps at the present positions, whose forces were just found.
+bool MovingBody::remember(double step, BodyOutcome& outcome) {
     if (!remembers_) return false;
     branch_energy_ = -1;  // branches soften too
-    const Committed lost = lattice_.commit(matter_, true);
-    outcome.plastic_work += lost.plastic;
-    outcome.fracture_work += lost.fracture;
-    outcome.broken += lost.broken;
+    int broken = 0;
+    const auto book = [&](const Committed& lost) {
+        outcome.plastic_work += lost.plastic;
+        outcome.fracture_work += lost.fracture;
+        outcome.broken += lost.broken;
+        broken += lost.broken;
+    };
+    book(lattice_.commit(matter_, true));
     const Cracked cracked = lattice_.crack(matter_, true);
     outcome.fracture_work += cracked.lost;
-    return lost.broken > 0 || cracked.cells > 0;
+    if (lattice_.may_snap(matter_)) {
+        turned_ += step * top_speed();
+        if (turned_ > kTurned * matter_.lattice.spacing) {
+            turned_ = 0;
+            book(lattice_.snap(matter_));
+        }
+    }
+    return broken > 0 || cracked.cells > 0;
 }
 
 void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
@@ -230,7 +242,7 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
     if (lattice_.saw_crushed() || inside_out_ > 0) {
         outcome.damped_work += calm_crushed(matter_, std::exp(-kCalm * step / step_));
     }
-    if (remember(outcome)) find_forces(now, 0, outcome);
+    if (remember(step, outcome)) find_forces(now, 0, outcome);
     if (implicit_) {
         outcome.friction_work += contacts_.commit(matter_, now);
     } else {

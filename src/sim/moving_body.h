@@ -127,7 +127,7 @@ class MovingBody {
     double branch_energy();
     void let_go();  // the branches
     void find_inner_forces(double step, BodyOutcome& outcome);
-    bool remember(BodyOutcome& outcome);  // whether the forces have changed by it
+    bool remember(double step, BodyOutcome& outcome);  // whether the forces have changed by it
 
     Aggregate& matter_;
     LatticeForces lattice_;
@@ -138,9 +138,10 @@ class MovingBody {
     SurfaceDrag drag_;
     Vec3Array force_, listed_;  // listed: positions when the candidates were found
     std::vector<LoadSum> load_;
-    double gone_ = 0;  // no particle has gone farther since then [m]
-    bool touches_;     // a tool could
-    bool remembers_;   // its matter yields or breaks
+    double turned_ = 0;  // way gone since the last look at what is bent, at the most [m]
+    double gone_ = 0;    // no particle has gone farther since then [m]
+    bool touches_;       // a tool could
+    bool remembers_;     // its matter yields or breaks
     bool breaks_;
     bool implicit_;
     bool saves_branches_;

@@ -16,7 +16,8 @@ bool QuasistaticSolver::commit(MoveOutcome& outcome) {
 }
 
 // Cracks run on, round by round, until everything stands at this drive: in each the cells that are
-// most strained beyond their strength turn into springs, and all come to rest again.
+// most strained beyond their strength turn into springs, or where there are none what was bent too
+// far breaks, and all come to rest again.
 void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
     if (!matter_.material.breaks()) return;
     // What the matter holds and took, less what loads have put in.
@@ -29,10 +30,13 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
     for (;;) {
         const double before = booked();
         const Cracked cracked = lattice_.crack(matter_);
-        if (cracked.cells == 0) return;
+        Committed snapped;
+        if (cracked.cells == 0 && lattice_.may_snap(matter_)) snapped = lattice_.snap(matter_);
+        if (cracked.cells == 0 && snapped.broken == 0) return;
         connections_changed();
         std::fill(carries_.begin(), carries_.end(), false);
-        outcome.body[0].fracture_work += cracked.lost;
+        outcome.body[0].fracture_work += cracked.lost + snapped.fracture;
+        outcome.body[0].broken += snapped.broken;
         increment(to, to, settings_.halving_limit, outcome);
         outcome.body[0].set_free += before - booked();
     }

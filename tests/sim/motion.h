@@ -30,6 +30,19 @@ inline Drive still(double time) {
     return d;
 }
 
+// A flat tool under a body, its upper side at y = 0.
+inline Apparatus floor_with(double friction) {
+    Apparatus a;
+    a.name = "floor";
+    a.tool.push_back({"floor", BoxShape{Vec3(50, 2, 50), 0}, friction});
+    return a;
+}
+inline Drive floor_at(double time) {
+    Drive d = still(time);
+    d.world_from_tool.push_back({Quat::Identity(), Vec3(0, -1, 0)});
+    return d;
+}
+
 // A force along x on all points of the block's lower side.
 inline Load push_below(const Aggregate& block, double force) {
     Load push;

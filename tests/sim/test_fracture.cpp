@@ -7,6 +7,7 @@
 #include "sim/lattice_forces.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/motion.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -15,6 +16,14 @@ namespace {
 
 constexpr double kModulus = 1e9, kStrength = 1e6, kToughness = 20;  // l_c = 2 cm
 constexpr double kSide = 0.008, kLength = 0.024;
+
+const Material kPlaster{.young_modulus = 5e8,
+                        .poisson_ratio = 0.2,
+                        .density = 1200,
+                        .strength = 1e6,
+                        .toughness = 40,
+                        .damping_ratio = 0.02,
+                        .friction = 0.5};
 
 Material brittle(Mechanics mechanics) {
     return {.mechanics = mechanics,
@@ -186,6 +195,97 @@ TEST_CASE("explicit steps break a bar too, and keep the books") {
           Approx(r.work).margin(0.05 * kToughness * bar.section));
 }
 
+TEST_CASE("what breaks while it rubs loses nothing that the books do not tell") {
+    Material plaster = kPlaster;
+    plaster.damping_ratio = 0;
+    Aggregate board = make_block(60, 2, 8, 0.005, plaster);
+    const Pose pose{Quat(Eigen::AngleAxisd(0.2, Vec3(0.2, 0, 1).normalized())), Vec3::Zero()};
+    place(board, pose);
+    std::vector<double>& height = board.particle_position.y;
+    const double lift = 1e-4 - *std::min_element(height.begin(), height.end());
+    for (double& y : height) y += lift;
+    for (double& v : board.particle_velocity.y) v = -3;
+    const Apparatus apparatus = floor_with(0.5);
+    SimSettings settings = motion_settings();
+    settings.step_safety = 0.2;
+    Simulation simulation(board, apparatus, settings);
+    FrameReport r;
+    for (int n = 0; n < 8; ++n) {
+        r = simulation.advance(floor_at(2.5e-4 * n), floor_at(2.5e-4 * (n + 1)));
+    }
+    CHECK(r.pieces > 2);
+    CHECK(r.friction > 0.1 * r.fracture);
+    CHECK(std::abs(r.remainder) < 0.02 * r.fracture);
+}
+
+namespace {
+
+// A bar along x, broken across its middle but for its lowest layer, its right half turned about
+// what is left.
+struct Thread {
+    Aggregate matter;
+    explicit Thread(const Material& material, double angle)
+        : matter(make_block(12, 3, 3, 0.01, material)) {
+        for (ConnectionArrays& all : matter.connection) {
+            all.damage.assign(matter.particle_count(), 0.0f);
+        }
+        const auto is_right = [&](ParticleId p) {
+            return matter.particle_reference.at(p).x() > 0.001;
+        };
+        const auto is_low = [&](ParticleId p) {
+            return matter.particle_reference.at(p).y() < -0.014;
+        };
+        for (const Span& span : matter.lattice.span) {
+            for (int n = 0; n < span.count; ++n) {
+                const ParticleId lower = span.lower + n, upper = span.upper + n;
+                if (is_right(lower) == is_right(upper)) continue;
+                if (is_low(lower) && is_low(upper)) continue;
+                matter.connection[span.direction].weight.set(lower, 0);
+                matter.connection[span.direction].damage[lower] = 1;
+            }
+        }
+        matter.cell_cracked.assign(matter.cell_fill.size(), 0);
+        const Quat turn(Eigen::AngleAxisd(-angle, Vec3::UnitZ()));
+        const Vec3 about(0, -0.015, 0);
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            if (!is_right(static_cast<ParticleId>(p))) continue;
+            matter.particle_position.set(p,
+                                         about + turn * (matter.particle_reference.at(p) - about));
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a thread of brittle matter snaps when it is bent by more than it can be stretched") {
+    const Mechanics mechanics = GENERATE(Mechanics::cells, Mechanics::springs);
+    const Material material = brittle(mechanics);
+    const double breaks =
+        fracture_law(material.young_modulus, material.strength, material.toughness, 0.01).broken;
+    for (const double bent : {2., 4.}) {
+        Thread body(material, 2 * bent * breaks);
+        for (double& z : body.matter.particle_position.z) z *= 1 + 0.5 * breaks;
+        LatticeForces forces(body.matter);
+        forces.commit(body.matter);
+        REQUIRE(find_pieces(body.matter).count == 1);
+        const double before = forces.elastic_energy(body.matter);
+        REQUIRE(before > 0);
+        double lost = 0;
+        for (int n = 0; n < 20; ++n) lost += forces.snap(body.matter).fracture;
+        CHECK(find_pieces(body.matter).count == (bent > 3 ? 2 : 1));
+        CHECK(before - forces.elastic_energy(body.matter) ==
+              Approx(lost).margin(1e-12 + 1e-9 * before));
+    }
+    Material ductile = material;
+    ductile.yield_stress = 1e9;
+    Thread hangs(ductile, 1);
+    CHECK_FALSE(LatticeForces(hangs.matter).may_snap(hangs.matter));
+    Thread turned(material, 0);
+    place(turned.matter, {Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())), Vec3(1, 0, 0)});
+    LatticeForces forces(turned.matter);
+    CHECK(forces.snap(turned.matter).broken == 0);
+}
+
 TEST_CASE("damping that is slow to yield does not hold a crack together") {
     for (const Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
         const auto work_to_part = [&](double damping) {
@@ -305,14 +405,7 @@ TEST_CASE("a crack goes on across the pull, not along the lattice") {
 }
 
 TEST_CASE("a board that shatters meets itself, and no energy comes of it") {
-    const Material plaster{.young_modulus = 5e8,
-                           .poisson_ratio = 0.2,
-                           .density = 1200,
-                           .strength = 1e6,
-                           .toughness = 40,
-                           .damping_ratio = 0.02,
-                           .friction = 0.5};
-    Aggregate board = make_block(40, 2, 5, 0.005, plaster);
+    Aggregate board = make_block(40, 2, 5, 0.005, kPlaster);
     const Pose pose{Quat(Eigen::AngleAxisd(0.2, Vec3(0.2, 0, 1).normalized())), Vec3(0, 0.035, 0)};
     for (std::size_t p = 0; p < board.particle_count(); ++p) {
         board.particle_position.set(p, pose * board.particle_reference.at(p));

@@ -19,19 +19,6 @@ Aggregate swinging_bar(double speed, const Material& material = kSpringy) {
     return m;
 }
 
-// A flat tool under a body, its upper side at y = 0.
-Apparatus floor_with(double friction) {
-    Apparatus a;
-    a.name = "floor";
-    a.tool.push_back({"floor", BoxShape{Vec3(50, 2, 50), 0}, friction});
-    return a;
-}
-Drive floor_at(double time) {
-    Drive d = still(time);
-    d.world_from_tool.push_back({Quat::Identity(), Vec3(0, -1, 0)});
-    return d;
-}
-
 void lift(Aggregate& m, double by) {
     for (double& y : m.particle_position.y) y += by;
 }
