@@ -21,7 +21,7 @@ void add_block(const double* __restrict f, std::size_t count, double* __restrict
 
 void make_seam(RowSlab& slab) {
     const ParticleId seam = slab.reach - slab.end;
-    slab.seam.resize(seam > 0 ? static_cast<std::size_t>(seam + 2 * kSeamRoom) : 0);
+    slab.seam.resize(seam > 0 ? static_cast<std::size_t>(slab.room + seam + kSeamRoom) : 0);
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ std::vector<RowSlab> cell_slabs(const Aggregate& matter) {
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const bool full = !slabs.empty() && !same_row(runs[r], runs[r - 1]) &&
                           std::size_t(runs[r].first) >= cells * slabs.size() / count;
-        if (slabs.empty() || full) slabs.push_back({r, r, 0, 0, 0, {}});
+        if (slabs.empty() || full) slabs.push_back({r, r, 0, 0, 0, {}, kSeamRoom});
         slabs.back().run_end = r + 1;
     }
     for (std::size_t s = 0; s < slabs.size(); ++s) {
@@ -97,14 +97,16 @@ std::vector<SpringRun> spring_runs(const Lattice& lattice) {
                 goes_on = goes_on && (!here[r] || !now[r] || here[r] == now[r]);
             }
             if (!goes_on) {
-                runs.push_back({own.j, own.k, own.first + (i - own.i), 0, {-1, -1, -1, -1}});
+                runs.push_back(
+                    {own.j, own.k, own.first + (i - own.i), 0, {-1, -1, -1, -1}, {-1, -1, -1, -1}});
                 now = {};
             }
             SpringRun& run = runs.back();
             for (int r = 0; r < 4; ++r) {
                 if (!here[r] || now[r]) continue;
                 now[r] = here[r];
-                run.above[r] = here[r]->first + (i - run.count - here[r]->i);
+                run.met[r] = here[r]->first + (i - here[r]->i);
+                run.above[r] = run.met[r] - run.count;
             }
             ++run.count;
         }
@@ -119,7 +121,7 @@ std::vector<RowSlab> spring_slabs(const std::vector<SpringRun>& runs, std::size_
         const bool same_row = r > 0 && runs[r].j == runs[r - 1].j && runs[r].k == runs[r - 1].k;
         const bool full = !slabs.empty() && !same_row &&
                           std::size_t(runs[r].first) >= particles * slabs.size() / count;
-        if (slabs.empty() || full) slabs.push_back({r, r, runs[r].first, 0, 0, {}});
+        if (slabs.empty() || full) slabs.push_back({r, r, runs[r].first, 0, 0, {}, kSeamRoom});
         RowSlab& slab = slabs.back();
         slab.run_end = r + 1;
         slab.end = runs[r].first + runs[r].count;
@@ -131,6 +133,12 @@ std::vector<RowSlab> spring_slabs(const std::vector<SpringRun>& runs, std::size_
     const ParticleId last = static_cast<ParticleId>(particles);
     for (RowSlab& slab : slabs) {
         slab.reach = std::min(slab.reach, last);
+        for (std::size_t r = slab.run_begin; r < slab.run_end; ++r) {
+            for (int q = 0; q < 4; ++q) {
+                if (runs[r].met[q] < slab.end) continue;
+                slab.room = std::max(slab.room, slab.end - runs[r].above[q] + 1);
+            }
+        }
         make_seam(slab);
     }
     return slabs;
@@ -141,7 +149,7 @@ ForceRows force_rows(RowSlab& slab, Vec3Array& force) {
     double** seam = rows.seam;
     for (std::vector<double>* component : {&slab.seam.x, &slab.seam.y, &slab.seam.z}) {
         std::fill(component->begin(), component->end(), 0.0);
-        *seam++ = component->empty() ? nullptr : component->data() + kSeamRoom;
+        *seam++ = component->empty() ? nullptr : component->data() + slab.room;
     }
     return rows;
 }
@@ -155,7 +163,7 @@ void add_seams(const std::vector<RowSlab>& slabs, Vec3Array& force) {
             const ParticleId begin = std::max(to.begin, from.end);
             const ParticleId end = std::min(to.end, from.reach);
             if (begin >= end) continue;
-            const std::size_t skip = begin - from.end + kSeamRoom, count = end - begin;
+            const std::size_t skip = begin - from.end + from.room, count = end - begin;
             add_block(from.seam.x.data() + skip, count, force.x.data() + begin);
             add_block(from.seam.y.data() + skip, count, force.y.data() + begin);
             add_block(from.seam.z.data() + skip, count, force.z.data() + begin);

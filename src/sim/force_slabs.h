@@ -10,16 +10,17 @@
 
 namespace swage {
 
+inline constexpr int kSeamRoom = 8;
+
 // Rows that add their forces in place: to the particles begin ... end - 1 of the result, which no
 // other slab writes. What they give to particles behind waits in the seam.
 struct RowSlab {
     std::size_t run_begin, run_end;  // of the sweep's runs
     ParticleId begin, end, reach;    // pushes particles up to reach - 1
-    // Forces on end ... reach - 1 [N], with kSeamRoom more before and behind.
+    // Forces on end ... reach - 1 [N], with `room` more before and kSeamRoom behind.
     Vec3Array seam;
+    int room = kSeamRoom;
 };
-inline constexpr int kSeamRoom = 8;
-
 // By the lattice's runs of cells.
 std::vector<RowSlab> cell_slabs(const Aggregate& matter);
 
@@ -29,8 +30,10 @@ struct SpringRun {
     ParticleId first;
     int count;
     // Above the first one at (j + 1, k), (j, k + 1), (j + 1, k + 1) and (j - 1, k + 1); -1: none,
-    // and then no connection leads there or past there.
+    // and then no connection leads there or past there. Where the row above begins further on, as
+    // if it began there.
     std::array<ParticleId, 4> above;
+    std::array<ParticleId, 4> met;  // the first that is there of each
 };
 std::vector<SpringRun> spring_runs(const Lattice& lattice);
 std::vector<RowSlab> spring_slabs(const std::vector<SpringRun>& runs, std::size_t particles);

@@ -31,7 +31,7 @@ SWAGE_INLINE RunRows rows_of(const SpringTask& task, const SpringRun& run) {
     for (int q = 0; q < 5; ++q) {
         rows.above[q] = q == 0 || run.above[q - 1] >= 0;
         const ParticleId row = q == 0 || !rows.above[q] ? run.first : run.above[q - 1];
-        const bool own = row < task.end;
+        const bool own = q == 0 || !rows.above[q] || run.met[q - 1] < task.end;
         rows.room[q] = (own ? task.end : task.reach + kSeamRoom) - row;
         for (int i = 0; i < 3; ++i) {
             rows.x[q][i] = task.position[i] + row;

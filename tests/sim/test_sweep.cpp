@@ -244,3 +244,32 @@ TEST_CASE("each connection pulls its two ends, whatever is missing around it, at
         limit_vector_width(0);
     }
 }
+
+TEST_CASE("forces inside a body of any outline are in balance, over however many slabs") {
+    const double size = GENERATE(7.3, 9.1, 11.7, 14.2);  // cells from the middle
+    const bool plate = GENERATE(false, true);
+    const Vec3 tilt = Vec3(1, .31, .47).normalized();
+    const auto distance = [&](const Vec3& p) {
+        return plate ? std::max(p.norm() - 1.8 * size, std::abs(p.dot(tilt)) - 3) : p.norm() - size;
+    };
+    const int cells = static_cast<int>(std::ceil((plate ? 3.6 : 2) * size)) + 2;
+    Aggregate m =
+        test::make_shape(distance, Vec3::Constant(-0.5 * cells + 0.13), Vec3i::Constant(cells), 1);
+    REQUIRE(m.particle_count() > 1500);
+    deform(m, 0.03);
+    const LatticeLaw law = lattice_law(m);
+    Vec3Array pulls;
+    pulls.resize(m.particle_count());
+    for (const Span& span : m.lattice.span) {
+        const double length = reference_length(m.lattice, span.direction);
+        for (int n = 0; n < span.count; ++n) {
+            const ParticleId lower = span.lower + n, upper = span.upper + n;
+            const Vec3 way = m.particle_position.at(upper) - m.particle_position.at(lower);
+            const double k = law.stiffness * double(m.connection[span.direction].weight[lower]);
+            const Vec3 pull =
+                spring_tension(SpringDamper{k, 0, length}, way.norm(), 0.0) / way.norm() * way;
+            pulls.add(lower, pull), pulls.add(upper, -pull);
+        }
+    }
+    CHECK(farthest_apart(forces_of(m), pulls) < 1e-9 * law.stiffness);
+}
