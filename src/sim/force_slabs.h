@@ -21,6 +21,7 @@ struct RowSlab {
     Vec3Array seam;
     int room = kSeamRoom;
 };
+
 // By the lattice's runs of cells.
 std::vector<RowSlab> cell_slabs(const Aggregate& matter);
 
