@@ -85,6 +85,10 @@ struct CellModes {
     Triple<N> xy, yz, zx, xyz;
 };
 template <typename N>
+SWAGE_INLINE CellModes<N> operator+(const CellModes<N>& a, const CellModes<N>& b) {
+    return {a.xy + b.xy, a.yz + b.yz, a.zx + b.zx, a.xyz + b.xyz};
+}
+template <typename N>
 SWAGE_INLINE CellModes<N> operator-(const CellModes<N>& a, const CellModes<N>& b) {
     return {a.xy - b.xy, a.yz - b.yz, a.zx - b.zx, a.xyz - b.xyz};
 }

@@ -8,7 +8,8 @@
 //     W = sum of q_j^2 / (2 D_j k)            energy stored [J]
 //     P = sum of q_j^2 / (D_j k tau_j)        power taken [W]
 //
-// v rate of the connection's length [m/s], D_j stiffness over k, tau_j relaxation time [s].
+// v rate of the connection's length [m/s]; D_j stiffness over k, tau_j relaxation time [s].
+//
 // Swinging at the angular frequency w, with x = w tau,
 //
 //     loss(w) = sum D_j x / (1 + x^2) / (1 + sum D_j x^2 / (1 + x^2)),   zeta = loss / 2.
@@ -19,6 +20,12 @@
 //
 // The branches of a connection that softens (laws/fracture.h) soften with it: else slow ones would
 // hold a crack together long after its springs have let go.
+//
+// What flows takes its branches along: v is less the rate of the rest length, else they would hold
+// matter by a share of all of its strain, many times what it yields at. And q_j fades as
+// exp(-p / e_y) with the strain p that flows and that at yield, e_y: matter that has flowed is not
+// what the branches were strained with. Without that it would yield later by up to the sum of D_j
+// for as long as the slowest branch holds.
 //
 // Sources: S2.4 has one dashpot a connection, which damps each mode in proportion to its frequency:
 // right for one mode, and next to nothing for a slender body's slow ones. H.-P. Liu, D. L.

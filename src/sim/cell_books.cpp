@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
-#include "laws/cell.h"
+#include "laws/cell_rest.h"
 #include "sim/cell_history.h"
 #include "sim/cell_sweep.h"
 #include "sim/vector_clones.h"
@@ -22,8 +22,9 @@ struct BookTask {
     const CellRun* run = nullptr;
     const std::int32_t* batch = nullptr;  // of the run: kWholeCells, or where its shares begin
     const float* share;
-    Aggregate* flows = nullptr;  // whose history grows
-    double sum = 0;              // [J]; commit with nowhere to put the flow: cells that flow
+    Aggregate* flows = nullptr;      // whose history grows
+    RestGrowths* growths = nullptr;  // where that of its rest lengths goes; null: nowhere
+    double sum = 0;                  // [J]; commit with nowhere to put the flow: cells that flow
 };
 
 template <typename V>
@@ -32,6 +33,7 @@ struct BookCells {
     Columns<V> gradient;
     CellModes<V> modes;
     V fill;
+    Triple<V> at;            // the material's centroid
     CellHistory<V> history;  // all zero where nothing has flowed
 };
 
@@ -48,16 +50,15 @@ SWAGE_INLINE BookCells<V> load_cells(const BookTask& task, int begin, int count)
     }
     BookCells<V> r{};
     r.sums = gather<V>(rows, begin, count, static_cast<int>(x.size()) - run.row[3]);
-    Triple<V> at{};
     const std::int32_t shares = task.batch[begin / kLanes];
     if (shares == kWholeCells) {
         r.fill = V{} + 1.0;
     } else {
         const float* from = task.share + shares + begin % kLanes;
         r.fill = load<V>(from);
-        at = {load<V>(from + kLanes), load<V>(from + 2 * kLanes), load<V>(from + 3 * kLanes)};
+        r.at = {load<V>(from + kLanes), load<V>(from + 2 * kLanes), load<V>(from + 3 * kLanes)};
     }
-    r.gradient = centroid_gradient(r.sums, at, matter.lattice.spacing);
+    r.gradient = centroid_gradient(r.sums, r.at, matter.lattice.spacing);
     r.modes = pulled_back(r.gradient, r.sums);
     const CellId first = run.first + begin;
     if (has_flowed(task.history, first - begin % kLanes)) {
@@ -90,6 +91,31 @@ template <typename V>
 SWAGE_INLINE void grow(float* from, const V& by, const V& flows, int count) {
     for (int l = 0; l < count; ++l) {
         if (flows[l] > 0) from[l] += static_cast<float>(by[l]);
+    }
+}
+
+// Of cells whose history grows by this.
+template <typename V>
+SWAGE_INLINE void add_growths(const BookTask& task, int begin, int count, const BookCells<V>& c,
+                              const Symmetric<V>& strain, const CellModes<V>& modes,
+                              const V& flows) {
+    const Lattice& lattice = task.matter->lattice;
+    const CellHistory<V> after = {c.history.strain + strain, c.history.modes + modes,
+                                  c.history.alpha};
+    const CellRest<V> was = cell_rest<1>(c.history, c.at, lattice.spacing),
+                      is = cell_rest<1>(after, c.at, lattice.spacing);
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        const CellConnection& connection = kCellConnection[slot];
+        const int d = connection.direction, high = upper_corner(connection);
+        // They grow by little in a step.
+        const V now = rest_square(is, connection.corner, high),
+                old = rest_square(was, connection.corner, high);
+        const V by = cell_share(d) * c.fill * (now - old) / (now + old);
+        const ParticleId lower =
+            task.run->row[connection.corner >> 1] + (connection.corner & 1) + begin;
+        for (int l = 0; l < count; ++l) {
+            if (flows[l] > 0) (*task.growths)[d].push_back({lower + l, static_cast<float>(by[l])});
+        }
     }
 }
 
@@ -128,6 +154,7 @@ SWAGE_INLINE void add_flow(BookTask& task) {
         const V strain[kCellStrains] = {d.xx, d.yy, d.zz, d.xy, d.yz, d.zx};
         const V modes[kCellModes] = {m.xy.x, m.xy.y, m.xy.z, m.yz.x,  m.yz.y,  m.yz.z,
                                      m.zx.x, m.zx.y, m.zx.z, m.xyz.x, m.xyz.y, m.xyz.z};
+        if (task.growths) add_growths(task, begin, count, c, share * d, share * m, flows);
         const CellId first = task.run->first + begin;
         for (int n = 0; n < kCellStrains; ++n) {
             grow(task.flows->cell_plastic_strain[n].data() + first, share * strain[n], flows,
@@ -149,7 +176,7 @@ void narrow_flow(BookTask& task) { add_flow<2>(task); }
 
 }  // namespace
 
-// The sum over slabs of act(task) for each of the runs that `of` has, or else for all.
+// The sum over slabs of act(task, slab) for each of the runs that `of` has, or else for all.
 template <typename Act>
 double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const Act& act) const {
     const std::vector<CellRun>& all = runs(matter);
@@ -169,36 +196,39 @@ double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const
                 ++next;
             }
             task.law = &law_of(matter, task.run->first);
-            act(task);
+            act(task, s);
         }
         return task.sum;
     });
 }
 
-double CellSweep::commit(Aggregate& matter, bool seen) const {
+double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) const {
     if (!yields_) return 0;
+    if (growths) growths->resize(slab_.size() + 1);
     const int width = vector_width();
     const SlabRuns* const of = seen ? &yielding_ : nullptr;
+    RestGrowths* const mixed_growths = growths ? &growths->back() : nullptr;
     const auto sum = [&](Aggregate* flows) {
-        return sum_of_runs(matter, of, [&](BookTask& task) {
+        return sum_of_runs(matter, of, [&](BookTask& task, std::size_t slab) {
             if (task.law->kind != CellKind::yielding) return;
             task.flows = flows;
+            if (growths) task.growths = &(*growths)[slab];
             (width == 8 ? wide_flow : width == 4 ? middle_flow : narrow_flow)(task);
         });
     };
     if (matter.cell_plastic_strain[0].empty()) {
-        if (sum(nullptr) == 0) return mixed_.commit(matter, law_, seen);
+        if (sum(nullptr) == 0) return mixed_.commit(matter, law_, seen, mixed_growths);
         for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
         for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
         matter.cell_hardening.assign(fill_.size(), 0.0f);
     }
     const double lost = sum(&matter);
-    return lost + mixed_.commit(matter, law_, seen);
+    return lost + mixed_.commit(matter, law_, seen, mixed_growths);
 }
 
 double CellSweep::elastic_energy(const Aggregate& matter) const {
     const int width = vector_width();
-    const double swept = sum_of_runs(matter, nullptr, [&](BookTask& task) {
+    const double swept = sum_of_runs(matter, nullptr, [&](BookTask& task, std::size_t) {
         (width == 8 ? wide_energy : width == 4 ? middle_energy : narrow_energy)(task);
     });
     return swept + mixed_.elastic_energy(matter, law_);

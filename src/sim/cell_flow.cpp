@@ -240,7 +240,7 @@ const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
             const ParticleId lower = lower_end(cell.row, slot);
             const double weight = matter.connection[d].weight[lower];
             if (weight <= 0) continue;  // severed: its rest length no longer matters
-            const double share = (d < kEdgeCount ? 0.25 : 0.5) * fill / weight;
+            const double share = cell_share(d) * fill / weight;
             // The rest ratio grows by the factor exp(share * flow).
             rest_[d][lower] = static_cast<float>(
                 (1.0 + rest_[d][lower]) * std::exp(share * flow_of(matter, cell, slot)) - 1.0);
@@ -259,7 +259,7 @@ double CellFlow::plastic_work(const Aggregate& matter, int d, ParticleId lower,
            matter.connection[d].weight[lower] * reference * reference * elastic * growth;
 }
 
-double CellFlow::commit(Aggregate& matter, bool found) {
+double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
     if (!active()) return 0;
     if (!found) rest_strains(matter);
     if (flowing_.empty()) return 0;
@@ -280,8 +280,15 @@ double CellFlow::commit(Aggregate& matter, bool found) {
             const ParticleId lower = lower_end(cell.row, slot);
             float& plastic = matter.connection[d].plastic[lower];
             if (plastic != rest_[d][lower]) {
-                lost += plastic_work(matter, d, lower, rest_[d][lower] - plastic);
+                const double growth = rest_[d][lower] - plastic;
+                lost += plastic_work(matter, d, lower, growth);
                 plastic = rest_[d][lower];
+                if (growths) {
+                    const double weight = matter.connection[d].weight[lower];
+                    (*growths)[d].push_back(
+                        {lower,
+                         static_cast<float>(weight * growth / (1 + plastic - 0.5 * growth))});
+                }
             }
             matter.cell_plastic[slot][cell.cell] += static_cast<float>(flow[n][slot]);
         }

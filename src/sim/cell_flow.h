@@ -7,6 +7,7 @@
 #include "laws/yield.h"
 #include "matter/aggregate.h"
 #include "sim/lattice_sweep.h"
+#include "sim/rest_lengths.h"
 
 namespace swage {
 
@@ -24,8 +25,8 @@ class CellFlow {
     bool flows() const { return !flowing_.empty(); }
 
     // Remembers the flow of a converged state; returns the work that it took [J]. `found`:
-    // rest_strains() was last called at these positions.
-    double commit(Aggregate& matter, bool found = false);
+    // rest_strains() was last called at these positions. Adds to `growths`, where it is asked for.
+    double commit(Aggregate& matter, bool found = false, RestGrowths* growths = nullptr);
 
     // What is committed is not what it was when this last looked.
     void history_changed(const Aggregate& matter);

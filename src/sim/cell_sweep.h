@@ -10,6 +10,7 @@
 #include "sim/force_slabs.h"
 #include "sim/loose_springs.h"
 #include "sim/mixed_cells.h"
+#include "sim/rest_lengths.h"
 
 namespace swage {
 
@@ -31,8 +32,8 @@ class CellSweep {
     void forces(const Aggregate& matter, Flow flow, Vec3Array& force);
 
     // Remembers the flow of a converged state; returns the work that it took [J]. `seen`: the last
-    // sweep was at these positions, with what flows.
-    double commit(Aggregate& matter, bool seen = false) const;
+    // sweep was at these positions, with what flows. Adds to `growths`, where it is asked for.
+    double commit(Aggregate& matter, bool seen = false, SlabGrowths* growths = nullptr) const;
 
     double elastic_energy(const Aggregate& matter) const;  // [J]
 

@@ -3,8 +3,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
 
 namespace swage {
+
+namespace {
+
+bool any(const SlabGrowths& growths) {
+    for (const RestGrowths& part : growths) {
+        for (const auto& along : part) {
+            if (!along.empty()) return true;
+        }
+    }
+    return false;
+}
+
+double yield_strain(const Aggregate& matter) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        const Material& material = matter.material_at(m);
+        least = std::min(least, material.yield_stress / material.young_modulus);
+    }
+    return least;
+}
+
+void clear(SlabGrowths& growths) {
+    for (RestGrowths& part : growths) {
+        for (auto& along : part) along.clear();
+    }
+}
+
+}  // namespace
 
 // A cantilever's first mode: w = 3.516 sqrt(E I / rho A) / L^2, for a square section 1.015 c h /
 // L^2.
@@ -43,13 +75,34 @@ void InternalDamping::add_stiffness_bound(const Aggregate& matter,
     }
 }
 
+void InternalDamping::take_growths(const Aggregate& matter) {
+    if (!any(taken_) && !any(growths_)) return;
+    parallel_for(kForwardCount, [&](std::size_t d) {
+        grown_[d].resize(matter.particle_count() + kLanes);
+        for (const RestGrowths& part : taken_) {
+            for (const RestGrowth& one : part[d]) grown_[d][one.lower] = 0;
+        }
+        for (const RestGrowths& part : growths_) {
+            for (const auto& [lower, by] : part[d]) {
+                const float weight = matter.connection[d].weight[lower];
+                if (weight > 0) grown_[d][lower] += by / weight;
+            }
+        }
+    });
+    std::swap(taken_, growths_);
+    clear(growths_);
+}
+
 std::vector<BranchStep> InternalDamping::step(const Aggregate& matter, LatticeForces& lattice,
                                               double duration) {
+    if (duration > 0) take_growths(matter);
+    const bool flowed = duration > 0 && any(taken_);
     std::vector<BranchStep> steps;
     for (std::size_t n = 0; n < part_.size(); ++n) {
         auto& [branches, strain] = part_[n];
         strain.resize(lattice.sweep(matter, n).branch_floats(branches.count));
         BranchStep step{.count = branches.count, .step = duration, .strain = &strain};
+        if (flowed) step.grown = &grown_, step.yield_strain = yield_strain(matter);
         for (int j = 0; j < branches.count; ++j) {
             step.forward[j] =
                 duration > 0 ? damping_step(branches, j, duration) : DampingStep{1.0, 0.0};
@@ -61,6 +114,7 @@ std::vector<BranchStep> InternalDamping::step(const Aggregate& matter, LatticeFo
 
 void InternalDamping::let_go() {
     for (Part& part : part_) part.strain.clear();
+    clear(growths_);
 }
 
 double InternalDamping::stored_energy(const Aggregate& matter, LatticeForces& lattice) const {

@@ -29,17 +29,25 @@ class InternalDamping {
     // A step of this length [s], for LatticeForces::find(): 0 to leave the branches as they are.
     // `lattice` is the one that takes it.
     std::vector<BranchStep> step(const Aggregate& matter, LatticeForces& lattice, double duration);
+    // Where LatticeForces::commit() is to say how rest lengths have grown.
+    SlabGrowths* growths() { return &growths_; }
     void let_go();  // all branches carry nothing from now on
 
     double stored_energy(const Aggregate& matter, LatticeForces& lattice) const;  // [J]
 
   private:
+    // What flowed takes the branches along in the next step: then they have pulled as they were
+    // when it did, and the books are of second order.
+    void take_growths(const Aggregate& matter);
+
     struct Part {  // of damped_materials()
         DampingBranches branches;
         // Tension over stiffness and length, as LatticeSweep keeps it.
         std::vector<float> strain;
     };
     std::vector<Part> part_;
+    SlabGrowths growths_, taken_;  // to come, and as they are in grown_
+    RestStrains grown_;            // all else is 0
 };
 
 }  // namespace swage

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/lattice_forces.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/cracking.h"
@@ -41,7 +42,7 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
     }
 }
 
-const LatticeSweep& LatticeForces::sweep(const Aggregate& matter, std::size_t damped) {
+LatticeSweep& LatticeForces::sweep(const Aggregate& matter, std::size_t damped) {
     if (!matter.inset.empty()) {
         if (branch_sweep_.empty()) {
             for (const DampedMaterials& of : damped_materials(matter)) {
@@ -100,10 +101,14 @@ bool LatticeForces::saw_crushed() const {
     return false;
 }
 
-Committed LatticeForces::commit(Aggregate& matter, bool in_motion) {
+Committed LatticeForces::commit(Aggregate& matter, bool in_motion, SlabGrowths* growths) {
     Committed result;
-    if (cells_) result.plastic = cells_->commit(matter, in_motion);
-    if (spring_flow_) result.plastic = spring_flow_->commit(matter, in_motion);
+    if (growths) growths->resize(std::max<std::size_t>(1, growths->size()));
+    if (cells_) result.plastic = cells_->commit(matter, in_motion, growths);
+    if (spring_flow_) {
+        result.plastic =
+            spring_flow_->commit(matter, in_motion, growths ? &growths->back() : nullptr);
+    }
     const Broken broken = loose_.commit(matter, nullptr);
     result.fracture = broken.lost;
     result.broken = broken.count;

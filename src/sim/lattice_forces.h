@@ -42,14 +42,15 @@ class LatticeForces {
     int find(const Aggregate& matter, Flow flow, Vec3Array& force,
              std::span<const BranchStep> branches = {}, double* given = nullptr);
     // Whose branches find() moves on, of these of damped_materials().
-    const LatticeSweep& sweep(const Aggregate& matter, std::size_t damped);
+    LatticeSweep& sweep(const Aggregate& matter, std::size_t damped);
 
     // Whether any cell may have been below half of its volume then.
     bool saw_crushed() const;
 
     // Remembers the flow and softening of a converged state. In motion find() was last called at
-    // these positions, with what flows, and what it saw is all that matters.
-    Committed commit(Aggregate& matter, bool in_motion = false);
+    // these positions, with what flows, and what it saw is all that matters. Adds what rest
+    // lengths grow by to `growths`, where that is asked for.
+    Committed commit(Aggregate& matter, bool in_motion = false, SlabGrowths* growths = nullptr);
 
     // Cells of a converged and committed state that have reached their strength act as springs from
     // now on; the most strained go first. The state has to be brought to rest again.

@@ -165,6 +165,7 @@ SWAGE_INLINE void slab_forces(SpringTask& task) {
                 at.weight[d] =
                     (*batch < 0 ? kOnes.data() : task.weight + *batch + d * kLanes) + part * kWidth;
                 if (task.flowed) at.rest[d] = task.rest[d] + run->first + begin;
+                if (kDamped && task.grows) at.grown[d] = task.grown[d] + run->first + begin;
             }
             if (reach + begin + kWidth + 1 > task.particles) [[unlikely]] {
                 copy_end<kWidth, kDamped>(task, *run, begin, copy, at);
@@ -302,6 +303,11 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
         }
         for (int kind : {0, 1}) {
             whole.stretch_scale[kind] = step->step * whole.inverse_square[kind];
+        }
+        whole.grows = step->grown != nullptr;
+        whole.yield_strain = step->yield_strain;
+        for (int d = 0; d < kForwardCount && whole.grows; ++d) {
+            whole.grown[d] = (*step->grown)[d].data();
         }
     }
     force.resize(x.size());

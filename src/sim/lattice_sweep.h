@@ -30,6 +30,10 @@ struct BranchStep {
     std::array<DampingStep, kMostBranches> forward{};
     double step = 0;                       // [s]
     std::vector<float>* strain = nullptr;  // LatticeSweep::branch_floats() of them
+    // By how much the logarithms of rest lengths have grown since the last step, with kLanes more
+    // behind; null: nothing flowed.
+    const RestStrains* grown = nullptr;
+    double yield_strain = 0;
 };
 
 // The lattice in slabs of rows, cut by its size alone; each row in lanes, as wide as the machine

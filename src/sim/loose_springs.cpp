@@ -6,6 +6,7 @@
 
 #include "laws/spring_damper.h"
 #include "sim/connection_shares.h"
+#include "sim/rest_lengths.h"
 
 namespace swage {
 
@@ -14,37 +15,6 @@ namespace {
 // A broken edge that is pressed stands for the diagonals around it too: with 0.4 E a / (E a) of a
 // plane's stiffness in its edges, a closed crack presses back as sound matter does.
 constexpr double kClosedStiffness = 2.5;
-
-// Along a direction, of a logarithmic strain as histories hold it.
-template <typename Component>
-double strain_along(const Vec3& n, const Component& e) {
-    return n.x() * n.x() * e(0) + n.y() * n.y() * e(1) + n.z() * n.z() * e(2) +
-           2 * (n.x() * n.y() * e(3) + n.y() * n.z() * e(4) + n.z() * n.x() * e(5));
-}
-
-// Ratio of the lengths that a connection of this direction has after the cell's plastic strain. Of
-// two materials: where what they have of it is without force, as sim/connection_shares.h lays them.
-double rest_ratio(const Aggregate& matter, CellId cell, const MixedCell* mixed, int direction) {
-    const auto& f = kForward[direction];
-    const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
-    if (mixed == nullptr) {
-        const auto& e = matter.cell_plastic_strain;
-        if (e[0].empty()) return 1;
-        return std::exp(strain_along(n, [&](int i) { return e[i][cell]; }));
-    }
-    double fill = 0, give = 0, beside = 0, mean = 0, held = 0;
-    for (int p : {0, 1}) {
-        const double strain = strain_along(n, [&](int i) { return mixed->flowed[p][i]; });
-        const double share = mixed->fill[p];
-        const double modulus = matter.material_at(mixed->material[p]).young_modulus;
-        fill += share, give += share / modulus, beside += share * modulus;
-        mean += share * strain, held += share * modulus * strain;
-    }
-    const double cosine = n.dot(mixed->normal.cast<double>()), square = cosine * cosine;
-    const double series = square * fill * fill / give, parallel = 1 - square;
-    const double strain = (series * mean / fill + parallel * held) / (series + parallel * beside);
-    return std::exp(strain);
-}
 
 // The slot of the other diagonal in the face of each; -1: an edge.
 constexpr std::array<int, kCellConnectionCount> kPartner = [] {
@@ -91,6 +61,9 @@ void LooseSprings::connections_changed(const Aggregate& matter) {
             for (ParticleId& p : row) p += n;
             if (cell_is_sound(matter, cell, row)) continue;
             const MixedCell* two = matter.mixed_at(cell);
+            // Mechanics of springs have theirs in the sweep.
+            const SlotLengths rest =
+                beside_sweep_ ? SlotLengths{} : rest_lengths(matter, cell, two);
             std::array<int, kCellConnectionCount> number;
             number.fill(-1);
             for (int slot = 0; slot < kCellConnectionCount; ++slot) {
@@ -101,18 +74,15 @@ void LooseSprings::connections_changed(const Aggregate& matter) {
                 const bool holds = all.weight[lower] > 0;
                 // Nothing presses on what a blade has severed.
                 if (!holds && (damage < 1 || c.direction >= kEdgeCount)) continue;
-                const auto& f = kForward[c.direction];
-                const int high = c.corner + f[0] + 2 * f[1] + 4 * f[2];
+                const int high = upper_corner(c);
                 const ParticleId upper = row[high >> 1] + (high & 1);
-                const double share = (c.direction < kEdgeCount ? 0.25 : 0.5) *
-                                     stiffness_in(matter, cell, two, c.direction);
+                const double share =
+                    cell_share(c.direction) * stiffness_in(matter, cell, two, c.direction);
                 const Kind kind = !holds ? Kind::closing : breaks ? Kind::softening : Kind::elastic;
                 number[slot] = static_cast<int>(spring_.size());
-                spring_.push_back(
-                    {lower, upper, static_cast<char>(c.direction), kind,
-                     stiffness_ * share * (holds ? 1 : kClosedStiffness),
-                     reference_[c.direction] * rest_ratio(matter, cell, two, c.direction),
-                     breaks ? worst_strain(law_, damage) : 0.0, number[slot]});
+                spring_.push_back({lower, upper, static_cast<char>(c.direction), kind,
+                                   stiffness_ * share * (holds ? 1 : kClosedStiffness), rest[slot],
+                                   breaks ? worst_strain(law_, damage) : 0.0, number[slot]});
             }
             for (int slot = 0; slot < kCellConnectionCount; ++slot) {
                 const int other = kPartner[slot];

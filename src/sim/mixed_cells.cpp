@@ -183,14 +183,16 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
     }
 }
 
-double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws,
-                          bool seen) const {
+double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen,
+                          RestGrowths* growths) const {
     const double volume = std::pow(matter.lattice.spacing, 3);
     double lost = 0;
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
         if (seen && !seen_[n].may_flow) continue;
         const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
+        SlotLengths was;
+        if (growths) was = rest_lengths(matter, cell.cell, &cell);
         for (int p = 0; p < 2; ++p) {
             const CellFlowed<double>& r = one.found.phase[p].flowed;
             if (one.phase[p].kind != CellKind::yielding || !(r.d_alpha > 0)) continue;
@@ -208,6 +210,15 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
                 flowed[s] += static_cast<float>((1 - r.kept) * grown[s]);
             }
             flowed[MixedCell::kHistory - 1] += static_cast<float>(r.d_alpha);
+        }
+        if (growths == nullptr) continue;
+        const SlotLengths is = rest_lengths(matter, cell.cell, &cell);
+        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+            const CellConnection& c = kCellConnection[slot];
+            const double by = std::log(is[slot] / was[slot]) * cell_share(c.direction) *
+                              matter.cell_fill[cell.cell];
+            (*growths)[c.direction].push_back(
+                {batches_.corner[n][c.corner], static_cast<float>(by)});
         }
     }
     return lost;

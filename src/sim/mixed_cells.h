@@ -6,6 +6,7 @@
 
 #include "laws/cell_forces.h"
 #include "matter/aggregate.h"
+#include "sim/rest_lengths.h"
 
 namespace swage {
 
@@ -43,7 +44,8 @@ class MixedCells {
                     Vec3Array& force);
     // Remembers the flow of a converged state; returns the work that it took [J]. `seen`: the last
     // forces were at these positions, with what flows.
-    double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen) const;
+    double commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen,
+                  RestGrowths* growths = nullptr) const;
     double elastic_energy(const Aggregate& matter, const std::vector<MaterialLaw>& laws) const;
 
     // What the last forces saw in a cell, and where the search for its jump ended.

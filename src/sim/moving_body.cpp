@@ -224,7 +224,8 @@ bool MovingBody::remember(double step, BodyOutcome& outcome) {
         outcome.broken += lost.broken;
         broken += lost.broken;
     };
-    book(lattice_.commit(matter_, true));
+    const bool damped = damping_.acts() && !implicit_;
+    book(lattice_.commit(matter_, true, damped ? damping_.growths() : nullptr));
     const Cracked cracked = lattice_.crack(matter_, true);
     outcome.fracture_work += cracked.lost;
     if (lattice_.may_snap(matter_)) {

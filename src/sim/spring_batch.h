@@ -33,7 +33,10 @@ struct SpringTask {
     double keep[kMostBranches] = {}, gain[kMostBranches] = {};
     double stretch_scale[2] = {};  // step over the square of the reference length
     float* strain = nullptr;       // by batches of eight: direction, branch, lane
-    double work[kLanes] = {};      // done on the branches, over stiffness and spacing squared
+    bool grows = false;            // what flowed takes its branches along
+    const float* grown[kForwardCount] = {};
+    double yield_strain = 0;
+    double work[kLanes] = {};  // done on the branches, over stiffness and spacing squared
 
     void zero_up_to(ParticleId stop) {
         if (stop <= zeroed) return;
@@ -45,7 +48,7 @@ struct SpringTask {
 // Where a batch reads: its own row and the four above, by component; and the connections' arrays.
 struct SpringPlaces {
     const double *x[5][3], *v[5][3];
-    const float *weight[kForwardCount], *rest[kForwardCount];
+    const float *weight[kForwardCount], *rest[kForwardCount], *grown[kForwardCount];
 };
 
 // Which row each direction leads to, in the order of SpringPlaces, and its step along x.
@@ -120,12 +123,25 @@ struct SpringKernel {
                     stretch[n] = weight[n] > 0.0 ? stretch[n] : V{};
                 }
             }
+            V grown[3]{}, left[3]{};
+            for (int n = 0; n < 3 && task.grows; ++n) {
+                const int c = direction[n];
+                // Strains of branches go by the reference length. What is left is exp(-p / e_y) in
+                // small steps.
+                grown[n] = load<V>(at.grown[c]) * (square[n] * y[n]);
+                if constexpr (kKind != BatchKind::plain) {
+                    grown[n] = weight[n] > 0.0 ? grown[n] : V{};
+                }
+                const V size = larger(grown[n], -grown[n]);
+                left[n] = task.yield_strain / (task.yield_strain + size);
+            }
             for (int j = 0; j < task.branches; ++j) {
                 const double keep = task.keep[j], gain = task.gain[j];
                 for (int n = 0; n < 3; ++n) {
                     float* const own = strain + (direction[n] * task.branches + j) * kLanes;
                     const V m = load<V>(own);
-                    const V next = keep * m + gain * stretch[n];
+                    const V kept = task.grows ? left[n] * (m - gain * grown[n]) : m;
+                    const V next = keep * kept + gain * stretch[n];
                     const auto stored =
                         __builtin_convertvector(next, typename LaneBatch<kWidth>::Floats);
                     std::memcpy(own, &stored, sizeof stored);

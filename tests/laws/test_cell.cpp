@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <random>
 
 #include "base/math.h"
 #include "laws/cell.h"
+#include "laws/cell_rest.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -271,5 +273,44 @@ TEST_CASE("after the return the cell stands on its yield surface, its volume unt
             flow_cell(law, after, cell_strain(s.gradient).log, s.modes, cell.fill);
         CHECK(again.d_alpha < 1e-12);
         CHECK(again.kept == Approx(1));
+    }
+}
+
+TEST_CASE("laid out as its rest shape says a cell that has flowed carries nothing") {
+    Draw draw;
+    for (int n = 0; n < 60; ++n) {
+        Cell cell = random_cell(draw);
+        if (n % 2) cell.fill = 1, cell.at = {0, 0, 0};
+        // Up to a stretch of 1.5, bent and twisted by a third of a spacing.
+        const double far = n < 20 ? 0.01 : n < 40 ? 0.1 : 0.3;
+        const double xx = far * draw(-1, 1), yy = far * draw(-1, 1) / 2;
+        cell.history.strain = {
+            xx, yy, -xx - yy, far * draw(-1, 1) / 2, far * draw(-1, 1) / 2, far * draw(-1, 1) / 2};
+        for (Triple<double>* q : {&cell.history.modes.xy, &cell.history.modes.yz,
+                                  &cell.history.modes.zx, &cell.history.modes.xyz}) {
+            *q = {far * draw(-1, 1), far * draw(-1, 1), far * draw(-1, 1)};
+        }
+        const auto laid_out = [&](const CellRest<double>& rest) {
+            const Symmetric<double>& c = rest.metric;
+            Mat3 metric;
+            metric << c.xx, c.xy, c.zx, c.xy, c.yy, c.yz, c.zx, c.yz, c.zz;
+            const Mat3 stretch = Eigen::SelfAdjointEigenSolver<Mat3>(metric).operatorSqrt();
+            Corners x;
+            for (int q = 0; q < 8; ++q) {
+                x.col(q) = stretch * Vec3(rest.corner[q].x, rest.corner[q].y, rest.corner[q].z);
+            }
+            for (int q = 1; q < 8; ++q) {
+                CHECK((x.col(q) - x.col(0)).squaredNorm() ==
+                      Approx(rest_square(rest, 0, q)).epsilon(1e-12));
+            }
+            return Corners(draw.turn() * x);
+        };
+        // Against the force that as much strain would make.
+        const double about = kLaw.shear * kSpacing * kSpacing * cell.fill;
+        const CellHistory<double>& history = cell.history;
+        const Corners exact = laid_out(cell_rest<3>(history, cell.at, kSpacing));
+        CHECK(force(kLaw, cell, exact).norm() < 1e-9 * about);
+        const Corners rough = laid_out(cell_rest<0>(history, cell.at, kSpacing));
+        CHECK(force(kLaw, cell, rough).norm() < 3 * std::pow(far, 7) * about + 1e-12 * about);
     }
 }

@@ -7,6 +7,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/sim/motion.h"
+#include "tests/sim/steady_flow.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -198,5 +199,20 @@ TEST_CASE(
             // The lower side's normal (sin, -cos) is pushed back: up, and down the slope.
             CHECK(v.x() < -0.05 * std::abs(v.y()));
         }
+    }
+}
+
+TEST_CASE("damping does not hold what flows: a body drawn to twice its length loses to its flow") {
+    for (const Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
+        Material material = springy(0.05);
+        material.mechanics = mechanics;
+        material.yield_stress = 1e4;
+        Aggregate m = make_block(11, 3, 2, 0.1, material);
+        const SteadyFlow drawn = flow_steadily(m, 0.7, 7000);
+        CHECK(drawn.plastic > 0.5 * material.yield_stress * m.volume());
+        CHECK(drawn.given > 0);
+        // Strained as far as the matter they would have taken 15 times what the flow does.
+        CHECK(drawn.given < 0.04 * drawn.plastic);
+        CHECK(drawn.stored < 0.002 * drawn.plastic);
     }
 }

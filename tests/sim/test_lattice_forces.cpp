@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Eigenvalues>
 #include <random>
 
 #include "base/parallel.h"
+#include "laws/cell_rest.h"
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
 #include "sim/crushed_cells.h"
@@ -42,6 +44,15 @@ void cut(Aggregate& m) {
     const double far = 10;
     sever(m, {{Vec3(0.02, -far, -far), Vec3(0.02, far, -far), Vec3(0.02, far, far)},
               {Vec3(0.02, -far, -far), Vec3(0.02, far, far), Vec3(0.02, -far, far)}});
+}
+
+double largest_force(const Aggregate& m) {
+    LatticeForces forces(m);
+    Vec3Array f;
+    forces.find(m, Flow::none, f);
+    double most = 0;
+    for (std::size_t p = 0; p < m.particle_count(); ++p) most = std::max(most, f.at(p).norm());
+    return most;
 }
 
 const Material kMaterials[] = {
@@ -118,6 +129,72 @@ TEST_CASE("a cut leaves no force between the sides, and cells away from it as th
         }
         CHECK(left.norm() < 1e-13 * size);
     }
+}
+
+TEST_CASE("matter that has flowed carries nothing where a blade has been, however far it flowed") {
+    Material material{.young_modulus = 1e5, .poisson_ratio = 0.3};
+    material.yield_stress = 1e3;
+    const double stretch = 1.5;
+    Mat3 gradient = Vec3(stretch, 1 / std::sqrt(stretch), 1 / std::sqrt(stretch)).asDiagonal();
+    gradient(0, 1) = 0.4;  // sheared too, which leaves the volume as it is
+    Aggregate m = make_block(7, 3, 2, kSpacing, material);
+    m.cell_fill[5] = 0.5f;
+    m.cell_centroid.set(5, {0.1f, 0.2f, -0.1f});
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_position.set(p, gradient * m.particle_reference.at(p));
+    }
+    // What it would flow by if it went there; then all of its strain is plastic.
+    for (int n = 0; n < 40; ++n) {
+        LatticeForces forces(m);
+        forces.commit(m);
+        for (float& alpha : m.cell_hardening) alpha = 1e-6f;
+        m.material.yield_stress *= 0.5;
+    }
+    const double whole = material.young_modulus * m.volume();
+    const double full = material.young_modulus * kSpacing * kSpacing;
+    CHECK(largest_force(m) < 1e-6 * full);
+    CHECK(LatticeForces(m).elastic_energy(m) < 1e-12 * whole);
+    Aggregate severed = m;
+    cut(severed);
+    CHECK(largest_force(severed) < 1e-6 * full);
+    CHECK(LatticeForces(severed).elastic_energy(severed) < 1e-12 * whole);
+}
+
+TEST_CASE("a cell that was bent for good is at rest where it lay when a connection is severed") {
+    Material material{.young_modulus = 1e5, .poisson_ratio = 0.3};
+    material.yield_stress = 1e9;
+    Aggregate m = make_block(1, 1, 1, kSpacing, material);
+    m.cell_fill[0] = 0.7f;
+    m.cell_centroid.set(0, {0.1f, -0.2f, 0.05f});
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    m.cell_hardening = {1.0f};
+    for (auto& v : m.cell_plastic_strain) v = {static_cast<float>(0.1 * draw(engine))};
+    m.cell_plastic_strain[2][0] = -m.cell_plastic_strain[0][0] - m.cell_plastic_strain[1][0];
+    for (auto& v : m.cell_plastic_modes) {
+        v = {static_cast<float>(0.3 * kSpacing * draw(engine))};
+    }
+    const auto& e = m.cell_plastic_strain;
+    const auto& q = m.cell_plastic_modes;
+    const auto triple = [&](int n) { return Triple<double>{q[n][0], q[n + 1][0], q[n + 2][0]}; };
+    const CellRest<double> rest =
+        cell_rest<3>(CellHistory<double>{{e[0][0], e[1][0], e[2][0], e[3][0], e[4][0], e[5][0]},
+                                         {triple(0), triple(3), triple(6), triple(9)},
+                                         1.0},
+                     Triple<double>{2 * 0.1f, 2 * -0.2f, 2 * 0.05f}, kSpacing);
+    const Symmetric<double>& c = rest.metric;
+    Mat3 metric;
+    metric << c.xx, c.xy, c.zx, c.xy, c.yy, c.yz, c.zx, c.yz, c.zz;
+    const Mat3 stretch = Eigen::SelfAdjointEigenSolver<Mat3>(metric).operatorSqrt();
+    const auto corner = m.lattice.cell_corners(0);
+    for (int n = 0; n < 8; ++n) {
+        const Triple<double>& z = rest.corner[n];
+        m.particle_position.set(corner[n], stretch * Vec3(z.x, z.y, z.z));
+    }
+    const double full = material.young_modulus * kSpacing * kSpacing;
+    CHECK(largest_force(m) < 1e-6 * full);
+    m.connection[0].weight.set(0, 0);
+    CHECK(largest_force(m) < 1e-6 * full);
 }
 
 TEST_CASE("the bound on stiffness is above the stiffest motion, and not twice above in the bulk") {

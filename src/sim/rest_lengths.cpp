@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/rest_lengths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "laws/cell_rest.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kSteps = 3;             // of Newton's method: to rounding
+constexpr double kLeastLength = 0.1;  // spacings: corners of slivers flow together
+
+// Squared ratio of lengths along n.
+double square_along(const Vec3& n, const Symmetric<double>& c) {
+    const Triple<double> t = {n.x(), n.y(), n.z()};
+    return dot(t, c * t);
+}
+
+Symmetric<double> metric_of(const MixedCell& mixed, int part) {
+    const auto& e = mixed.flowed[static_cast<std::size_t>(part)];
+    return flowed_metric<kSteps>(Symmetric<double>{e[0], e[1], e[2], e[3], e[4], e[5]});
+}
+
+double mixed_ratio(const Aggregate& matter, const MixedCell& mixed,
+                   const std::array<Symmetric<double>, 2>& metric, int direction) {
+    const auto& f = kForward[direction];
+    const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
+    double fill = 0, give = 0, beside = 0, mean = 0, held = 0;
+    for (int p : {0, 1}) {
+        const double along = 0.5 * std::log(square_along(n, metric[p]));
+        const double share = mixed.fill[p];
+        const double modulus = matter.material_at(mixed.material[p]).young_modulus;
+        fill += share, give += share / modulus, beside += share * modulus;
+        mean += share * along, held += share * modulus * along;
+    }
+    const double cosine = n.dot(mixed.normal.cast<double>()), square = cosine * cosine;
+    const double series = square * fill * fill / give, parallel = 1 - square;
+    return std::exp((series * mean / fill + parallel * held) / (series + parallel * beside));
+}
+
+}  // namespace
+
+SlotLengths rest_lengths(const Aggregate& matter, CellId cell, const MixedCell* mixed) {
+    const double a = matter.lattice.spacing;
+    std::array<double, kForwardCount> along;
+    for (int d = 0; d < kForwardCount; ++d) along[d] = reference_length(matter.lattice, d);
+    if (mixed) {
+        const std::array<Symmetric<double>, 2> metric = {metric_of(*mixed, 0),
+                                                         metric_of(*mixed, 1)};
+        for (int d = 0; d < kForwardCount; ++d) along[d] *= mixed_ratio(matter, *mixed, metric, d);
+    }
+    SlotLengths lengths;
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        lengths[slot] = along[kCellConnection[slot].direction];
+    }
+    if (mixed || matter.cell_hardening.empty() || matter.cell_hardening[cell] == 0) return lengths;
+    const auto& e = matter.cell_plastic_strain;
+    const auto& q = matter.cell_plastic_modes;
+    const auto triple = [&](int m) {
+        return Triple<double>{q[m][cell], q[m + 1][cell], q[m + 2][cell]};
+    };
+    const CellHistory<double> history = {
+        {e[0][cell], e[1][cell], e[2][cell], e[3][cell], e[4][cell], e[5][cell]},
+        {triple(0), triple(3), triple(6), triple(9)},
+        matter.cell_hardening[cell]};
+    const Vec3 at = 2 * matter.cell_centroid[cell].cast<double>();
+    const CellRest<double> rest =
+        cell_rest<kSteps>(history, Triple<double>{at.x(), at.y(), at.z()}, a);
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        const CellConnection& c = kCellConnection[slot];
+        lengths[slot] =
+            std::max(kLeastLength * a, std::sqrt(rest_square(rest, c.corner, upper_corner(c))));
+    }
+    return lengths;
+}
+
+}  // namespace swage
