@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 
 #include "base/atomic_file.h"
 #include "base/hash.h"
@@ -125,21 +126,17 @@ void write_curves(const StageCurves& curves, const StageContext& context) {
     if (context.can_plot) draw_plot(curves, fs::path(stem) += ".svg");
 }
 
+// A blade that goes down and up again is followed in steps at most this long, whatever the frames:
+// else few of these would miss how far it went.
+constexpr int kBladeSteps = 64;  // of a stage, at least
+int blade_steps(int frames) { return (kBladeSteps + frames - 1) / frames; }
+
 // The skin is cut along the whole path of the stage's blades when they reach the matter. True when
 // that was not possible everywhere, so that torn triangles must be removed as they appear.
-bool cut_ahead(const StageSpec& stage, const Machine& machine, const std::vector<Drive>& drives,
+bool cut_ahead(const StageSpec& stage, const Machine& machine, std::span<const Drive> way,
                WorkPiece& piece, SkinKind kind) {
     if (kind == SkinKind::boundary) return false;
-    std::vector<std::array<Vec3, 3>> path;
-    for (std::size_t n = 0; n + 1 < drives.size(); ++n) {
-        for (std::size_t b = 0; b < machine.apparatus.blade.size(); ++b) {
-            const auto swept =
-                swept_triangles(machine.apparatus.blade[b], drives[n].world_from_blade[b],
-                                drives[n + 1].world_from_blade[b]);
-            path.insert(path.end(), swept.begin(), swept.end());
-        }
-    }
-    const CutResult cut = cut_skins(piece, path);
+    const CutResult cut = cut_skins(piece, swept_triangles(machine.apparatus, way));
     follow_matter(piece, kind);
     if (cut.open_parts > 0) {
         log_warning("{}: {} open part{} of the skin could not be closed where it is cut",
@@ -186,8 +183,9 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     const WorkFrame frame = place_work_frame(work_piece, stage.axis, stage.up);
     const Machine machine = build_machine(stage.machine, stage.parameter, frame, work_piece);
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
-    const std::vector<Drive> drives = drives_of(machine, stage.frames, duration);
-    const Drive& start = drives.front();
+    const int steps = machine.apparatus.blade.empty() ? 1 : blade_steps(stage.frames);
+    const std::vector<Drive> way = drives_of(machine, steps * stage.frames, duration);
+    const Drive& start = way.front();
     context.recorder.set_machine(machine.apparatus);
     if (last_frame == 0) {
         context.recorder.add_frame(bodies, start);
@@ -210,14 +208,15 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     for (int n = 1; n <= stage.frames; ++n) {
         throw_if_interrupted();
         const int number = last_frame + n;
-        const Drive &before = drives[n - 1], &after = drives[n];
-        if (!cuts && simulation.blades_reach(before, after)) {
+        const std::span<const Drive> ahead = std::span(way).subspan((n - 1) * steps);
+        const Drive &before = ahead.front(), &after = ahead[steps];
+        if (!cuts && simulation.blades_reach(ahead.first(steps + 1))) {
             // From here on the whole cut is settled: in the matter and, along the same path, the
             // skin.
             cuts = true;
-            simulation.plan_cuts({drives.begin() + (n - 1), drives.end()});
+            simulation.plan_cuts(ahead, steps);
             for (WorkPiece& body : bodies) {
-                tears = cut_ahead(stage, machine, drives, body, skin) || tears;
+                tears = cut_ahead(stage, machine, way, body, skin) || tears;
             }
         }
         try {

@@ -102,15 +102,8 @@ struct Simulation::Rooms {
         std::visit([&](auto& any) { any.connections_changed(b); }, solver);
     }
 
-    std::vector<SeverEvent> crossed(const Aggregate& matter, const Drive& from,
-                                    const Drive& to) const {
-        std::vector<std::array<Vec3, 3>> swept;
-        for (std::size_t b = 0; b < apparatus.blade.size(); ++b) {
-            const auto part = swept_triangles(apparatus.blade[b], from.world_from_blade[b],
-                                              to.world_from_blade[b]);
-            swept.insert(swept.end(), part.begin(), part.end());
-        }
-        return crossed_connections(matter, swept);
+    std::vector<SeverEvent> crossed(const Aggregate& matter, std::span<const Drive> way) const {
+        return crossed_connections(matter, swept_triangles(apparatus, way));
     }
 
     std::vector<PushSum> push_sums(const Drive& now) const;
@@ -142,7 +135,7 @@ int Simulation::Rooms::sever(std::size_t b, const Drive& from, const Drive& to) 
     WorkedBody& at = body[b];
     std::vector<SeverEvent> events;
     if (at.plan.empty()) {
-        events = crossed(*at.matter, from, to);
+        events = crossed(*at.matter, std::array{from, to});
     } else {
         events = std::move(at.plan.front());
         at.plan.pop_front();
@@ -225,18 +218,19 @@ Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& a
 
 Simulation::~Simulation() = default;
 
-bool Simulation::blades_reach(const Drive& from, const Drive& to) const {
+bool Simulation::blades_reach(std::span<const Drive> way) const {
     return std::any_of(rooms_->body.begin(), rooms_->body.end(), [&](const WorkedBody& b) {
-        return !rooms_->crossed(*b.matter, from, to).empty();
+        return !rooms_->crossed(*b.matter, way).empty();
     });
 }
 
-void Simulation::plan_cuts(const std::vector<Drive>& drives) {
+void Simulation::plan_cuts(std::span<const Drive> way, int steps) {
+    const std::size_t each = static_cast<std::size_t>(steps);
     for (WorkedBody& body : rooms_->body) {
         Aggregate ahead = *body.matter;
         body.plan.clear();
-        for (std::size_t n = 0; n + 1 < drives.size(); ++n) {
-            body.plan.push_back(rooms_->crossed(ahead, drives[n], drives[n + 1]));
+        for (std::size_t n = 0; n + each < way.size(); n += each) {
+            body.plan.push_back(rooms_->crossed(ahead, way.subspan(n, each + 1)));
             for (const SeverEvent& e : body.plan.back()) {
                 ahead.connection[e.direction].weight.set(e.lower, 0);
             }

@@ -61,6 +61,18 @@ std::vector<Triangle> swept_triangles(const Blade& blade, const Pose& from, cons
     return triangles;
 }
 
+std::vector<Triangle> swept_triangles(const Apparatus& apparatus, std::span<const Drive> way) {
+    std::vector<Triangle> all;
+    for (std::size_t n = 0; n + 1 < way.size(); ++n) {
+        for (std::size_t b = 0; b < apparatus.blade.size(); ++b) {
+            const std::vector<Triangle> part = swept_triangles(
+                apparatus.blade[b], way[n].world_from_blade[b], way[n + 1].world_from_blade[b]);
+            all.insert(all.end(), part.begin(), part.end());
+        }
+    }
+    return all;
+}
+
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<Triangle>& swept) {
     const double a = matter.lattice.spacing;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -21,6 +22,9 @@ struct SeverEvent {
 // share their vertices bit for bit.
 std::vector<std::array<Vec3, 3>> swept_triangles(const Blade& blade, const Pose& from,
                                                  const Pose& to);
+// That of all blades on their way from drive to drive.
+std::vector<std::array<Vec3, 3>> swept_triangles(const Apparatus& apparatus,
+                                                 std::span<const Drive> way);
 
 // The unsevered connections that the surface crosses, in the order of the lattice.
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,

@@ -217,3 +217,26 @@ TEST_CASE("the skin of clay pressed to a quarter of its height keeps the volume"
     CHECK(signed_volume(swage::read_mesh(run / "meshes/1-press.obj")) ==
           Approx(rest).epsilon(.003));
 }
+
+TEST_CASE("a blade severs as much in one frame as in forty, and nothing more on its way up") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "cut.toml";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    const auto severed = [&](const std::string& frames, const std::string& rising) {
+        put_text(scene,
+                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 3\n"
+                 "[[stage]]\nmachine = \"cut\"\ntilt = \"20 deg\"\nframes = " +
+                     frames + "\nrising = " + rising + "\n");
+        const fs::path run = scratch.path() / ("run-" + frames + "-" + rising);
+        const Outcome outcome =
+            run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        const Json stage = Json::parse(bytes_of(run / "run.json")).at("stages").at(0);
+        CHECK(stage.at("pieces") == 2);
+        CHECK(swage::check_mesh(swage::read_mesh(run / "meshes/1-cut.obj")).watertight);
+        return stage.at("severed").get<int>();
+    };
+    const int whole = severed("40", "0");
+    for (const char* frames : {"40", "3", "1"}) CHECK(severed(frames, "0.1") == whole);
+}

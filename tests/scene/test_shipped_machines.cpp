@@ -199,7 +199,8 @@ TEST_CASE("the cutter's edge sweeps the whole section, in one plane through its 
             for (const double z : {-0.05, 0.0, 0.05}) {
                 CHECK(reached(0, z) < -section);
                 CHECK(reached(cutting, z) > section);
-                CHECK(reached(1, z) == Approx(reached(cutting, z)));
+                CHECK(reached(cutting + 0.1, z) == Approx(reached(0, z)));  // up again
+                CHECK(reached(1, z) == Approx(reached(0, z)));
                 CHECK(reached(0.3, z) > reached(0.2, z));
             }
             // The piece is drawn away only when it is free.
@@ -211,6 +212,15 @@ TEST_CASE("the cutter's edge sweeps the whole section, in one plane through its 
                       .norm() < 1e-12);
         }
     }
+}
+
+TEST_CASE("the cutter's blade stays down where it is asked to") {
+    const Machine machine = at_bar("cut", {{"rising", 0}});
+    const auto height = [&](double t) {
+        return drive_at(machine, t, 1).world_from_blade[0].translation.y();
+    };
+    CHECK(height(0.6) < height(0) - 0.1);
+    CHECK(height(1) == Approx(height(0.6)));
 }
 
 TEST_CASE("the cutter warns of a cut that runs into a grip") {
