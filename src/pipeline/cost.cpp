@@ -27,9 +27,10 @@ constexpr double kEquilibriaPerFrame = 2;          // under tools, where they ar
 constexpr int kSampledFrames = 200;                // of the first stage, for how far its tools go
 constexpr double kThin = 0.3;                      // of the box's thinnest side
 constexpr double kSecondsPerParticleStep = 60e-9;  // one core
-constexpr double kSecondsPerPixel = 1.8e-7;        // drawing and writing, two cores
-constexpr double kEnergyStepsPerStep = 100;        // while a body swings
-constexpr double kBytesPerParticle = 500;          // beside the aggregate: solver, mount, skin
+constexpr double kDampedShare = 2, kYieldingShare = 1.4;  // of explicit steps that do
+constexpr double kSecondsPerPixel = 1.8e-7;               // drawing and writing, two cores
+constexpr double kEnergyStepsPerStep = 100;               // while a body swings
+constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
 constexpr double kBytesPerVertex = 600;
 constexpr double kProgramBytes = 80e6;  // libraries and the drawing's own buffers
 constexpr double kStillBytesPerPixel = 0.7;
@@ -61,6 +62,16 @@ double least_damping(const SceneSpec& scene) {
         }
     }
     return least;
+}
+
+// What laws make of an explicit step's time.
+double law_share(const SceneSpec& scene) {
+    bool damps = false, yields = false;
+    for (const BodySpec& body : scene.body) {
+        damps = damps || body.material.damping_ratio > 0;
+        yields = yields || std::isfinite(body.material.yield_stress);
+    }
+    return (damps ? kDampedShare : 1) * (yields ? kYieldingShare : 1);
 }
 
 // Of the body with the shortest stable step.
@@ -100,22 +111,25 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.frames = frame_count(scene);
     cost.steps = 0;
     cost.relaxes = false;
+    double work = 0;  // the steps, as if nothing damped or yielded in them
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
         if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
             const bool relaxes = solver == Solver::quasistatic && !stage.machine.tool.empty();
             const bool counted = equilibria > 0 && &stage == &scene.stage.front();
-            cost.steps += iterations_to_rest(stage, scene, cost) *
-                          (counted ? static_cast<double>(equilibria)
-                                   : (relaxes ? kEquilibriaPerFrame : 1) * stage.frames);
+            const double steps = iterations_to_rest(stage, scene, cost) *
+                                 (counted ? static_cast<double>(equilibria)
+                                          : (relaxes ? kEquilibriaPerFrame : 1) * stage.frames);
+            cost.steps += steps, work += steps;
             cost.relaxes = cost.relaxes || relaxes;
         } else {
             const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
                                    : solver == Solver::euler
                                        ? 1 / std::max(least_damping(scene), 1e-3)
                                        : 1;
-            cost.steps += shorter * stage_duration(stage, scene) *
-                          steps_per_second(scene, cost, matter, stage.sim);
+            const double steps = shorter * stage_duration(stage, scene) *
+                                 steps_per_second(scene, cost, matter, stage.sim);
+            cost.steps += steps, work += law_share(scene) * steps;
         }
     }
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
@@ -124,7 +138,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
     const double cores = std::min(thread_count(), 2);
-    cost.seconds = cost.steps * cost.mold.particles * kSecondsPerParticleStep / cores +
+    cost.seconds = work * cost.mold.particles * kSecondsPerParticleStep / cores +
                    stills * (0.02 + pixels * kSecondsPerPixel) * 2 / cores;
     cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
                         vertices * kBytesPerVertex + (options.draw ? pixels * 60 : 0);

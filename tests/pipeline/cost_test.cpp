@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/cost.h"
 
+#include <limits>
+
 #include "geometry/make_shape.h"
 #include "tests/catch.h"
 
@@ -29,4 +31,28 @@ TEST_CASE("a body's thin parts are told in cells, and a solid one has none") {
         CHECK_FALSE(cost.has_thin_parts());
         CHECK(cost.thickness == Approx(6));
     }
+}
+
+TEST_CASE("a step that damps, or of matter that yields, is told to take longer") {
+    InputMesh input;
+    input.mesh = make_shape("bar", {}).mesh;
+    const auto seconds_a_step = [&](double damping_ratio, double yield_stress) {
+        SceneSpec scene;
+        scene.body.resize(1);
+        scene.body[0].mold.across = 6;
+        scene.body[0].material.damping_ratio = damping_ratio;
+        scene.body[0].material.yield_stress = yield_stress;
+        scene.stage.resize(1);
+        scene.stage[0].sim.solver = Solver::explicit_steps;
+        scene.stage[0].duration = 10;
+        RunOptions options;
+        options.draw = false;
+        const RunCost cost = estimate_cost(scene, {input}, options);
+        return cost.seconds / cost.steps;
+    };
+    const double never = std::numeric_limits<double>::infinity();
+    const double plain = seconds_a_step(0, never), damped = seconds_a_step(0.02, never);
+    CHECK(damped > 1.5 * plain);
+    CHECK(seconds_a_step(0, 1e6) > 1.2 * plain);
+    CHECK(seconds_a_step(0.02, 1e6) > 1.2 * damped);
 }
