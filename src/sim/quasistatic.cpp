@@ -74,12 +74,14 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       pressing_motion_(6 * apparatus.tool.size(), 0.0) {
     velocity_.resize(matter.particle_count());
     find_bounds();
+    find_carriers();
 }
 
 void QuasistaticSolver::connections_changed(std::size_t) {
     lattice_.connections_changed(matter_);
     self_.connections_changed();
     find_bounds();
+    find_carriers();
 }
 
 void QuasistaticSolver::find_bounds() {
@@ -252,7 +254,7 @@ constexpr double kSmoothHold = 1e-3;
 // The drag is let go until what it holds back is no more than the residual may be.
 QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
-    held_ = start_;
+    held_ = rest_;
     contacts_.find_candidates(matter_, to);
     self_.meet_anew();
     bool smooth = newton_ && !touches() && !floats_under_pressure(apparatus_);
@@ -325,6 +327,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     std::vector<double> motion = motion_of(from, to);
     const bool released = draws_back(from, to, motion);
     predict(motion);
+    carry_pieces(from, to);
 
     const bool had_buckled = std::exchange(outcome.buckled, false);
     const Relaxation relaxed = relax_stably(to, outcome);

@@ -68,6 +68,8 @@ class QuasistaticSolver {
     double push_limit(const Drive& to) const;
     std::vector<double> motion_of(const Drive& from, const Drive& to) const;
     void predict(const std::vector<double>& motion);
+    void find_carriers();
+    void carry_pieces(const Drive& from, const Drive& to);
     bool draws_back(const Drive& from, const Drive& to, const std::vector<double>& motion) const;
     void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome);
     void let_crack(const Drive& to, MoveOutcome& outcome);
@@ -89,8 +91,11 @@ class QuasistaticSolver {
     std::vector<double> mass_, inverse_mass_, drag_;
     int mirrored_ = 0;  // cells inside out
     Vec3Array force_, velocity_;
-    double hold_ = 1;                      // share of the drag that acts
-    Vec3Array held_;                       // positions that the drag pulls back to
+    double hold_ = 1;        // share of the drag that acts
+    Vec3Array held_, rest_;  // positions that the drag pulls back to: now, at first
+    // Of each particle: the grip, if any, that alone holds its piece. Empty: the matter is in one
+    // piece.
+    std::vector<int> carrier_;
     Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
                                            // the candidates were found
     std::vector<double> previous_motion_;  // empty: nothing to extrapolate from

@@ -39,6 +39,39 @@ std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive&
     return motion;
 }
 
+void QuasistaticSolver::find_carriers() {
+    constexpr int kNone = -1, kSeveral = -2;
+    carrier_.clear();
+    const Pieces pieces = find_pieces(matter_);
+    if (pieces.count < 2) return;
+    std::vector<int> of_piece(static_cast<std::size_t>(pieces.count), kNone);
+    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
+        const Grip& grip = apparatus_.grip[g];
+        const int carries = grip.hold == Vec3::Ones() ? static_cast<int>(g) : kSeveral;
+        for (int point : grip.point) {
+            for (int c = 0; c < 8; ++c) {
+                if (matter_.surface.weight[point][c] == 0) continue;
+                int& of = of_piece[pieces.particle_piece[matter_.surface.corner[point][c]]];
+                of = of == kNone || of == carries ? carries : kSeveral;
+            }
+        }
+    }
+    for (int piece : pieces.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
+}
+
+// What a single grip holds goes where that goes, whole. NOTE: else the drag, which is let go only
+// until it holds back no more than the residual may be, pulls at pieces that are drawn away.
+void QuasistaticSolver::carry_pieces(const Drive& from, const Drive& to) {
+    rest_ = start_;
+    for (std::size_t p = 0; p < carrier_.size(); ++p) {
+        if (carrier_[p] < 0) continue;
+        const std::size_t g = static_cast<std::size_t>(carrier_[p]);
+        const Vec3 local = from.world_from_grip[g].inverse() * start_.at(p);
+        rest_.set(p, to.world_from_grip[g] * local);
+        matter_.particle_position.set(p, rest_.at(p));
+    }
+}
+
 // Goes on as in the move before, by at most half a spacing. Nothing is foreseen where the drive
 // starts, stops or turns back.
 void QuasistaticSolver::predict(const std::vector<double>& motion) {
