@@ -110,7 +110,9 @@ void ContactWay::set_stiffness(double step) {
     const SurfacePoints& points = from_->points();
     const std::vector<double> modulus = surface_moduli(a, points);
     const double other = surface_modulus(b) / b.lattice.spacing;
-    const double hold = is_static_ ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
+    const double sticks = 0.5 * (a.material.stickiness + b.material.stickiness);
+    const double most = std::min(a.material.most_held(), b.material.most_held());
+    const double hold = is_static_ ? 0 : std::min(sticks, most);
     stiffness_.clear();
     stiffest_.clear();
     hold_.clear();
