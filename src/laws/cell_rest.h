@@ -9,7 +9,7 @@
 // No root of C is ever taken. With E = Y + Y^3/3 + Y^5/5 and C = (I + Y)(I - Y)^-1, Y is found by
 //
 //     Y = E (15 + E^2) / (15 + 6 E^2)                   to within E^7/7, 6e-8 at 0.1, 0.005 at 0.7
-//     Y -= (Y + Y^3/3 + Y^5/5 - E) / (I + Y^2 + Y^4)    once more for each digit doubled
+//     Y -= (Y + Y^3/3 + Y^5/5 - E) / (I + Y^2 + Y^4)    each step doubles the digits
 //
 // All of these are functions of E and commute.
 #pragma once
@@ -23,36 +23,6 @@ struct CellRest {
     Symmetric<N> metric;  // C
     Triple<N> corner[8];  // z [m]
 };
-
-// a b where these commute.
-template <typename N>
-SWAGE_INLINE Symmetric<N> commuting(const Symmetric<N>& a, const Symmetric<N>& b) {
-    return 0.5 * both_ways(a, b);
-}
-template <typename N>
-SWAGE_INLINE Symmetric<N> plus_unit(const Symmetric<N>& a, const N& s) {
-    return {a.xx + s, a.yy + s, a.zz + s, a.xy, a.yz, a.zx};
-}
-template <typename N>
-SWAGE_INLINE Symmetric<N> cofactors(const Symmetric<N>& m) {
-    return {m.yy * m.zz - m.yz * m.yz, m.xx * m.zz - m.zx * m.zx, m.xx * m.yy - m.xy * m.xy,
-            m.yz * m.zx - m.xy * m.zz, m.xy * m.zx - m.xx * m.yz, m.xy * m.yz - m.yy * m.zx};
-}
-// Of m, whose cofactors these are.
-template <typename N>
-SWAGE_INLINE N determinant(const Symmetric<N>& m, const Symmetric<N>& cofactor) {
-    return m.xx * cofactor.xx + m.xy * cofactor.xy + m.zx * cofactor.zx;
-}
-template <typename N>
-SWAGE_INLINE Symmetric<N> inverse_of(const Symmetric<N>& m) {
-    const Symmetric<N> c = cofactors(m);
-    return (1.0 / determinant(m, c)) * c;
-}
-template <typename N>
-SWAGE_INLINE Triple<N> operator*(const Symmetric<N>& s, const Triple<N>& a) {
-    return {s.xx * a.x + s.xy * a.y + s.zx * a.z, s.xy * a.x + s.yy * a.y + s.yz * a.z,
-            s.zx * a.x + s.yz * a.y + s.zz * a.z};
-}
 
 // |E_p| at the most: drawn to four times its length. The law's own ends at infinite stretch, 1.9.
 inline constexpr double kMostFlowed = 1.6;

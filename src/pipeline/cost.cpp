@@ -68,8 +68,12 @@ double least_damping(const SceneSpec& scene) {
 double law_share(const SceneSpec& scene) {
     bool damps = false, yields = false;
     for (const BodySpec& body : scene.body) {
-        damps = damps || body.material.damping_ratio > 0;
-        yields = yields || std::isfinite(body.material.yield_stress);
+        const auto look_at = [&](const Material& material) {
+            damps = damps || material.damping_ratio > 0;
+            yields = yields || std::isfinite(material.yield_stress);
+        };
+        look_at(body.material);
+        for (const InsetSpec& inset : body.inset) look_at(inset.material);
     }
     return (damps ? kDampedShare : 1) * (yields ? kYieldingShare : 1);
 }

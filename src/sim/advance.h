@@ -77,9 +77,9 @@ class Simulation {
     bool blades_reach(std::span<const Drive> way) const;
 
     // Plans all cuts of the coming frames, of `steps` drives each (way[0] is now), through the
-    // matter as it is now:
-    // halves that spring apart under the blade are severed where it first aimed, so that a skin
-    // that was cut along the same path opens cleanly. Frames beyond the plan sever what they meet.
+    // matter as it is now: halves that spring apart under the blade are severed where it first
+    // aimed, so that a skin that was cut along the same path opens cleanly. Frames beyond the plan
+    // sever what they meet.
     void plan_cuts(std::span<const Drive> way, int steps);
 
     // Everything that may act on the bodies, in the order of FrameReport::load, without what it

@@ -8,6 +8,7 @@
 #include "laws/cell_rest.h"
 #include "sim/cell_history.h"
 #include "sim/cell_sweep.h"
+#include "sim/connection_shares.h"
 #include "sim/vector_clones.h"
 
 namespace swage {

@@ -11,6 +11,7 @@
 #include "laws/yield.h"
 #include "sim/cell_batch.h"
 #include "sim/cell_volume.h"
+#include "sim/connection_shares.h"
 #include "sim/vector_clones.h"
 
 namespace swage {

@@ -38,7 +38,7 @@ ConnectionShares::ConnectionShares(const Aggregate& matter, const MaterialMask& 
             const MixedCell* two = matter.mixed_at(cell);
             std::array<float, kForwardCount> own;
             for (int d = 0; d < kForwardCount; ++d) {
-                const double share = d < kEdgeCount ? 0.25 : 0.5;
+                const double share = cell_share(d);
                 own[d] = static_cast<float>(share * stiffness_in(matter, cell, two, d, counts));
             }
             for (const auto& [direction, corner] : kCellConnection) {

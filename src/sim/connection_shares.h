@@ -14,6 +14,9 @@
 
 namespace swage {
 
+// Of a connection, that lies in each of the cells around it where these are whole.
+inline double cell_share(int direction) { return direction < kEdgeCount ? 0.25 : 0.5; }
+
 // By material; empty: all count.
 using MaterialMask = std::vector<char>;
 

@@ -42,7 +42,7 @@ void LatticeForces::connections_changed(const Aggregate& matter) {
     }
 }
 
-LatticeSweep& LatticeForces::sweep(const Aggregate& matter, std::size_t damped) {
+const LatticeSweep& LatticeForces::sweep(const Aggregate& matter, std::size_t damped) {
     if (!matter.inset.empty()) {
         if (branch_sweep_.empty()) {
             for (const DampedMaterials& of : damped_materials(matter)) {

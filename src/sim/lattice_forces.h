@@ -42,7 +42,7 @@ class LatticeForces {
     int find(const Aggregate& matter, Flow flow, Vec3Array& force,
              std::span<const BranchStep> branches = {}, double* given = nullptr);
     // Whose branches find() moves on, of these of damped_materials().
-    LatticeSweep& sweep(const Aggregate& matter, std::size_t damped);
+    const LatticeSweep& sweep(const Aggregate& matter, std::size_t damped);
 
     // Whether any cell may have been below half of its volume then.
     bool saw_crushed() const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "sim/connection_shares.h"
 #include "sim/mixed_batch.h"
 #include "sim/vector_clones.h"
 

@@ -63,11 +63,14 @@ void QuasistaticSolver::find_carriers() {
 // until it holds back no more than the residual may be, pulls at pieces that are drawn away.
 void QuasistaticSolver::carry_pieces(const Drive& from, const Drive& to) {
     rest_ = start_;
+    if (carrier_.empty()) return;
+    std::vector<Pose> change;
+    for (std::size_t g = 0; g < to.world_from_grip.size(); ++g) {
+        change.push_back(to.world_from_grip[g] * from.world_from_grip[g].inverse());
+    }
     for (std::size_t p = 0; p < carrier_.size(); ++p) {
         if (carrier_[p] < 0) continue;
-        const std::size_t g = static_cast<std::size_t>(carrier_[p]);
-        const Vec3 local = from.world_from_grip[g].inverse() * start_.at(p);
-        rest_.set(p, to.world_from_grip[g] * local);
+        rest_.set(p, change[static_cast<std::size_t>(carrier_[p])] * start_.at(p));
         matter_.particle_position.set(p, rest_.at(p));
     }
 }

@@ -31,6 +31,4 @@ using RestGrowths = std::array<std::vector<RestGrowth>, kForwardCount>;
 // Slab by slab of the sweep over cells, then of what is beside it.
 using SlabGrowths = std::vector<RestGrowths>;
 
-inline double cell_share(int direction) { return direction < kEdgeCount ? 0.25 : 0.5; }
-
 }  // namespace swage
