@@ -2,13 +2,15 @@
 // A cell of eight particles as matter: the mean of its connections' strains carries Hooke's law for
 // any Poisson's ratio, their deviations carry bending and twist.
 //
-//     F = grad x at the centroid of the cell's material      C = F^T F
-//     Y = (C - I)(C + I)^-1                                  Cayley strain, tanh(ln U)
-//     E = Y + Y^3/3 + Y^5/5                                  ln U but for |E|^7/7
+//     F = grad x at the centroid of the cell's material
+//     A = U_p^-1, det A = 1                                  takes back the stretch that has flowed
+//     F_e = F A, C = F_e^T F_e
+//     Y = (C - I)(C + I)^-1                                  Cayley strain, tanh(ln U_e)
+//     E = Y + Y^3/3 + Y^5/5                                  ln U_e but for |E|^7/7
 //     theta = y + y^3/3 + y^5/5, y = (J^2 - 1)/(J^2 + 1)     ln J in the same way, J = det F
 //     Q_m = sum of h_m x over the corners [m]                m = xy, yz, zx, xyz; h_xy = s_x s_y,
-//     ...; q_m = F^T Q_m                                          s = -1, +1 at the two ends of an
-//     axis
+//     ...; q_m = F_e^T Q_m - p_m                                  s = -1, +1 at the two ends of an
+//     axis; p_m: what has flowed of it
 //
 //     W = f V [mu |dev E|^2 + K theta^2 / 2] + f^3 W_q       [J]
 //     W_q = c_e/2 [xy_x^2 + xy_y^2 + yz_y^2 + yz_z^2 + zx_z^2 + zx_x^2 + |xyz|^2]
@@ -24,18 +26,27 @@
 //
 // Plastic flow after von Mises, of mean and deviations by one factor w, with linear hardening:
 //
-//     s = 2 mu dev(E - E_p)
-//     t^2 = 3/2 [s : s + 4 mu f^2 W_q(q - q_p) / V]          equivalent stress [Pa]
+//     s = 2 mu dev E
+//     t^2 = 3/2 [s : s + 4 mu f^2 W_q / V]                   equivalent stress [Pa]
 //     t > sigma_y + H alpha:    d_alpha = (t - sigma_y - H alpha) / (3 mu + H)
 //                               w = 1 - 3 mu d_alpha / t
-//                               E_p += (1 - w) dev(E - E_p)
-//                               q_p += (1 - w)(q - q_p),  alpha += d_alpha
+//                               A <- root of A exp(-2 (1 - w) dev E) A
+//                               A q <- w A q,  alpha += d_alpha
+//
+// so that what flows stays elastic strain and stress, and only these, however far it has gone; all
+// tensors of the return are functions of E. The exponential keeps the volume.
 //
 // theta and not tr E, which is its equal where strains are small: of a cell drawn to 2 x 2 x 1/4
-// the trace is 0.16, and matter that flows as far would lose a sixth of its volume.
+// the trace is 0.16.
 //
-// The history (E_p, q_p, alpha) has a committed value; every evaluation returns from it and leaves
+// The history (A, p, alpha) has a committed value; every evaluation returns from it and leaves
 // no trace. Forces are the exact gradient of the increment's energy.
+//
+// Source of the split F = F_e F_p and its return in logarithms: J. Simo, "Algorithms for static and
+// dynamic multiplicative plasticity that preserve the classical return mapping schemes of the
+// infinitesimal theory", Comput. Methods Appl. Mech. Eng. 99, 1992.
+// NOTE: the logarithm of F less one that has flowed, which was here before, ends at infinite
+// stretch with 1.5: a block pressed to a quarter of its height bore a third of what it should.
 //
 // Rubber is W = f V [mu (|F|^2 - 3)/2 - mu (J - 1) + (lambda + mu)(J - 1)^2 / 2] + f^3 W_q with
 // J = det F, which resists being turned inside out (Smith, de Goes, Kim, "Stable neo-Hookean flesh
@@ -109,6 +120,32 @@ SWAGE_INLINE CellModes<N> mode_stress(const CellModuli& law, const CellModes<N>&
             {w + u, e * q.yz.y + xx, e * q.yz.z + yy},
             {e * q.zx.x + xx, u + v, e * q.zx.z + zz},
             {e * q.xyz.x, e * q.xyz.y, e * q.xyz.z}};
+}
+// The same of a cell that has flowed. One plane's part: of two modes' components in it, and what
+// these are given.
+template <typename N>
+SWAGE_INLINE void add_plane_stress(const CellModuli& law, const N& a11, const N& a12, const N& a22,
+                                   const N& u1, const N& u2, const N& v1, const N& v2, N& to_u1,
+                                   N& to_u2, N& to_v1, N& to_v2) {
+    const N s11 = a11 * u1 + a12 * v1, s12 = a11 * u2 + a12 * v2;
+    const N s21 = a12 * u1 + a22 * v1, s22 = a12 * u2 + a22 * v2;
+    const N both = law.diagonal * (s11 + s22), cross = law.diagonal * (s12 + s21);
+    const N t11 = law.edge * s11 + both, t22 = law.edge * s22 + both;
+    to_u1 = to_u1 + (a11 * t11 + a12 * cross), to_u2 = to_u2 + (a11 * cross + a12 * t22);
+    to_v1 = to_v1 + (a12 * t11 + a22 * cross), to_v2 = to_v2 + (a12 * cross + a22 * t22);
+}
+template <typename N>
+SWAGE_INLINE CellModes<N> mode_stress(const CellModuli& law, const Symmetric<N>& a,
+                                      const CellModes<N>& q) {
+    CellModes<N> g{};
+    add_plane_stress(law, a.yy, a.yz, a.zz, q.xy.y, q.xy.z, q.zx.y, q.zx.z, g.xy.y, g.xy.z, g.zx.y,
+                     g.zx.z);
+    add_plane_stress(law, a.xx, a.zx, a.zz, q.xy.x, q.xy.z, q.yz.x, q.yz.z, g.xy.x, g.xy.z, g.yz.x,
+                     g.yz.z);
+    add_plane_stress(law, a.xx, a.xy, a.yy, q.zx.x, q.zx.y, q.yz.x, q.yz.y, g.zx.x, g.zx.y, g.yz.x,
+                     g.yz.y);
+    g.xyz = law.edge * (a * (a * q.xyz));
+    return g;
 }
 template <typename N>
 SWAGE_INLINE N product(const CellModes<N>& a, const CellModes<N>& b) {
@@ -235,24 +272,9 @@ SWAGE_INLINE CellSize<N> cell_size(const CellStrain<N>& e) {
             {rate * (one + e.i2 - e.i3), -2.0 * rate * one, 2.0 * rate}};
 }
 
-// The second Piola-Kirchhoff stress of the conjugate of E: dW/dE turned into 2 dW/dC. E's series
-// is differentiated with its coefficients, and 2 dY = (I - Y) dC (I - Y).
-template <typename N>
-SWAGE_INLINE Symmetric<N> material_stress(const CellStrain<N>& e, const Symmetric<N>& t) {
-    const Symmetric<N>& y = e.cayley;
-    const N t0 = trace(t), t1 = contract(t, y), t2 = contract(t, e.square);
-    const N i11 = e.i1 * e.i1, p = 0.2 * (i11 - e.i2);
-    const N k1 = 0.4 * (e.i1 * e.i3) * t0 + (0.2 * e.i3 - 0.4 * (e.i1 * e.i2)) * t1 +
-                 (1.0 / 3 + 0.6 * i11 - 0.4 * e.i2) * t2;
-    const N k2 = 0.2 * (e.i3 * t0) + (1.0 / 3 + p - 0.2 * e.i2) * t1 + 0.4 * (e.i1 * t2);
-    const N k3 = (1.0 / 3 + p) * t0 + 0.2 * (e.i1 * t1 + t2);
-    const Symmetric<N> s =
-        e.series.b * t + e.series.c * both_ways(y, t) +
-        evaluate(e, CayleySeries<N>{k1 - e.i1 * k2 + e.i2 * k3, k2 - e.i1 * k3, k3});
-    return sandwich(Symmetric<N>{y.xx - 1.0, y.yy - 1.0, y.zz - 1.0, y.xy, y.yz, y.zx}, s);
-}
-// The same of a dW/dE that is a function of Y: (I - Y)^2 (I + Y^2 + Y^4) t. The powers are written
-// out, which is longer than multiplying by Y again and again, but none waits for another.
+// The second Piola-Kirchhoff stress of the conjugate of E, a function of Y: dW/dE turned into
+// 2 dW/dC, (I - Y)^2 (I + Y^2 + Y^4) t. The powers are written out, which is longer than
+// multiplying by Y again and again, but none waits for another.
 template <typename N>
 SWAGE_INLINE CayleySeries<N> material_stress(const CellStrain<N>& e, const CayleySeries<N>& t) {
     const N p = e.i1 * e.i1 - e.i2, q = e.i1 * e.i3;
@@ -265,6 +287,22 @@ SWAGE_INLINE CayleySeries<N> material_stress(const CellStrain<N>& e, const Cayle
     const N m3 = m.b * t.c + m.c * t.b, m4 = m.c * t.c;
     return {m.a * t.a + (m3 * y3.a + m4 * y4.a), (m.a * t.b + m.b * t.a) + (m3 * y3.b + m4 * y4.b),
             (m.a * t.c + m.b * t.b + m.c * t.a) + (m3 * y3.c + m4 * y4.c)};
+}
+
+// E without its trace, as a function of Y.
+template <typename N>
+SWAGE_INLINE CayleySeries<N> deviator_series(const CellStrain<N>& e) {
+    const N third = (1.0 / 3) * (e.i1 * e.series.b + trace(e.square) * e.series.c);
+    return {-1.0 * third, e.series.b, e.series.c};
+}
+// 2 dw/dC per volume of material, where the share `kept` of the distortion is elastic.
+template <typename N>
+SWAGE_INLINE Symmetric<N> cell_stress(const CellModuli& law, const CellStrain<N>& e,
+                                      const N& kept) {
+    const CellSize<N> size = cell_size(e);
+    const N shear = (2 * law.shear) * kept;
+    return evaluate(
+        e, material_stress(e, shear * deviator_series(e)) + (law.bulk * size.log) * size.slope);
 }
 
 // f^2, which alone leaves nothing to hold a sliver's corners; and f times that.
@@ -280,16 +318,20 @@ SWAGE_INLINE N mode_fill(const N& fill) {
 // What a cell has flowed, committed.
 template <typename N>
 struct CellHistory {
-    Symmetric<N> strain;  // E_p; its trace is zero
-    CellModes<N> modes;   // q_p [m]
+    Symmetric<N> stretch;  // A - I
+    CellModes<N> modes;    // p [m]
     N alpha;
 };
+template <typename N>  // A
+SWAGE_INLINE Symmetric<N> taken_back(const CellHistory<N>& history) {
+    return plus_unit(history.stretch, 1.0);
+}
 
 // Trial state and return.
 template <typename N>
 struct CellFlowed {
-    Symmetric<N> distortion;   // dev(E - E_p) before the return
-    CellModes<N> modes;        // q - q_p before the return
+    Symmetric<N> distortion;   // dev E before the return
+    CellModes<N> modes;        // q before the return
     CellModes<N> mode_stress;  // of these
     N over;                    // stress beyond the yield surface, before the return [Pa]
     N kept;                    // w
@@ -302,7 +344,7 @@ SWAGE_INLINE Symmetric<N> deviator(const Symmetric<N>& e) {
     return {e.xx - third, e.yy - third, e.zz - third, e.xy, e.yz, e.zx};
 }
 
-// The trial state's distance from the yield surface, in flow: dev(E - E_p) squared, and f^2 times
+// The trial state's distance from the yield surface, in flow: dev E squared, and f^2 times
 // twice W_q.
 template <typename N>
 struct CellReturn {
@@ -322,14 +364,15 @@ SWAGE_INLINE CellReturn<N> return_cell(const CellModuli& law, const N& distortio
             1.0 - (3 * law.shear / (3 * law.shear + law.hardening)) * flows / stress};
 }
 
+// `strain`, `modes`: E and F_e^T Q.
 template <typename N>
 SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>& history,
                                      const Symmetric<N>& strain, const CellModes<N>& modes,
                                      const N& fill) {
     CellFlowed<N> r;
-    r.distortion = deviator(strain) - history.strain;
+    r.distortion = deviator(strain);
     r.modes = modes - history.modes;
-    r.mode_stress = mode_stress(law, r.modes);
+    r.mode_stress = mode_stress(law, taken_back(history), r.modes);
     const CellReturn<N> back =
         return_cell(law, contract(r.distortion, r.distortion),
                     mode_share(fill) * product(r.mode_stress, r.modes), history.alpha);
@@ -341,9 +384,8 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
 
 // Energy of the mean strain, elastic part, per volume of material.
 template <typename N>
-SWAGE_INLINE N strain_energy(const CellModuli& law, const CellStrain<N>& strain,
-                             const CellHistory<N>& history) {
-    const Symmetric<N> e = deviator(strain.log) - history.strain;
+SWAGE_INLINE N strain_energy(const CellModuli& law, const CellStrain<N>& strain) {
+    const Symmetric<N> e = deviator(strain.log);
     const N size = cell_size(strain).log;
     return law.shear * contract(e, e) + (0.5 * law.bulk) * size * size;
 }
@@ -374,17 +416,25 @@ SWAGE_INLINE void add_levers(const Columns<N>& p, const Triple<N>& at, CornerSum
     r.xyz = r.xyz + (at.y * at.z) * p.x + (at.x * at.z) * p.y + (at.x * at.y) * p.z;
 }
 
-// Forces that the cell exerts on its corners, as forces on their sums: from p = dW/dF and g, the
-// stress of the modes.
+// Forces that the cell exerts on its corners, as forces on their sums: from p = dW/dF, the stress g
+// of the modes, and F_e and A.
 template <typename N>
-SWAGE_INLINE CornerSums<N> sum_forces(const CornerSums<N>& c, const Columns<N>& f, Columns<N> p,
-                                      const CellModes<N>& g, const Triple<N>& at, double spacing) {
+SWAGE_INLINE CornerSums<N> sum_forces(const CornerSums<N>& c, const Columns<N>& elastic,
+                                      const Symmetric<N>& a, Columns<N> p, const CellModes<N>& g,
+                                      const Triple<N>& at, double spacing) {
     const double s = -0.25 / spacing;
-    p = {s * (p.x + pulled_by(g.xy.x, g.yz.x, g.zx.x, g.xyz.x, c)),
-         s * (p.y + pulled_by(g.xy.y, g.yz.y, g.zx.y, g.xyz.y, c)),
-         s * (p.z + pulled_by(g.xy.z, g.yz.z, g.zx.z, g.xyz.z, c))};
-    CornerSums<N> r{
-        p.x, p.y, p.z, -1.0 * (f * g.xy), -1.0 * (f * g.yz), -1.0 * (f * g.zx), -1.0 * (f * g.xyz)};
+    const Columns<N> m = Columns<N>{pulled_by(g.xy.x, g.yz.x, g.zx.x, g.xyz.x, c),
+                                    pulled_by(g.xy.y, g.yz.y, g.zx.y, g.xyz.y, c),
+                                    pulled_by(g.xy.z, g.yz.z, g.zx.z, g.xyz.z, c)} *
+                         a;
+    p = {s * (p.x + m.x), s * (p.y + m.y), s * (p.z + m.z)};
+    CornerSums<N> r{p.x,
+                    p.y,
+                    p.z,
+                    -1.0 * (elastic * g.xy),
+                    -1.0 * (elastic * g.yz),
+                    -1.0 * (elastic * g.zx),
+                    -1.0 * (elastic * g.xyz)};
     add_levers(p, at, r);
     return r;
 }

@@ -38,14 +38,16 @@ struct CellShare {
     Triple<N> at;  // centroid of the material, -1 to 1
 };
 
-// The last step: from the stress p of D and g of the modes to the forces on the sums.
-template <bool kPart, typename N>
+// The last step: from the stress p of D and g of the modes to the forces on the sums. `d`, `p`: as
+// what has flowed by `a` sees them.
+template <bool kPart, bool kFlowed, typename N>
 SWAGE_INLINE CornerSums<N> spread_stress(const CornerSums<N>& c, const Columns<N>& d,
-                                         const CellShare<N>& share, Columns<N> p,
-                                         const CellModes<N>& g) {
+                                         const Symmetric<N>& a, const CellShare<N>& share,
+                                         Columns<N> p, const CellModes<N>& g) {
     p = {p.x + pulled_by(g.xy.x, g.yz.x, g.zx.x, g.xyz.x, c),
          p.y + pulled_by(g.xy.y, g.yz.y, g.zx.y, g.xyz.y, c),
          p.z + pulled_by(g.xy.z, g.yz.z, g.zx.z, g.xyz.z, c)};
+    if constexpr (kFlowed) p = p * a;
     CornerSums<N> r{p.x, p.y, p.z, d * g.xy, d * g.yz, d * g.zx, d * g.xyz};
     if constexpr (kPart) add_levers(p, share.at, r);
     return r;
@@ -58,10 +60,16 @@ template <CellKind kKind, bool kPart, bool kFlowed, typename N>
 SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<N>& c,
                                        const CellShare<N>& share, const CellHistory<N>& history,
                                        double turning = 1, N* over = nullptr) {
-    const Columns<N> d = kPart ? centroid_sums(c, share.at) : Columns<N>{c.x, c.y, c.z};
-    const CellModes<N> modes = pulled_back(d, c);  // F^T Q / s
-    CellModes<N> g;                                // stress of the modes
-    Columns<N> p;                                  // of D
+    Columns<N> d = kPart ? centroid_sums(c, share.at) : Columns<N>{c.x, c.y, c.z};
+    Symmetric<N> a;  // A
+    if constexpr (kFlowed) {
+        a = taken_back(history);
+        d = d * a;
+    }
+    CellModes<N> modes = pulled_back(d, c);  // q / s
+    if constexpr (kFlowed) modes = modes - (1 / k.scale) * history.modes;
+    CellModes<N> g;  // stress of the modes
+    Columns<N> p;    // of D
     Symmetric<N> stress;
     if constexpr (kKind == CellKind::rubber) {
         const Columns<N> cofactor = {cross(d.y, d.z), cross(d.z, d.x), cross(d.x, d.y)};
@@ -88,40 +96,31 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
             pressure = share.fill * pressure;
         }
         if constexpr (kFlowed) {
-            const CellFlowed<N> r =
-                flow_cell(k.law, history, e.log, k.scale * modes, kPart ? share.fill : N{} + 1.0);
-            if (over != nullptr) *over = r.over;
-            N mode_scale = -k.scale * r.kept;
-            if constexpr (kPart) mode_scale = mode_fill(share.fill) * mode_scale;
-            g = mode_scale * r.mode_stress;
-            stress = material_stress(e, (shear * r.kept) * r.distortion) +
-                     evaluate(e, pressure * size.slope);
+            g = mode_stress(k.folded, a, modes);
         } else {
             g = mode_stress(k.folded, modes);
-            if constexpr (kKind == CellKind::yielding) {
-                const Symmetric<N> distortion = deviator(e.log);
-                N mode_energy = -1.0 * product(g, modes);
-                if constexpr (kPart) mode_energy = mode_share(share.fill) * mode_energy;
-                const CellReturn<N> back =
-                    return_cell(k.law, contract(distortion, distortion), mode_energy, N{});
-                if (over != nullptr) *over = back.over;
-                shear = shear * back.kept;
-                g = back.kept * g;
-            }
-            if constexpr (kPart) g = mode_fill(share.fill) * g;
-            const N third = (1.0 / 3) * (e.i1 * e.series.b + trace(e.square) * e.series.c);
-            const CayleySeries<N> t = {-1.0 * shear * third, shear * e.series.b,
-                                       shear * e.series.c};
-            stress = evaluate(e, material_stress(e, t) + pressure * size.slope);
         }
+        if constexpr (kKind == CellKind::yielding) {
+            const Symmetric<N> distortion = deviator(e.log);
+            N mode_energy = -1.0 * product(g, modes);
+            if constexpr (kPart) mode_energy = mode_share(share.fill) * mode_energy;
+            const CellReturn<N> back = return_cell(k.law, contract(distortion, distortion),
+                                                   mode_energy, kFlowed ? history.alpha : N{});
+            if (over != nullptr) *over = back.over;
+            shear = shear * back.kept;
+            g = back.kept * g;
+        }
+        if constexpr (kPart) g = mode_fill(share.fill) * g;
+        stress =
+            evaluate(e, material_stress(e, shear * deviator_series(e)) + pressure * size.slope);
     }
     if constexpr (requires { c.x.x.slope; }) {
         const Columns<N> e = slope_scaled(d, turning);
         if constexpr (kKind != CellKind::rubber) p = e * stress;
-        return spread_stress<kPart>(slope_scaled(c, turning), e, share, p, g);
+        return spread_stress<kPart, kFlowed>(slope_scaled(c, turning), e, a, share, p, g);
     } else {
         if constexpr (kKind != CellKind::rubber) p = d * stress;
-        return spread_stress<kPart>(c, d, share, p, g);
+        return spread_stress<kPart, kFlowed>(c, d, a, share, p, g);
     }
 }
 

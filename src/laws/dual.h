@@ -95,7 +95,7 @@ SWAGE_INLINE CellModes<Dual<N>> constant(const CellModes<N>& v) {
 }
 template <typename N>
 SWAGE_INLINE CellHistory<Dual<N>> constant(const CellHistory<N>& v) {
-    const Symmetric<N>& e = v.strain;
+    const Symmetric<N>& e = v.stretch;
     return {{constant(e.xx), constant(e.yy), constant(e.zz), constant(e.xy), constant(e.yz),
              constant(e.zx)},
             constant(v.modes),

@@ -4,7 +4,7 @@
 // jump along the normal n, by as much as lets the traction pass:
 //
 //     F_1 = F(c_1) + (f_2 / f) a n^T        F_2 = F(c_2) - (f_1 / f) a n^T       f = f_1 + f_2
-//     W = sum of f_m V w_m(F_m) + f_m^3 W_q,m(F(c_m)^T Q)                         [J]
+//     W = sum of f_m V w_m(F_m A_m) + f_m^3 W_q,m((F(c_m) A_m)^T Q - p_m)         [J]
 //     a minimises W:   (P_1 - P_2) n = 0,   P_m = dw_m/dF_m                       [Pa]
 //
 // so that layers in series share the stress and layers side by side the strain. By the minimum the
@@ -41,7 +41,7 @@ struct Phase {
 template <typename N>
 struct PhaseState {
     Columns<N> gradient;       // F(c_m)
-    CellModes<N> modes;        // F(c_m)^T Q
+    CellModes<N> modes;        // (F(c_m) A_m)^T Q
     Columns<N> stress;         // P_m [Pa]
     CellModes<N> mode_stress;  // dW_q/dq of a whole cell
     CellFlowed<N> flowed;      // of what yields
@@ -66,13 +66,12 @@ SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState
         s.mode_stress = mode_stress(*m.law, s.modes);
         return;
     }
-    const CellStrain<N> e = cell_strain(f);
+    const Symmetric<N> a = taken_back(m.history);
+    const Columns<N> elastic = f * a;
+    const CellStrain<N> e = cell_strain(elastic);
     s.flowed = flow_cell(*m.law, m.history, e.log, s.modes, m.fill);
     if (m.kind == CellKind::elastic) s.flowed.kept = N{} + 1.0;
-    const CellSize<N> size = cell_size(e);
-    const Symmetric<N> t = ((2 * m.law->shear) * s.flowed.kept) * s.flowed.distortion;
-    s.stress = turned_by(f, turning) *
-               (material_stress(e, t) + evaluate(e, (m.law->bulk * size.log) * size.slope));
+    s.stress = turned_by(elastic, turning) * cell_stress(*m.law, e, s.flowed.kept) * a;
     s.mode_stress = s.flowed.kept * s.flowed.mode_stress;
 }
 
@@ -198,7 +197,10 @@ SWAGE_INLINE Columns<N> about_jump_slope(const Phase<N> (&m)[2], const Triple<N>
         const Columns<N>& f = r.phase[p].gradient;
         const N none{}, one = none + 1.0;
         N kept = one, flows = none;
-        Triple<N> along = f * n, across{};
+        const Symmetric<N> a = taken_back(m[p].history);
+        const Columns<N> elastic = f * a;
+        const Triple<N> inside = a * n, along = elastic * inside;
+        Triple<N> across{};
         if (m[p].kind == CellKind::yielding) {
             const CellFlowed<N>& s = r.phase[p].flowed;
             kept = s.kept;
@@ -208,13 +210,13 @@ SWAGE_INLINE Columns<N> about_jump_slope(const Phase<N> (&m)[2], const Triple<N>
                         ? (12 * law.shear * law.shear * law.shear) * share_left / (stress * stress)
                         : none;
             const Symmetric<N>& d = s.distortion;
-            across = f * Triple<N>{d.xx * n.x + d.xy * n.y + d.zx * n.z,
-                                   d.xy * n.x + d.yy * n.y + d.yz * n.z,
-                                   d.zx * n.x + d.yz * n.y + d.zz * n.z};
+            across = elastic * (d * inside);
         }
         const N weight = p == 0 ? share[0] : -1.0 * share[1];
-        const N shear = weight * larger(law.shear * kept, kFirm * law.shear + none);
-        const N rise = (weight * law.bulk + (1.0 / 3) * shear) / (dot(along, along) + 1e-300);
+        const N size = dot(inside, inside);
+        const N shear = size * weight * larger(law.shear * kept, kFirm * law.shear + none);
+        const N rise =
+            (size * weight * law.bulk + (1.0 / 3) * shear) / (dot(along, along) + 1e-300);
         const N less = weight * flows;
         sum = {sum.x + (rise * along.x) * along - (less * across.x) * across,
                sum.y + (rise * along.y) * along - (less * across.y) * across,
@@ -235,7 +237,7 @@ SWAGE_INLINE void laminate(const CornerSums<N>& c, const Phase<N> (&m)[2], const
                            const JumpGuess<N>& guess = JumpGuess<N>{}) {
     for (int p = 0; p < 2; ++p) {
         r.phase[p].gradient = phase_gradient(c, m[p].at, spacing);
-        r.phase[p].modes = pulled_back(r.phase[p].gradient, c);
+        r.phase[p].modes = pulled_back(r.phase[p].gradient * taken_back(m[p].history), c);
     }
     N share[2];
     jump_shares(m, share);
@@ -328,9 +330,11 @@ SWAGE_INLINE CornerSums<N> laminate_forces(const CornerSums<N>& c, const Phase<N
         const Triple<N>& at = m[p].at;
         const N scale = volume * m[p].fill;
         const Triple<N> centre{};
-        CornerSums<N> f = sum_forces(
-            c, s.gradient, Columns<N>{scale * s.stress.x, scale * s.stress.y, scale * s.stress.z},
-            mode_fill(m[p].fill) * s.mode_stress, centre, spacing);
+        const Symmetric<N> a = taken_back(m[p].history);
+        CornerSums<N> f =
+            sum_forces(c, s.gradient * a, a,
+                       Columns<N>{scale * s.stress.x, scale * s.stress.y, scale * s.stress.z},
+                       mode_fill(m[p].fill) * s.mode_stress, centre, spacing);
         f.xy = f.xy + at.y * f.x + at.x * f.y;
         f.yz = f.yz + at.z * f.y + at.y * f.z;
         f.zx = f.zx + at.z * f.x + at.x * f.z;
@@ -360,7 +364,7 @@ SWAGE_INLINE CornerSums<N> laminate_slope(const CornerSums<N>& c, const CornerSu
         for (int p = 0; p < 2; ++p) {
             PhaseState<D>& s = r.phase[p];
             s.gradient = phase_gradient(x, phase[p].at, spacing);
-            s.modes = pulled_back(s.gradient, x);
+            s.modes = pulled_back(s.gradient * taken_back(phase[p].history), x);
             find_stress(phase[p], jumped(s.gradient, normal, share[p] * r.jump), s, turning);
             const Triple<D> pull = s.stress * normal;
             left = p == 0 ? pull : left - pull;

@@ -140,23 +140,6 @@ SWAGE_INLINE Symmetric<N> square(const Symmetric<N>& a) {
             a.zx * a.zx + a.yz * a.yz + a.zz * a.zz, a.xy * (a.xx + a.yy) + a.zx * a.yz,
             a.yz * (a.yy + a.zz) + a.xy * a.zx,      a.zx * (a.zz + a.xx) + a.yz * a.xy};
 }
-// a b a
-template <typename N>
-SWAGE_INLINE Symmetric<N> sandwich(const Symmetric<N>& a, const Symmetric<N>& b) {
-    // m = b a, by columns; only then a m, which is symmetric.
-    const Triple<N> mx = {b.xx * a.xx + b.xy * a.xy + b.zx * a.zx,
-                          b.xy * a.xx + b.yy * a.xy + b.yz * a.zx,
-                          b.zx * a.xx + b.yz * a.xy + b.zz * a.zx};
-    const Triple<N> my = {b.xx * a.xy + b.xy * a.yy + b.zx * a.yz,
-                          b.xy * a.xy + b.yy * a.yy + b.yz * a.yz,
-                          b.zx * a.xy + b.yz * a.yy + b.zz * a.yz};
-    const Triple<N> mz = {b.xx * a.zx + b.xy * a.yz + b.zx * a.zz,
-                          b.xy * a.zx + b.yy * a.yz + b.yz * a.zz,
-                          b.zx * a.zx + b.yz * a.yz + b.zz * a.zz};
-    return {a.xx * mx.x + a.xy * mx.y + a.zx * mx.z, a.xy * my.x + a.yy * my.y + a.yz * my.z,
-            a.zx * mz.x + a.yz * mz.y + a.zz * mz.z, a.xx * my.x + a.xy * my.y + a.zx * my.z,
-            a.xy * mz.x + a.yy * mz.y + a.yz * mz.z, a.xx * mz.x + a.xy * mz.y + a.zx * mz.z};
-}
 // F S
 template <typename N>
 SWAGE_INLINE Columns<N> operator*(const Columns<N>& f, const Symmetric<N>& s) {
@@ -169,8 +152,8 @@ template <typename N>
 SWAGE_INLINE Symmetric<N> commuting(const Symmetric<N>& a, const Symmetric<N>& b) {
     return 0.5 * both_ways(a, b);
 }
-template <typename N>
-SWAGE_INLINE Symmetric<N> plus_unit(const Symmetric<N>& a, const N& s) {
+template <typename N, typename S>  // a number, or N itself
+SWAGE_INLINE Symmetric<N> plus_unit(const Symmetric<N>& a, const S& s) {
     return {a.xx + s, a.yy + s, a.zz + s, a.xy, a.yz, a.zx};
 }
 template <typename N>

@@ -126,7 +126,7 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
-    for (const std::vector<float>& v : cell_plastic_strain) sum += bytes_of(v);
+    for (const std::vector<float>& v : cell_plastic_stretch) sum += bytes_of(v);
     for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);
     for (const ConnectionArrays& direction : connection) {
         sum += direction.weight.bytes() + bytes_of(direction.plastic) + bytes_of(direction.damage);
@@ -197,7 +197,7 @@ std::uint64_t state_hash(const Aggregate& matter) {
     for (const std::vector<float>& slot : matter.cell_plastic) {
         hasher.add(std::span<const float>(slot));
     }
-    for (const std::vector<float>& v : matter.cell_plastic_strain) {
+    for (const std::vector<float>& v : matter.cell_plastic_stretch) {
         hasher.add(std::span<const float>(v));
     }
     for (const std::vector<float>& v : matter.cell_plastic_modes) {

@@ -153,7 +153,7 @@ struct SurfacePoints {
 
 // A cell through which the boundary of two materials runs.
 struct MixedCell {
-    static constexpr int kHistory = 19;  // as of a cell: plastic strain, modes, hardening
+    static constexpr int kHistory = 19;  // as of a cell: stretch, modes, hardening
     CellId cell;
     std::array<std::uint8_t, 2> material;                 // as cell_material
     std::array<float, 2> fill;                            // shares of the cell's volume
@@ -187,9 +187,9 @@ struct Aggregate {
 
     // History of the cells, committed; all empty while nothing has ever yielded.
     std::vector<float> cell_hardening;  // accumulated plastic strain
-    // Mechanics of cells (laws/cell.h): plastic strain xx, yy, zz, xy, yz, zx, and plastic part of
-    // the modes xy, yz, zx, xyz, three components each [m].
-    std::array<std::vector<float>, 6> cell_plastic_strain;
+    // Mechanics of cells (laws/cell.h): inverse of the plastic stretch less one, xx, yy, zz, xy, yz,
+    // zx, and plastic part of the modes xy, yz, zx, xyz, three components each [m].
+    std::array<std::vector<float>, 6> cell_plastic_stretch;
     std::array<std::vector<float>, 12> cell_plastic_modes;
     // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24
     // connections, by slot (kCellConnection), then cell.

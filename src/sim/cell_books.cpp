@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "laws/cell_growth.h"
 #include "laws/cell_rest.h"
 #include "sim/cell_history.h"
 #include "sim/cell_sweep.h"
@@ -31,11 +32,12 @@ struct BookTask {
 template <typename V>
 struct BookCells {
     CornerSums<V> sums;
-    Columns<V> gradient;
-    CellModes<V> modes;
-    V fill;
-    Triple<V> at;            // the material's centroid
+    Columns<V> gradient;     // F
     CellHistory<V> history;  // all zero where nothing has flowed
+    CellStrain<V> strain;
+    CellModes<V> modes;  // F_e^T Q
+    V fill;
+    Triple<V> at;  // the material's centroid
 };
 
 template <typename V>
@@ -60,11 +62,14 @@ SWAGE_INLINE BookCells<V> load_cells(const BookTask& task, int begin, int count)
         r.at = {load<V>(from + kLanes), load<V>(from + 2 * kLanes), load<V>(from + 3 * kLanes)};
     }
     r.gradient = centroid_gradient(r.sums, r.at, matter.lattice.spacing);
-    r.modes = pulled_back(r.gradient, r.sums);
     const CellId first = run.first + begin;
+    Columns<V> elastic = r.gradient;
     if (has_flowed(task.history, first - begin % kLanes)) {
         r.history = load_history<V>(task.history, first);
+        elastic = elastic * taken_back(r.history);
     }
+    r.strain = cell_strain(elastic);
+    r.modes = pulled_back(elastic, r.sums);
     return r;
 }
 
@@ -77,10 +82,10 @@ SWAGE_INLINE void add_energy(BookTask& task) {
         const int count = std::min(kWidth, task.run->count - begin);
         const BookCells<V> c = load_cells<V>(task, begin, count);
         const CellModes<V> q = c.modes - c.history.modes;
-        const V modes = 0.5 * mode_fill(c.fill) * product(mode_stress(law, q), q);
-        const V mean = kind == CellKind::rubber
-                           ? rubber_energy(law, c.gradient)
-                           : strain_energy(law, cell_strain(c.gradient), c.history);
+        const V modes =
+            0.5 * mode_fill(c.fill) * product(mode_stress(law, taken_back(c.history), q), q);
+        const V mean = kind == CellKind::rubber ? rubber_energy(law, c.gradient)
+                                                : strain_energy(law, c.strain);
         const V energy = volume * c.fill * mean + modes;
         for (int l = 0; l < count; ++l) {
             if (c.fill[l] > 0) task.sum += energy[l];
@@ -89,22 +94,19 @@ SWAGE_INLINE void add_energy(BookTask& task) {
 }
 
 template <typename V>
-SWAGE_INLINE void grow(float* from, const V& by, const V& flows, int count) {
+SWAGE_INLINE void keep(const V& value, const V& flows, int count, float* to) {
     for (int l = 0; l < count; ++l) {
-        if (flows[l] > 0) from[l] += static_cast<float>(by[l]);
+        if (flows[l] > 0) to[l] = static_cast<float>(value[l]);
     }
 }
 
-// Of cells whose history grows by this.
+// Of cells whose history comes to be this.
 template <typename V>
 SWAGE_INLINE void add_growths(const BookTask& task, int begin, int count, const BookCells<V>& c,
-                              const Symmetric<V>& strain, const CellModes<V>& modes,
-                              const V& flows) {
+                              const CellHistory<V>& after, const V& flows) {
     const Lattice& lattice = task.matter->lattice;
-    const CellHistory<V> after = {c.history.strain + strain, c.history.modes + modes,
-                                  c.history.alpha};
-    const CellRest<V> was = cell_rest<1>(c.history, c.at, lattice.spacing),
-                      is = cell_rest<1>(after, c.at, lattice.spacing);
+    const CellRest<V> was = cell_rest(c.history, c.at, lattice.spacing),
+                      is = cell_rest(after, c.at, lattice.spacing);
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {
         const CellConnection& connection = kCellConnection[slot];
         const int d = connection.direction, high = upper_corner(connection);
@@ -128,8 +130,7 @@ SWAGE_INLINE void add_flow(BookTask& task) {
     for (int begin = 0; begin < task.run->count; begin += kWidth) {
         const int count = std::min(kWidth, task.run->count - begin);
         const BookCells<V> c = load_cells<V>(task, begin, count);
-        const CellFlowed<V> r =
-            flow_cell(law, c.history, cell_strain(c.gradient).log, c.modes, c.fill);
+        const CellFlowed<V> r = flow_cell(law, c.history, c.strain.log, c.modes, c.fill);
         V flows{};
         bool any = false;
         for (int l = 0; l < count; ++l) {
@@ -149,22 +150,21 @@ SWAGE_INLINE void add_flow(BookTask& task) {
         for (int l = 0; l < count; ++l) {
             if (flows[l] > 0) task.sum += lost[l];
         }
-        const V share = 1.0 - r.kept;
-        const Symmetric<V>& d = r.distortion;
-        const CellModes<V>& m = r.modes;
-        const V strain[kCellStrains] = {d.xx, d.yy, d.zz, d.xy, d.yz, d.zx};
+        const CellHistory<V> after = flowed_on(c.history, r, c.gradient, c.sums);
+        const Symmetric<V>& a = after.stretch;
+        const CellModes<V>& m = after.modes;
+        const V stretch[kCellStrains] = {a.xx, a.yy, a.zz, a.xy, a.yz, a.zx};
         const V modes[kCellModes] = {m.xy.x, m.xy.y, m.xy.z, m.yz.x,  m.yz.y,  m.yz.z,
                                      m.zx.x, m.zx.y, m.zx.z, m.xyz.x, m.xyz.y, m.xyz.z};
-        if (task.growths) add_growths(task, begin, count, c, share * d, share * m, flows);
+        if (task.growths) add_growths(task, begin, count, c, after, flows);
         const CellId first = task.run->first + begin;
         for (int n = 0; n < kCellStrains; ++n) {
-            grow(task.flows->cell_plastic_strain[n].data() + first, share * strain[n], flows,
-                 count);
+            keep(stretch[n], flows, count, task.flows->cell_plastic_stretch[n].data() + first);
         }
         for (int n = 0; n < kCellModes; ++n) {
-            grow(task.flows->cell_plastic_modes[n].data() + first, share * modes[n], flows, count);
+            keep(modes[n], flows, count, task.flows->cell_plastic_modes[n].data() + first);
         }
-        grow(task.flows->cell_hardening.data() + first, r.d_alpha, flows, count);
+        keep(after.alpha, flows, count, task.flows->cell_hardening.data() + first);
     }
 }
 
@@ -217,9 +217,9 @@ double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) con
             (width == 8 ? wide_flow : width == 4 ? middle_flow : narrow_flow)(task);
         });
     };
-    if (matter.cell_plastic_strain[0].empty()) {
+    if (matter.cell_plastic_stretch[0].empty()) {
         if (sum(nullptr) == 0) return mixed_.commit(matter, law_, seen, mixed_growths);
-        for (auto& v : matter.cell_plastic_strain) v.assign(fill_.size(), 0.0f);
+        for (auto& v : matter.cell_plastic_stretch) v.assign(fill_.size(), 0.0f);
         for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
         matter.cell_hardening.assign(fill_.size(), 0.0f);
     }

@@ -26,7 +26,7 @@ struct HistoryRows {
     explicit HistoryRows(const Aggregate& matter)
         : cells(static_cast<int>(matter.cell_fill.size())) {
         if (matter.cell_hardening.empty()) return;
-        for (int n = 0; n < kCellStrains; ++n) strain[n] = matter.cell_plastic_strain[n].data();
+        for (int n = 0; n < kCellStrains; ++n) strain[n] = matter.cell_plastic_stretch[n].data();
         for (int n = 0; n < kCellModes; ++n) modes[n] = matter.cell_plastic_modes[n].data();
         alpha = matter.cell_hardening.data();
     }

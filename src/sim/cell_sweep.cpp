@@ -11,6 +11,7 @@
 #include "laws/strain_bound.h"
 #include "laws/volume_guard.h"
 #include "sim/cell_history.h"
+#include "sim/flowed_stretch.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -295,6 +296,8 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
 // that of the gradient's Gram matrix, which grows as the centroid leaves the middle; the modes' by
 // the largest of the blocks in laws/cell.h. The fewer cells a particle has, the less they hold each
 // other back. Of two materials in a cell the bounds add up: the jump between them only softens.
+// What has flowed is as much stiffer as its edges are shorter, squared: at the most by the greatest
+// eigenvalue of A^2, that by the sums of A's rows.
 void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const {
     const double a = matter.lattice.spacing;
     std::vector<double> held_back(bound.size(), 0.0);
@@ -302,7 +305,8 @@ void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>
     struct Bound {
         double most = 0, less = 0;
     };
-    const auto bound_of = [&](const CellModuli& law, double fill, const Eigen::Vector3f& centroid) {
+    const auto bound_of = [&](const CellModuli& law, double fill, const Eigen::Vector3f& centroid,
+                              double thin) {
         const double alone = std::max(2 * law.shear, 3 * law.bulk);
         const double among = kAssembledShear * 2 * law.shear + kAssembledBulk * 3 * law.bulk;
         const double modes = 8 * std::max(law.edge + 2 * law.diagonal, 4 * law.diagonal);
@@ -322,7 +326,7 @@ void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>
         const auto of = [&](double hooke) {
             return centred ? std::max(mean * hooke, own) : mean * hooke + own;
         };
-        return Bound{of(alone), of(among)};
+        return Bound{thin * of(alone), thin * of(among)};
     };
     for_each_cell(
         matter, 0, matter.lattice.cell_run.size(), [&](const CellRun& run, int n, CellId cell) {
@@ -330,12 +334,13 @@ void CellSweep::add_stiffness_bound(const Aggregate& matter, std::vector<double>
             const MixedCell* two = matter.mixed_at(cell);
             Bound own;
             if (two == nullptr) {
-                own =
-                    bound_of(law_of(matter, cell).moduli, fill_[cell], matter.cell_centroid[cell]);
+                own = bound_of(law_of(matter, cell).moduli, fill_[cell], matter.cell_centroid[cell],
+                               thinned(flowed_stretch(matter, cell)));
             }
             for (int m = 0; m < 2 && two != nullptr; ++m) {
-                const Bound part =
-                    bound_of(law_[two->material[m]].moduli, two->fill[m], two->centroid[m]);
+                const Bound part = bound_of(
+                    law_[two->material[m]].moduli, two->fill[m], two->centroid[m],
+                    thinned(flowed_stretch([&](int n) { return double(two->flowed[m][n]); })));
                 own.most += part.most, own.less += part.less;
             }
             for (int c = 0; c < 8; ++c) {

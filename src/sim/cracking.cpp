@@ -10,6 +10,7 @@
 #include "sim/cell_batch.h"
 #include "sim/cell_volume.h"
 #include "sim/crack_path.h"
+#include "sim/flowed_stretch.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -28,26 +29,16 @@ constexpr double kSpared = 1.5;      // times onset
 double mean_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
     const Mat3 f = cell_gradient(matter, run, n);
     Mat3 c = f.transpose() * f;
-    const auto& flowed = matter.cell_plastic_strain;
-    if (flowed[0].empty()) {
+    if (matter.cell_plastic_stretch[0].empty()) {
         // No eigenvalue is farther from 1 than the whole of C - I is from 0.
         if ((c - Mat3::Identity()).norm() < 2 * least) return 0;
-        const double largest =
-            Eigen::SelfAdjointEigenSolver<Mat3>(c, Eigen::EigenvaluesOnly).eigenvalues()[2];
-        return std::sqrt(largest) - 1;
+    } else {
+        const Mat3 a = flowed_stretch(matter, run.first + n);
+        c = a * c * a;
     }
-    const Eigen::SelfAdjointEigenSolver<Mat3> stretch(c);
-    Mat3 log = stretch.eigenvectors() *
-               (0.5 * stretch.eigenvalues().cwiseMax(1e-12).array().log()).matrix().asDiagonal() *
-               stretch.eigenvectors().transpose();
-    const CellId cell = run.first + n;
-    constexpr int kAt[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
-    for (int s = 0; s < 6; ++s) {
-        log(kAt[s][0], kAt[s][1]) -= flowed[s][cell];
-        if (s >= 3) log(kAt[s][1], kAt[s][0]) -= flowed[s][cell];
-    }
-    return std::expm1(
-        Eigen::SelfAdjointEigenSolver<Mat3>(log, Eigen::EigenvaluesOnly).eigenvalues()[2]);
+    const double largest =
+        Eigen::SelfAdjointEigenSolver<Mat3>(c, Eigen::EigenvaluesOnly).eigenvalues()[2];
+    return std::sqrt(largest) - 1;
 }
 
 struct Candidate {

@@ -7,6 +7,7 @@
 
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
+#include "sim/flowed_stretch.h"
 #include "sim/mixed_cells.h"
 
 namespace swage {
@@ -52,9 +53,9 @@ struct Crushed {
     double fill;
     Triple<double> at;
     CornerSums<double> sums;
-    Columns<double> gradient;
-    CellStrain<double> strain;
     CellHistory<double> history{};
+    Columns<double> gradient;  // F_e
+    CellStrain<double> strain;
     CellFlowed<double> flowed;
 
     Crushed(const Aggregate& matter, const std::vector<MaterialLaw>& laws, const SmallCell& cell) {
@@ -68,17 +69,17 @@ struct Crushed {
         volume = fill * a * a * a;
         at = material_place(matter, id);
         sums = corner_sums(matter, *cell.run, cell.n);
-        gradient = centroid_gradient(sums, at, a);
+        if (fades && !matter.cell_hardening.empty()) load(matter, id);
+        gradient = centroid_gradient(sums, at, a) * taken_back(history);
         guard = guard_cell({matter.material_of(id).young_modulus, law->shear, law->bulk, fades},
                            matrix_of(gradient));
         if (!fades) return;
         strain = cell_strain(gradient);
-        if (!matter.cell_hardening.empty()) load(matter, id);
         flowed = flow_cell(*law, history, strain.log, pulled_back(gradient, sums), fill);
     }
 
     // Of the cell's own law: what it holds, and besides what the flow on trial takes.
-    double held() const { return strain_energy(*law, strain, history); }
+    double held() const { return strain_energy(*law, strain); }
     double spent() const {
         const double over = std::max(0.0, flowed.over);
         return held() - over * over / (2 * (3 * law->shear + law->hardening));
@@ -91,19 +92,17 @@ struct Crushed {
         Mat3 stress = guard.stress;
         CellModes<double> modes{};
         if (fades) {
-            const CellSize<double> size = cell_size(strain);
-            const Symmetric<double> own =
-                material_stress(strain, (2 * law->shear * flowed.kept) * flowed.distortion) +
-                evaluate(strain, (law->bulk * size.log) * size.slope);
+            const Symmetric<double> own = cell_stress(*law, strain, flowed.kept);
             stress -= guard.share * matrix_of(gradient * own) + spent() * guard.share_slope;
             modes = (guard.share * mode_fill(fill) * (1 - flowed.kept)) * flowed.mode_stress;
         }
-        return sum_forces(sums, gradient, columns(volume * stress), modes, at, law->spacing);
+        const Symmetric<double> a = taken_back(history);
+        return sum_forces(sums, gradient, a, columns(volume * stress) * a, modes, at, law->spacing);
     }
 
   private:
     void load(const Aggregate& matter, CellId id) {
-        const auto& e = matter.cell_plastic_strain;
+        const auto& e = matter.cell_plastic_stretch;
         const auto& m = matter.cell_plastic_modes;
         const auto triple = [&](int n) {
             return Triple<double>{m[n][id], m[n + 1][id], m[n + 2][id]};
@@ -206,13 +205,15 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
         const CellModuli& law = law_of(matter, laws, cell.id()).moduli;
         const double volume = matter.cell_fill[cell.id()] * a * a * a;
         add(*cell.run, cell.n,
-            volume * guard_stiffness({0, law.shear, law.bulk, true}) / (2 * a * a));
+            thinned(flowed_stretch(matter, cell.id())) * volume *
+                guard_stiffness({0, law.shear, law.bulk, true}) / (2 * a * a));
     }
     if (matter.material.mechanics == Mechanics::springs) return;
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             const CellId id = run.first + n;
-            const Mat3 f = material_gradient(matter, run, n);
+            const Mat3 flowed = flowed_stretch(matter, id),
+                       f = material_gradient(matter, run, n) * flowed;
             const Vec3 x = f.col(1).cross(f.col(2)), y = f.col(2).cross(f.col(0)),
                        z = f.col(0).cross(f.col(1));
             const double cofactor = x.squaredNorm() + y.squaredNorm() + z.squaredNorm();
@@ -224,7 +225,8 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
             const double more = cofactor * slope * slope - 3;
             if (!(volume > 0) || !(more > 0)) continue;
             add(run, n,
-                0.5 * matter.cell_fill[id] * a * law_of(matter, laws, id).moduli.bulk * more);
+                0.5 * matter.cell_fill[id] * a * law_of(matter, laws, id).moduli.bulk * more *
+                    thinned(flowed));
         }
     }
 }

@@ -145,7 +145,10 @@ double ExplicitSolver::longest_step(double frame) {
     double dt = !is_free ? step_ : rescued_blocks_ > 0 ? kRescueStep * step_ : kFrameShare * frame;
     for_each_awake([&](std::size_t b) {
         MovingBody& body = body_[b];
-        if (!is_free && body.inside_out() > 0) dt = std::min(dt, body.present_step());
+        if (!is_free) {
+            const double first = body.stable_step(), share = body.present_step() / first;
+            dt = std::min(dt, share * (settings_.solver == Solver::euler ? step_ : first));
+        }
         const double speed = body.top_speed();
         if (speed > 0 && (!is_free || body.meets_tools()))
             dt = std::min(dt, kWayAhead * body.matter().lattice.spacing / speed);

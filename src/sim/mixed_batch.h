@@ -32,7 +32,7 @@ SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
         set_lane(m.at.x, lane, 2 * cell.centroid[p].x());
         set_lane(m.at.y, lane, 2 * cell.centroid[p].y());
         set_lane(m.at.z, lane, 2 * cell.centroid[p].z());
-        Symmetric<N>& e = m.history.strain;
+        Symmetric<N>& e = m.history.stretch;
         CellModes<N>& q = m.history.modes;
         N* const slot[MixedCell::kHistory] = {
             &e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,           &e.zx,   &q.xy.x,

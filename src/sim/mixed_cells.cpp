@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "laws/cell_growth.h"
 #include "sim/connection_shares.h"
 #include "sim/mixed_batch.h"
 #include "sim/vector_clones.h"
@@ -91,6 +92,7 @@ void narrow_batch(const MixedBatch& b) { batch_forces<2>(b); }
 // One cell as plain numbers.
 struct OneMixed {
     Phase<double> phase[2]{};
+    CornerSums<double> sums;
     Laminate<double> found;
 };
 OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
@@ -103,7 +105,8 @@ OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws
         one.phase[p].kind = laws[cell.material[p]].kind;
     }
     read_mixed(matter.particle_position, cell, corner, 0, at, one.phase, normal);
-    laminate(corner_sums(at), one.phase, normal, matter.lattice.spacing, one.found);
+    one.sums = corner_sums(at);
+    laminate(one.sums, one.phase, normal, matter.lattice.spacing, one.found);
     return one;
 }
 
@@ -202,15 +205,14 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
             lost +=
                 volume * one.phase[p].fill * r.d_alpha *
                 (law.yield_stress + law.hardening * (one.phase[p].history.alpha + 0.5 * r.d_alpha));
-            const Symmetric<double>& e = r.distortion;
-            const CellModes<double>& q = r.modes;
-            const double grown[] = {e.xx,   e.yy,   e.zz,   e.xy,    e.yz,    e.zx,
-                                    q.xy.x, q.xy.y, q.xy.z, q.yz.x,  q.yz.y,  q.yz.z,
-                                    q.zx.x, q.zx.y, q.zx.z, q.xyz.x, q.xyz.y, q.xyz.z};
-            for (int s = 0; s + 1 < MixedCell::kHistory; ++s) {
-                flowed[s] += static_cast<float>((1 - r.kept) * grown[s]);
-            }
-            flowed[MixedCell::kHistory - 1] += static_cast<float>(r.d_alpha);
+            const CellHistory<double> after =
+                flowed_on(one.phase[p].history, r, one.found.phase[p].gradient, one.sums);
+            const Symmetric<double>& e = after.stretch;
+            const CellModes<double>& q = after.modes;
+            const double now[] = {e.xx,   e.yy,    e.zz,    e.xy,    e.yz,       e.zx,   q.xy.x,
+                                  q.xy.y, q.xy.z,  q.yz.x,  q.yz.y,  q.yz.z,     q.zx.x, q.zx.y,
+                                  q.zx.z, q.xyz.x, q.xyz.y, q.xyz.z, after.alpha};
+            for (int s = 0; s < MixedCell::kHistory; ++s) flowed[s] = static_cast<float>(now[s]);
         }
         if (growths == nullptr) continue;
         const SlotLengths is = rest_lengths(matter, cell.cell, &cell);
@@ -241,12 +243,13 @@ double MixedCells::elastic_energy(const Aggregate& matter,
             const Triple<double> by = share * one.found.jump;
             const Columns<double> f = {s.gradient.x + normal.x * by, s.gradient.y + normal.y * by,
                                        s.gradient.z + normal.z * by};
+            const Symmetric<double> a = taken_back(m.history);
             const double mean = m.kind == CellKind::rubber
                                     ? rubber_energy(*m.law, f)
-                                    : strain_energy(*m.law, cell_strain(f), m.history);
+                                    : strain_energy(*m.law, cell_strain(f * a));
             const CellModes<double> q = s.modes - m.history.modes;
             sum += volume * m.fill * mean +
-                   0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, q), q);
+                   0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, a, q), q);
         }
     }
     return sum;

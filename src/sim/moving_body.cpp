@@ -29,12 +29,12 @@ double highest_frequency(const Aggregate& matter, const LatticeForces& lattice) 
     return fastest(matter, lattice.stiffness_bound(matter));
 }
 
-double stable_step(const Aggregate& matter, const SimSettings& settings,
-                   const LatticeForces& lattice, const InternalDamping& damping) {
+double stable_step(const Aggregate& matter, double safety, const LatticeForces& lattice,
+                   const InternalDamping& damping) {
     std::vector<double> bound = lattice.stiffness_bound(matter);
     damping.add_stiffness_bound(matter, bound);
     const double zeta = largest_damping_ratio(matter);
-    return settings.step_safety * 2 / fastest(matter, bound) * (std::sqrt(1 + zeta * zeta) - zeta);
+    return safety * 2 / fastest(matter, bound) * (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
@@ -97,7 +97,7 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
     const LatticeForces lattice(matter);
-    return stable_step(matter, settings, lattice,
+    return stable_step(matter, settings.step_safety, lattice,
                        InternalDamping(matter, highest_frequency(matter, lattice)));
 }
 
@@ -108,7 +108,9 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       damping_(matter, highest_frequency(matter, lattice_)),
       contacts_(matter, apparatus, settings, number),
       pushes_(apparatus, settings, number),
-      step_(swage::stable_step(matter, settings, lattice_, damping_)),
+      safety_(settings.step_safety),
+      step_(swage::stable_step(matter, safety_, lattice_, damping_)),
+      present_step_(step_),
       drag_(matter, settings, step_),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       touches_(!apparatus.tool.empty()),
@@ -220,6 +222,7 @@ bool MovingBody::remember(double step, BodyOutcome& outcome) {
     int broken = 0;
     const auto book = [&](const Committed& lost) {
         outcome.plastic_work += lost.plastic;
+        flowed_ = flowed_ || lost.plastic > 0;
         outcome.fracture_work += lost.fracture;
         outcome.broken += lost.broken;
         broken += lost.broken;
@@ -304,14 +307,18 @@ double MovingBody::top_speed() const {
 }
 
 double MovingBody::present_step() {
-    if (inside_out_ == 0) return step_;
+    if (flowed_) {
+        present_step_ = std::min(step_, swage::stable_step(matter_, safety_, lattice_, damping_));
+        flowed_ = false;
+    }
+    if (inside_out_ == 0) return present_step_;
     std::vector<double> guard(matter_.particle_count(), 0.0);
     add_guard_stiffness(matter_, guard);
     double highest = 0;
     for (std::size_t p = 0; p < guard.size(); ++p) {
         highest = std::max(highest, guard[p] / matter_.particle_mass[p]);
     }
-    return 1 / std::sqrt(1 / (step_ * step_) + 0.25 * highest);
+    return 1 / std::sqrt(1 / (present_step_ * present_step_) + 0.25 * highest);
 }
 
 void MovingBody::save(State& state) const {
@@ -327,7 +334,7 @@ void MovingBody::save(State& state) const {
         }
         state.plastic = m.cell_plastic;
         state.cracked = m.cell_cracked;
-        state.strain = m.cell_plastic_strain;
+        state.strain = m.cell_plastic_stretch;
         state.modes = m.cell_plastic_modes;
         state.hardening = m.cell_hardening;
         state.mixed = m.mixed_cell;
@@ -350,10 +357,11 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
         }
         matter_.cell_plastic = state.plastic;
         matter_.cell_cracked = state.cracked;
-        matter_.cell_plastic_strain = state.strain;
+        matter_.cell_plastic_stretch = state.strain;
         matter_.cell_plastic_modes = state.modes;
         matter_.cell_hardening = state.hardening;
         matter_.mixed_cell = state.mixed;
+        flowed_ = true;
         lattice_.connections_changed(matter_);
     }
     contacts_ = state.contacts[0];

@@ -25,7 +25,7 @@ class MovingBody {
     MovingBody(Aggregate& matter, int number, const Apparatus& apparatus,
                const SimSettings& settings);
 
-    double stable_step() const { return step_; }  // [s], with the settings' safety
+    double stable_step() const { return step_; }  // at first [s], with the settings' safety
     // No contact is stiffer than what its carriers can follow in steps of this length [s].
     void limit_stiffness(double step) { contacts_.limit_stiffness(matter_, step); }
 
@@ -76,7 +76,7 @@ class MovingBody {
     double top_speed() const;  // of any particle [m/s]
     // Cells inside out when the forces were found; of rubber, when it was last looked at.
     int inside_out() const { return inside_out_; }
-    // Of the present state, cells inside out included [s].
+    // Of the present state: what has flowed is thinner; cells inside out included [s].
     double present_step();
     Vec3 acceleration(std::size_t p) const {
         return force_.at(p) / matter_.particle_mass[p] + gravity_;
@@ -134,7 +134,8 @@ class MovingBody {
     InternalDamping damping_;
     ContactSet contacts_;
     LoadSet pushes_;
-    double step_;
+    double safety_, step_, present_step_;
+    bool flowed_ = false;  // since present_step_ was found
     SurfaceDrag drag_;
     Vec3Array force_, listed_;  // listed: positions when the candidates were found
     std::vector<LoadSum> load_;

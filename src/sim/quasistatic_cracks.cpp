@@ -11,7 +11,11 @@ bool QuasistaticSolver::commit(MoveOutcome& outcome) {
     outcome.body[0].plastic_work += lost.plastic;
     outcome.body[0].fracture_work += lost.fracture;
     outcome.body[0].broken += lost.broken;
-    if (lost.broken > 0) connections_changed();
+    if (lost.broken > 0) {
+        connections_changed();
+    } else if (lost.plastic > 0) {
+        lattice_bound_ = lattice_.stiffness_bound(matter_);
+    }
     return lost.fracture > 0;
 }
 

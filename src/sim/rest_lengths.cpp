@@ -10,7 +10,6 @@ namespace swage {
 
 namespace {
 
-constexpr int kSteps = 3;             // of Newton's method: to rounding
 constexpr double kLeastLength = 0.1;  // spacings: corners of slivers flow together
 
 // Squared ratio of lengths along n.
@@ -21,7 +20,7 @@ double square_along(const Vec3& n, const Symmetric<double>& c) {
 
 Symmetric<double> metric_of(const MixedCell& mixed, int part) {
     const auto& e = mixed.flowed[static_cast<std::size_t>(part)];
-    return flowed_metric<kSteps>(Symmetric<double>{e[0], e[1], e[2], e[3], e[4], e[5]});
+    return flowed_metric(Symmetric<double>{e[0], e[1], e[2], e[3], e[4], e[5]});
 }
 
 double mixed_ratio(const Aggregate& matter, const MixedCell& mixed,
@@ -57,7 +56,7 @@ SlotLengths rest_lengths(const Aggregate& matter, CellId cell, const MixedCell* 
         lengths[slot] = along[kCellConnection[slot].direction];
     }
     if (mixed || matter.cell_hardening.empty() || matter.cell_hardening[cell] == 0) return lengths;
-    const auto& e = matter.cell_plastic_strain;
+    const auto& e = matter.cell_plastic_stretch;
     const auto& q = matter.cell_plastic_modes;
     const auto triple = [&](int m) {
         return Triple<double>{q[m][cell], q[m + 1][cell], q[m + 2][cell]};
@@ -67,8 +66,7 @@ SlotLengths rest_lengths(const Aggregate& matter, CellId cell, const MixedCell* 
         {triple(0), triple(3), triple(6), triple(9)},
         matter.cell_hardening[cell]};
     const Vec3 at = 2 * matter.cell_centroid[cell].cast<double>();
-    const CellRest<double> rest =
-        cell_rest<kSteps>(history, Triple<double>{at.x(), at.y(), at.z()}, a);
+    const CellRest<double> rest = cell_rest(history, Triple<double>{at.x(), at.y(), at.z()}, a);
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {
         const CellConnection& c = kCellConnection[slot];
         lengths[slot] =

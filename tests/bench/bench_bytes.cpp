@@ -54,7 +54,7 @@ void body(const char* name, double wanted, const Material& material) {
         weight += static_cast<double>(c.weight.bytes()), plastic += bytes_of(c.plastic);
         history += bytes_of(c.damage);
     }
-    for (const auto& v : m.cell_plastic_strain) history += bytes_of(v);
+    for (const auto& v : m.cell_plastic_stretch) history += bytes_of(v);
     for (const auto& v : m.cell_plastic_modes) history += bytes_of(v);
     for (const auto& v : m.cell_plastic) history += bytes_of(v);
     const SurfacePoints& s = m.surface;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include "laws/cell_growth.h"
 #include "laws/laminate.h"
 #include "tests/catch.h"
 
@@ -50,13 +51,14 @@ struct Cell {
             const PhaseState<double>& s = r.phase[p];
             const Columns<double> f = jumped(s.gradient, normal, share[p] * r.jump);
             const CellModes<double> q = s.modes - history[p].modes;
-            const double modes = 0.5 * mode_fill(fill[p]) * product(mode_stress(law[p], q), q);
+            const Symmetric<double> a = taken_back(history[p]);
+            const double modes = 0.5 * mode_fill(fill[p]) * product(mode_stress(law[p], a, q), q);
             if (kind[p] == CellKind::rubber) {
                 sum += volume * fill[p] * rubber_energy(law[p], f) + modes;
                 continue;
             }
-            const CellStrain<double> e = cell_strain(f);
-            sum += volume * fill[p] * strain_energy(law[p], e, history[p]) + modes;
+            const CellStrain<double> e = cell_strain(f * a);
+            sum += volume * fill[p] * strain_energy(law[p], e) + modes;
             if (kind[p] != CellKind::yielding) continue;
             const CellFlowed<double> flowed =
                 flow_cell(law[p], history[p], e.log, s.modes, fill[p]);
@@ -112,12 +114,7 @@ void flow(Cell& cell) {
     for (int p = 0; p < 2; ++p) {
         const CellFlowed<double>& s = r.phase[p].flowed;
         if (cell.kind[p] != CellKind::yielding || !(s.d_alpha > 0)) continue;
-        CellHistory<double>& h = cell.history[p];
-        h.strain = h.strain + (1 - s.kept) * s.distortion;
-        const CellModes<double> grown = (1 - s.kept) * s.modes;
-        h.modes = {h.modes.xy + grown.xy, h.modes.yz + grown.yz, h.modes.zx + grown.zx,
-                   h.modes.xyz + grown.xyz};
-        h.alpha += s.d_alpha;
+        cell.history[p] = flowed_on(cell.history[p], s, r.phase[p].gradient, cell.sums());
     }
 }
 

@@ -32,12 +32,14 @@ Aggregate shaken_block(const Material& material, bool flowed) {
     }
     if (flowed) {
         const std::size_t cells = m.cell_fill.size();
-        for (auto& v : m.cell_plastic_strain) {
-            for (std::size_t c = 0; c < cells; ++c) v.push_back(static_cast<float>(draw(-1, 1)));
-        }
+        auto& stretch = m.cell_plastic_stretch;
+        for (auto& v : stretch) v.resize(cells);
         for (std::size_t c = 0; c < cells; ++c) {
-            m.cell_plastic_strain[2][c] =
-                -m.cell_plastic_strain[0][c] - m.cell_plastic_strain[1][c];
+            const double x = draw(-1, 1), y = draw(-1, 1);
+            stretch[0][c] = static_cast<float>(std::expm1(x));
+            stretch[1][c] = static_cast<float>(std::expm1(y));
+            stretch[2][c] = static_cast<float>(std::expm1(-x - y));
+            for (int n = 3; n < 6; ++n) stretch[n][c] = static_cast<float>(draw(-0.1, 0.1));
         }
         for (auto& v : m.cell_plastic_modes) {
             for (std::size_t c = 0; c < cells; ++c) {

@@ -7,6 +7,7 @@
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
 #include "sim/crushed_cells.h"
+#include "sim/flowed_stretch.h"
 #include "sim/lattice_forces.h"
 #include "sim/sever.h"
 #include "sim/vector_clones.h"
@@ -169,19 +170,23 @@ TEST_CASE("a cell that was bent for good is at rest where it lay when a connecti
     std::mt19937 engine(5);
     std::uniform_real_distribution<double> draw(-1, 1);
     m.cell_hardening = {1.0f};
-    for (auto& v : m.cell_plastic_strain) v = {static_cast<float>(0.1 * draw(engine))};
-    m.cell_plastic_strain[2][0] = -m.cell_plastic_strain[0][0] - m.cell_plastic_strain[1][0];
+    for (auto& v : m.cell_plastic_stretch) v = {static_cast<float>(0.1 * draw(engine))};
+    float& last = m.cell_plastic_stretch[2][0];
+    last = 0;
+    for (int n = 0; n < 20; ++n) {  // to a volume of one
+        last += static_cast<float>(1 - flowed_stretch(m, 0).determinant());
+    }
     for (auto& v : m.cell_plastic_modes) {
         v = {static_cast<float>(0.3 * kSpacing * draw(engine))};
     }
-    const auto& e = m.cell_plastic_strain;
+    const auto& e = m.cell_plastic_stretch;
     const auto& q = m.cell_plastic_modes;
     const auto triple = [&](int n) { return Triple<double>{q[n][0], q[n + 1][0], q[n + 2][0]}; };
     const CellRest<double> rest =
-        cell_rest<3>(CellHistory<double>{{e[0][0], e[1][0], e[2][0], e[3][0], e[4][0], e[5][0]},
-                                         {triple(0), triple(3), triple(6), triple(9)},
-                                         1.0},
-                     Triple<double>{2 * 0.1f, 2 * -0.2f, 2 * 0.05f}, kSpacing);
+        cell_rest(CellHistory<double>{{e[0][0], e[1][0], e[2][0], e[3][0], e[4][0], e[5][0]},
+                                      {triple(0), triple(3), triple(6), triple(9)},
+                                      1.0},
+                  Triple<double>{2 * 0.1f, 2 * -0.2f, 2 * 0.05f}, kSpacing);
     const Symmetric<double>& c = rest.metric;
     Mat3 metric;
     metric << c.xx, c.xy, c.zx, c.xy, c.yy, c.yz, c.zx, c.yz, c.zz;

@@ -143,12 +143,12 @@ TEST_CASE("what flowed before the cut stays bent after it, across the boundary t
             m.particle_position.set(p, grown.cwiseProduct(m.particle_reference.at(p)));
         }
         if (flowed != 0) {
-            for (auto& v : m.cell_plastic_strain) v.resize(m.cell_fill.size());
+            for (auto& v : m.cell_plastic_stretch) v.resize(m.cell_fill.size());
             for (auto& v : m.cell_plastic_modes) v.assign(m.cell_fill.size(), 0.0f);
             m.cell_hardening.assign(m.cell_fill.size(), 1e-3f);
             for (int i = 0; i < 3; ++i) {
-                const float e = static_cast<float>(strain[i]);
-                std::fill(m.cell_plastic_strain[i].begin(), m.cell_plastic_strain[i].end(), e);
+                const float e = static_cast<float>(std::expm1(-strain[i]));
+                std::fill(m.cell_plastic_stretch[i].begin(), m.cell_plastic_stretch[i].end(), e);
                 for (MixedCell& cell : m.mixed_cell) cell.flowed[0][i] = cell.flowed[1][i] = e;
             }
         }
