@@ -11,8 +11,14 @@ namespace swage {
 
 namespace {
 
-// Cells, or particles of springs, that take about twice as long as handing them over (20 us).
-constexpr std::size_t kSlabCells = 2048, kMostSlabs = 32;
+// Cells, or particles of springs, in a slab: the fewest take about twice as long as handing them
+// over (20 us). Each has a seam, so there are no more than keep a few threads busy unless all are
+// as large as the next.
+constexpr std::size_t kFewestCells = 2048, kFewSlabs = 8, kManyCells = 8192, kMostSlabs = 32;
+std::size_t slab_count(std::size_t cells) {
+    const std::size_t few = std::min(cells / kFewestCells, kFewSlabs);
+    return std::clamp<std::size_t>(cells / kManyCells, std::max<std::size_t>(1, few), kMostSlabs);
+}
 
 SWAGE_VECTOR_CLONES
 void add_block(const double* __restrict f, std::size_t count, double* __restrict sum) {
@@ -41,7 +47,7 @@ std::vector<RowSlab> cell_slabs(const Aggregate& matter) {
             ->first;
     };
     const std::size_t cells = matter.cell_fill.size();
-    const std::size_t count = std::clamp<std::size_t>(cells / kSlabCells, 1, kMostSlabs);
+    const std::size_t count = slab_count(cells);
     std::vector<RowSlab> slabs;
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const bool full = !slabs.empty() && !same_row(runs[r], runs[r - 1]) &&
@@ -115,7 +121,7 @@ std::vector<SpringRun> spring_runs(const Lattice& lattice) {
 }
 
 std::vector<RowSlab> spring_slabs(const std::vector<SpringRun>& runs, std::size_t particles) {
-    const std::size_t count = std::clamp<std::size_t>(particles / kSlabCells, 1, kMostSlabs);
+    const std::size_t count = slab_count(particles);
     std::vector<RowSlab> slabs;
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const bool same_row = r > 0 && runs[r].j == runs[r - 1].j && runs[r].k == runs[r - 1].k;
