@@ -17,11 +17,6 @@ enum class Elasticity {
     neo_hookean,  // rubber: resists being turned inside out
 };
 
-// Matter flows under a mean pressure on a part of its surface of three times its yield stress
-// (Tabor, The Hardness of Metals, 1951), and under as much tension, before what sticks comes off.
-// NOTE: with ten times, rims of clay were drawn out until contacts made energy.
-inline constexpr double kMostHeld = 3;
-
 struct Material {
     bool breaks() const { return strength < std::numeric_limits<double>::infinity(); }
 
@@ -47,10 +42,8 @@ struct Material {
     // Speed after over speed before, where its surface meets another, 0 to 1; explicit steps only.
     double restitution = 0.5;
     // Tension that it holds once it touches other matter or a tool [Pa], >= 0; explicit steps only.
-    // More than kMostHeld yield stresses count as these.
     double stickiness = 0;
 
-    double most_held() const { return kMostHeld * yield_stress; }
     double holding_friction() const {
         return static_friction > friction ? static_friction : friction;
     }

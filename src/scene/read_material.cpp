@@ -67,14 +67,7 @@ void read_fracture(TableReader& table, Material& material) {
 // What its surface does where it meets another in motion.
 void read_surface(TableReader& table, Material& material) {
     table.quantity("restitution", Quantity::number, between(0, 1), material.restitution);
-    if (table.quantity("stickiness", Quantity::stress, at_least(0), material.stickiness) &&
-        material.stickiness > material.most_held()) {
-        table.warn("stickiness",
-                   fmt::format("stickiness = {} counts as {}: matter flows under {:g} times its "
-                               "yield_stress before it comes off",
-                               quantity_text(material.stickiness, Quantity::stress),
-                               quantity_text(material.most_held(), Quantity::stress), kMostHeld));
-    }
+    table.quantity("stickiness", Quantity::stress, at_least(0), material.stickiness);
     if (table.quantity("static_friction", Quantity::number, at_least(0),
                        material.static_friction) &&
         material.static_friction < material.friction) {

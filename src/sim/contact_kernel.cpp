@@ -174,7 +174,8 @@ struct ContactWay::Kernel {
         sums.stored += 0.5 / k * dot3(at.spring, at.spring);
     }
 
-    // Whether an earlier contact of its point has come into the same cell by another way.
+    // Whether an earlier contact of its point has come into the same cell by another way: of one
+    // body, or of one pressed so thin that layers far apart at rest are near.
     bool is_twice(std::size_t begin, std::size_t n) const {
         const auto& all = way.list_.contact;
         for (std::size_t m = n; m-- > begin && all[m].point == all[n].point;) {
@@ -200,7 +201,7 @@ struct ContactWay::Kernel {
             find<kOwn>(contact, last, way.plane_.empty() ? nullptr : &way.plane_[n], corner,
                        gradient, at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
-            if (kOwn && meets(at) && is_twice(begin, n)) at.inverse[1][3] = 0;
+            if (meets(at) && is_twice(begin, n)) at.inverse[1][3] = 0;
             if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
             prepare(contact, last, corner, gradient, step, at, result);
         }

@@ -58,7 +58,7 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       law_(law_on_tools(matter.material)),
       holding_(matter.material.holding_friction()),
       ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
-      stickiness_(std::min(matter.material.stickiness, matter.material.most_held())),
+      stickiness_(matter.material.stickiness),
       tool_way_(apparatus.tool.size()),
       motion_load_(apparatus.tool.size() + apparatus.grip.size()) {}
 

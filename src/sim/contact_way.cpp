@@ -22,7 +22,7 @@ std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
 std::size_t ContactWay::begin_of(std::size_t chunk) const {
     std::size_t n = std::min(list_.size(), chunk * kChunk);
-    if (from_ != onto_ || n == 0) return n;
+    if (n == 0) return n;
     while (n < list_.size() && list_.contact[n].point == list_.contact[n - 1].point) ++n;
     return n;
 }
@@ -110,9 +110,7 @@ void ContactWay::set_stiffness(double step) {
     const SurfacePoints& points = from_->points();
     const std::vector<double> modulus = surface_moduli(a, points);
     const double other = surface_modulus(b) / b.lattice.spacing;
-    const double sticks = 0.5 * (a.material.stickiness + b.material.stickiness);
-    const double most = std::min(a.material.most_held(), b.material.most_held());
-    const double hold = is_static_ ? 0 : std::min(sticks, most);
+    const double hold = is_static_ ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
     stiffness_.clear();
     stiffest_.clear();
     hold_.clear();

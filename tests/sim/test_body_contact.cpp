@@ -148,6 +148,23 @@ TEST_CASE("a small block presses on a face alike on its points and between them"
     CHECK(std::abs(work) < 0.02 * most);
 }
 
+// Layers that lie more than three cells apart at rest are near each other there, each found anew.
+TEST_CASE("each point meets what has been pressed thin once, at its side as in its middle") {
+    Aggregate thin = make_block(6, 12, 6, 0.1, kSpringy),
+              small = make_block(2, 2, 2, 0.02, kSpringy);
+    for (std::size_t p = 0; p < thin.particle_count(); ++p) {
+        thin.particle_position.y[p] *= 0.02;
+    }
+    const auto at = [&](double x) {
+        place(small, {Quat::Identity(), Vec3(x, -0.012 - 0.02 + 0.001, 0.002)});
+        return pressed({&small, &thin});
+    };
+    const Pressed middle = at(0.02), side = at(0.22);
+    REQUIRE(middle.sums[0].contacts > 9);
+    CHECK(side.sums[0].contacts == middle.sums[0].contacts);
+    CHECK(side.total(0).y() == Approx(middle.total(0).y()).epsilon(1e-3));
+}
+
 TEST_CASE("an edge and a corner are met as soon as they touch") {
     Aggregate floor = make_block(8, 2, 8, 0.1, kSpringy), die = make_block(3, 3, 3, 0.1, kSpringy);
     const Quat on_edge(Eigen::AngleAxisd(kPi / 4, Vec3::UnitX()));

@@ -74,3 +74,26 @@ TEST_CASE("what tumbling bodies leave in the books' remainder falls with the ste
         CHECK(fine < 0.25 * coarse);
     }
 }
+
+TEST_CASE("the books of lumps that flatten each other, and stick, close") {
+    const Material clay{.young_modulus = 3e6,
+                        .poisson_ratio = 0.45,
+                        .density = 1800,
+                        .yield_stress = 3e4,
+                        .damping_ratio = 0.02,
+                        .friction = 0.5,
+                        .restitution = 0.17,
+                        .stickiness = 3e5};
+    Aggregate a = make_block(7, 7, 7, 0.01, clay), b = make_block(5, 5, 5, 0.01, clay);
+    place(b, {Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())), Vec3(0.09, 0.005, 0.005)});
+    for (std::size_t p = 0; p < a.particle_count(); ++p) a.particle_velocity.x[p] = 4;
+    for (std::size_t p = 0; p < b.particle_count(); ++p) b.particle_velocity.x[p] = -6;
+    const double energy = 0.5 * (16 * a.mass() + 36 * b.mass());
+    const Apparatus nothing;
+    Simulation simulation({&a, &b}, nothing, motion_settings());
+    FrameReport r;
+    for (int n = 0; n < 10; ++n) r = simulation.advance(still(0.002 * n), still(0.002 * (n + 1)));
+    INFO("remainder " << r.remainder / energy << ", plastic " << r.plastic / energy);
+    CHECK(r.plastic > 0.6 * energy);
+    CHECK(std::abs(r.remainder) < 2e-3 * energy);
+}
