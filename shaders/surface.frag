@@ -17,6 +17,7 @@ uniform sampler2D surface_texture;
 #endif
 uniform vec4 material_color;
 uniform vec4 material_finish;  // roughness, metallic
+uniform vec4 endless;          // middle and radius of what fades out; a radius of 0: does not
 layout(location = 0) out vec4 pixel_color;
 
 vec3 environment_share(vec3 f0, float roughness, float nv) {
@@ -58,5 +59,11 @@ void main() {
     vec3 r = reflect(-v, n);
     float seen_mirror = clamp(seen.x * (0.55 + 0.45 * seen.y), 0.0, 1.0);
     light += surroundings(r, roughness) * environment_share(f0, roughness, nv) * seen_mirror;
+    if (endless.w > 0.0) {
+        float out_of_action = smoothstep(ground.y, 6.0, length(position));
+        float to_its_edge = smoothstep(0.6, 0.98, distance(position, endless.xyz) / endless.w);
+        light = mix(light, backdrop(sight(gl_FragCoord.xy), gl_FragCoord.xy),
+                    max(out_of_action, to_its_edge));
+    }
     pixel_color = developed(light, gl_FragCoord.xy);
 }

@@ -74,10 +74,12 @@ float lit(vec3 p, vec3 n, float turn) {
     vec2 direction = first_direction(turn);
     int turns = open ? SEARCH_TAPS : 0;
     for (int i = 0; i < turns; ++i) {
-        vec2 at = s.xy + search * outward(i, SEARCH_TAPS, turn) * direction;
+        float off = search * outward(i, SEARCH_TAPS, turn);
+        vec2 at = s.xy + off * direction;
         direction = GOLDEN_TURN * direction;
         float d = texelFetch(shadow_depth, clamp(ivec2(at * size), ivec2(0), last), 0).r;
-        float blocks = step(d, depth - bias);
+        // What stands near, well beside the cone to the lamp, hides nothing of it.
+        float blocks = step(d, depth - bias) * step(off, shadow.w + 3.0 * shadow.z * (depth - d));
         blockers += blocks;
         blocker_depth += blocks * d;
     }

@@ -84,7 +84,7 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     Tool tool{.name = spec.name,
               .shape = shape_of(setting, spec),
               .friction = setting.friction,
-              .matt = spec.matt};
+              .finish = spec.finish};
     if (spec.color) tool.color = *spec.color;
     if (!spec.friction.empty()) tool.friction = evaluate(spec.friction, setting.known);
     if (!(tool.friction >= 0)) {

@@ -19,6 +19,7 @@
 
 #include "base/math.h"
 #include "base/units.h"
+#include "matter/drive.h"
 
 namespace swage {
 
@@ -57,7 +58,7 @@ struct ToolSpec {
     Expression gap = "0";       // left between tool and work-piece by `touch`
     Expression friction;        // empty: the material's
     std::optional<Vec3> color;  // linear RGB
-    bool matt = false;          // drawn without a shine
+    Finish finish = Finish::metal;
     MotionSpec motion;
 };
 

@@ -3,6 +3,7 @@
 // one time (Drive). Made by `machines`, read by `sim`.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,13 +12,16 @@
 
 namespace swage {
 
+// How a tool is drawn: with a shine, without, or without and fading out into the backdrop.
+enum class Finish : std::uint8_t { metal, matt, endless };
+
 // A tool presses by contact with its smooth surface.
 struct Tool {
     std::string name;
     Shape shape;
     double friction;  // Coulomb, >= 0
     Vec3 color = {0.35, 0.38, 0.42};
-    bool matt = false;  // drawn without a shine
+    Finish finish = Finish::metal;
 };
 
 // A grip holds points of the work-piece's true surface to its frame, by stiff springs; along some

@@ -46,16 +46,18 @@ class FrameSource {
             for (const Eigen::Vector3f& p : stored.body[b].position) {
                 body.position.push_back(p.cast<double>());
             }
-            picture.item.push_back({&body.skin, &body.position, {}, std::nullopt});
+            picture.item.push_back({&body.skin, &body.position, {}, std::nullopt, false});
         }
         for (std::size_t b = 0; tools_ && b < machine_.size(); ++b) {
             if (machine_[b].surface.triangle.empty()) continue;
             SurfaceMaterial look;
             look.name = machine_[b].name;
             look.color = machine_[b].color;
-            look.roughness = machine_[b].matt ? 0.95 : 0.4;
-            look.metallic = machine_[b].matt ? 0 : 0.6;
-            picture.item.push_back({&machine_[b].surface, nullptr, stored.pose.at(b), look});
+            const Finish finish = machine_[b].finish;
+            look.roughness = finish == Finish::metal ? 0.4 : 0.95;
+            look.metallic = finish == Finish::metal ? 0.6 : 0;
+            picture.item.push_back({&machine_[b].surface, nullptr, stored.pose.at(b), look,
+                                    finish == Finish::endless});
         }
         return picture;
     }

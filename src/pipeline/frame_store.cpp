@@ -94,7 +94,7 @@ int FrameStoreWriter::add_machine(const std::vector<DrawnPart>& parts) {
         out.put_text(part.name);
         put_mesh(out, part.surface);
         out.put(part.color);
-        out.put<std::uint8_t>(part.matt);
+        out.put(part.finish);
     }
     put(kMachine, out.bytes());
     return machines_++;
@@ -200,7 +200,7 @@ std::vector<DrawnPart> FrameStore::machine(int index) const {
         part.name = in.get_text();
         part.surface = get_mesh(in);
         part.color = in.get<Vec3>();
-        part.matt = in.get<std::uint8_t>() != 0;
+        part.finish = in.get<Finish>();
     }
     return parts;
 }

@@ -12,6 +12,7 @@
 #include "base/math.h"
 #include "geometry/box.h"
 #include "geometry/trimesh.h"
+#include "matter/drive.h"
 
 namespace swage {
 
@@ -20,7 +21,7 @@ struct DrawnPart {
     std::string name;
     TriMesh surface;
     Vec3 color = {0.5, 0.5, 0.5};
-    bool matt = false;
+    Finish finish = Finish::metal;
 };
 
 struct StoredBody {

@@ -13,7 +13,7 @@ std::vector<Pose> part_poses(const Drive& drive) {
 void MotionRecorder::set_machine(const Apparatus& apparatus) {
     std::vector<DrawnPart> parts;
     for (const Tool& tool : apparatus.tool) {
-        parts.push_back({tool.name, surface_of(tool.shape), tool.color, tool.matt});
+        parts.push_back({tool.name, surface_of(tool.shape), tool.color, tool.finish});
     }
     for (const Grip& grip : apparatus.grip) parts.push_back({grip.name, grip.jaw, grip.color});
     for (const Blade& blade : apparatus.blade) {

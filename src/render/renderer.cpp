@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 
 #include "base/error.h"
 #include "render/mesh_cache.h"
@@ -61,6 +62,15 @@ void grow(Box& box, const DrawItem& item) {
         const Vec3 world = item.world_from_mesh * p;
         if (world.allFinite()) box.grow(world);
     }
+}
+
+// The largest that lies in a flat item: middle and radius in the stage.
+glm::vec4 disc_of(const DrawItem& item, const Stage& stage) {
+    const Box box = box_of(item.mesh->position);
+    const Vec3 size = box.size();
+    const double across = size.sum() - size.maxCoeff() - size.minCoeff();
+    const Vec3 middle = (item.world_from_mesh * box.center() - stage.center) / stage.radius;
+    return {to_glm(middle), 0.5 * across / stage.radius};
 }
 
 }  // namespace
@@ -149,7 +159,7 @@ struct Renderer::Parts {
         }
     }
 
-    std::vector<Drawable> prepare(const Picture& picture, Box& shown);
+    std::vector<Drawable> prepare(const Picture& picture, Box& shown, Box& casting);
     void draw_shadow(const std::vector<Drawable>& drawables) const;
     void draw_depth(const std::vector<Drawable>& drawables, bool ground) const;
     void draw_visibility() const;
@@ -159,12 +169,12 @@ struct Renderer::Parts {
     Image draw(const Picture& picture);
 };
 
-std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& shown) {
+std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& shown, Box& casting) {
     meshes.begin_picture();
     std::vector<Drawable> drawables;
     for (const DrawItem& item : picture.item) {
         if (item.mesh == nullptr || item.mesh->triangle.empty()) continue;
-        grow(shown, item);
+        grow(item.endless ? shown : casting, item);
         // Read now: loading one in the middle of a pass would unbind what the pass has bound.
         if (item.material_override) textures.texture(item.material_override->texture);
         for (const SurfaceMaterial& material : item.mesh->material) {
@@ -173,7 +183,9 @@ std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& show
         const GpuMesh& mesh = meshes.prepared(*item.mesh, item.position);
         drawables.push_back({&mesh, &item, stage.from_mesh(item.world_from_mesh, mesh.origin)});
     }
-    if (shown.empty()) shown = {stage.center, stage.center};
+    if (casting.empty()) casting.grow(stage.center);
+    shown.grow(casting.low);
+    shown.grow(casting.high);
     return drawables;
 }
 
@@ -183,7 +195,10 @@ void Renderer::Parts::draw_shadow(const std::vector<Drawable>& drawables) const 
     gl.Enable(GL_DEPTH_CLAMP);  // what sticks out of the map towards the light still casts
     gl.Enable(GL_POLYGON_OFFSET_FILL);
     gl.PolygonOffset(1.5f, 2.0f);
-    draw_shapes(shadow_shader, drawables);
+    std::vector<Drawable> casting;
+    std::copy_if(drawables.begin(), drawables.end(), std::back_inserter(casting),
+                 [](const Drawable& d) { return !d.item->endless; });
+    draw_shapes(shadow_shader, casting);
     gl.Disable(GL_POLYGON_OFFSET_FILL);
     gl.Disable(GL_DEPTH_CLAMP);
 }
@@ -223,6 +238,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
     static const SurfaceMaterial plain_material;
     for (const Drawable& d : drawables) {
         const TriMesh& mesh = *d.item->mesh;
+        const glm::vec4 endless = d.item->endless ? disc_of(*d.item, stage) : glm::vec4(0);
         const Culling culling(gl, d.mesh->closed && eye_is_outside);
         for (const DrawMesh::Range& range : d.mesh->split.range) {
             const bool named =
@@ -240,6 +256,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
             shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));
             shader.set4("material_color", glm::value_ptr(color));
             shader.set4("material_finish", glm::value_ptr(finish));
+            shader.set4("endless", glm::value_ptr(endless));
             if (texture != 0) set_unit(gl, 1, texture);
             d.mesh->draw(gl, range);
         }
@@ -296,9 +313,9 @@ Image Renderer::Parts::read_back(const Target& target) const {
 
 Image Renderer::Parts::draw(const Picture& picture) {
     canvas.make_current();
-    Box shown = action_bounds;
+    Box casting = action_bounds, shown;
     std::vector<Drawable> drawables;
-    timed("send", [&] { drawables = prepare(picture, shown); });
+    timed("send", [&] { drawables = prepare(picture, shown, casting); });
     std::size_t triangles = 0;
     for (const Drawable& d : drawables) triangles += d.mesh->split.index.size() / 3;
     const bool multisampled =
@@ -312,12 +329,15 @@ Image Renderer::Parts::draw(const Picture& picture) {
     const View view = camera.at(picture.film_share);
     eye_is_outside = (view.eye.array() < shown.low.array()).any() ||
                      (view.eye.array() > shown.high.array()).any();
-    const FrameBlock frame = frame_block(settings, stage, shown, view, ground_height, front);
+    const FrameBlock frame =
+        frame_block(settings, stage, shown, casting, view, ground_height, front);
     gl.BindBuffer(GL_UNIFORM_BUFFER, frame_buffer.id());
     gl.BufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
     gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer.id());
     // From below the ground would hide everything.
-    const bool ground = settings.ground && view.eye.y() > ground_height;
+    const bool ground = settings.ground && view.eye.y() > ground_height &&
+                        std::none_of(drawables.begin(), drawables.end(),
+                                     [](const Drawable& d) { return d.item->endless; });
 
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);

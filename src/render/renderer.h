@@ -19,6 +19,8 @@ struct DrawItem {
     const std::vector<Vec3>* position = nullptr;  // as many as the mesh's; null: the mesh's own
     Pose world_from_mesh;
     std::optional<SurfaceMaterial> material_override;  // for the whole item
+    // Stands for the ground: fades out into the backdrop away from the action, casts no shadow.
+    bool endless = false;
 };
 
 struct Picture {

@@ -64,12 +64,12 @@ glm::mat4 Stage::from_mesh(const Pose& world_from_mesh, const Vec3& origin) cons
 }
 
 FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const Box& shown,
-                       const View& world_view, double ground_height, double front) {
+                       const Box& casting, const View& world_view, double ground_height,
+                       double front) {
     View view = world_view;
     view.eye = (view.eye - stage.center) / stage.radius;
-    const Box box = stage.box(shown);
     const Lens lens = lens_of(settings);
-    DepthRange depth = depth_range(box, view);
+    DepthRange depth = depth_range(stage.box(shown), view);
     if (settings.ground) depth.far += kGroundEnd;
 
     FrameBlock frame;
@@ -88,9 +88,10 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     const double ground = (ground_height - stage.center.y()) / stage.radius;
     frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, 0);
 
-    Box casting = box;
-    if (settings.ground) casting.grow({box.center().x(), ground, box.center().z()});
-    const ShadowBox map = fit_shadow(casting, orbit_rotation(front + kKeyAzimuth, kKeyElevation));
+    Box mapped = stage.box(casting);
+    const Vec3 middle = mapped.center();
+    if (settings.ground) mapped.grow({middle.x(), ground, middle.z()});
+    const ShadowBox map = fit_shadow(mapped, orbit_rotation(front + kKeyAzimuth, kKeyElevation));
     frame.shadow_from_stage = map.map_from_stage;
     frame.shadow = glm::dvec4(map.side / kShadowMapSide, 1.0 / kShadowMapSide,
                               kLampSize * map.depth / map.side, 1.5 / kShadowMapSide);

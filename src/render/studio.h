@@ -27,8 +27,9 @@ struct Stage {
 };
 
 // `front` is the azimuth of the film's first view: the lights stand about it and stay in the
-// world. `shown` is the box of what is drawn, never empty.
+// world. `shown` and `casting` are the boxes of what is drawn and of what casts a shadow, never
+// empty.
 FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const Box& shown,
-                       const View& view, double ground_height, double front);
+                       const Box& casting, const View& view, double ground_height, double front);
 
 }  // namespace swage

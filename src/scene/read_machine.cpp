@@ -172,7 +172,10 @@ class MachineReader {
         }
         expression_.read(table, "friction", tool.friction);
         read_color(table, tool.color);
-        table.choice<bool>("finish", {{"metal", false}, {"matt", true}}, tool.matt);
+        table.choice<Finish>(
+            "finish",
+            {{"metal", Finish::metal}, {"matt", Finish::matt}, {"endless", Finish::endless}},
+            tool.finish);
         table.find("motion");
         if (tool.shape.empty()) table.leave_unknown();
         table.finish();

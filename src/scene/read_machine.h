@@ -6,7 +6,8 @@
 //     [[tool]]                    name, shape ("cylinder", "box", "sphere", "mesh"),
 //                                 radius, length, size, rounding, file, axis, at,
 //                                 touch, gap, friction, color,
-//                                 finish ("metal", "matt")
+//                                 finish ("metal", "matt", "endless": matt, and fades out
+//                                 into the backdrop)
 //     [tool.motion]               move, turn, axis, pivot
 //     [[grip]]                    name, from, to, and [grip.motion]
 //     [[blade]]                   name, edge, thickness, and [blade.motion]

@@ -151,7 +151,7 @@ TEST_CASE("the shadow map holds the action whatever its size and place", "[studi
         const RenderSettings settings;
         const Stage stage(box);
         const View view = CameraPath(settings, box).at(0);
-        const FrameBlock frame = frame_block(settings, stage, box, view, box.low.y(), 0.6);
+        const FrameBlock frame = frame_block(settings, stage, box, box, view, box.low.y(), 0.6);
         for (const Vec3& corner : corners_of(stage.box(box))) {
             const glm::vec4 s = frame.shadow_from_stage * glm::vec4(to_glm(corner), 1);
             CHECK(std::min({s.x, s.y, s.z}) > 0);

@@ -139,6 +139,42 @@ TEST_CASE("a body throws a shadow on the ground", "[renderer]") {
     CHECK(brighter_ground == 0);  // and nothing else changes the ground
 }
 
+TEST_CASE("an endless floor has no edge, and takes shadows as the ground does", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const TriMesh box = box_mesh(0.4), slab = surface_of(BoxShape{Vec3(60, 0.2, 60), 0});
+    RenderSettings settings = small_picture();
+    settings.camera[0].elevation = 0.2;
+    const auto floor_that = [&](bool ends) {
+        return DrawItem{
+            &slab, nullptr, {Quat::Identity(), {0, -0.1, 0}}, colored({0.5, 0.5, 0.5}), !ends};
+    };
+    const auto steepest = [&](const Image& image) {
+        double most = 0;
+        for (int y = 1; y < image.height; ++y) {
+            most =
+                std::max(most, std::abs(brightness(image, 80, y) - brightness(image, 80, y - 1)));
+        }
+        return most;
+    };
+    const double edge = steepest(drawn(settings, {floor_that(true)})),
+                 none = steepest(drawn(settings, {floor_that(false)}));
+    INFO("steps of brightness " << edge << " and " << none);
+    CHECK(edge > 10);
+    CHECK(none < 0.4 * edge);
+
+    settings.camera[0].elevation = 1.2;
+    const DrawItem body{&box, nullptr, {Quat::Identity(), {0, 0.2, 0}}, colored({1, 1, 1})};
+    const Image without = drawn(settings, {floor_that(false)});
+    const Image with = drawn(settings, {floor_that(false), body});
+    int darker = 0;
+    for (int y = 0; y < with.height; ++y) {
+        for (int x = 0; x < with.width; ++x) {
+            darker += brightness(with, x, y) - brightness(without, x, y) < -25;
+        }
+    }
+    CHECK(darker > 80);
+}
+
 TEST_CASE("a texture's colours come through as if the surface had them", "[renderer]") {
     if (!can_draw(GlProviderKind::automatic)) return;
     const fs::path file = fs::temp_directory_path() / fmt::format("swage_{}.png", ::getpid());

@@ -108,8 +108,8 @@ otherwise = "choose a smaller radius"
     CHECK(roll.gap == "1 mm");
     CHECK(roll.friction == "0.2");
     CHECK(roll.color.value().y() == Approx(0.2140).epsilon(1e-3));
-    CHECK(roll.matt);
-    CHECK_FALSE(machine.tool[1].matt);
+    CHECK(roll.finish == Finish::matt);
+    CHECK(machine.tool[1].finish == Finish::metal);
     CHECK(roll.motion.turn == "turned*t");
     CHECK(roll.motion.axis == Vec3(1, 0, 0));
     CHECK(roll.motion.pivot[1] == "roll_y");
