@@ -84,7 +84,8 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     Tool tool{.name = spec.name,
               .shape = shape_of(setting, spec),
               .friction = setting.friction,
-              .finish = spec.finish};
+              .finish = spec.finish,
+              .contact_stiffness = spec.contact_stiffness};
     if (spec.color) tool.color = *spec.color;
     if (!spec.friction.empty()) tool.friction = evaluate(spec.friction, setting.known);
     if (!(tool.friction >= 0)) {

@@ -59,6 +59,7 @@ struct ToolSpec {
     Expression friction;        // empty: the material's
     std::optional<Vec3> color;  // linear RGB
     Finish finish = Finish::metal;
+    double contact_stiffness = 0;  // Tool::contact_stiffness
     MotionSpec motion;
 };
 

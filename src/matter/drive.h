@@ -22,6 +22,10 @@ struct Tool {
     double friction;  // Coulomb, >= 0
     Vec3 color = {0.35, 0.38, 0.42};
     Finish finish = Finish::metal;
+    // Where nothing moves: SimSettings::contact_stiffness of stages that do not say; 0: the usual.
+    // NOTE: what rolls over a stiff tool does so from point to point, and its work is then known
+    // less well; on flat ones nothing rolls.
+    double contact_stiffness = 0;
 };
 
 // A grip holds points of the work-piece's true surface to its frame, by stiff springs; along some

@@ -171,6 +171,8 @@ class MachineReader {
             table.warn("gap", "gap has no effect without touch");
         }
         expression_.read(table, "friction", tool.friction);
+        table.quantity("contact_stiffness", Quantity::number, between(0.5, 100),
+                       tool.contact_stiffness);
         read_color(table, tool.color);
         table.choice<Finish>(
             "finish",

@@ -5,7 +5,8 @@
 //     [parameter.NAME]            quantity, default, low, high, help
 //     [[tool]]                    name, shape ("cylinder", "box", "sphere", "mesh"),
 //                                 radius, length, size, rounding, file, axis, at,
-//                                 touch, gap, friction, color,
+//                                 touch, gap, friction, contact_stiffness (where nothing moves and
+//                                 the stage does not say), color,
 //                                 finish ("metal", "matt", "endless": matt, and fades out
 //                                 into the backdrop)
 //     [tool.motion]               move, turn, axis, pivot

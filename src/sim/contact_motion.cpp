@@ -59,7 +59,8 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             m.place = x;
             m.normal = pose.turn(d.normal);
             m.law = law_;
-            m.law.stiffness = point_stiffness(matter, pair.point, settings_.contact_stiffness);
+            m.law.stiffness =
+                point_stiffness(matter, pair.point, settings_.stiffness_of_contacts());
             m.law.friction = tool.friction;
             m.law.holding = tool.friction == law_.friction ? holding_ : ratio_ * tool.friction;
             m.law.hold = hold;

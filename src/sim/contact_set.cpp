@@ -62,6 +62,13 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       tool_way_(apparatus.tool.size()),
       motion_load_(apparatus.tool.size() + apparatus.grip.size()) {}
 
+double ContactSet::pair_stiffness(const Aggregate& matter, const Pair& pair) const {
+    const bool tool_says =
+        !(settings_.contact_stiffness > 0) && settings_.solver == Solver::quasistatic;
+    const double own = tool_says ? apparatus_->tool[pair.tool].contact_stiffness : 0;
+    return point_stiffness(matter, pair.point, own > 0 ? own : settings_.stiffness_of_contacts());
+}
+
 double ContactSet::point_stiffness(const Aggregate& matter, int point, double factor) const {
     const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[point];
     const double k = factor * modulus * matter.surface.area[point] / spacing_;
@@ -162,7 +169,7 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
     };
     // Normal and tangential stiffness are equal, so each point pulls with k in every direction.
     for (const Pair& pair : pair_) {
-        add(pair.point, point_stiffness(matter, pair.point, settings_.contact_stiffness));
+        add(pair.point, pair_stiffness(matter, pair));
     }
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
@@ -222,7 +229,7 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
         Distance d = distance_to(tool.shape, tool_from_world[pair.tool] * x);
         if (d.value >= 0) continue;
         d.normal = pose.turn(d.normal);
-        const double k = point_stiffness(matter, pair.point, settings_.contact_stiffness);
+        const double k = pair_stiffness(matter, pair);
         act(n, x, d, k,
             contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k, tool.friction));
     }

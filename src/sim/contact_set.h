@@ -138,6 +138,7 @@ class ContactSet {
     void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
               Vec3Array& force);
     double point_stiffness(const Aggregate& matter, int point, double factor) const;  // [N/m]
+    double pair_stiffness(const Aggregate& matter, const Pair& pair) const;
     // That grip g exerts on its point n [N].
     Vec3 grip_force(const Aggregate& matter, const Drive& now, std::size_t g, std::size_t n) const;
     Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame

@@ -30,7 +30,7 @@ std::size_t ContactWay::begin_of(std::size_t chunk) const {
 ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& settings)
     : from_(&from),
       onto_(&onto),
-      scale_(settings.contact_stiffness),
+      scale_(settings.stiffness_of_contacts()),
       is_static_(settings.solver == Solver::quasistatic) {
     const Material &m = from.matter().material, &n = onto.matter().material;
     const double soft = surface_modulus(from.matter()) / from.matter().lattice.spacing,

@@ -36,13 +36,14 @@ struct SimSettings {
     Solver solver = Solver::quasistatic;
 
     // Quasi-static relaxation.
-    double tolerance = 1e-2;       // residual (1-norm) over the largest tool force; 1e-4 to 0.1
-    int iteration_limit = 6000;    // a sub-increment that needs more is halved; 100 to 1e6
-    int halving_limit = 4;         // 0 to 8
-    double contact_stiffness = 2;  // k_n = this * E * area / spacing; 0.5 to 100
-    double grip_stiffness = 20;    // the same for gripped points; 1 to 100
-    bool self_contact = false;     // a body's surface meets what is not its neighbourhood in the
-                                   // body; not in implicit steps
+    double tolerance = 1e-2;     // residual (1-norm) over the largest tool force; 1e-4 to 0.1
+    int iteration_limit = 6000;  // a sub-increment that needs more is halved; 100 to 1e6
+    int halving_limit = 4;       // 0 to 8
+    // k_n = this * E * area / spacing; 0.01 to 100. 0: 2, or what a tool says where nothing moves.
+    double contact_stiffness = 0;
+    double grip_stiffness = 20;  // the same for gripped points; 1 to 100
+    bool self_contact = false;   // a body's surface meets what is not its neighbourhood in the
+                                 // body; not in implicit steps
 
     // Explicit steps.
     double step_safety = 0.8;  // share of the stable step, 0 to 1
@@ -57,6 +58,8 @@ struct SimSettings {
     DragAlong directional_drag_along = DragAlong::motion;
 
     Vec3 gravity = Vec3::Zero();  // in the world [m/s2]
+
+    double stiffness_of_contacts() const { return contact_stiffness > 0 ? contact_stiffness : 2; }
 };
 
 }  // namespace swage

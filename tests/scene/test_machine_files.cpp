@@ -49,6 +49,7 @@ gap = "1 mm"
 friction = 0.2
 color = [1, 0.5, 0]
 finish = "matt"
+contact_stiffness = 5
 motion = { move = [0, "-radius*ramp(t, 0, 1)", 0], turn = "turned*t", axis = [1, 0, 0], pivot = ["roll_x", "roll_y", 0] }
 [[tool]]
 name = "block"
@@ -109,6 +110,8 @@ otherwise = "choose a smaller radius"
     CHECK(roll.friction == "0.2");
     CHECK(roll.color.value().y() == Approx(0.2140).epsilon(1e-3));
     CHECK(roll.finish == Finish::matt);
+    CHECK(roll.contact_stiffness == 5);
+    CHECK(machine.tool[1].contact_stiffness == 0);
     CHECK(machine.tool[1].finish == Finish::metal);
     CHECK(roll.motion.turn == "turned*t");
     CHECK(roll.motion.axis == Vec3(1, 0, 0));

@@ -79,6 +79,27 @@ double slope_at(const std::vector<double>& force, std::size_t n) {
 
 }  // namespace
 
+TEST_CASE("stiff plates press the block, not their contact") {
+    const auto modulus = [](double own, double asked) {
+        Aggregate block = make_block(4, 8, 4, 0.1, soft(0));
+        SimSettings settings = settings_of(false);
+        settings.contact_stiffness = asked;
+        const Press press{0.8};
+        Apparatus apparatus = press.apparatus();
+        for (Tool& tool : apparatus.tool) {
+            tool.contact_stiffness = own;
+            tool.friction = 0;
+        }
+        Simulation simulation(block, apparatus, settings);
+        const FrameReport r = simulation.advance(press.drive_at(0, 0), press.drive_at(1, 0.001));
+        return -r.load[1].force.y() / (0.4 * 0.4) / 0.001 / block.material.young_modulus;
+    };
+    // Two contacts in series with 8 cells: 1 / (1 + 2 / 8 stiffness).
+    CHECK(modulus(0, 0) == Approx(1 / 1.125).epsilon(0.01));
+    CHECK(modulus(20, 0) == Approx(1 / 1.0125).epsilon(0.01));
+    CHECK(modulus(20, 2) == Approx(1 / 1.125).epsilon(0.01));
+}
+
 TEST_CASE("a C pressed shut bears as a block does from then on") {
     Aggregate block = make_c(soft(), false), c = make_c(soft()), ghost = make_c(soft());
     const Pressed whole = press(block, 0.4, 0.1, 4, settings_of(false));
