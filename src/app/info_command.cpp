@@ -29,7 +29,7 @@ std::string text_of(const std::string& file, const InputMesh& input) {
     line("manifold", yes_no(report.manifold));
     line("oriented", yes_no(report.oriented));
     line("volume", report.bounds_a_volume() ? volume_text(report.volume) : "encloses none");
-    line("area", fmt::format("{:.4g} m2", report.area));
+    line("area", area_text(report.area));
     line("box", fmt::format("{} x {} x {}", length_text(size[0]), length_text(size[1]),
                             length_text(size[2])));
     line("uv", yes_no(report.has_uv));

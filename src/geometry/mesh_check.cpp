@@ -159,6 +159,13 @@ std::string volume_text(double cubic_metres) {
     return fmt::format("{:.4g} um3", cubic_metres * 1e18);
 }
 
+std::string area_text(double square_metres) {
+    if (square_metres >= 0.1 || square_metres == 0) return fmt::format("{:.4g} m2", square_metres);
+    if (square_metres >= 1e-5) return fmt::format("{:.4g} cm2", square_metres * 1e4);
+    if (square_metres >= 1e-9) return fmt::format("{:.4g} mm2", square_metres * 1e6);
+    return fmt::format("{:.4g} um2", square_metres * 1e12);
+}
+
 std::string summary_line(const MeshReport& report) {
     std::string state = "closed";
     if (!report.watertight) {

@@ -46,5 +46,6 @@ std::string summary_line(const MeshReport& report);
 // Three significant digits or so, with a unit that fits: "12.5 cm", "3.4 cm3".
 std::string length_text(double metres);
 std::string volume_text(double cubic_metres);
+std::string area_text(double square_metres);
 
 }  // namespace swage
