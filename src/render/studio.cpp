@@ -2,6 +2,7 @@
 #include "render/studio.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace swage {
 
@@ -44,6 +45,20 @@ ShadowBox fit_shadow(const Box& box, const Mat3& stage_from_light) {
     return {half * clip * view_from_world({Vec3::Zero(), stage_from_light}), side, depth};
 }
 
+// How far before the eye the picture's lower edge meets the ground; infinite where it does not.
+double nearest_ground(const View& view, const Lens& lens, double ground) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const int right : {-1, 1}) {
+        for (const int up : {-1, 1}) {
+            const Vec3 sight =
+                view.world_from_view * Vec3(right * lens.tangent_x, up * lens.tangent_y, -1);
+            const double depth = (ground - view.eye.y()) / sight.y();
+            if (depth > 0) nearest = std::min(nearest, depth);
+        }
+    }
+    return nearest;
+}
+
 }  // namespace
 
 Stage::Stage(const Box& bounds) {
@@ -70,7 +85,12 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     view.eye = (view.eye - stage.center) / stage.radius;
     const Lens lens = lens_of(settings);
     DepthRange depth = depth_range(stage.box(shown), view);
-    if (settings.ground) depth.far += kGroundEnd;
+    const double ground = (ground_height - stage.center.y()) / stage.radius;
+    if (settings.ground) {
+        depth.far += kGroundEnd;
+        depth.near =
+            std::clamp(0.9 * nearest_ground(view, lens, ground), 1e-4 * depth.far, depth.near);
+    }
 
     FrameBlock frame;
     const glm::dmat4 looking = view_from_world(view);
@@ -85,7 +105,6 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     frame.key = four(towards(front + kKeyAzimuth, kKeyElevation), 0);
     frame.fill = four(towards(front + kFillAzimuth, kFillElevation), 0);
     frame.rim = four(towards(front + kRimAzimuth, kRimElevation), 0);
-    const double ground = (ground_height - stage.center.y()) / stage.radius;
     frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, 0);
 
     Box mapped = stage.box(casting);

@@ -146,6 +146,24 @@ TEST_CASE("an empty or flat action still gives a camera", "[camera]") {
     }
 }
 
+TEST_CASE("the ground is not cut off before the eye", "[studio]") {
+    const Box box{{-5, 0, -0.3}, {5, 1, 0.3}};
+    RenderSettings settings;
+    for (const double elevation : {0.1, 0.25, 0.6, 1.4}) {
+        settings.camera[0].elevation = elevation;
+        const Stage stage(box);
+        const View view = CameraPath(settings, box).at(0);
+        const FrameBlock frame = frame_block(settings, stage, box, box, view, box.low.y(), 0.6);
+        for (const double x : {-1.0, 0.0, 1.0}) {
+            // Where the lower edge of the picture meets it.
+            const Vec3 sight =
+                view.world_from_view * Vec3(x * double(frame.lens.x), -double(frame.lens.y), -1);
+            const double depth = (box.low.y() - view.eye.y()) / sight.y() / stage.radius;
+            CHECK(depth > double(frame.lens.z));
+        }
+    }
+}
+
 TEST_CASE("the shadow map holds the action whatever its size and place", "[studio]") {
     for (const Box& box : kBoxes) {
         const RenderSettings settings;
