@@ -56,6 +56,36 @@ void far_flow(bool brief, Values& values) {
     }
 }
 
+// A bar of stress yield + H strain bears most at the strain (H - yield) / H, where its section
+// shrinks as fast as it hardens: H exp(yield / H - 1) of its first section. From there on it necks.
+void necking(bool brief, Values& values) {
+    constexpr double kHardening = 1.5 * kYield, kLongest = 1.6;
+    constexpr int kFrames = 60;
+    const double most = kHardening * std::exp(kYield / kHardening - 1);
+    for (int across : {4, 8}) {
+        if (brief && across > 4) break;
+        Material material = unit_material(0.3);
+        material.yield_stress = kYield;
+        material.hardening = kHardening;
+        Stand stand(block_of({6, 1, 1}, 1.0 / across, material), 1e-4);
+        for (int side : {-1, 1}) stand.grip(end_face(stand.matter, side * Vec3::UnitX()));
+        const Drive start = stand.drive;
+        double largest = 0, last = 0;
+        for (int frame = 1; frame <= kFrames; ++frame) {
+            Drive to = stand.drive;
+            const double grown = 6 * (std::exp(std::log(kLongest) * frame / kFrames) - 1);
+            for (int side : {0, 1}) {
+                to.world_from_grip[side].translation =
+                    start.world_from_grip[side].translation + Vec3((side - 0.5) * grown, 0, 0);
+            }
+            last = std::abs(stand.move(to).load[1].force.x());
+            largest = std::max(largest, last);
+        }
+        values.add(relative("largest force", across, most, largest, 0.01));
+        values.add(at_least("lost of it at 1.6 times the length", across, 0.1, 1 - last / largest));
+    }
+}
+
 // The bar of copper that is shot at a rigid wall in the literature: 32.4 x 6.4 mm at 227 m/s, as it
 // is after 80 us. Length and radius of the foot are given as 21.26 to 21.66 and 6.97 to 7.24 mm.
 void taylor_bar(bool brief, Values& values) {
@@ -113,6 +143,7 @@ void taylor_bar(bool brief, Values& values) {
 void add_large_flow_cases(std::vector<Case>& cases) {
     cases.push_back({"far-flow", "a block pressed to a quarter and drawn to twice its length",
                      "stress times section", 0, true, far_flow});
+    cases.push_back({"necking", "a bar drawn until it necks", "Considere 1885", 0, true, necking});
     cases.push_back({"taylor-bar", "a copper rod hits a rigid wall at 227 m/s",
                      "Kamoulakos 1990; Zhu & Cescotto 1995; Camacho & Ortiz 1997", 0, true,
                      taylor_bar});
