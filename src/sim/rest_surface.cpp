@@ -20,6 +20,7 @@ constexpr double kSupport = 0.6;        // from a place's foot to its side's nea
 constexpr double kSameSide = 0.7;       // least cosine between normals of one side of an edge
 constexpr double kInterpolates = 0.03;  // error of interpolated distances that serves
 constexpr double kDeep = 0.999;         // nothing comes as deep: a spacing, but for round-off
+constexpr double kEdge = 0.02;          // by how much the mean over an edge may lie outside
 constexpr int kMostSides = 4;
 constexpr std::size_t kChunk = 64;
 
@@ -27,6 +28,9 @@ std::uint64_t key_of(const Vec3i& site) {
     const auto part = [](int i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1FFFFF; };
     return part(site.x()) | part(site.y()) << 21 | part(site.z()) << 42;
 }
+
+// A distance where the cells end. What is deeper there lies beyond a sliver that is no cell.
+double at_end(double distance) { return distance < 0 && distance > -kEdge ? 0 : distance; }
 
 Vec3i floor_of(const Vec3& g) { return g.array().floor().cast<int>(); }
 
@@ -113,7 +117,7 @@ RestSurface::RestSurface(const Lattice& lattice, const SurfacePoints& surface) {
         while (cell >= run->first + run->count) ++run;
         site_.emplace_back(run->i + cell - run->first, run->j, run->k);
     }
-    measure_corners();
+    measure_corners(lattice);
     std::vector<char> is_fine(rim.size());
     find_fine(is_fine);
     measure_fine(lattice, is_fine);
@@ -218,7 +222,7 @@ double RestSurface::distance(const Vec3& g) const {
     return -1e6;
 }
 
-void RestSurface::measure_corners() {
+void RestSurface::measure_corners(const Lattice& lattice) {
     // Corners of the rim, each once.
     std::unordered_map<std::uint64_t, int> number;  // looked up only
     std::vector<Vec3i> corner;
@@ -235,6 +239,12 @@ void RestSurface::measure_corners() {
     std::vector<float> value(corner.size());
     in_chunks(corner.size(), [&](std::size_t n) {
         value[n] = static_cast<float>(distance(corner[n].cast<double>()));
+        bool is_outer = false;
+        for (int c = 0; c < 8; ++c) {
+            const Vec3i at = corner[n] - Vec3i(c & 1, c >> 1 & 1, c >> 2);
+            is_outer = is_outer || lattice.cell_at(at.x(), at.y(), at.z()) < 0;
+        }
+        if (is_outer) value[n] = static_cast<float>(at_end(value[n]));
     });
     corner_.resize(site_.size());
     for (std::size_t n = 0; n < site_.size(); ++n) {
@@ -305,10 +315,11 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
         const int n = slot[f];
         const Vec3 site = site_[n].cast<double>();
         // Neighbours that are sampled at their corners only.
-        std::array<bool, 27> coarse;
+        std::array<bool, 27> coarse, none;
         for (int m = 0; m < 27; ++m) {
             const Vec3i at = site_[n] + Vec3i(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
             const CellId cell = lattice.cell_at(at.x(), at.y(), at.z());
+            none[m] = cell < 0;
             coarse[m] = cell >= 0 && slot_[cell] >= 0 && !is_fine[slot_[cell]];
         }
         for (int face = 0; face < 6; ++face) {
@@ -329,12 +340,14 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
             // The side of the cell that it lies on, of each axis.
             const auto side = [&](int d) { return at[d] == 0 ? -1 : at[d] == kFine ? 1 : 0; };
             const Vec3 p = at.cast<double>() / kFine;
-            bool is_coarse = false;
-            for (int m = 0; m < 27 && !is_coarse; ++m) {
+            bool is_coarse = false, is_outer = false;
+            for (int m = 0; m < 27; ++m) {
                 const Vec3i to(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
-                is_coarse = coarse[m] && (to.x() == 0 || to.x() == side(0)) &&
-                            (to.y() == 0 || to.y() == side(1)) &&
-                            (to.z() == 0 || to.z() == side(2));
+                const bool shares = (to.x() == 0 || to.x() == side(0)) &&
+                                    (to.y() == 0 || to.y() == side(1)) &&
+                                    (to.z() == 0 || to.z() == side(2));
+                is_coarse = is_coarse || (coarse[m] && shares);
+                is_outer = is_outer || (none[m] && shares);
             }
             double& sample = fine_[f].sample[s];
             if (is_coarse || side(0) * side(1) * side(2) != 0) {
@@ -343,6 +356,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
             }
             sample = distance(site + p, near);
             if (std::isnan(sample)) sample = distance(site + p);
+            if (is_outer) sample = at_end(sample);
         }
     });
 }

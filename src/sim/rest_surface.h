@@ -15,6 +15,8 @@
 // shape). Where such a cell meets another, that one's values hold, and by how much its face is not
 // flat is added to this cell, less and less toward the far side. So depth is one continuous
 // function of the place, and what pushes by its slope gains no energy by the way it goes.
+// A body lies within its cells: where these end, what the mean over an edge makes less than zero is
+// zero, so that what comes in there is not deep in it at once.
 // All lengths in spacings, all places in cells from the lattice's origin.
 #pragma once
 
@@ -68,7 +70,7 @@ class RestSurface {
     // Of a place as far as `near` tells; no number where it does not reach.
     double distance(const Vec3& g, const Near& near) const;
     double distance(const Vec3& g) const;
-    void measure_corners();
+    void measure_corners(const Lattice& lattice);
     bool is_flat(int slot, const Near& near) const;
     void find_fine(std::vector<char>& is_fine) const;
     void measure_fine(const Lattice& lattice, const std::vector<char>& is_fine);
