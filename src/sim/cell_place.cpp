@@ -4,7 +4,6 @@
 namespace swage {
 
 Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& corner) {
-    constexpr double kSlack = 1e-9;
     const Lattice& lattice = onto.matter().lattice;
     Vec3& p = at.place;
     const Vec3i out =
@@ -12,12 +11,15 @@ Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& 
     if (out.isZero()) return Onward::ends_lost;  // no number
     CellId next = -1;
     Vec3i step = out;
-    bool opens = false;  // onto a cell that is cut or broken, half of which is still this side's
+    bool opens = false;    // onto a cell that is cut or broken, half of which is still this side's
+    bool is_deep = false;  // what lies on is no rim
     const auto try_step = [&](const Vec3i& s) {
         const Vec3i site = at.site + s;
         const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+        const bool holds = onto.may_hold(cell);
         opens = opens || (cell >= 0 && !onto.is_whole(cell));
-        if (!onto.may_hold(cell)) return false;
+        is_deep = is_deep || (cell >= 0 && onto.is_whole(cell) && !holds);
+        if (!holds) return false;
         next = cell;
         step = s;
         return true;
@@ -32,7 +34,8 @@ Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& 
         }
     }
     if (next < 0) {
-        const bool holds = opens && found && (p.array() >= -0.5).all() && (p.array() <= 1.5).all();
+        const double more = opens ? 0.5 : is_deep ? 0 : kSliver;
+        const bool holds = found && (p.array() >= -more).all() && (p.array() <= 1 + more).all();
         return holds ? Onward::ends_found : Onward::ends_lost;
     }
     at.cell = next;

@@ -81,12 +81,15 @@ SWAGE_INLINE bool find_in_cell(const CellCorners& corner, Vec4 x, double spacing
 enum class Onward { goes, ends_found, ends_lost };
 Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& corner);
 
+// What a body's last cells hold beyond themselves, in cells: slivers too small to be cells.
+inline constexpr double kSliver = 0.2;
+inline constexpr double kSlack = 1e-9;  // of places in cells
+
 // Walks from the cell it was last in to the one that holds x, whose corners are then `corner`;
-// false where there is none: `at` is then the last cell on the way. Where it ends in another cell,
-// `at.corner` is not yet of that.
+// false where there is none: `at` is then the last cell on the way. A little beyond the last cells
+// it is still in them. Where it ends in another cell, `at.corner` is not yet of that.
 SWAGE_INLINE bool find_place(const ContactSide& onto, Vec4 x, CellPlace& at, CellCorners& corner,
                              CellGradient& gradient) {
-    constexpr double kSlack = 1e-9;
     for (int hop = 0; hop < 6; ++hop) {
         const bool found =
             find_in_cell(corner, x, onto.matter().lattice.spacing, at.place, gradient);

@@ -23,7 +23,8 @@ ContactList find_contacts(const ContactSide& from, const ContactSide& onto, doub
                           const ContactList& last) {
     const Aggregate& other = onto.matter();
     // New surface lies up to half a cell outside the cells that hold it.
-    margin += 0.5 * other.lattice.spacing * (onto.points().size() > onto.own_points());
+    const bool is_broken = onto.points().size() > onto.own_points();
+    margin += (is_broken ? 0.5 : kSliver) * other.lattice.spacing;
     const std::size_t points = from.points().size();
     std::vector<Vec3> point(points);
     parallel_for((points + kChunk - 1) / kChunk, [&](std::size_t chunk) {
