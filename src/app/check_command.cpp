@@ -73,6 +73,12 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     } else {
         line("accuracy", "springs: stretch alone is right; bending and torsion are too stiff");
     }
+    if (cost.tool_give > 0) {
+        line("tools",
+             fmt::format("each gives way as up to {:.2g} cells would: as {:.2g} % of a part "
+                         "{:.3g} cells thick",
+                         cost.tool_give, 100 * cost.tool_give / cost.thickness, cost.thickness));
+    }
     const std::string strength =
         strength_warning(material, cost.mold.spacing, cost.mold.cell_count.minCoeff());
     if (!strength.empty()) line("strength", strength);

@@ -99,6 +99,17 @@ void find_thickness(RunCost& cost, const TriMesh& mesh) {
     cost.thickness = mean < kThin * across ? mean : across;
 }
 
+// As much as this many cells of the work-piece pressed as tools do.
+double softest_give(const SceneSpec& scene) {
+    double most = 0;
+    for (const StageSpec& stage : scene.stage) {
+        for (const ToolSpec& tool : stage.machine.tool) {
+            most = std::max(most, 1 / stage.sim.stiffness_of_contacts(tool.contact_stiffness));
+        }
+    }
+    return most;
+}
+
 // Iterations to an equilibrium: what bends slowly under tools takes the square of its slenderness.
 double iterations_to_rest(const StageSpec& stage, const SceneSpec& scene, const RunCost& cost) {
     if (stage.machine.tool.empty() || stage.sim.solver == Solver::implicit_steps) {
@@ -113,6 +124,7 @@ double iterations_to_rest(const StageSpec& stage, const SceneSpec& scene, const 
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
             const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
     cost.frames = frame_count(scene);
+    cost.tool_give = softest_give(scene);
     cost.steps = 0;
     cost.relaxes = false;
     double work = 0;  // the steps, as if nothing damped or yielded in them
@@ -257,6 +269,7 @@ Json cost_json(const RunCost& cost) {
             {"seconds", cost.seconds},
             {"relaxes", cost.relaxes},
             {"thickness_cells", cost.thickness},
+            {"tool_give_cells", cost.tool_give},
             {"notes", cost.note}};
 }
 

@@ -18,6 +18,7 @@ struct RunCost {
     std::vector<double> spacing;    // of each body [m]
     bool counted = false;           // the mold was made, so its numbers are no estimate
     double thickness = 0;           // of the work-piece, or of its thin parts, in cells: about
+    double tool_give = 0;           // what the softest tool gives way by, in cells; 0: no tools
     int frames = 0;                 // stills, the start included
     double steps = 0;               // relaxation iterations and explicit steps, about
     double seconds = 0;             // of simulation and drawing on this machine, about

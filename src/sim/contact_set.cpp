@@ -63,10 +63,8 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       motion_load_(apparatus.tool.size() + apparatus.grip.size()) {}
 
 double ContactSet::pair_stiffness(const Aggregate& matter, const Pair& pair) const {
-    const bool tool_says =
-        !(settings_.contact_stiffness > 0) && settings_.solver == Solver::quasistatic;
-    const double own = tool_says ? apparatus_->tool[pair.tool].contact_stiffness : 0;
-    return point_stiffness(matter, pair.point, own > 0 ? own : settings_.stiffness_of_contacts());
+    const double tool_says = apparatus_->tool[pair.tool].contact_stiffness;
+    return point_stiffness(matter, pair.point, settings_.stiffness_of_contacts(tool_says));
 }
 
 double ContactSet::point_stiffness(const Aggregate& matter, int point, double factor) const {

@@ -59,7 +59,11 @@ struct SimSettings {
 
     Vec3 gravity = Vec3::Zero();  // in the world [m/s2]
 
-    double stiffness_of_contacts() const { return contact_stiffness > 0 ? contact_stiffness : 2; }
+    // With a tool that says Tool::contact_stiffness, or without.
+    double stiffness_of_contacts(double tool_says = 0) const {
+        if (contact_stiffness > 0) return contact_stiffness;
+        return tool_says > 0 && solver == Solver::quasistatic ? tool_says : 2;
+    }
 };
 
 }  // namespace swage

@@ -56,3 +56,26 @@ TEST_CASE("a step that damps, or of matter that yields, is told to take longer")
     CHECK(seconds_a_step(0, 1e6) > 1.2 * plain);
     CHECK(seconds_a_step(0.02, 1e6) > 1.2 * damped);
 }
+
+TEST_CASE("what the softest tool gives way by is told in cells") {
+    InputMesh input;
+    input.mesh = make_shape("bar", {}).mesh;
+    SceneSpec scene;
+    scene.body.resize(1);
+    scene.body[0].mold.across = 6;
+    scene.stage.resize(1);
+    const auto give = [&] { return estimate_cost(scene, {input}, {}).tool_give; };
+    CHECK(give() == 0);
+    scene.stage[0].machine.tool.resize(2);
+    for (ToolSpec& tool : scene.stage[0].machine.tool) tool.contact_stiffness = 20;
+    CHECK(give() == Approx(0.05));
+    scene.stage[0].machine.tool[1].contact_stiffness = 0;
+    CHECK(give() == Approx(0.5));
+    scene.stage[0].sim.contact_stiffness = 10;
+    CHECK(give() == Approx(0.1));
+    scene.stage[0].sim.contact_stiffness = 0;
+    scene.stage[0].machine.tool.resize(1);
+    scene.stage[0].machine.tool[0].contact_stiffness = 20;
+    scene.stage[0].sim.solver = Solver::explicit_steps;  // which no tool's word shortens
+    CHECK(give() == Approx(0.5));
+}
