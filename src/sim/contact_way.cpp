@@ -15,6 +15,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // contacts
+constexpr double kFaces = 2;         // of a cell, as which at most a point counts on it
 
 std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
@@ -111,14 +112,17 @@ void ContactWay::set_stiffness(double step) {
     const std::vector<double> modulus = surface_moduli(a, points);
     const double other = surface_modulus(b) / b.lattice.spacing;
     const double hold = is_static_ ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
+    // A point pushes one cell, which larger cells' points would drive in alone.
+    const double most = kFaces * b.lattice.spacing * b.lattice.spacing;
     stiffness_.clear();
     stiffest_.clear();
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
         const double one =
             (modulus.empty() ? a.material.young_modulus : modulus[p]) / a.lattice.spacing;
-        stiffness_.push_back(scale_ * one * other / (one + other) * points.area[p]);
-        hold_.push_back(hold * points.area[p]);
+        const double area = std::min(points.area[p], most);
+        stiffness_.push_back(scale_ * one * other / (one + other) * area);
+        hold_.push_back(hold * area);
         // Half of which acts where the other way does as much.
         stiffest_.push_back(step > 0 ? 0.5 * lightest_carrier(a, points, p) / (step * step)
                                      : std::numeric_limits<double>::infinity());
