@@ -145,7 +145,8 @@ std::vector<std::size_t> BodyContact::groups() const {
 }
 
 void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
-                             const std::vector<char>& asleep, std::vector<ContactSums>& sums) {
+                             const std::vector<char>& asleep, std::vector<ContactSums>& sums,
+                             bool again) {
     std::vector<char> acts(side_.size(), 0);
     std::vector<std::size_t> awake;
     sums.assign(side_.size(), {});
@@ -166,7 +167,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
         const std::size_t back = pair_[w].back;
         way_[w].push(back == w ? 0.5 : share_of(stored[w], stored[back]));
     }
-    for (std::size_t w : awake) way_[w].respond(step);
+    for (std::size_t w : awake) way_[w].respond(step, again);
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().write(*force[b], gravity, step, sums[b]);
     }

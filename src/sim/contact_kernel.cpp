@@ -164,8 +164,9 @@ struct ContactWay::Kernel {
             }
             at.reach = turned(back) + held;
             const Vec4 along = k * (at.reach - dot3(at.normal, at.reach) * at.normal);
-            const double limit =
-                (last.history.slides ? way.law_.friction : way.law_.holding) * (push + hold);
+            const double limit = std::max(
+                (last.history.slides ? way.law_.friction : way.law_.holding) * (push + hold),
+                k * std::sqrt(dot3(held, held)));
             const double size = std::sqrt(dot3(along, along));
             at.spring += size > limit ? limit / size * along : along;
         }
@@ -263,7 +264,25 @@ struct ContactWay::Kernel {
         return f;
     }
 
-    SWAGE_INLINE void respond(double step) const {
+    // Of what has touched when last committed, and is still where it was then: found by dashpots
+    // from other speeds it would differ a little, and friction with it, which takes what it lets
+    // go.
+    SWAGE_INLINE ImpactForce same_as(const Contact& contact, const ContactMemory& last,
+                                     const Meeting& at) const {
+        const double k = way.share_ * at.inverse[2][3];
+        const Vec3 normal = vec3(at.normal), reach = vec3(at.reach);
+        ImpactForce f;
+        f.reach = reach - normal * normal.dot(reach);
+        f.elastic = k * (f.reach + at.normal[3] * normal);
+        f.force = f.elastic + contact.dashed;
+        f.bond = last.bond;
+        f.stored = 0.5 / k * f.elastic.squaredNorm();
+        f.history = last.history;
+        spread(contact, trilinear_weights(contact.place), vec4(f.force) - way.share_ * at.spring);
+        return f;
+    }
+
+    SWAGE_INLINE void respond(double step, bool again) const {
         ContactSums& sums = way.sums_ = {};
         for (const Chunk& chunk : way.chunk_) {
             sums.took += 0.5 * chunk.took;
@@ -275,7 +294,10 @@ struct ContactWay::Kernel {
             const Meeting& at = way.meeting_[n];
             ContactMemory& next = way.next_[n];
             ImpactForce f;
-            if (meets(at)) f = impact(contact, last, at, step);
+            if (meets(at)) {
+                f = again && last.history.touches ? same_as(contact, last, at)
+                                                  : impact(contact, last, at, step);
+            }
             next.history = f.history;
             next.bond = f.bond;
             next.stiffness = way.share_ * at.inverse[2][3];
@@ -309,7 +331,9 @@ SWAGE_MIDDLE_VECTORS void ContactWay::middle_find_chunk(std::size_t chunk, doubl
 SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk) {
     Kernel{*this}.push_chunk(chunk);
 }
-SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step) { Kernel{*this}.respond(step); }
+SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step, bool again) {
+    Kernel{*this}.respond(step, again);
+}
 
 void ContactWay::find_chunk(std::size_t chunk, double step) {
     if (vector_width() >= 4) return middle_find_chunk(chunk, step);
@@ -322,9 +346,9 @@ void ContactWay::push_chunk(std::size_t chunk) {
     Kernel{*this}.push_chunk(chunk);
 }
 
-void ContactWay::respond(double step) {
+void ContactWay::respond(double step, bool again) {
     next_.resize(list_.size());
-    vector_width() >= 4 ? middle_respond(step) : Kernel{*this}.respond(step);
+    vector_width() >= 4 ? middle_respond(step, again) : Kernel{*this}.respond(step, again);
     is_found_ = true;
 }
 

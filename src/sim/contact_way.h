@@ -50,8 +50,9 @@ class ContactWay {
     double meet(double step);
     // Adds this share of it.
     void push(double share);
-    // Dashpots and friction, one contact after the other, given what all springs do.
-    void respond(double step);
+    // Dashpots and friction, one contact after the other, given what all springs do. `again`: as
+    // they were when last committed.
+    void respond(double step, bool again);
     // Adds what its contacts can add to the stiffness of its one body's particles [N/m], about.
     void add_stiffness(std::vector<double>& stiffness) const;
     // For equilibria: from here on each point that comes to press presses against the plane that it
@@ -118,7 +119,7 @@ class ContactWay {
     void middle_find_chunk(std::size_t chunk, double step);
     void push_chunk(std::size_t chunk);
     void middle_push_chunk(std::size_t chunk);
-    void middle_respond(double step);
+    void middle_respond(double step, bool again);
 
     ContactSide *from_, *onto_;
     double scale_;                                           // contact_stiffness

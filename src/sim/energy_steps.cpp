@@ -98,7 +98,6 @@ EnergySteps::EnergySteps(const std::vector<Aggregate*>& bodies, const Apparatus&
 
 void EnergySteps::connections_changed(std::size_t body) {
     mover_[body].body.connections_changed();
-    for (Mover& mover : mover_) mover.met = -1;
     contact_.connections_changed(body);
 }
 
@@ -148,12 +147,12 @@ std::vector<char> EnergySteps::all_but(const Group& group) const {
 }
 
 // Adds the forces of contact within the group, where nothing else has moved since the group began.
-void EnergySteps::meet(const Group& group, double step) {
+void EnergySteps::meet(const Group& group, double step, bool again) {
     if (!contact_.acts()) return;
     std::vector<Vec3Array*> force;
     for (Mover& m : mover_) force.push_back(&m.body.force());
     contact_.renew(all_but(group));
-    contact_.add_forces(force, mover_[0].body.gravity(), step, all_but(group), met_);
+    contact_.add_forces(force, mover_[0].body.gravity(), step, all_but(group), met_, again);
 }
 
 std::vector<Stored> EnergySteps::stored(const Group& group, const Drive& now) {
@@ -211,7 +210,7 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
             }
         };
         swap_speeds();
-        meet(group, t.step);
+        meet(group, t.step, false);
         swap_speeds();
         for (std::size_t b : group) outcome.body[b].met.add(met_[b], t.step);
         contact_.commit();
@@ -247,7 +246,6 @@ void EnergySteps::keep(const Group& group, const Try& t, MoveOutcome& outcome) {
     for (std::size_t n = 0; n < group.size(); ++n) {
         Mover& m = mover_[group[n]];
         m.budget += std::abs(outcome.body[group[n]].done() - t.so_far[n].done());
-        m.met = met_[group[n]].stored;
         m.last_step = t.step;
         m.step = m.held ? t.step : 1.5 * t.step;
         m.held = false;
@@ -294,12 +292,8 @@ double EnergySteps::stable_step(const Group& group) const {
 void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to,
                           MoveOutcome& outcome) {
     contact_.renew_all(all_but(group));
-    meet(group, mover_[group[0]].last_step > 0 ? mover_[group[0]].last_step : stable_step(group));
-    // Found anew at other speeds friction might let go of some of it; but what counts is what the
-    // last step has left.
-    for (std::size_t b : group) {
-        if (mover_[b].met >= 0) met_[b].stored = mover_[b].met;
-    }
+    meet(group, mover_[group[0]].last_step > 0 ? mover_[group[0]].last_step : stable_step(group),
+         true);
     std::vector<Stored> held = stored(group, from);
     for (std::size_t n = 0; n < group.size(); ++n) {
         const std::size_t b = group[n];

@@ -70,7 +70,6 @@ class EnergySteps {
         double last_step = 0;  // [s] of the last step kept
         bool held = false;     // the step before was taken back
         double budget = 0;     // energy ever put in [J]
-        double met = -1;  // in contact with others when the last step was kept; else unknown [J]
     };
     using Group = std::vector<std::size_t>;
     struct Try;
@@ -84,7 +83,7 @@ class EnergySteps {
     void keep(const Group& group, const Try& t, MoveOutcome& outcome);
     void take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome);
     std::vector<char> all_but(const Group& group) const;
-    void meet(const Group& group, double step);
+    void meet(const Group& group, double step, bool again);
     std::vector<Stored> stored(const Group& group, const Drive& now);
 
     const Apparatus& apparatus_;

@@ -71,13 +71,13 @@ void ExplicitSolver::connections_changed(std::size_t body) {
     sleeping_.wake(body);
 }
 
-void ExplicitSolver::meet(const Drive& now, double dt, MoveOutcome& outcome) {
+void ExplicitSolver::meet(const Drive& now, double dt, bool again, MoveOutcome& outcome) {
     if (!contact_.acts()) return;
     contact_.renew(sleeping_.asleep());
     if (sleeping_.any()) wake_neighbours(now, outcome);
     std::vector<Vec3Array*> force;
     for (MovingBody& body : body_) force.push_back(&body.force());
-    contact_.add_forces(force, body_[0].gravity(), dt, sleeping_.asleep(), met_);
+    contact_.add_forces(force, body_[0].gravity(), dt, sleeping_.asleep(), met_, again);
 }
 
 // What sleeps near a body that is awake.
@@ -116,7 +116,7 @@ void ExplicitSolver::wake_stirred(const Drive& before, const Drive& now, double 
         body_[b].begin_step(before);
         body_[b].find_forces(before, 0, outcome.body[b]);
     });
-    meet(before, dt, outcome);
+    meet(before, dt, true, outcome);
 }
 
 // Bodies that lie still, as far as all that are near them do.
@@ -246,7 +246,7 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
             body_[b].renew_candidates(before, now, gone[b]);
         });
         if (contact_.acts()) {
-            meet(now, dt, outcome);
+            meet(now, dt, false, outcome);
             for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].met.add(met_[b], dt);
             contact_.commit();
         }
@@ -339,7 +339,7 @@ void ExplicitSolver::take_back(const Block& block, const Finding& found,
         if (gone_wrong[b].broken > outcome.body[b].broken) contact_.connections_changed(b);
     });
     contact_.restore(*contact_state_);
-    meet(block.begin, first_step(block.dt), outcome);
+    meet(block.begin, first_step(block.dt), true, outcome);
     if (!why.empty()) fail(ExitCode::stopped, "{}", why);
     share_ *= 0.5;
     good_blocks_ = 0;
@@ -356,7 +356,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     outcome.shortest_step = to.time - from.time;
     const Way way{from, to};
     for_each_awake([&](std::size_t b) { body_[b].start(from, outcome.body[b]); });
-    meet(from, first_step(share_ * step_), outcome);
+    meet(from, first_step(share_ * step_), true, outcome);
     for (std::size_t b = 0; b < met_.size(); ++b) outcome.body[b].met.start(met_[b]);
     halvings_ = 0;
     bool goes_on = false;  // from the end of a block that was kept

@@ -80,7 +80,7 @@ class ExplicitSolver {
     std::vector<Stored> still_stored(double dt);
     bool can_be_rescued() const;
     // Adds what bodies in contact do to each other in a step of this length [s] from here.
-    void meet(const Drive& now, double dt, MoveOutcome& outcome);
+    void meet(const Drive& now, double dt, bool again, MoveOutcome& outcome);
     template <typename Act>
     void for_each_awake(const Act& act) {
         for (std::size_t b = 0; b < body_.size(); ++b) {

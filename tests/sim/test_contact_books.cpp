@@ -97,3 +97,42 @@ TEST_CASE("the books of lumps that flatten each other, and stick, close") {
     CHECK(r.plastic > 0.6 * energy);
     CHECK(std::abs(r.remainder) < 2e-3 * energy);
 }
+
+TEST_CASE("an edge that falls on small cells gains nothing from them, nor by frames") {
+    Material m = kSpringy;
+    m.restitution = 0.5;
+    m.friction = 0.4;
+    for (int finer : {2, 4, 8}) {
+        Aggregate a = make_block(finer, finer, finer, 0.1 / finer, m),
+                  b = make_block(3, 3, 3, 0.1, m);
+        place(b, {Quat(Eigen::AngleAxisd(0.7, Vec3(0.2, 0, 1).normalized())),
+                  Vec3(0.01, 0.291, 0.02)});
+        const double energy = b.mass() * 10 * 0.01;
+        Grip hold;
+        hold.point = points_where(a, [](const Vec3& x) { return x.y() < -0.0499; });
+        for (int p : hold.point) hold.anchor.push_back(a.surface.reference_position[p]);
+        Apparatus apparatus;
+        apparatus.grip.push_back(hold);
+        SimSettings settings = motion_settings();
+        settings.gravity = Vec3(0, -10, 0);
+        settings.step_safety = 0.2;
+        Simulation simulation({&a, &b}, apparatus, settings);
+        const auto drive = [](double time) {
+            Drive d = still(time);
+            d.world_from_grip.push_back({Quat::Identity(), Vec3::Zero()});
+            return d;
+        };
+        double most = 0, bore = 0;
+        long rejected = 0;
+        for (int n = 0; n < 40; ++n) {
+            const FrameReport r = simulation.advance(drive(0.005 * n), drive(0.005 * (n + 1)));
+            most = std::max(most, std::abs(r.remainder));
+            bore = std::max(bore, r.contact);
+            rejected += r.rejected;
+        }
+        INFO("cells " << finer << " times as large: remainder " << most / energy);
+        CHECK(bore > 0.1 * energy);
+        CHECK(most < 3e-3 * energy);
+        CHECK(rejected == 0);
+    }
+}
