@@ -312,6 +312,11 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
             "the drag is so strong that it stops some of the surface within a few steps; there it "
             "is held to what a step can follow");
     }
+    if (outcome.rescued > 0) {
+        report.warning.push_back(fmt::format(
+            "explicit steps went wrong however short they were: {} implicit ones stand in for them",
+            outcome.rescued));
+    }
     if (outcome.inside_out > 0) {
         report.warning.push_back(fmt::format(
             "{} cell{} turned inside out, which shorter steps did not keep from it: the matter is "

@@ -39,16 +39,6 @@ Box reach_of(const MovingBody& body, double time) {
     return box;
 }
 
-// Of its energy, by what places are rounded to [J].
-double round_off(MovingBody& body) {
-    const Vec3Array& x = body.matter().particle_position;
-    const Vec3 gravity = body.gravity().cwiseAbs();
-    return std::numeric_limits<double>::epsilon() * chunked_sum(x.size(), [&](std::size_t p) {
-               const Vec3 weight = body.matter().particle_mass[p] * gravity;
-               return (body.force().at(p).cwiseAbs() + weight).dot(x.at(p).cwiseAbs());
-           });
-}
-
 Vec3Array mean_speed(const Vec3Array& from, const Vec3Array& to, double step) {
     Vec3Array speed;
     speed.resize(from.size());
@@ -234,7 +224,7 @@ bool EnergySteps::holds(const Group& group, const Try& t, double budget) {
     const auto within = [&](double error, double share) {
         if (error <= share * budget) return true;
         if (noise == 0) {
-            for (std::size_t b : group) noise += round_off(mover_[b].body);
+            for (std::size_t b : group) noise += mover_[b].body.round_off(t.step);
         }
         return error <= share * budget + noise;
     };

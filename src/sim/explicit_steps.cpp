@@ -183,7 +183,7 @@ double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
         return std::numeric_limits<double>::quiet_NaN();
     }
     if (!body.meets_tools()) return 0;  // nothing that it could go through
-    return farthest_move(from, body.matter().particle_position);
+    return std::sqrt(3.0) * farthest_move(from, body.matter().particle_position);
 }
 
 bool ExplicitSolver::can_be_rescued() const {
@@ -285,7 +285,8 @@ void ExplicitSolver::save() {
 }
 
 // Whether the energy of a block that went right is right too.
-bool ExplicitSolver::energy_holds(const std::vector<Stored>& held, const std::vector<Stored>& after,
+bool ExplicitSolver::energy_holds(const Block& block, const std::vector<Stored>& held,
+                                  const std::vector<Stored>& after,
                                   const std::vector<BodyOutcome>& so_far,
                                   const std::vector<BodyOutcome>& now) {
     double turned = 0, done = 0, lost = 0, gain = 0;
@@ -296,12 +297,20 @@ bool ExplicitSolver::energy_holds(const std::vector<Stored>& held, const std::ve
         lost += now[b].lost() - so_far[b].lost();
         gain += after[b].sum() - held[b].sum();
     }
-    return energy_.accepts(turned, done, lost, gain);
+    if (energy_.accepts(turned, done, lost, gain, 0)) return true;
+    double noise = 0;
+    for_each_awake([&](std::size_t b) {
+        const double step = std::min(block.dt, body_[b].stable_step());
+        noise += double(block.count) * body_[b].round_off(step);
+    });
+    return energy_.accepts(turned, done, lost, gain, noise);
 }
 
 void ExplicitSolver::keep(const Block& block, MoveOutcome& outcome) {
     if (share_ <= std::ldexp(1.0, -kInsideOutHalvings)) {
-        for (MovingBody& body : body_) outcome.inside_out += body.inside_out();
+        int now = 0;
+        for_each_awake([&](std::size_t b) { now += body_[b].inside_out(); });
+        outcome.inside_out = std::max(outcome.inside_out, now);
     }
     steps_ += block.count;
     outcome.steps += block.count;
@@ -372,7 +381,7 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
         if (!found) {
             const std::vector<Stored> after = stored(now, lag);
             for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].after = after[b];
-            if (!energy_holds(held, after, so_far, outcome.body)) {
+            if (!energy_holds(block, held, after, so_far, outcome.body)) {
                 found.fault = Fault::gains;
                 found.gain = energy_.excess_share();
                 found.step = steps_ + block.count;

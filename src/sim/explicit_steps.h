@@ -70,8 +70,9 @@ class ExplicitSolver {
     void start_books(const std::vector<Stored>& held, MoveOutcome& outcome);
     void save();
     Finding take(const Way& way, const Block& block, MoveOutcome& outcome);
-    bool energy_holds(const std::vector<Stored>& held, const std::vector<Stored>& after,
-                      const std::vector<BodyOutcome>& so_far, const std::vector<BodyOutcome>& now);
+    bool energy_holds(const Block& block, const std::vector<Stored>& held,
+                      const std::vector<Stored>& after, const std::vector<BodyOutcome>& so_far,
+                      const std::vector<BodyOutcome>& now);
     void keep(const Block& block, MoveOutcome& outcome);
     void take_back(const Block& block, const Finding& found, const std::vector<BodyOutcome>& so_far,
                    MoveOutcome& outcome);

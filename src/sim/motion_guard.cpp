@@ -73,7 +73,8 @@ Finding look_at(const MovingBody& body, double way, int allowed) {
     Finding found;
     found.way = way;
     if (!std::isfinite(way)) {
-        found.fault = Fault::lost;
+        const Aggregate& matter = body.matter();
+        found.fault = is_lost(matter, worst_particle(matter)) ? Fault::lost : Fault::unsolved;
     } else if (way > kFarthestWay * body.matter().lattice.spacing) {
         found.fault = Fault::too_far;
     } else if (body.inside_out() > allowed) {
@@ -95,6 +96,9 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
             break;
         case Fault::lost:
             what = fmt::format("{} is lost (its place or speed is no number)", where);
+            break;
+        case Fault::unsolved:
+            what = fmt::format("an implicit step has no solution; {} is the fastest", where);
             break;
         case Fault::too_far:
             what = fmt::format("{} goes {:.3g} spacings in one step", where,
@@ -123,9 +127,11 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
         stage, finding.step, finding.time, what, text_of(worst), step);
 }
 
-bool EnergyGuard::accepts(double turned_over, double done, double lost, double gain) {
+bool EnergyGuard::accepts(double turned_over, double done, double lost, double gain,
+                          double noise) {
     const double budget = budget_ + turned_over;
-    const double more = gain + lost - done;
+    double more = gain + lost - done;
+    if (more > 0) more = std::max(0.0, more - noise);
     tried_ = excess_ + more;
     if (!(tried_ <= kMostGain * budget || more <= kLeastGain * budget)) return false;
     budget_ = budget;

@@ -3,6 +3,7 @@
 // go back to its start and try again with half the step:
 //
 //     a particle's place or speed is no number, or it goes more than half a spacing in a step;
+//     an implicit step has not been solved;
 //     a cell turns inside out (with an eighth of the step it still may: fast matter can crush
 //         itself, and comes back by laws/volume_guard.h);
 //     the energy that the bodies hold is more than was put in, by over a twentieth of all that ever
@@ -20,7 +21,7 @@ inline constexpr double kMostGain = 0.05;     // of all energy that was ever put
 inline constexpr double kLeastGain = 0.002;   // the same, in one block: less is no alarm
 inline constexpr int kInsideOutHalvings = 3;  // after which a cell may turn inside out
 
-enum class Fault { none, lost, too_far, inside_out, gains };
+enum class Fault { none, lost, unsolved, too_far, inside_out, gains };
 
 struct Finding {
     Fault fault = Fault::none;
@@ -48,8 +49,10 @@ class EnergyGuard {
     // A stage begins with this in the bodies [J].
     void start(double stored) { budget_ = stored > 0 ? stored : 0; }
     // In a block of steps `done` was put in, `turned_over` with every sign made positive, `lost`
-    // went for good, and the bodies hold `gain` more [J]. Whether that can be; if so it counts.
-    bool accepts(double turned_over, double done, double lost, double gain);
+    // went for good, and the bodies hold `gain` more [J]. Whether that can be; if so it counts,
+    // but for what may be `noise`.
+    bool accepts(double turned_over, double done, double lost, double gain,
+                 double noise = 0);
     double excess_share() const { return budget_ > 0 ? tried_ / budget_ : 0; }
 
   private:

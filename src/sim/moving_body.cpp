@@ -291,6 +291,21 @@ std::vector<double> MovingBody::stiffness_bound() const {
     return bound;
 }
 
+double MovingBody::round_off(double step) const {
+    const Vec3Array& x = matter_.particle_position;
+    const Vec3 gravity = this->gravity().cwiseAbs();
+    const double eps = std::numeric_limits<double>::epsilon();
+    const Material& material = matter_.material;
+    const bool rubber = material.elasticity == Elasticity::neo_hookean;
+    const double modulus = rubber ? material.young_modulus / material.density : 0;  // [J/kg]
+    return chunked_sum(x.size(), [&](std::size_t p) {
+        const double mass = matter_.particle_mass[p];
+        const Vec3 far = eps * x.at(p).cwiseAbs();
+        return (force_.at(p).cwiseAbs() + mass * gravity).dot(far) +
+               mass * far.squaredNorm() / (step * step) + eps * mass * modulus;
+    });
+}
+
 double MovingBody::top_speed() const {
     const Vec3Array& v = matter_.particle_velocity;
     std::vector<double> part(vector_chunks(v.size()), 0.0);

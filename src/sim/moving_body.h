@@ -64,6 +64,10 @@ class MovingBody {
     // step before and after: what the forces' work by the trapezoid rule adds up to exactly.
     Stored stored(const Drive& now, double step);
     double kinetic_energy(double step) const;  // alone [J]
+    // How wrong a step of this length [s] may leave its energy, for places are rounded: to what
+    // forces then do, and as if speeds were to that in a step; the law of rubber adds up terms of
+    // the size of its modulus [J].
+    double round_off(double step) const;
 
     // What a solution by the tangent asks for.
     const std::vector<float>* cells_alone() const { return lattice_.cells_alone(); }

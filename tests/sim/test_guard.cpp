@@ -217,3 +217,23 @@ TEST_CASE("a lattice crushed a hundred times comes back to its shape") {
     // Every connection is as long as it was; the body may have turned.
     CHECK(largest_stretch(m) < 0.03);
 }
+
+TEST_CASE("what rests stays with explicit steps, wherever it lies and whatever it is made of") {
+    for (const Elasticity elasticity : {Elasticity::hencky, Elasticity::neo_hookean}) {
+        Material m = kSpringy;
+        m.elasticity = elasticity;
+        for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.3, 0.1, 0), Vec3(40, -7, 3)}) {
+            Aggregate a = make_block(4, 3, 3, 0.1, m);
+            for (std::size_t p = 0; p < a.particle_count(); ++p) {
+                a.particle_position.set(p, a.particle_position.at(p) + at);
+            }
+            const Apparatus nothing;
+            Simulation simulation({&a}, nothing, motion_settings());
+            for (int f = 0; f < 10; ++f) {
+                const FrameReport r = simulation.advance(still(0.2 * f), still(0.2 * (f + 1)));
+                CHECK(r.rejected == 0);
+                CHECK(r.rescued == 0);
+            }
+        }
+    }
+}
