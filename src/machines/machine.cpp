@@ -23,15 +23,16 @@ constexpr double kAtRest = 1e-9;
 constexpr double kDeepStart = 0.05;
 constexpr double kGripSlack = 1e-9;  // for points on the border of a grip's box: share of the size
 constexpr double kClampClearance = 0.1;  // between a grip's drawn plates and the points; the same
-constexpr int kTravelSamples = 64;       // of a blade's way, to see where it goes
+const std::string kMaterialFriction = "material_friction";
+constexpr int kTravelSamples = 64;  // of a blade's way, to see where it goes
 
 struct Setting {  // what every part of a machine is set up in
     const MachineSpec& spec;
     const WorkFrame& frame;
     double spacing;
-    double friction;
-    std::vector<Vec3> point;  // the body's surface, in the work frame
-    Variables known;          // grows with each tool
+    std::vector<Vec3> point;                // the body's surface, in the work frame
+    Variables known;                        // grows with each tool
+    std::vector<Variables> known_beside{};  // to the bodies beside it: what differs
 };
 
 [[noreturn]] void refuse(const Setting& setting, const std::string& what) {
@@ -83,14 +84,21 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
 void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     Tool tool{.name = spec.name,
               .shape = shape_of(setting, spec),
-              .friction = setting.friction,
+              .friction = 0,
               .finish = spec.finish,
               .contact_stiffness = spec.contact_stiffness};
     if (spec.color) tool.color = *spec.color;
-    if (!spec.friction.empty()) tool.friction = evaluate(spec.friction, setting.known);
-    if (!(tool.friction >= 0)) {
+    const auto friction = [&](const Variables& known) {
+        const double value =
+            spec.friction.empty() ? known.at(kMaterialFriction) : evaluate(spec.friction, known);
+        if (value >= 0) return value;
         refuse(setting, fmt::format("the friction of tool {} is {}; it cannot be negative",
-                                    spec.name, tool.friction));
+                                    spec.name, value));
+    };
+    tool.friction = friction(setting.known);
+    for (Variables known : setting.known_beside) {
+        known.insert(setting.known.begin(), setting.known.end());
+        tool.friction_beside.push_back(friction(known));
     }
     const Vec3 axis = evaluate(spec.axis, setting.known);
     if (!(axis.norm() > 0)) {
@@ -248,19 +256,26 @@ std::vector<Pose> placed(const Pose& world_from_work, const std::vector<Pose>& w
 }  // namespace
 
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
-                      const WorkFrame& frame, const Aggregate& matter) try {
-    Setting setting{spec, frame, matter.lattice.spacing, matter.material.friction, {}, {}};
+                      const WorkFrame& frame, const Aggregate& matter,
+                      const std::vector<Material>& beside) try {
+    Setting setting{spec, frame, matter.lattice.spacing, {}, {}};
     const Pose work_from_world = frame.world_from_work.inverse();
     for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
     setting.known = {{"length", frame.size.x()},
                      {"height", frame.size.y()},
                      {"width", frame.size.z()},
                      {"spacing", setting.spacing},
-                     {"material_friction", setting.friction}};
+                     {kMaterialFriction, matter.material.friction}};
 
     Machine machine;
     machine.spec = spec;
     machine.frame = frame;
+    for (const Material& material : beside) {
+        Variables known = setting.known;
+        known[kMaterialFriction] = material.friction;
+        known.merge(resolve_parameters(spec, given, known));
+        setting.known_beside.push_back(std::move(known));
+    }
     machine.parameter = resolve_parameters(spec, given, setting.known);
     machine.apparatus.name = spec.name;
     setting.known.insert(machine.parameter.begin(), machine.parameter.end());

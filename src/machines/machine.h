@@ -48,8 +48,11 @@ struct Machine {
 // `given`: parameters by name, SI; the rest take their defaults. Throws Error(scene) naming machine
 // and parameter, tool, grip or blade: unknown or out of range; a tool that can never touch; a grip
 // that holds nothing, a point that two hold, or one that does not start at rest; a load on nothing.
+// `beside`: the materials of the bodies beside the work-piece, on which tools whose friction
+// follows from that of the material have another.
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
-                      const WorkFrame& frame, const Aggregate& matter);
+                      const WorkFrame& frame, const Aggregate& matter,
+                      const std::vector<Material>& beside = {});
 
 // Poses at `t` (0 to 1) of a stage of `duration` [s].
 Drive drive_at(const Machine& machine, double t, double duration);

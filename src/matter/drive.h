@@ -19,13 +19,19 @@ enum class Finish : std::uint8_t { metal, matt, endless };
 struct Tool {
     std::string name;
     Shape shape;
-    double friction;  // Coulomb, >= 0
+    double friction;  // on the work-piece: Coulomb, >= 0
     Vec3 color = {0.35, 0.38, 0.42};
     Finish finish = Finish::metal;
     // Where nothing moves: SimSettings::contact_stiffness of stages that do not say; 0: the usual.
     // NOTE: what rolls over a stiff tool does so from point to point, and its work is then known
     // less well; on flat ones nothing rolls.
     double contact_stiffness = 0;
+    std::vector<double> friction_beside{};  // on the bodies beside it; what is missing is as on it
+
+    double friction_on(int body) const {
+        const std::size_t beside = static_cast<std::size_t>(body) - 1;
+        return body > 0 && beside < friction_beside.size() ? friction_beside[beside] : friction;
+    }
 };
 
 // A grip holds points of the work-piece's true surface to its frame, by stiff springs; along some

@@ -61,8 +61,9 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             m.law = law_;
             m.law.stiffness =
                 point_stiffness(matter, pair.point, settings_.stiffness_of_contacts());
-            m.law.friction = tool.friction;
-            m.law.holding = tool.friction == law_.friction ? holding_ : ratio_ * tool.friction;
+            const double friction = tool.friction_on(body_);
+            m.law.friction = friction;
+            m.law.holding = friction == law_.friction ? holding_ : ratio_ * friction;
             m.law.hold = hold;
             const double k = m.law.stiffness, N = k * m.depth, bears = N + hold;
             if (bears < 0) continue;  // torn off

@@ -229,7 +229,8 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
         d.normal = pose.turn(d.normal);
         const double k = pair_stiffness(matter, pair);
         act(n, x, d, k,
-            contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k, tool.friction));
+            contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k,
+                          tool.friction_on(body_)));
     }
 }
 

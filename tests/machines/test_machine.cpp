@@ -282,3 +282,32 @@ TEST_CASE("a machine is the same to the bit at any number of threads") {
               three.world_from_tool[n].rotation.coeffs());
     }
 }
+
+TEST_CASE("a tool rubs each body by that body's own friction, unless it says another") {
+    MachineSpec spec = roller();
+    spec.parameter.push_back(
+        parameter("rub", Quantity::number, "max(material_friction, 0.2)", "0", "2"));
+    ToolSpec third = spec.tool[0];
+    third.name = "third";
+    third.friction = "rub";
+    spec.tool.push_back(third);
+    std::vector<Material> beside(2);
+    beside[0].friction = 0;
+    beside[1].friction = 0.9;
+    const Aggregate body = bar();
+    const auto on = [&](const std::map<std::string, double>& given, std::size_t tool, int b) {
+        return build_machine(spec, given, place_work_frame(body, "auto", "auto"), body, beside)
+            .apparatus.tool[tool]
+            .friction_on(b);
+    };
+    CHECK(on({}, 0, 0) == body.material.friction);
+    CHECK(on({}, 0, 1) == 0);
+    CHECK(on({}, 0, 2) == 0.9);
+    for (int b = 0; b < 3; ++b) {
+        CHECK(on({}, 1, b) == 0.7);
+        CHECK(on({{"rub", 0.4}}, 2, b) == 0.4);
+    }
+    CHECK(on({}, 2, 0) == body.material.friction);
+    CHECK(on({}, 2, 1) == 0.2);
+    CHECK(on({}, 2, 2) == 0.9);
+}
