@@ -81,8 +81,6 @@ SWAGE_INLINE bool find_in_cell(const CellCorners& corner, Vec4 x, double spacing
 enum class Onward { goes, ends_found, ends_lost };
 Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& corner);
 
-// What a body's last cells hold beyond themselves, in cells: slivers too small to be cells.
-inline constexpr double kSliver = 0.2;
 inline constexpr double kSlack = 1e-9;  // of places in cells
 
 // Walks from the cell it was last in to the one that holds x, whose corners are then `corner`;

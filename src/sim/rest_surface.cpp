@@ -29,8 +29,12 @@ std::uint64_t key_of(const Vec3i& site) {
     return part(site.x()) | part(site.y()) << 21 | part(site.z()) << 42;
 }
 
-// A distance where the cells end. What is deeper there lies beyond a sliver that is no cell.
-double at_end(double distance) { return distance < 0 && distance > -kEdge ? 0 : distance; }
+// A distance where the cells end. What is deeper there lies beyond a sliver that is no cell; where
+// parts are thinner than a cell it may be deep by what lies behind them, which is none of it.
+double at_end(double distance) {
+    const bool is_sliver = distance <= -kEdge && distance >= -kSliver;
+    return distance < 0 && !is_sliver ? 0 : distance;
+}
 
 Vec3i floor_of(const Vec3& g) { return g.array().floor().cast<int>(); }
 

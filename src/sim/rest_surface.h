@@ -28,6 +28,9 @@
 
 namespace swage {
 
+// What a body's last cells hold beyond themselves, in cells: slivers too small to be cells.
+inline constexpr double kSliver = 0.2;
+
 struct SurfaceDepth {
     double distance;  // less than zero inside
     Vec3 gradient;

@@ -24,7 +24,7 @@ Error error_of(const Aggregate& m, const test::Distance& exact, double deep) {
     const double a = m.lattice.spacing;
     Error error;
     for (CellId cell : surface.skin()) {
-        for (int n = 0; n < 8; ++n) {
+        for (int n = 0; n < 12; ++n) {
             const Vec3 place(any(random), any(random), any(random));
             const Vec3 x =
                 m.lattice.origin + a * (m.lattice.cell_site(cell).cast<double>() + place);
@@ -152,5 +152,37 @@ TEST_CASE("depth is continuous along any line through edges, corners and cells")
         CHECK(jump < 4e-9 * slope);
         CHECK(crossed > 2000);
         CHECK(odd == 0);
+    }
+}
+
+TEST_CASE("nothing is deeper than a sliver where the cells of parts thinner than these end") {
+    for (const double thick : {0.3, 0.6, 1.0}) {
+        // A horn on a ball: a cone that leans, as thick at its foot as so many cells.
+        const Vec3 axis = Vec3(0.3, 1, 0.2).normalized();
+        const test::Distance horn = [&](const Vec3& x) {
+            const double along = axis.dot(x), across = (x - along * axis).norm();
+            const double cone = std::max(across - 0.05 * thick * (1 - along / 0.5), -along);
+            return std::min(x.norm() - 0.17, cone);
+        };
+        const Aggregate m = make_shape(horn, Vec3(-0.3, -0.3, -0.3), Vec3i(9, 9, 9), 0.1);
+        const RestSurface surface(m.lattice, m.surface);
+        double deepest = 0;
+        for (CellId cell : surface.skin()) {
+            const Vec3i site = m.lattice.cell_site(cell);
+            for (int face = 0; face < 6; ++face) {
+                const int axis_of = face >> 1, side = face & 1;
+                const Vec3i next = site + (side ? 1 : -1) * Vec3i(Vec3i::Unit(axis_of));
+                if (m.lattice.cell_at(next.x(), next.y(), next.z()) >= 0) continue;
+                for (int n = 0; n < 25; ++n) {
+                    Vec3 place;
+                    place[axis_of] = side;
+                    place[(axis_of + 1) % 3] = 0.25 * (n % 5);
+                    place[(axis_of + 2) % 3] = 0.25 * (n / 5);
+                    deepest = std::min(deepest, surface.at(cell, place).distance);
+                }
+            }
+        }
+        INFO("as thick as " << thick << " cells: " << deepest);
+        CHECK(deepest > -0.21);
     }
 }
