@@ -51,8 +51,7 @@ class EnergyGuard {
     // In a block of steps `done` was put in, `turned_over` with every sign made positive, `lost`
     // went for good, and the bodies hold `gain` more [J]. Whether that can be; if so it counts,
     // but for what may be `noise`.
-    bool accepts(double turned_over, double done, double lost, double gain,
-                 double noise = 0);
+    bool accepts(double turned_over, double done, double lost, double gain, double noise = 0);
     double excess_share() const { return budget_ > 0 ? tried_ / budget_ : 0; }
 
   private:

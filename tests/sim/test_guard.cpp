@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the guard of bodies in motion sees, takes back, and says.
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "sim/advance.h"
@@ -62,7 +63,11 @@ TEST_CASE("a step that goes too far, or is lost, or turns a cell inside out, is 
     MovingBody body(m, 0, nothing, settings);
     CHECK_FALSE(look_at(body, 0.49 * 0.1, 0));
     CHECK(look_at(body, 0.51 * 0.1, 0).fault == Fault::too_far);
+    CHECK(look_at(body, kNan, 0).fault == Fault::unsolved);
+    double& one = m.particle_position.x[3];
+    const double was = std::exchange(one, kNan);
     CHECK(look_at(body, kNan, 0).fault == Fault::lost);
+    one = was;
     for (double& x : m.particle_position.x) x = -x;
     BodyOutcome outcome(nothing, 0);
     body.find_forces(still(0), 0, outcome);
