@@ -181,7 +181,10 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
 
     const Aggregate& work_piece = bodies.front().matter;
     const WorkFrame frame = place_work_frame(work_piece, stage.axis, stage.up);
-    const Machine machine = build_machine(stage.machine, stage.parameter, frame, work_piece);
+    std::vector<Material> beside;
+    for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter.material);
+    const Machine machine =
+        build_machine(stage.machine, stage.parameter, frame, work_piece, beside);
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
     const int steps = machine.apparatus.blade.empty() ? 1 : blade_steps(stage.frames);
     const std::vector<Drive> way = drives_of(machine, steps * stage.frames, duration);
@@ -203,21 +206,21 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         meshes.push_back(mesh_stem(context.root, stage.name, bodies, b));
         if (context.scene.output.meshes_per_frame) make_folder(meshes[b]);
     }
-    bool cuts = false, tears = false;
+    std::vector<char> cuts(bodies.size(), 0);
+    bool tears = false;
     FrameReport last;
     for (int n = 1; n <= stage.frames; ++n) {
         throw_if_interrupted();
         const int number = last_frame + n;
         const std::span<const Drive> ahead = std::span(way).subspan((n - 1) * steps);
         const Drive &before = ahead.front(), &after = ahead[steps];
-        if (!cuts && simulation.blades_reach(ahead.first(steps + 1))) {
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            if (cuts[b] || !simulation.blades_reach(b, ahead.first(steps + 1))) continue;
             // From here on the whole cut is settled: in the matter and, along the same path, the
             // skin.
-            cuts = true;
-            simulation.plan_cuts(ahead, steps);
-            for (WorkPiece& body : bodies) {
-                tears = cut_ahead(stage, machine, way, body, skin) || tears;
-            }
+            cuts[b] = 1;
+            simulation.plan_cuts(b, ahead, steps);
+            tears = cut_ahead(stage, machine, ahead, bodies[b], skin) || tears;
         }
         try {
             const auto lap = context.watch.lap("simulate");

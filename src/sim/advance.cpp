@@ -218,29 +218,26 @@ Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& a
 
 Simulation::~Simulation() = default;
 
-bool Simulation::blades_reach(std::span<const Drive> way) const {
-    return std::any_of(rooms_->body.begin(), rooms_->body.end(), [&](const WorkedBody& b) {
-        return !rooms_->crossed(*b.matter, way).empty();
-    });
+bool Simulation::blades_reach(std::size_t body, std::span<const Drive> way) const {
+    return !rooms_->crossed(*rooms_->body[body].matter, way).empty();
 }
 
-void Simulation::plan_cuts(std::span<const Drive> way, int steps) {
+void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int steps) {
     const std::size_t each = static_cast<std::size_t>(steps);
-    for (WorkedBody& body : rooms_->body) {
-        Aggregate ahead = *body.matter;
-        body.plan.clear();
-        for (std::size_t n = 0; n + each < way.size(); n += each) {
-            body.plan.push_back(rooms_->crossed(ahead, way.subspan(n, each + 1)));
-            for (const SeverEvent& e : body.plan.back()) {
-                ahead.connection[e.direction].weight.set(e.lower, 0);
-            }
+    WorkedBody& at = rooms_->body[body];
+    Aggregate ahead = *at.matter;
+    at.plan.clear();
+    for (std::size_t n = 0; n + each < way.size(); n += each) {
+        at.plan.push_back(rooms_->crossed(ahead, way.subspan(n, each + 1)));
+        for (const SeverEvent& e : at.plan.back()) {
+            ahead.connection[e.direction].weight.set(e.lower, 0);
         }
-        // What would fall off as a crumb stays with the side that it is cut from.
-        const std::vector<char> crumb = crumbs_of(ahead);
-        for (std::vector<SeverEvent>& events : body.plan) {
-            std::erase_if(events,
-                          [&](const SeverEvent& e) { return crumb[e.lower] || crumb[e.upper]; });
-        }
+    }
+    // What would fall off as a crumb stays with the side that it is cut from.
+    const std::vector<char> crumb = crumbs_of(ahead);
+    for (std::vector<SeverEvent>& events : at.plan) {
+        std::erase_if(events,
+                      [&](const SeverEvent& e) { return crumb[e.lower] || crumb[e.upper]; });
     }
 }
 

@@ -72,15 +72,15 @@ class Simulation {
         : Simulation(std::vector<Aggregate*>{&matter}, apparatus, settings) {}
     ~Simulation();
 
-    // Whether a blade would sever anything on this way, from drive to drive, through any body as it
+    // Whether a blade would sever anything on this way, from drive to drive, through a body as it
     // is now.
-    bool blades_reach(std::span<const Drive> way) const;
+    bool blades_reach(std::size_t body, std::span<const Drive> way) const;
 
-    // Plans all cuts of the coming frames, of `steps` drives each (way[0] is now), through the
-    // matter as it is now: halves that spring apart under the blade are severed where it first
-    // aimed, so that a skin that was cut along the same path opens cleanly. Frames beyond the plan
-    // sever what they meet.
-    void plan_cuts(std::span<const Drive> way, int steps);
+    // Plans all cuts of the coming frames, of `steps` drives each (way[0] is now), through a body
+    // as it is now: halves that spring apart under the blade are severed where it first aimed, so
+    // that a skin that was cut along the same path opens cleanly. Frames beyond the plan sever what
+    // they meet.
+    void plan_cuts(std::size_t body, std::span<const Drive> way, int steps);
 
     // Everything that may act on the bodies, in the order of FrameReport::load, without what it
     // does.
