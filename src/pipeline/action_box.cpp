@@ -160,7 +160,9 @@ ActionBox find_action(const FrameStore& store, bool tools) {
     for (int m = 0; m < store.machine_count(); ++m) {
         part_box.emplace_back();
         for (const DrawnPart& part : store.machine(m)) {
-            part_box.back().push_back(box_of(part.surface.position));
+            // An endless floor has no corner that the picture would have to show.
+            const bool frames = part.finish != Finish::endless;
+            part_box.back().push_back(frames ? box_of(part.surface.position) : Box());
         }
     }
     for (int f = 0; f < store.frame_count(); ++f) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math.h"
 #include "base/suggest.h"
 #include "base/text.h"
 
@@ -115,6 +116,12 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
             return false;
         }
         into = node.number;
+        if (quantity == Quantity::angle && std::abs(into) > 2 * kPi) {
+            reading_.mistakes.warn(
+                node.place, fmt::format("{0} = {1:g} without a unit is {1:g} rad: that is {2:.4g} "
+                                        "turns; degrees are written \"{1:g} deg\"",
+                                        key, into, into / (2 * kPi)));
+        }
         return true;
     }
     if (node.kind == Node::Kind::text) {

@@ -11,7 +11,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // A cube of 1 m and, broken off it or beside it from the start, one of `size` that lies `away`.
-ActionBox action_of(double size, double away, bool broken_off) {
+ActionBox action_of(double size, double away, bool broken_off,
+                    const std::vector<DrawnPart>& machine = {}) {
     const TriMesh cube = box_mesh(Vec3::Zero(), Vec3::Ones());
     TriMesh both = cube;
     for (const Vec3& p : cube.position) both.position.push_back(size * p);
@@ -23,6 +24,7 @@ ActionBox action_of(double size, double away, bool broken_off) {
     writer.add_skin(both);
     const auto frame = [&](int skin, double at) {
         StoredFrame stored;
+        stored.pose.resize(machine.size());
         stored.body.push_back({skin, {}});
         for (std::size_t v = 0; v < (skin == 0 ? 8u : 16u); ++v) {
             const Vec3 p = both.position[v] + (v < 8 ? Vec3(0, 0, 0) : Vec3(at, -0.1 * at, 0));
@@ -30,7 +32,7 @@ ActionBox action_of(double size, double away, bool broken_off) {
         }
         return stored;
     };
-    writer.add_machine({});
+    writer.add_machine(machine);
     writer.add_frame(frame(broken_off ? 0 : 1, 1));
     writer.add_frame(frame(1, away));
     writer.finish();
@@ -47,4 +49,17 @@ TEST_CASE("a chip that flies off does not make the picture small; a part that go
     // Near by it is shown, and so is what the mesh came with.
     CHECK(action_of(0.1, 1, true).bounds.high.x() == Approx(1.1));
     CHECK(action_of(0.1, 50, false).bounds.high.x() == Approx(50.1));
+}
+
+TEST_CASE("the picture shows where tools are, but no end of what is endless") {
+    DrawnPart slab;
+    slab.surface = box_mesh(Vec3(-5, -0.1, -5), Vec3(5, 0, 5));
+    const auto widest = [&](Finish finish) {
+        slab.finish = finish;
+        double most = 0;
+        for (const Vec3& p : action_of(1, 2, false, {slab}).outline) most = std::max(most, p.z());
+        return most;
+    };
+    CHECK(widest(Finish::metal) > 1.1);
+    CHECK(widest(Finish::endless) == Approx(1));
 }

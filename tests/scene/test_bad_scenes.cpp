@@ -183,6 +183,10 @@ TEST_CASE("values out of range are refused with the range") {
          material("stickiness = \"-1 Pa\""),
          {"5:14: stickiness = -1 Pa is out of range"}},
         {"wild friction", material("friction = 1e9"), {"5:12: warning: friction = 1e+09 is more"}},
+        {"degrees without a unit",
+         with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nturn = [0, 30, 0]\n"),
+         {"3:12: warning: turn = 30 without a unit is 30 rad: that is 4.775 turns; degrees are "
+          "written \"30 deg\""}},
         {"no cell",
          with(&Parts::mold, "[mold]\nacross = 0\n"),
          {"6:10: across = 0 is out of range: it has to be 1 to 1000000"}},

@@ -59,6 +59,16 @@ TEST_CASE("every shipped machine can be read, and stands at a bar without a doub
     CHECK(count >= 3);
 }
 
+TEST_CASE("every shipped machine's defaults suit a cube of few cells and of many") {
+    const std::vector<Vec3> points = box_points({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {12, 12, 12});
+    for (const auto& entry : std::filesystem::directory_iterator(kMachines)) {
+        for (const double cells : {3.0, 4.0, 6.0, 9.0, 20.0}) {
+            INFO(entry.path() << ", " << cells << " cells");
+            CHECK_NOTHROW(at_bar(entry.path().stem().string(), {}, body_of(points, 1 / cells)));
+        }
+    }
+}
+
 TEST_CASE("the bender's pushers turn about the support by half the angle each, and open again") {
     for (const double angle : {0.3, kPi / 3, kPi}) {
         for (const double place : {-0.1, 0.0, 0.2}) {
