@@ -74,14 +74,6 @@ Vec3 Aggregate::surface_position(std::size_t point) const {
     return x;
 }
 
-Vec3 Aggregate::surface_velocity(std::size_t point) const {
-    Vec3 v = Vec3::Zero();
-    for (int c = 0; c < 8; ++c) {
-        v += double(surface.weight[point][c]) * particle_velocity.at(surface.corner[point][c]);
-    }
-    return v;
-}
-
 Mat3 Aggregate::surface_gradient(std::size_t point) const {
     const auto& corner = surface.corner[point];
     const auto& weight = surface.weight[point];

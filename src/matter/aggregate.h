@@ -213,7 +213,6 @@ struct Aggregate {
     Vec3 centre() const;                   // of mass [m]
     Vec3 mean_velocity() const;            // of mass [m/s]
     Vec3 surface_position(std::size_t point) const;
-    Vec3 surface_velocity(std::size_t point) const;  // [m/s]
     // Deformation gradient of the carrying cell's trilinear map at the point.
     Mat3 surface_gradient(std::size_t point) const;
     std::size_t bytes() const;  // of all arrays
@@ -243,7 +242,7 @@ struct Pieces {
 };
 Pieces find_pieces(const Aggregate& matter);
 
-// Hash of everything that a later step depends on.
+// Hash of everything that a later stage depends on.
 std::uint64_t state_hash(const Aggregate& matter);
 
 }  // namespace swage

@@ -34,7 +34,8 @@ bool is_simulated(const Json& record, const RunDirectory& directory) {
 }
 
 void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch) {
-    record["seconds"] = seconds_json(watch);
+    // What is drawn later leaves what the simulation took.
+    record["seconds"].update(seconds_json(watch));
     write_file_whole(directory.record(), json_text(record));
 }
 

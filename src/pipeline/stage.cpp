@@ -133,18 +133,18 @@ int blade_steps(int frames) { return (kBladeSteps + frames - 1) / frames; }
 
 // The skin is cut along the whole path of the stage's blades when they reach the matter. True when
 // that was not possible everywhere, so that torn triangles must be removed as they appear.
-bool cut_ahead(const StageSpec& stage, const Machine& machine, std::span<const Drive> way,
-               WorkPiece& piece, SkinKind kind) {
+bool cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, SkinKind kind,
+               int frame, WarningBook& warnings) {
     if (kind == SkinKind::boundary) return false;
     const CutResult cut = cut_skins(piece, swept_triangles(machine.apparatus, way));
     follow_matter(piece, kind);
     if (cut.open_parts > 0) {
-        log_warning("{}: {} open part{} of the skin could not be closed where it is cut",
-                    stage.name, cut.open_parts, cut.open_parts == 1 ? "" : "s");
+        warnings.add(frame,
+                     fmt::format("{} open part{} of the skin could not be closed where it is cut",
+                                 cut.open_parts, cut.open_parts == 1 ? "" : "s"));
     }
     if (cut.has_curved) {
-        log_warning("{}: a blade's path is curved, so the skin is torn along it, not cut",
-                    stage.name);
+        warnings.add(frame, "a blade's path is curved, so the skin is torn along it, not cut");
     }
     return cut.has_curved;
 }
@@ -220,7 +220,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
             // skin.
             cuts[b] = 1;
             simulation.plan_cuts(b, ahead, steps);
-            tears = cut_ahead(stage, machine, ahead, bodies[b], skin) || tears;
+            tears = cut_ahead(machine, ahead, bodies[b], skin, number, warnings) || tears;
         }
         try {
             const auto lap = context.watch.lap("simulate");

@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 
-#include "base/log.h"
 #include "geometry/disjoint_sets.h"
 #include "skin/body_map.h"
 #include "skin/split_attributes.h"
@@ -227,13 +226,6 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
         for (const SplitTriangle& triangle : split.triangle) {
             result.cap_triangles += triangle.parent < 0;
         }
-    }
-    if (result.has_curved) {
-        log_warning("a blade's sweep is not plane: the skin is not split ahead of it");
-    }
-    if (result.open_parts > 0) {
-        log_warning("{} part(s) of the skin are not closed where the blade passes: cut, not capped",
-                    result.open_parts);
     }
     return result;
 }

@@ -23,8 +23,8 @@ struct CutResult {
 
 // Splits `mesh` (its positions are those at molding) along everything that the blades will sweep,
 // and extends the mount. `position`: of the vertices now [m]. `sweep`: triangles in the world of
-// now that share their corners to the bit, for the whole stage; to be called before the stage
-// begins. Attributes are carried on; caps get the material kCutMaterial and no texture coordinates.
+// now that share their corners to the bit, for all of the way from where they first reach the
+// matter. Attributes are carried on; caps get the material kCutMaterial and no texture coordinates.
 // Existing vertices keep their numbers.
 CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& mount,
                    const Aggregate& matter, const std::vector<std::array<Vec3, 3>>& sweep);

@@ -241,3 +241,38 @@ TEST_CASE("every integrator gives the same bytes with one thread and two") {
         CHECK(hash[0] == hash[1]);
     }
 }
+
+TEST_CASE(
+    "bodies large enough to be shared out give the same bytes with one thread, two and three") {
+    for (const Solver solver : {Solver::explicit_steps, Solver::energy_stepped}) {
+        std::uint64_t hash[3][2];
+        for (const int threads : {1, 2, 3}) {
+            set_thread_count(threads);
+            Material material = kSpringy;
+            material.damping_ratio = 0.1;
+            material.yield_stress = 2e3;
+            material.friction = 0.3;
+            // More than 8,192 particles and four slabs of 2,048 cells each.
+            Aggregate low = make_block(22, 20, 22, 0.01, material), high = low;
+            for (double& y : low.particle_position.y) y += 0.0999;
+            for (double& y : high.particle_position.y) y += 0.2998;
+            for (double& v : high.particle_velocity.y) v = -1;
+            SimSettings settings = motion_settings(solver);
+            settings.gravity = {0, -9.81, 0};
+            const Apparatus apparatus = ground();
+            Simulation simulation({&low, &high}, apparatus, settings);
+            const FrameReport r = simulation.advance(on_ground(0), on_ground(0.0005));
+            CHECK(r.plastic > 0);
+            CHECK(r.damped > 0);
+            CHECK(r.friction > 0);
+            hash[threads - 1][0] = state_hash(low);
+            hash[threads - 1][1] = state_hash(high);
+        }
+        set_thread_count(0);
+        INFO("solver " << static_cast<int>(solver));
+        for (int other : {1, 2}) {
+            CHECK(hash[other][0] == hash[0][0]);
+            CHECK(hash[other][1] == hash[0][1]);
+        }
+    }
+}
