@@ -72,6 +72,9 @@ RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
             at = beside;
             local -= out.cast<double>();
         }
+        if (beside < 0 && molded_->is_rim(cell) && !cut_->is_rim(cell)) {
+            return molded_->at_sliver(cell, place);
+        }
     }
     if (!cut_->is_rim(cell)) return molded_->at(at, local);
     RestSurface::Depth face = cut_->at(cell, place);

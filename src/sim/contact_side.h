@@ -47,7 +47,9 @@ class ContactSide {
     // broken, below the new one, whichever is nearer. Before a new face it may lie half a cell
     // outside.
     RestSurface::Depth depth(const Vec3i& site, CellId cell, const Vec3& place) const {
-        return cut_ == nullptr ? molded_->at(cell, place) : least_depth(site, cell, place);
+        if (cut_ != nullptr) return least_depth(site, cell, place);
+        const bool inside = (place.array() >= 0).all() && (place.array() <= 1).all();
+        return inside ? molded_->at(cell, place) : molded_->at_sliver(cell, place);
     }
     // Cells less than a spacing deep, in their order.
     const std::vector<CellId>& rim() const { return rim_; }

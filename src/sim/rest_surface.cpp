@@ -365,6 +365,22 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
     });
 }
 
+RestSurface::Depth RestSurface::at_sliver(CellId cell, const Vec3& place) const {
+    const Vec3 last = place.cwiseMax(0.0).cwiseMin(1.0), beyond = place - last;
+    const Depth on = at(cell, place), end = at(cell, last);
+    const Vec3 left = (1 - beyond.array().abs() / kSliver).max(0.0);
+    const double share = left.prod();
+    if (on.distance >= std::min(end.distance, 0.0) * share) return on;
+    if (end.distance >= 0) return {0, end.gradient};
+    Depth depth{end.distance * share, end.gradient * share};
+    for (int d = 0; d < 3; ++d) {
+        if (beyond[d] == 0) continue;
+        const double others = left[(d + 1) % 3] * left[(d + 2) % 3];
+        depth.gradient[d] = -end.distance * others * std::copysign(1 / kSliver, beyond[d]);
+    }
+    return depth;
+}
+
 RestSurface::Depth RestSurface::at(CellId cell, const Vec3& p) const {
     const int n = slot_[cell], f = fine_of_[n];
     if (f < 0) return interpolate_depth(corner_[n], p);

@@ -47,6 +47,9 @@ class RestSurface {
     // `place` in the cell, each 0 to 1, or a little outside. Nothing is known of cells that lie
     // deeper than three spacings: they are no rim.
     Depth at(CellId cell, const Vec3& place) const;
+    // Of a place beyond a cell where there is none: what a sliver there holds ends with it, so that
+    // what comes in is not deep at once.
+    Depth at_sliver(CellId cell, const Vec3& place) const;
     bool is_rim(CellId cell) const { return slot_[cell] >= 0; }
     // Cells that lie, wholly or in part, less than a spacing deep: in their order.
     const std::vector<CellId>& skin() const { return skin_; }

@@ -166,7 +166,8 @@ TEST_CASE("nothing is deeper than a sliver where the cells of parts thinner than
         };
         const Aggregate m = make_shape(horn, Vec3(-0.3, -0.3, -0.3), Vec3i(9, 9, 9), 0.1);
         const RestSurface surface(m.lattice, m.surface);
-        double deepest = 0;
+        double deepest = 0, at_once = 0;
+        int slopes = 0, creases = 0;
         for (CellId cell : surface.skin()) {
             const Vec3i site = m.lattice.cell_site(cell);
             for (int face = 0; face < 6; ++face) {
@@ -176,13 +177,31 @@ TEST_CASE("nothing is deeper than a sliver where the cells of parts thinner than
                 for (int n = 0; n < 25; ++n) {
                     Vec3 place;
                     place[axis_of] = side;
-                    place[(axis_of + 1) % 3] = 0.25 * (n % 5);
-                    place[(axis_of + 2) % 3] = 0.25 * (n / 5);
+                    place[(axis_of + 1) % 3] = 0.11 + 0.19 * (n % 5);
+                    place[(axis_of + 2) % 3] = 0.15 + 0.17 * (n / 5);
                     deepest = std::min(deepest, surface.at(cell, place).distance);
+                    Vec3 beyond = place;
+                    beyond[axis_of] = side ? 1 + kSliver : -kSliver;
+                    at_once = std::min(at_once, surface.at_sliver(cell, beyond).distance);
+                    beyond[axis_of] = side ? 1 + 0.1 : -0.1;
+                    const RestSurface::Depth d = surface.at_sliver(cell, beyond);
+                    for (int axis = 0; axis < 3 && d.distance != 0; ++axis) {
+                        const Vec3 step = 1e-6 * Vec3::Unit(axis);
+                        const double slope = (surface.at_sliver(cell, beyond + step).distance -
+                                              surface.at_sliver(cell, beyond - step).distance) /
+                                             2e-6;
+                        // But on creases.
+                        if (std::abs(slope - d.gradient[axis]) > 1e-3) ++creases;
+                        ++slopes;
+                    }
                 }
             }
         }
         INFO("as thick as " << thick << " cells: " << deepest);
         CHECK(deepest > -0.21);
+        CHECK(at_once > -1e-9);
+        INFO(creases << " of " << slopes << " slopes");
+        CHECK(slopes > 1000);
+        CHECK(creases < 0.1 * slopes);
     }
 }
