@@ -164,10 +164,11 @@ struct ContactWay::Kernel {
             }
             at.reach = turned(back) + held;
             const Vec4 along = k * (at.reach - dot3(at.normal, at.reach) * at.normal);
-            const double limit = std::max(
-                (last.history.slides ? way.law_.friction : way.law_.holding) * (push + hold),
-                k * std::sqrt(dot3(held, held)));
+            double limit =
+                (last.history.slides ? way.law_.friction : way.law_.holding) * (push + hold);
             const double size = std::sqrt(dot3(along, along));
+            // Dashpots may have held it to more.
+            if (size > limit) limit = std::max(limit, k * std::sqrt(dot3(held, held)));
             at.spring += size > limit ? limit / size * along : along;
         }
         at.spring[3] = 0;
