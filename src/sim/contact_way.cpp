@@ -124,7 +124,7 @@ void ContactWay::set_stiffness(double step) {
         stiffness_.push_back(scale_ * one * other / (one + other) * area);
         hold_.push_back(hold * area);
         // Half of which acts where the other way does as much.
-        stiffest_.push_back(step > 0 ? 0.5 * lightest_carrier(a, points, p) / (step * step)
+        stiffest_.push_back(step > 0 ? 0.25 * lightest_carrier(a, points, p) / (step * step)
                                      : std::numeric_limits<double>::infinity());
     }
 }

@@ -14,7 +14,7 @@
 //
 // The point pushes back with its own weights, the cell with the trilinear weights of the same place
 // in space, so that force and moment are kept to round-off. Friction's anchors are material points
-// of the other body. A point is never stiffer than a quarter of what its lightest carrier can
+// of the other body. A point is never stiffer than an eighth of what its lightest carrier can
 // follow in one step.
 //
 // In each step: resolve() where contacts have been found anew; then of all ways meet(), of all
