@@ -32,6 +32,7 @@ void add_run_command(CLI::App& app, Action& chosen);
 void add_check_command(CLI::App& app, Action& chosen);
 void add_info_command(CLI::App& app, Action& chosen);
 void add_machines_command(CLI::App& app, Action& chosen);
+void add_keys_command(CLI::App& app, Action& chosen);
 void add_render_command(CLI::App& app, Action& chosen);
 void add_make_command(CLI::App& app, Action& chosen);
 void add_verify_command(CLI::App& app, Action& chosen);

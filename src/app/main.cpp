@@ -37,7 +37,8 @@ int run_command_line(int argc, char** argv) {
         "\nExamples:\n"
         "  swage run assets/scenes/calf-line.toml\n"
         "  swage check assets/scenes/calf-line.toml\n"
-        "  swage machines bend\n\n"
+        "  swage machines bend\n"
+        "  swage keys stage\n\n"
         "Exit codes: 0 done, 2 command line, 3 scene, 4 mesh, 5 output or drawing, 6 "
         "simulation\nstopped, 7 refused for resources, 8 output directory belongs to another "
         "run, 128+n by\nsignal n.");
@@ -46,6 +47,7 @@ int run_command_line(int argc, char** argv) {
     add_check_command(app, chosen);
     add_info_command(app, chosen);
     add_machines_command(app, chosen);
+    add_keys_command(app, chosen);
     add_render_command(app, chosen);
     add_make_command(app, chosen);
     add_verify_command(app, chosen);

@@ -44,12 +44,15 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
 }
 
 bool ExpressionReader::read(TableReader& table, const std::string& key, Expression& into) {
+    table.describe(key, "expression", into);
     const Node* node = table.find(key);
     if (node != nullptr) read_one(table, key, *node, into);
     return node != nullptr;
 }
 
 bool ExpressionReader::read(TableReader& table, const std::string& key, Expression3& into) {
+    table.describe(key, "[x, y, z] of expressions",
+                   fmt::format("[{}, {}, {}]", into[0], into[1], into[2]));
     const Node* node = table.find(key);
     if (node != nullptr) read_item(table, key, *node, into);
     return node != nullptr;
@@ -88,6 +91,7 @@ void ExpressionReader::expect_unit(TableReader& table, const std::string& key, c
 
 bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity quantity,
                             Expression& into) {
+    table.describe(key, quantity_name(quantity) + " or expression", into);
     if (!read(table, key, into)) return false;
     expect_unit(table, key, *table.find(key), quantity);
     return true;
@@ -95,6 +99,7 @@ bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity
 
 bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity quantity,
                             Expression3& into) {
+    table.describe(key, fmt::format("[x, y, z] of {} or expression", quantity_name(quantity)));
     if (!read(table, key, into)) return false;
     for (const Node& item : table.find(key)->item) expect_unit(table, key, item, quantity);
     return true;

@@ -8,6 +8,12 @@ namespace swage {
 
 namespace fs = std::filesystem;
 
+const std::vector<std::string>& keys_of_whole_bodies() {
+    static const std::vector<std::string> keys = {"mechanics", "friction", "static_friction",
+                                                  "restitution", "stickiness"};
+    return keys;
+}
+
 InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::path& scene_folder,
                      std::vector<fs::path>& inputs) {
     InsetSpec inset;
@@ -44,8 +50,7 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
     if ((inset.from.array() >= inset.to.array()).any()) {
         table.mistake(has_to ? "to" : "from", "the box is empty: from must be less than to");
     }
-    for (const char* key :
-         {"mechanics", "friction", "static_friction", "restitution", "stickiness"}) {
+    for (const std::string& key : keys_of_whole_bodies()) {
         if (table.find(key) == nullptr) continue;
         table.mistake(key, fmt::format("{} is the whole body's: say it in [material]", key));
     }

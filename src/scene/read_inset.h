@@ -8,6 +8,9 @@
 namespace swage {
 
 // One [[inset]] of a scene.
+// Keys of [material] that an inset has not.
+const std::vector<std::string>& keys_of_whole_bodies();
+
 InsetSpec read_inset(TableReader& table, const AssetPaths& assets,
                      const std::filesystem::path& scene_folder,
                      std::vector<std::filesystem::path>& inputs);

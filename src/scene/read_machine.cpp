@@ -27,8 +27,8 @@ bool is_work_piece_name(const std::string& name) {
 
 class MachineReader {
   public:
-    MachineReader(const fs::path& folder, MistakeList& mistakes)
-        : folder_(folder), mistakes_(mistakes), reading_(mistakes) {
+    MachineReader(const fs::path& folder, Reading& reading)
+        : folder_(folder), mistakes_(reading.mistakes), reading_(reading) {
         expression_.add_names(work_piece_names());
     }
 
@@ -266,6 +266,7 @@ class MachineReader {
         TableReader table(node, "[[blade]]", reading_);
         BladeSpec blade;
         blade.name = read_part_name(table, part_names_);
+        table.describe("edge", "points, each [x, y, z] of expressions");
         const Node* edge = table.find("edge");
         if (edge == nullptr) {
             table.missing("edge", "two points or more, such as [[0, 0, -1], [0, 0, 1]]");
@@ -313,12 +314,17 @@ class MachineReader {
 
     fs::path folder_;
     MistakeList& mistakes_;
-    Reading reading_;
+    Reading& reading_;
     ExpressionReader expression_;
     std::set<std::string> part_names_;
 };
 
 }  // namespace
+
+void read_machine_document(const Document& document, const fs::path& folder, Reading& reading,
+                           MachineSpec& machine) {
+    MachineReader(folder, reading).read(document, machine);
+}
 
 MachineReading read_machine(const fs::path& file) {
     std::error_code error;
@@ -330,7 +336,8 @@ MachineReading read_machine(const fs::path& file) {
         MachineSpec machine;
         machine.name = file.stem().string();
         machine.file = absolute;
-        MachineReader(absolute.parent_path(), mistakes).read(*document, machine);
+        Reading reading(mistakes);
+        read_machine_document(*document, absolute.parent_path(), reading, machine);
         if (mistakes.is_clean()) result.machine = std::move(machine);
     }
     result.mistakes = mistakes.take(shown);

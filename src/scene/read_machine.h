@@ -1,18 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Machine files.
-//
-//     help = "what the machine does"
-//     [parameter.NAME]            quantity, default, low, high, help
-//     [[tool]]                    name, shape ("cylinder", "box", "sphere", "mesh"),
-//                                 radius, length, size, rounding, file, axis, at,
-//                                 touch, gap, friction, contact_stiffness (where nothing moves and
-//                                 the stage does not say), color,
-//                                 finish ("metal", "matt", "endless": matt, and fades out
-//                                 into the backdrop)
-//     [tool.motion]               move, turn, axis, pivot
-//     [[grip]]                    name, from, to, and [grip.motion]
-//     [[blade]]                   name, edge, thickness, and [blade.motion]
-//     [[check]]                   holds, otherwise
+// Machine files. key_help.cpp says what each key is for; `swage keys` tells it, with what the key
+// takes.
 //
 // Where a number stands, an expression may stand (see base/expression.h; machine_spec.h says which
 // variables it sees); axis and touch are plain numbers. A parameter's range is [low, high].
@@ -24,6 +12,7 @@
 
 #include "machines/machine_spec.h"
 #include "scene/mistake.h"
+#include "scene/table_reader.h"
 
 namespace swage {
 
@@ -35,5 +24,9 @@ struct MachineReading {
 // The machine's name is the stem of the file. Every expression is compiled, so what is left to go
 // wrong later are values.
 MachineReading read_machine(const std::filesystem::path& file);
+
+// The same of what has been parsed; meshes of tools are relative to `folder`.
+void read_machine_document(const Document& document, const std::filesystem::path& folder,
+                           Reading& reading, MachineSpec& machine);
 
 }  // namespace swage

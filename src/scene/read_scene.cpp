@@ -47,8 +47,10 @@ void report_unknown_sections(const Document& document, Reading& reading) {
     }
 }
 
-void read_document_into(const Document& document, const AssetPaths& assets, Reading& reading,
-                        SceneSpec& scene) {
+}  // namespace
+
+void read_scene_document(const Document& document, const AssetPaths& assets, Reading& reading,
+                         SceneSpec& scene) {
     const fs::path folder = scene.file.parent_path();
     Node absent;  // a section that is not there stands nowhere in the file
     absent.place = {document.source, 0, 0};
@@ -93,8 +95,6 @@ void read_document_into(const Document& document, const AssetPaths& assets, Read
     reading.report_unknown();
 }
 
-}  // namespace
-
 SceneReading read_scene(const fs::path& file, const std::vector<std::string>& overrides,
                         const AssetPaths& assets) {
     SceneReading result;
@@ -114,7 +114,7 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
         apply_overrides(overrides, document->root, mistakes);
         Reading reading(mistakes);
         reading.is_complete = document->is_complete;
-        read_document_into(*document, assets, reading, scene);
+        read_scene_document(*document, assets, reading, scene);
     }
     if (mistakes.is_clean()) result.scene = std::move(scene);
     result.mistakes = mistakes.take(file);

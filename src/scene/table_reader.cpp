@@ -18,6 +18,11 @@ std::string example_of(Quantity quantity) {
     return "\"2 " + units.front() + "\"";
 }
 
+std::string with_unit(Quantity quantity) {
+    const std::string unit = si_unit(quantity);
+    return unit.empty() ? quantity_name(quantity) : quantity_name(quantity) + " [" + unit + "]";
+}
+
 bool contains(const std::vector<std::string>& list, const std::string& word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
@@ -87,8 +92,26 @@ void Reading::report_unknown() {
 TableReader::TableReader(const Node& table, std::string section, Reading& reading)
     : node_(table), section_(std::move(section)), reading_(reading) {}
 
+void TableReader::describe(const std::string& key, const std::string& takes,
+                           const std::string& usual) {
+    if (!reading_.describes) return;
+    auto& forms = reading_.forms;
+    auto section = std::find_if(forms.begin(), forms.end(),
+                                [&](const auto& one) { return one.first == section_; });
+    if (section == forms.end()) section = forms.insert(forms.end(), {section_, {}});
+    std::vector<KeyForm>& keys = section->second;
+    const auto at =
+        std::find_if(keys.begin(), keys.end(), [&](const KeyForm& one) { return one.key == key; });
+    if (at == keys.end()) {
+        keys.push_back({key, takes, usual});
+    } else if (at->takes.empty()) {
+        *at = {key, takes, usual};
+    }
+}
+
 const Node* TableReader::find(const std::string& key) {
     if (!contains(asked_, key)) asked_.push_back(key);
+    describe(key, "");
     const Entry* entry = node_.find(key);
     return entry == nullptr ? nullptr : &entry->value;
 }
@@ -139,8 +162,17 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
     return false;
 }
 
+void TableReader::describe_quantity(const std::string& key, Quantity quantity, const Range& range,
+                                    double usual) {
+    std::string takes = with_unit(quantity);
+    if (std::isfinite(range.low) || std::isfinite(range.high)) takes += ", " + range.text(quantity);
+    const bool tells = std::isfinite(usual) && range.holds(usual);
+    describe(key, takes, tells ? quantity_text(usual, quantity) : "");
+}
+
 bool TableReader::quantity(const std::string& key, Quantity quantity, const Range& range,
                            double& into) {
+    if (reading_.describes) describe_quantity(key, quantity, range, into);
     const Node* node = find(key);
     if (node == nullptr) return false;
     double value = 0;
@@ -155,6 +187,7 @@ bool TableReader::quantity(const std::string& key, Quantity quantity, const Rang
 }
 
 bool TableReader::whole(const std::string& key, int low, int high, int& into) {
+    describe(key, fmt::format("whole number, {} to {}", low, high), std::to_string(into));
     const Node* node = find(key);
     if (node == nullptr) return false;
     double value = 0;
@@ -172,6 +205,7 @@ bool TableReader::whole(const std::string& key, int low, int high, int& into) {
 }
 
 bool TableReader::truth(const std::string& key, bool& into) {
+    describe(key, "true or false", into ? "true" : "false");
     const Node* node = find(key);
     if (node == nullptr) return false;
     if (node->kind == Node::Kind::truth) {
@@ -183,6 +217,7 @@ bool TableReader::truth(const std::string& key, bool& into) {
 }
 
 bool TableReader::text(const std::string& key, std::string& into) {
+    describe(key, "text", into.empty() ? "" : '"' + into + '"');
     const Node* node = find(key);
     if (node == nullptr) return false;
     if (node->kind == Node::Kind::text) {
@@ -194,6 +229,7 @@ bool TableReader::text(const std::string& key, std::string& into) {
 }
 
 bool TableReader::vector(const std::string& key, Quantity quantity, Vec3& into) {
+    describe(key, "[x, y, z] of " + with_unit(quantity));
     const Node* node = find(key);
     if (node == nullptr) return false;
     if (node->kind != Node::Kind::array || node->item.size() != 3) {
@@ -210,7 +246,9 @@ bool TableReader::vector(const std::string& key, Quantity quantity, Vec3& into) 
     return true;
 }
 
-int TableReader::chosen_name(const std::string& key, const std::vector<std::string>& names) {
+int TableReader::chosen_name(const std::string& key, const std::vector<std::string>& names,
+                             const std::string& usual) {
+    describe(key, '"' + joined(names, "\" or \"") + '"', usual.empty() ? "" : '"' + usual + '"');
     const Node* node = find(key);
     if (node == nullptr) return -1;
     if (node->kind == Node::Kind::text) {
@@ -229,6 +267,7 @@ int TableReader::chosen_name(const std::string& key, const std::vector<std::stri
 
 const Node& TableReader::table(const std::string& key) {
     static const Node empty;
+    describe(key, "section");
     const Node* node = find(key);
     if (node == nullptr) return empty;
     if (node->kind == Node::Kind::table) return *node;
@@ -237,6 +276,7 @@ const Node& TableReader::table(const std::string& key) {
 }
 
 std::vector<const Node*> TableReader::tables(const std::string& key, const std::string& example) {
+    describe(key, "sections " + example);
     std::vector<const Node*> found;
     const Node* node = find(key);
     if (node == nullptr) return found;

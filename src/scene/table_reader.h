@@ -33,6 +33,13 @@ inline Range at_least(double low) { return {.low = low}; }
 inline Range between(double low, double high) { return {.low = low, .high = high}; }
 inline Range inside(double low, double high) { return {low, high, true, true}; }
 
+// What a key may be given as, and what it is when left out.
+struct KeyForm {
+    std::string key;
+    std::string takes;  // "length, more than 0 m"
+    std::string usual;  // empty: nothing worth telling
+};
+
 // What all tables of a file share.
 struct Reading {
     explicit Reading(MistakeList& list) : mistakes(list) {}
@@ -47,6 +54,10 @@ struct Reading {
     bool is_complete = true;                             // see Document
     std::map<std::string, std::set<std::string>> known;  // section -> keys that were asked for
     std::vector<UnknownKey> unknown;
+    // With `describes`: the forms of all keys by section, both in the order in which they are
+    // asked.
+    bool describes = false;
+    std::vector<std::pair<std::string, std::vector<KeyForm>>> forms;
 
     // Once, after everything was read.
     void report_unknown();
@@ -69,13 +80,20 @@ class TableReader {
     bool choice(const std::string& key, const std::vector<std::pair<std::string, T>>& choices,
                 T& into) {
         std::vector<std::string> names;
-        for (const auto& [name, value] : choices) names.push_back(name);
-        const int chosen = chosen_name(key, names);
+        std::string usual;
+        for (const auto& [name, value] : choices) {
+            names.push_back(name);
+            if (value == into) usual = name;
+        }
+        const int chosen = chosen_name(key, names, usual);
         if (chosen >= 0) into = choices[static_cast<std::size_t>(chosen)].second;
         return find(key) != nullptr;
     }
 
     const Node* find(const std::string& key);  // any kind; null when absent
+
+    // What a look-up that is none of the above takes (see Reading::forms).
+    void describe(const std::string& key, const std::string& takes, const std::string& usual = {});
 
     // The table under a key; an empty one when it is absent or no table.
     const Node& table(const std::string& key);
@@ -102,7 +120,10 @@ class TableReader {
 
   private:
     void tell_known();
-    int chosen_name(const std::string& key, const std::vector<std::string>& names);
+    void describe_quantity(const std::string& key, Quantity quantity, const Range& range,
+                           double usual);
+    int chosen_name(const std::string& key, const std::vector<std::string>& names,
+                    const std::string& usual);
     bool number(const std::string& key, const Node& node, Quantity quantity, double& into);
 
     const Node& node_;

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "app/command.h"
+#include "app/scene_argument.h"
+#include "base/error.h"
+#include "base/suggest.h"
+#include "scene/key_reference.h"
+
+namespace swage {
+
+namespace {
+
+struct KeysArguments {
+    std::string word, assets;
+    bool machine = false, json = false;
+};
+
+std::string bare(const std::string& section) {
+    std::string name;
+    for (char c : section) {
+        if (c != '[' && c != ']') name += c;
+    }
+    return name;
+}
+
+// The sections of that name and what lies in them, or else the keys of that name.
+std::vector<SectionReference> chosen(const std::vector<SectionReference>& all,
+                                     const std::string& word) {
+    const std::string name = bare(word);
+    std::vector<SectionReference> found;
+    for (const SectionReference& one : all) {
+        const std::string section = bare(one.section);
+        if (section == name || section.starts_with(name + ".") || section.ends_with("." + name)) {
+            found.push_back(one);
+        }
+    }
+    if (!found.empty()) return found;
+    std::vector<std::string> known;
+    for (const SectionReference& one : all) {
+        SectionReference part{one.section, {}};
+        known.push_back(bare(one.section));
+        for (const KeyReference& key : one.key) {
+            known.push_back(key.key);
+            if (key.key == name) part.key.push_back(key);
+        }
+        if (!part.key.empty()) found.push_back(part);
+    }
+    if (found.empty()) {
+        fail(ExitCode::command_line, "there is no section and no key \"{}\"{}", word,
+             did_you_mean(name, known));
+    }
+    return found;
+}
+
+std::string section_text(const SectionReference& section) {
+    std::size_t width = 0;
+    for (const KeyReference& key : section.key) width = std::max(width, key.key.size());
+    std::string text = section.section + "\n";
+    for (const KeyReference& key : section.key) {
+        text += "  " + key.key + std::string(width - key.key.size() + 2, ' ') + key.takes;
+        if (!key.usual.empty()) text += "; default " + key.usual;
+        text += "\n" + std::string(width + 4, ' ') + key.help + "\n";
+    }
+    return text;
+}
+
+int keys(const KeysArguments& given) {
+    std::vector<SectionReference> all =
+        given.machine ? machine_key_reference() : scene_key_reference(asset_paths(given.assets));
+    if (!given.word.empty()) all = chosen(all, given.word);
+    if (given.json) {
+        Json list = Json::array();
+        for (const SectionReference& section : all) {
+            for (const KeyReference& key : section.key) {
+                list.push_back({{"section", section.section},
+                                {"key", key.key},
+                                {"takes", key.takes},
+                                {"default", key.usual},
+                                {"help", key.help}});
+            }
+        }
+        put_json(list);
+        return 0;
+    }
+    std::string text;
+    for (const SectionReference& section : all) {
+        text += (text.empty() ? "" : "\n") + section_text(section);
+    }
+    put_out(text);
+    return 0;
+}
+
+}  // namespace
+
+void add_keys_command(CLI::App& app, Action& chosen) {
+    static KeysArguments given;
+    CLI::App* command = add_command(app, "keys", "Tell every key that a scene may have",
+                                    "  swage keys\n"
+                                    "  swage keys stage\n"
+                                    "  swage keys young_modulus\n"
+                                    "  swage keys --machine\n",
+                                    chosen, [] { return keys(given); });
+    command->add_option("word", given.word, "a section or a key")->type_name("WORD");
+    command->add_flag("--machine", given.machine, "the keys of machine files instead");
+    add_assets_option(*command, given.assets);
+    command->add_flag("--json", given.json, "print JSON");
+}
+
+}  // namespace swage

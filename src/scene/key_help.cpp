@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/key_help.h"
+
+namespace swage {
+
+const std::vector<KeyHelp>& scene_key_help() {
+    static const std::vector<KeyHelp> all = {
+        {"[mesh]", "file", "the mesh to be worked on, relative to the scene"},
+        {"[mesh]", "length", "what its longest side becomes; left out: the file's numbers are m"},
+        {"[mesh]", "at", "where the middle of its box is put; left out: where the file has it"},
+        {"[mesh]", "turn", "about the middle of its box: the axis, as long as the angle"},
+        {"[mesh]", "velocity", "at the start"},
+        {"[mesh]", "spin", "at the start, about its centre of mass"},
+        {"[mesh]", "color", "red, green, blue instead of what its file says",
+         "[red, green, blue], each 0 to 1"},
+
+        {"[material]",
+         "name",
+         "one of assets/materials.toml or of materials.toml beside the scene",
+         {},
+         "-"},
+        {"[material]", "mechanics",
+         "cells are right for any Poisson's ratio; springs are the "
+         "papers' connections alone"},
+        {"[material]", "elasticity", "hencky: what may yield and break; neo-hookean: rubber"},
+        {"[material]", "young_modulus", "needed without a name", {}, "-"},
+        {"[material]", "poisson_ratio", "springs have 0.25 whatever it says"},
+        {"[material]", "density", "needed without a name", {}, "-"},
+        {"[material]", "yield_stress", "where it begins to flow (von Mises)",
+         "stress, more than 0 Pa, or inf", "inf"},
+        {"[material]", "hardening", "rise of the yield stress per plastic strain"},
+        {"[material]", "strength", "stress at which a pulled bar breaks; goes with toughness",
+         "stress, more than 0 Pa and less than a tenth of young_modulus, or inf", "inf"},
+        {"[material]", "toughness", "energy of a new crack, both its faces together"},
+        {"[material]", "damping_ratio", "of every swing; explicit steps only"},
+        {"[material]", "friction", "Coulomb's, sliding; on a tool its own counts where it has one"},
+        {"[material]",
+         "static_friction",
+         "before it slides, at least friction; motion only",
+         {},
+         "friction"},
+        {"[material]", "restitution",
+         "speed after over speed before a meeting; explicit and "
+         "energy-chosen steps only"},
+        {"[material]", "stickiness",
+         "tension that a contact holds; explicit and energy-chosen "
+         "steps only"},
+
+        {"[[inset]]", "file",
+         "a mesh inside which the matter is of another material; the keys of "
+         "[material] say which"},
+        {"[[inset]]", "from", "instead of file: a corner of a box, in shares of the work-piece's",
+         "[x, y, z], each 0 to 1"},
+        {"[[inset]]", "to", "the opposite corner", "[x, y, z], each 0 to 1"},
+
+        {"[mold]", "kind", "fill the mesh's shape, or the whole of its box"},
+        {"[mold]", "across", "cells over the thinnest side of the box"},
+        {"[mold]", "spacing", "instead of across: the side of a cell"},
+        {"[mold]", "cell_limit", "more cells in the box than this are refused"},
+
+        {"[[body]]", "name", "of its files", {}, "body-2, body-3, ..."},
+        {"[[body]]", "file", "the mesh of the body, relative to the scene"},
+        {"[[body]]", "material", "left out: that of the work-piece",
+         "name, or a section [body.material]"},
+        {"[[body]]", "across", "left out, like spacing: as the work-piece has it", {}, "-"},
+
+        {"[skin]", "kind",
+         "mount: smooth, follows half frames; frame4: the paper's frames of four "
+         "particles; boundary: made anew from voxels"},
+
+        {"[[stage]]", "machine",
+         "one that `swage machines` lists, or a file of your own; its "
+         "parameters are keys of the stage too",
+         "name, or path from the scene"},
+        {"[[stage]]", "name", "of its files", {}, "number-machine"},
+        {"[[stage]]", "frames", "of the film; equilibria or blocks of steps, too"},
+        {"[[stage]]", "duration", "of the machine's motion", {}, "frames / fps"},
+        {"[[stage]]", "remold", "mold the deformed mesh anew before the stage"},
+        {"[[stage]]", "axis",
+         "of the world, along which the machine has its length; auto: the "
+         "longest side of the box"},
+        {"[[stage]]", "up",
+         "the way in the world that the machine calls up; auto: y, or z where axis is y"},
+        {"[[stage]]",
+         "solver",
+         "how matter moves; see the README",
+         {},
+         "explicit where things move by themselves, else quasistatic"},
+        {"[[stage]]", "tolerance", "forces out of balance, over the largest force; quasistatic"},
+        {"[[stage]]", "iteration_limit", "one more halves the increment; quasistatic"},
+        {"[[stage]]", "halving_limit", "of an increment of the machine; quasistatic"},
+        {"[[stage]]", "contact_stiffness", "of contact, over that of a layer of cells",
+         "number, 0.01 to 100 in explicit steps, else 0.5 to 100",
+         "2, or what a tool says where nothing moves"},
+        {"[[stage]]", "grip_stiffness", "the same of grips"},
+        {"[[stage]]", "step_safety", "share of the longest stable step; explicit and euler"},
+        {"[[stage]]", "retry_limit", "halvings of a step that goes wrong; steps of motion"},
+        {"[[stage]]", "self_contact", "a body meets itself; not in implicit steps"},
+        {"[[stage]]", "sleep", "bodies that have come to rest cost nothing; steps of motion"},
+        {"[[stage]]", "medium_density", "of what is around, for drag: air 1.2, water 1000 kg/m3"},
+        {"[[stage]]", "drag_coefficient", "in that medium: ball 0.5, cube 1, thin plate 1.2"},
+        {"[[stage]]", "directional_drag",
+         "on the surface that meets the flow: weight over area "
+         "and speed at the end"},
+        {"[[stage]]", "directional_drag_along",
+         "against the motion, or along the surface's normal"},
+        {"[[stage]]", "gravity", "a single number points down; y is up",
+         "acceleration, or [x, y, z] of them", "0"},
+        {"[[stage]]", "load", "forces and pressures on the surface"},
+        {"[[stage]]", "gravity_strength", "gravity's share over the stage, 0 < t < 1",
+         "expression of t", "1"},
+
+        {"[[stage.load]]", "name", "of the load in curves", "text", "load_1, load_2, ..."},
+        {"[[stage.load]]", "force", "in all, spread by area; keeps its direction (machine's axes)"},
+        {"[[stage.load]]",
+         "pressure",
+         "instead of force: along the inward normal as it deforms",
+         {},
+         "-"},
+        {"[[stage.load]]", "on", "the part of the surface that looks to this side"},
+        {"[[stage.load]]", "from",
+         "a corner of a box, from the middle of the work-piece's, that "
+         "the surface has to lie in"},
+        {"[[stage.load]]", "to", "the opposite corner"},
+        {"[[stage.load]]", "strength", "share of the load over the stage, 0 < t < 1",
+         "expression of t"},
+
+        {"[render]", "size", "of the stills", "[width, height], whole numbers up to 16384",
+         "[1280, 720]"},
+        {"[render]", "fps", "frames a second of the film"},
+        {"[render]", "film", "write film.mp4 too"},
+        {"[render]", "tools", "draw tools, grips and blades"},
+        {"[render]", "ground", "draw a ground under it all"},
+        {"[render]", "gl", "who draws"},
+        {"[render]", "field_of_view", "of the camera, vertical"},
+        {"[render]", "camera", "where one looks from"},
+
+        {"[render.camera]", "azimuth", "about the upward axis, from z toward x"},
+        {"[render.camera]", "elevation", "above the horizon", "angle, -90 deg to 90 deg"},
+        {"[render.camera]", "zoom", "1 frames the whole motion"},
+        {"[render.camera]", "eye", "with target, instead of azimuth, elevation and zoom"},
+        {"[render.camera]", "target", "what the eye looks at"},
+        {"[render.camera]", "orbit", "by which azimuth turns over the film"},
+        {"[render.camera]", "keys", "instead of all that: the same keys at several times"},
+        {"[[render.camera.keys]]", "at", "share of the film", {}, "-"},
+
+        {"[output]", "meshes_per_frame", "write the skin of every frame"},
+    };
+    return all;
+}
+
+const std::vector<KeyHelp>& machine_key_help() {
+    static const std::vector<KeyHelp> all = {
+        {"top of the file", "help", "what `swage machines` tells of it"},
+        {"top of the file", "moves",
+         "for bodies in motion: stages are explicit when they say no "
+         "solver"},
+        {"top of the file", "axis", "as in [[stage]], which may say otherwise"},
+        {"top of the file", "up", "as in [[stage]], which may say otherwise"},
+        {"top of the file", "parameter",
+         "sections [parameter.NAME]; NAME is then a key of stages "
+         "and a variable of expressions"},
+        {"top of the file", "tool", "what pushes"},
+        {"top of the file", "grip", "what holds"},
+        {"top of the file", "blade", "what cuts"},
+        {"top of the file", "load", "the keys of [[stage.load]], name needed"},
+        {"top of the file", "check", "what had better hold"},
+
+        {"[parameter.NAME]", "quantity", "what it is a number of", {}, "-"},
+        {"[parameter.NAME]", "default", "may use parameters above", {}, "-"},
+        {"[parameter.NAME]", "low", "the least allowed", {}, "-"},
+        {"[parameter.NAME]", "high", "the most allowed", {}, "-"},
+        {"[parameter.NAME]", "help", "what `swage machines` tells of it"},
+
+        {"[[tool]]", "name", "letters, digits and _; NAME_x, NAME_y, NAME_z are its middle"},
+        {"[[tool]]", "shape", "mesh: any closed one", {}, "-"},
+        {"[[tool]]", "radius", "of a cylinder or sphere", {}, "-"},
+        {"[[tool]]",
+         "length",
+         "of a cylinder along its axis, of a mesh along its longest side",
+         {},
+         "-"},
+        {"[[tool]]", "size", "of a box", {}, "-"},
+        {"[[tool]]", "rounding", "radius of a box's edges"},
+        {"[[tool]]", "file", "of a mesh, relative to the machine file"},
+        {"[[tool]]", "axis", "where the shape's z axis points"},
+        {"[[tool]]", "at", "its middle, from the middle of the work-piece's box", {}, "-"},
+        {"[[tool]]", "touch", "the way it is slid, from far outside, until it touches", {}, "-"},
+        {"[[tool]]", "gap", "that touch leaves"},
+        {"[[tool]]", "friction", "left out: that of what touches it"},
+        {"[[tool]]",
+         "contact_stiffness",
+         "where nothing moves and the stage does not say",
+         {},
+         "2"},
+        {"[[tool]]", "color", "red, green, blue", "[red, green, blue], each 0 to 1"},
+        {"[[tool]]", "finish", "endless: matt, and fades out into the backdrop"},
+        {"[[tool]]", "motion", "a section [tool.motion]", "section"},
+
+        {"[tool.motion]", "move", "from where it stood; may use t, 0 to 1 over the stage"},
+        {"[tool.motion]", "turn", "an angle; may use t"},
+        {"[tool.motion]", "axis", "of the turn", "[x, y, z]", "[0, 0, 1]"},
+        {"[tool.motion]", "pivot", "that the turn leaves where it is; may use t"},
+
+        {"[[grip]]", "name", "letters, digits and _"},
+        {"[[grip]]", "from", "a corner of a box; surface in it is held", {}, "-"},
+        {"[[grip]]", "to", "the opposite corner", {}, "-"},
+        {"[[grip]]",
+         "along",
+         "axes along which it holds: xyz clamps, y is a smooth plane",
+         {},
+         "\"xyz\""},
+        {"[[grip]]", "motion", "a section [grip.motion]: the keys of [tool.motion]", "section"},
+
+        {"[[blade]]", "name", "letters, digits and _"},
+        {"[[blade]]", "edge", "where it starts"},
+        {"[[blade]]", "thickness", "of what is drawn"},
+        {"[[blade]]", "motion", "a section [blade.motion]: the keys of [tool.motion]", "section"},
+
+        {"[[check]]", "holds", "a condition; may use all but t", {}, "-"},
+        {"[[check]]", "otherwise", "what the user is told where it does not hold"},
+    };
+    return all;
+}
+
+}  // namespace swage

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/key_reference.h"
+
+#include <algorithm>
+#include <map>
+
+#include "scene/key_help.h"
+#include "scene/read_inset.h"
+#include "scene/read_machine.h"
+#include "scene/read_scene.h"
+#include "scene/stage_keys.h"
+
+namespace swage {
+
+namespace {
+
+// Sections that are shown by another name; by an empty one: not shown.
+const std::map<std::string, std::string> kShown = {
+    {"the scene", ""},
+    {"the machine file", "top of the file"},
+    {"[parameter.any]", "[parameter.NAME]"},
+    {"a key of [render.camera]", "[[render.camera.keys]]"},
+    {"[grip.motion]", ""},
+    {"[blade.motion]", ""},
+    {"[[load]]", ""},
+};
+
+// A section whose keys are told by those of another.
+const std::map<std::string, std::string> kLike = {
+    {"[[body]]", "[mesh]"},
+    {"[[inset]]", "[material]"},
+    {"[[render.camera.keys]]", "[render.camera]"},
+};
+
+const KeyHelp* help_of(const std::vector<KeyHelp>& all, std::string_view section,
+                       std::string_view key) {
+    const auto at = std::find_if(all.begin(), all.end(), [&](const KeyHelp& one) {
+        return one.section == section && one.key == key;
+    });
+    return at == all.end() ? nullptr : &*at;
+}
+
+KeyReference told(const KeyForm& form, const KeyHelp* help) {
+    KeyReference key{form.key, form.takes, form.usual, ""};
+    if (help == nullptr) return key;
+    key.help = help->help;
+    if (!help->takes.empty()) key.takes = help->takes;
+    if (!help->usual.empty()) key.usual = help->usual;
+    if (key.usual == "-") key.usual.clear();
+    return key;
+}
+
+std::vector<SectionReference> reference(const Reading& reading, const std::vector<KeyHelp>& all) {
+    std::vector<SectionReference> result;
+    for (const auto& [section, forms] : reading.forms) {
+        // The machine's own parameters follow those of every stage.
+        const bool narrowed = section.starts_with("[[stage]] with");
+        std::string shown = narrowed ? "[[stage]]" : section;
+        if (const auto other = kShown.find(section); other != kShown.end()) shown = other->second;
+        if (shown.empty()) continue;
+        auto at = std::find_if(result.begin(), result.end(),
+                               [&](const SectionReference& one) { return one.section == shown; });
+        if (at == result.end()) at = result.insert(result.end(), {shown, {}});
+        const auto like = kLike.find(shown);
+        const std::vector<std::string> refused =
+            shown == "[[inset]]" ? keys_of_whole_bodies() : std::vector<std::string>{};
+        for (const KeyForm& form : forms) {
+            if (narrowed && !is_stage_key(form.key)) continue;
+            if (std::find(refused.begin(), refused.end(), form.key) != refused.end()) continue;
+            const KeyHelp* help = help_of(all, shown, form.key);
+            if (help == nullptr && like != kLike.end()) {
+                help = help_of(all, like->second, form.key);
+                // A key of [[body]] may be one of [mold] too.
+                if (help == nullptr) help = help_of(all, "[mold]", form.key);
+            }
+            at->key.push_back(told(form, help));
+        }
+    }
+    return result;
+}
+
+Document document_of(const std::string& text) {
+    Document document;
+    document.source = std::make_shared<const Source>(Source{"every key", text});
+    document.root = parse_value(text, {document.source, 1, 1});
+    return document;
+}
+
+}  // namespace
+
+std::vector<SectionReference> scene_key_reference(const AssetPaths& assets) {
+    const std::vector<MachineFile> machines = known_machines(assets);
+    const std::string machine = machines.empty() ? "none" : machines.front().name;
+    MistakeList mistakes;
+    Reading reading(mistakes);
+    reading.describes = true;
+    SceneSpec scene;
+    read_scene_document(
+        document_of("{ inset = [{}], body = [{}], stage = [{ machine = \"" + machine +
+                    "\", load = [{}] }], render = { camera = { keys = [{}] } } }"),
+        assets, reading, scene);
+    return reference(reading, scene_key_help());
+}
+
+std::vector<SectionReference> machine_key_reference() {
+    MistakeList mistakes;
+    Reading reading(mistakes);
+    reading.describes = true;
+    MachineSpec machine;
+    read_machine_document(
+        document_of("{ parameter = { any = {} }, tool = [{ shape = \"cylinder\" }, "
+                    "{ shape = \"box\" }, { shape = \"mesh\" }], grip = [{}], blade = [{}], "
+                    "load = [{}], check = [{}] }"),
+        {}, reading, machine);
+    return reference(reading, machine_key_help());
+}
+
+}  // namespace swage

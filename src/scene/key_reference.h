@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All keys of scene and machine files, as their readers ask for them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/find.h"
+
+namespace swage {
+
+struct KeyReference {
+    std::string key;
+    std::string takes;  // "length, more than 0 m"
+    std::string usual;  // when it is left out; empty: nothing is to tell
+    std::string help;   // empty: key_help.cpp does not know the key
+};
+
+struct SectionReference {
+    std::string section;  // "[mesh]", "[[stage]]"
+    std::vector<KeyReference> key;
+};
+
+// `assets`: where one machine is found.
+std::vector<SectionReference> scene_key_reference(const AssetPaths& assets);
+std::vector<SectionReference> machine_key_reference();
+
+}  // namespace swage

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "scene/key_help.h"
+#include "scene/key_reference.h"
+#include "tests/catch.h"
+#include "tests/scene/scratch.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+void check_reference(const std::vector<SectionReference>& reference,
+                     const std::vector<KeyHelp>& help) {
+    std::size_t keys = 0;
+    for (const SectionReference& section : reference) {
+        for (const KeyReference& key : section.key) {
+            INFO(section.section << " " << key.key);
+            CHECK(!key.help.empty());
+            CHECK(!key.takes.empty());
+            ++keys;
+        }
+    }
+    CHECK(keys > 40);
+    for (const KeyHelp& one : help) {
+        INFO(one.section << " " << one.key);
+        CHECK(std::any_of(reference.begin(), reference.end(), [&](const SectionReference& section) {
+            return section.section == one.section &&
+                   std::any_of(section.key.begin(), section.key.end(),
+                               [&](const KeyReference& key) { return key.key == one.key; });
+        }));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every key that a scene's readers ask for is told, and no other") {
+    check_reference(scene_key_reference(shipped()), scene_key_help());
+}
+
+TEST_CASE("every key that a machine file's reader asks for is told, and no other") {
+    check_reference(machine_key_reference(), machine_key_help());
+}
