@@ -25,8 +25,10 @@ void check_range(const std::string& machine, const ParameterSpec& parameter, dou
     const std::string range = low == -kInfinity   ? "at most " + shown(high)
                               : high == kInfinity ? "at least " + shown(low)
                                                   : shown(low) + " to " + shown(high);
-    fail(ExitCode::scene, "machine {}: {}{} = {} is out of range: it may be {}", machine,
-         is_given ? "" : "the default of ", parameter.name, shown(value), range);
+    throw ParameterError(
+        parameter.name,
+        fmt::format("machine {}: {}{} = {} is out of range: it may be {}", machine,
+                    is_given ? "" : "the default of ", parameter.name, shown(value), range));
 }
 
 }  // namespace
@@ -36,7 +38,10 @@ Variables resolve_parameters(const MachineSpec& spec, const Variables& given,
     for (const auto& [name, value] : given) {
         const bool exists = std::any_of(spec.parameter.begin(), spec.parameter.end(),
                                         [&](const auto& one) { return one.name == name; });
-        if (!exists) fail(ExitCode::scene, "machine {}: it has no parameter {}", spec.name, name);
+        if (!exists) {
+            throw ParameterError(
+                name, fmt::format("machine {}: it has no parameter {}", spec.name, name));
+        }
     }
     Variables seen = known, resolved;
     for (const ParameterSpec& parameter : spec.parameter) {

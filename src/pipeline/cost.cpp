@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "machines/machine.h"
+#include "pipeline/stage_machine.h"
 #include "sim/advance.h"
 
 namespace swage {
@@ -239,9 +240,9 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         cost.mold.bytes += static_cast<double>(matter[b].bytes());
     }
     const StageSpec& first = scene.stage.front();
-    const Machine machine =
-        build_machine(first.machine, first.parameter,
-                      place_work_frame(matter[0], first.axis, first.up), matter[0]);
+    std::vector<Material> beside;
+    for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
+    const Machine machine = stage_machine(first, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     const int sampled = std::min(first.frames, kSampledFrames);
     const long equilibria =

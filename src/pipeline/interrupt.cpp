@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cctype>
 #include <csignal>
 #include <mutex>
@@ -21,9 +20,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kPatienceMilliseconds = 1500;
+constexpr int kPatienceMilliseconds = 1500;   // until a safe point
+constexpr int kFarewellMilliseconds = 30000;  // from there, to write what is finished
 
-std::atomic<int> first_signal = 0;  // lock-free, so a handler may write it
 int wake_pipe[2] = {-1, -1};
 pid_t owner = 0;
 std::mutex unfinished_mutex;
@@ -32,13 +31,13 @@ fs::path unfinished;
 extern "C" void take_signal(int signal) {
     // A forked child has no watching thread.
     if (::getpid() != owner) ::_exit(128 + signal);
-    int none = 0;
-    first_signal.compare_exchange_strong(none, signal);
+    ask_to_stop(signal);
     const char byte = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
 }
 
-void wait_for_signal(int timeout_milliseconds) {
+// Whether one came in time.
+bool wait_for_signal(int timeout_milliseconds) {
     pollfd wait{wake_pipe[0], POLLIN, 0};
     while (::poll(&wait, 1, timeout_milliseconds) < 0) {
     }
@@ -46,17 +45,19 @@ void wait_for_signal(int timeout_milliseconds) {
     if (wait.revents != 0) {
         [[maybe_unused]] const ssize_t got = ::read(wake_pipe[0], &byte, 1);
     }
+    return wait.revents != 0;
 }
 
 void watch() {
     wait_for_signal(-1);
     log_text("stopping after the work at hand; once more to stop at once");
-    wait_for_signal(kPatienceMilliseconds);
+    const bool again = wait_for_signal(kPatienceMilliseconds);
+    if (!again && is_stopping()) wait_for_signal(kFarewellMilliseconds);
     {
         const std::lock_guard lock(unfinished_mutex);
         if (!unfinished.empty()) remove_temporaries(unfinished, ::getpid());
     }
-    ::_exit(128 + first_signal);
+    ::_exit(128 + asked_to_stop());
 }
 
 // ".frame_0001.part1234.png" of the process 1234 (see base/atomic_file.h).
@@ -82,10 +83,6 @@ void watch_for_interrupts() {
     ::sigaction(SIGINT, &action, nullptr);
     ::sigaction(SIGTERM, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write error like any other
-}
-
-void throw_if_interrupted() {
-    if (const int signal = first_signal; signal != 0) throw Interrupted(signal);
 }
 
 void set_unfinished_work(const fs::path& directory) {

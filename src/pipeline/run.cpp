@@ -39,10 +39,16 @@ void write_record(const RunDirectory& directory, Json& record, const Stopwatch& 
     write_file_whole(directory.record(), json_text(record));
 }
 
-// All stages; the motion file and run.json stand when it returns. The error, when the simulation
-// gave up on the way.
-std::optional<Error> simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                              const RunDirectory& directory, Json& record, Stopwatch& watch) {
+// What ended a simulation before its time.
+struct Ended {
+    std::optional<Error> stopped;
+    std::optional<Interrupted> interrupted;
+    bool early() const { return stopped || interrupted; }
+};
+
+// All stages; the motion file and run.json stand when it returns.
+Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
+               const RunDirectory& directory, Json& record, Stopwatch& watch) {
     make_folder(directory.root() / "meshes");
     make_folder(directory.root() / "curves");
     const bool can_plot = gnuplot_is_present();
@@ -74,27 +80,33 @@ std::optional<Error> simulate(const SceneSpec& scene, const std::vector<InputMes
 
     MotionRecorder recorder(directory.store());
     Progress progress("simulate", frame_count(scene) - 1);
-    std::optional<Error> stopped;
+    Ended ended;
     long steps = 0;
     for (const StageSpec& stage : scene.stage) {
         const StageContext context{scene, directory.root(), recorder, watch, progress, can_plot};
-        StageOutcome outcome = run_stage(stage, recorder.frame_count(), bodies, context);
-        record["stages"].push_back(outcome.record);
-        steps += outcome.steps;
-        warnings.insert(warnings.end(), outcome.warning.begin(), outcome.warning.end());
-        for (const std::string& warning : outcome.warning) log_warning("{}", warning);
-        stopped = outcome.stopped;
-        if (stopped) break;
+        try {
+            StageOutcome outcome = run_stage(stage, recorder.frame_count(), bodies, context);
+            record["stages"].push_back(outcome.record);
+            steps += outcome.steps;
+            warnings.insert(warnings.end(), outcome.warning.begin(), outcome.warning.end());
+            for (const std::string& warning : outcome.warning) log_warning("{}", warning);
+            ended = {outcome.stopped, outcome.interrupted};
+        } catch (const Error& error) {
+            // A machine that cannot be set up at what the stages before have made.
+            if (error.code() != ExitCode::scene || recorder.frame_count() == 0) throw;
+            ended.stopped = error;
+        }
+        if (ended.early()) break;
     }
     recorder.finish();
     record["frames"] = recorder.frame_count();
     record["steps"] = steps;
     record["state_hash"] = hash_text(state_hash(bodies));
     record["warnings"] = warnings;
-    record["state"] = stopped ? "stopped" : "simulated";
-    if (stopped) record["stopped"] = stopped->what();
+    record["state"] = ended.interrupted ? "interrupted" : ended.stopped ? "stopped" : "simulated";
+    if (ended.stopped) record["stopped"] = ended.stopped->what();
     write_record(directory, record, watch);
-    return stopped;
+    return ended;
 }
 
 }  // namespace
@@ -131,24 +143,29 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     if (may_be_done) refuse_early();
     throw_if_interrupted();
 
-    std::optional<Error> stopped;
+    Ended ended;
     if (simulated) {
         log_info("{}: already simulated", directory.root().string());
         outcome.record = *earlier;
     } else {
         outcome.record = begin_record(scene, options, identity, input);
-        stopped = simulate(scene, input, directory, outcome.record, watch);
+        ended = simulate(scene, input, directory, outcome.record, watch);
     }
     const int reached = outcome.record.at("frames").get<int>();
+    if (ended.interrupted) {
+        log_text(fmt::format("{} of {} frames are finished; swage render {} draws them", reached,
+                             frame_count(scene), directory.root().string()));
+        throw *ended.interrupted;
+    }
     if (options.draw && wanted.first <= reached) {
         const FrameStore store(directory.store());
         const FrameRange drawn{wanted.first, std::min(wanted.last, reached)};
         outcome.record["drawing"] =
             drawing_json(draw_run(store, scene.render, drawn, files, watch));
     }
-    if (stopped) {
+    if (ended.stopped) {
         write_record(directory, outcome.record, watch);
-        throw *stopped;
+        throw *ended.stopped;
     }
     outcome.record["state"] = "complete";
     write_record(directory, outcome.record, watch);

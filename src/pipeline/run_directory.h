@@ -27,9 +27,9 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
 
 class RunDirectory {
   public:
-    // Creates the directory, and those that it is to lie in, or enters it. Throws Error(output) when it
-    // cannot be written, Error(foreign) when it holds anything but this run, or while another
-    // process writes in it. `fresh` removes what an earlier run of swage left.
+    // Creates the directory, and those that it is to lie in, or enters it. Throws Error(output)
+    // when it cannot be written, Error(foreign) when it holds anything but this run, or while
+    // another process writes in it. `fresh` removes what an earlier run of swage left.
     RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh);
     ~RunDirectory();  // lets others in
     RunDirectory(const RunDirectory&) = delete;

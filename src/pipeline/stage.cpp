@@ -12,9 +12,9 @@
 #include "geometry/mesh_write.h"
 #include "machines/machine.h"
 #include "pipeline/curves.h"
-#include "pipeline/interrupt.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
+#include "pipeline/stage_machine.h"
 #include "sim/advance.h"
 #include "sim/own_overlap.h"
 #include "sim/sever.h"
@@ -123,7 +123,7 @@ Json energies_json(const Books& last) {
 void write_curves(const StageCurves& curves, const StageContext& context) {
     const fs::path stem = context.root / "curves" / curves.stage();
     write_file_whole(fs::path(stem) += ".csv", csv_text(curves));
-    if (context.can_plot) draw_plot(curves, fs::path(stem) += ".svg");
+    if (context.can_plot && !is_stopping()) draw_plot(curves, fs::path(stem) += ".svg");
 }
 
 // A blade that goes down and up again is followed in steps at most this long, whatever the frames:
@@ -180,11 +180,9 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     const std::size_t connections_before = connection_count(bodies);
 
     const Aggregate& work_piece = bodies.front().matter;
-    const WorkFrame frame = place_work_frame(work_piece, stage.axis, stage.up);
     std::vector<Material> beside;
     for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter.material);
-    const Machine machine =
-        build_machine(stage.machine, stage.parameter, frame, work_piece, beside);
+    const Machine machine = stage_machine(stage, work_piece, beside);
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
     const int steps = machine.apparatus.blade.empty() ? 1 : blade_steps(stage.frames);
     const std::vector<Drive> way = drives_of(machine, steps * stage.frames, duration);
@@ -210,7 +208,6 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     bool tears = false;
     FrameReport last;
     for (int n = 1; n <= stage.frames; ++n) {
-        throw_if_interrupted();
         const int number = last_frame + n;
         const std::span<const Drive> ahead = std::span(way).subspan((n - 1) * steps);
         const Drive &before = ahead.front(), &after = ahead[steps];
@@ -224,7 +221,11 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         }
         try {
             const auto lap = context.watch.lap("simulate");
+            throw_if_interrupted();
             last = simulation.advance(before, after);
+        } catch (const Interrupted& interrupted) {
+            outcome.interrupted = interrupted;
+            break;
         } catch (const Error& error) {
             if (error.code() != ExitCode::stopped) throw;
             outcome.stopped.emplace(ExitCode::stopped, fmt::format("{}, frame {}: {}", stage.name,
@@ -257,12 +258,14 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     for (std::size_t b = 0; b < bodies.size(); ++b) write_meshes(bodies[b].deformed(), meshes[b]);
     write_curves(curves, context);
     outcome.warning = warnings.told(stage.name);
-    if (!machine.apparatus.tool.empty() && !totals.touched && !outcome.stopped) {
+    const bool ended_early = outcome.stopped || outcome.interrupted;
+    if (!machine.apparatus.tool.empty() && !totals.touched && !ended_early) {
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
     }
     double overlap = 0;  // [m]
     const bool meets = stage.sim.self_contact;
-    if (stage.sim.solver == Solver::quasistatic && (last.pieces == 1 || meets)) {
+    if (stage.sim.solver == Solver::quasistatic && (last.pieces == 1 || meets) &&
+        !outcome.interrupted) {
         Aggregate& body = bodies.front().matter;
         overlap = own_overlap(body);
         if (overlap > kOverlap * body.lattice.spacing) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "base/stopwatch.h"
 #include "pipeline/json.h"
@@ -31,7 +32,9 @@ struct StageOutcome {
     Json record;  // for run.json
     long steps = 0;
     std::vector<std::string> warning;
-    std::optional<Error> stopped;  // the simulation gave up; what was reached is kept
+    // The simulation gave up, or somebody asked for it; what was reached is kept.
+    std::optional<Error> stopped;
+    std::optional<Interrupted> interrupted;
 };
 
 // `last_frame`: the number of the last frame before the stage, 0 for the first stage, which then

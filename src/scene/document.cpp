@@ -81,6 +81,10 @@ Entry* Node::find(std::string_view key) {
     return const_cast<Entry*>(static_cast<const Node*>(this)->find(key));
 }
 
+std::string place_text(const Place& place) {
+    return place_text(place.source->file, place.line, place.column);
+}
+
 Place place_inside(const Node& node, std::size_t at) {
     Place place = node.place;
     if (place.line == 0 || place.source == nullptr) return place;

@@ -47,6 +47,8 @@ struct Entry {
     Node value;
 };
 
+std::string place_text(const Place& place);  // "bend.toml:14:3"
+
 // The place of byte `at` of a text's value: inside the quotes where the file has the text letter
 // by letter, else the text's own.
 Place place_inside(const Node& text, std::size_t at);

@@ -5,10 +5,13 @@
 
 namespace swage {
 
+std::string place_text(const std::filesystem::path& file, int line, int column) {
+    return line > 0 ? fmt::format("{}:{}:{}", file.string(), line, column) : file.string();
+}
+
 std::string mistake_text(const Mistake& mistake) {
-    std::string text = mistake.file.string();
-    if (mistake.line > 0) text += fmt::format(":{}:{}", mistake.line, mistake.column);
-    return text + (mistake.warning ? ": warning: " : ": ") + mistake.text;
+    return place_text(mistake.file, mistake.line, mistake.column) +
+           (mistake.warning ? ": warning: " : ": ") + mistake.text;
 }
 
 ExitCode exit_code(const std::vector<Mistake>& mistakes) {

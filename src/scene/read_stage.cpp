@@ -144,7 +144,9 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
     for (const ParameterSpec& parameter : loaded.machine->parameter) {
         double value = std::numeric_limits<double>::quiet_NaN();
         table.quantity(parameter.name, parameter.quantity, {}, value);
-        if (!std::isnan(value)) stage.parameter[parameter.name] = value;
+        if (std::isnan(value)) continue;
+        stage.parameter[parameter.name] = value;
+        stage.parameter_place[parameter.name] = place_text(table.find(parameter.name)->place);
     }
     if (stage.parameter.empty()) return;
     const std::vector<Range> ranges = loaded.ranges->ranges(stage.parameter);
@@ -237,6 +239,8 @@ StageSpec StageReader::read(const Node& node) {
     StageSpec stage;
     std::string machine;
     const Loaded* loaded = find_machine(table, machine);
+    const Node* named = table.find("machine");
+    stage.place = place_text(named != nullptr ? named->place : table.place());
     name_stage(table, machine, stage);
     if (table.whole("frames", 1, kMostFrames, stage.frames)) {
         frames_ += stage.frames;

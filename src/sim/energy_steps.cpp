@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "geometry/box.h"
 #include "sim/vector_sums.h"
 
@@ -292,6 +293,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
         if (mover_[b].step == 0) mover_[b].budget = std::max(held[n].sum(), 0.0);
     }
     for (Drive begin = from; begin.time < to.time;) {
+        throw_if_interrupted();
         const double left = to.time - begin.time, step = step_to_try(group, left);
         const double end = begin.time + step;
         const Drive now = step >= left || end >= to.time

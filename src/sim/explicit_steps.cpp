@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -217,6 +218,7 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
     Drive before = begin;
     for (MovingBody& body : body_) body.set_implicit(is_implicit());
     for (long n = 1; n <= count; ++n) {
+        throw_if_interrupted();
         const double time = n == count ? end : begin.time + double(n) * dt;
         const Drive now =
             time >= way.to.time ? way.to : drive_between(way.from, way.to, way.at(time));

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "base/interrupt.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -88,6 +89,7 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
     if (!(size > 0)) return false;
     search_ = better_;
     for (int n = 1; n <= kMostIterations; ++n) {
+        throw_if_interrupted();
         product(matter, problem, {Flow::trial, 1.0}, search_, image_);
         const double curvature = dot(search_, image_);
         if (!(curvature > 0)) {

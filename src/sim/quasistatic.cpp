@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "sim/cell_volume.h"
 #include "sim/crushed_cells.h"
 #include "sim/fire_schedule.h"
@@ -192,6 +193,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     Patience patience(settings_.iteration_limit, x);
     const int turn = settings_.iteration_limit / int(std::size(kGain));
     for (int iteration = 1; iteration <= patience.limit; ++iteration) {
+        throw_if_interrupted();
         result.iterations = iteration;
         if (iteration % turn == 1) coarse_.limit_gain(kGain[iteration / turn % std::size(kGain)]);
         patience.watch(iteration, x, a, result.residual);

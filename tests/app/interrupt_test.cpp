@@ -4,11 +4,13 @@
 #include <chrono>
 #include <thread>
 
+#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 
 namespace fs = std::filesystem;
+using swage::Json;
 using Clock = std::chrono::steady_clock;
 
 namespace {
@@ -54,6 +56,32 @@ TEST_CASE("a run that is asked to stop leaves only whole files within two second
     CHECK(outcome.code == 128 + signal);
     check_only_whole_files(run);
     CHECK_FALSE(fs::exists(run / "film.mp4"));
+}
+
+TEST_CASE("frames that were finished before a run was asked to stop can be drawn") {
+    const Scratch scratch;
+    const fs::path scene =
+        put_small_scene(scratch.path(), 5000, "[output]\nmeshes_per_frame = true\n");
+    const fs::path run = scratch.path() / "run";
+    RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path());
+    REQUIRE(wait_for(run / "meshes/1-bend/frame_0004.obj", running));
+    running.signal(SIGINT);
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    CHECK(outcome.code == 128 + SIGINT);
+    CHECK(outcome.err.find("frames are finished") != std::string::npos);
+    check_only_whole_files(run);
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(record["state"] == "interrupted");
+    CHECK(record["frames"] >= 4);
+    CHECK(record["frames"] < 5001);
+    CHECK(fs::exists(run / "curves/1-bend.csv"));
+    const fs::path drawn = scratch.path() / "drawn";
+    const Outcome render =
+        run_swage({"render", run.string(), "--frames", "3-4", "--out", drawn.string()});
+    INFO(render.err);
+    CHECK(render.code == 0);
+    CHECK(fs::exists(drawn / "frames/frame_0004.png"));
 }
 
 TEST_CASE("a second run in the same directory is refused while the first goes on") {

@@ -258,3 +258,20 @@ TEST_CASE("a blade severs a body that comes under it when another has been cut")
     CHECK(stage.at("severed") > 40);  // 33 in the first
     CHECK(stage.at("pieces") == 3);
 }
+
+TEST_CASE("a later machine that cannot be set up leaves what was done, and is told at its place") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 2,
+                                           "[[stage]]\nmachine = \"bend\"\nframes = 2\n"
+                                           "radius = \"1 um\"\n");
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome = run_swage({"run", scene.string(), "--out", run.string()});
+    INFO(outcome.err);
+    CHECK(outcome.code == 3);
+    CHECK(outcome.err.find("small.toml:16:10: machine bend: radius = 1 um is out of range") !=
+          std::string::npos);
+    CHECK(fs::exists(run / "frames/frame_0003.png"));
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(record["state"] == "stopped");
+    CHECK(record["frames"] == 3);
+}

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "machines/machine.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+// A stage's machine, set up at the work-piece as it is now. `beside`: the materials of the other
+// bodies. Throws as build_machine does, with the place in the scene before the sentence.
+Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
+                      const std::vector<Material>& beside);
+
+}  // namespace swage
