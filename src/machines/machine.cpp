@@ -12,6 +12,7 @@
 #include "machines/parameters.h"
 #include "machines/region.h"
 #include "machines/touch.h"
+#include "matter/touch_points.h"
 
 namespace swage {
 
@@ -31,6 +32,7 @@ struct Setting {  // what every part of a machine is set up in
     const WorkFrame& frame;
     double spacing;
     std::vector<Vec3> point;                // the body's surface, in the work frame
+    std::vector<Vec3> touch;                // what of it meets tools
     Variables known;                        // grows with each tool
     std::vector<Variables> known_beside{};  // to the bodies beside it: what differs
 };
@@ -110,7 +112,7 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     if (touch.norm() > 0) {
         const Vec3 direction = touch.normalized();
         const std::optional<double> shift =
-            slide_to_touch(tool.shape, work_from_tool, direction, setting.point,
+            slide_to_touch(tool.shape, work_from_tool, direction, setting.touch,
                            evaluate(spec.gap, setting.known));
         if (!shift) {
             refuse(setting, fmt::format("tool {} can never touch the work-piece: it passes by. "
@@ -119,7 +121,7 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
         }
         work_from_tool.translation += *shift * direction;
     } else {
-        const double nearest = nearest_distance(tool.shape, work_from_tool, setting.point);
+        const double nearest = nearest_distance(tool.shape, work_from_tool, setting.touch);
         if (nearest < -kDeepStart * setting.spacing) {
             machine.notes.push_back(fmt::format("tool {} starts {} deep in the work-piece",
                                                 spec.name,
@@ -258,9 +260,15 @@ std::vector<Pose> placed(const Pose& world_from_work, const std::vector<Pose>& w
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
                       const WorkFrame& frame, const Aggregate& matter,
                       const std::vector<Material>& beside) try {
-    Setting setting{spec, frame, matter.lattice.spacing, {}, {}};
+    Setting setting{spec, frame, matter.lattice.spacing, {}, {}, {}};
     const Pose work_from_world = frame.world_from_work.inverse();
     for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
+    const TouchPoints touch(matter, TouchPoints::With::tools);
+    for (int p = 0; p < int(touch.size()); ++p) {
+        if (!touch.meets(p)) continue;
+        setting.touch.push_back(work_from_world *
+                                place_of(touch.points(), p, matter.particle_position));
+    }
     setting.known = {{"length", frame.size.x()},
                      {"height", frame.size.y()},
                      {"width", frame.size.z()},

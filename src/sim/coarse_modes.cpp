@@ -191,9 +191,9 @@ Eigen::MatrixXd CoarseModes::restricted_points(const Aggregate& matter,
     for (const HeldPoint& h : held) {
         Vector share = Vector::Zero(count);
         for (int c = 0; c < 8; ++c) {
-            const double carried = matter.surface.weight[h.point][c];
+            const double carried = h.weight[c];
             const Vec3 site =
-                (matter.particle_reference.at(matter.surface.corner[h.point][c]) - lattice.origin) /
+                (matter.particle_reference.at(h.corner[c]) - lattice.origin) /
                 lattice.spacing;
             Vec3i node;
             Vec3 at;

@@ -31,7 +31,10 @@ struct ContactSet::Meeting {
 
 void ContactSet::begin_step(const Drive& from) {
     world_from_tool_at_start_ = from.world_from_tool;
-    for (Pair& pair : pair_) pair.last = pair.next;
+    for (Pair& pair : pair_) {
+        pair.last = pair.next;
+        if (pair.gone) pair.next.friction = 0;  // taken by the step before
+    }
 }
 
 std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matter,
@@ -43,13 +46,15 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
         const std::size_t end = std::min(pair_.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n) {
             Pair& pair = pair_[n];
+            if (pair.gone) continue;
             const Tool& tool = apparatus_->tool[pair.tool];
             const Pose& pose = now.world_from_tool[pair.tool];
-            const Vec3 x = matter.surface_position(pair.point);
+            const Vec3 x = place_of(points(), pair.point, matter.particle_position);
             const Touch found = pair.next;
             pair.next = {.local = tool_from_world[pair.tool] * x};
-            const double hold = stickiness_ * matter.surface.area[pair.point];
-            const Distance d = distance_to(tool.shape, pair.next.local);
+            const double hold = stickiness_ * points().area[pair.point];
+            Distance d = distance_to(tool.shape, pair.next.local);
+            d.value += pair.deep;
             if (d.value >= 0 && !(pair.history.touches && hold > 0)) continue;
             Meeting m;
             m.pair = n;
@@ -59,8 +64,7 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             m.place = x;
             m.normal = pose.turn(d.normal);
             m.law = law_;
-            m.law.stiffness =
-                point_stiffness(matter, pair.point, settings_.stiffness_of_contacts());
+            m.law.stiffness = pair_stiffness(pair);
             const double friction = tool.friction_on(body_);
             m.law.friction = friction;
             m.law.holding = friction == law_.friction ? holding_ : ratio_ * friction;
@@ -88,7 +92,7 @@ void ContactSet::hold_by_grips(const Aggregate& matter, const Drive& now, Vec3Ar
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             const Vec3 f = grip_force(matter, now, g, n);
             const Vec3 x = matter.surface_position(grip.point[n]);
-            const double k = point_stiffness(matter, grip.point[n], settings_.grip_stiffness);
+            const double k = grip_stiffness(matter, grip.point[n]);
             spread(matter.surface, grip.point[n], f, force);
             sum.force += f;
             sum.torque += (x - now.world_from_grip[g].translation).cross(f);
@@ -118,13 +122,14 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
     std::vector<Meeting> meeting = find_meetings(matter, now, anew);
     if (meeting.empty()) return;
     const double step = last_step_;
-    const SurfacePoints& surface = matter.surface;
+    const SurfacePoints& surface = points();
     bears_.resize(matter.particle_count(), 0.0);
     for (const Meeting& m : meeting) {
         const int point = pair_[m.pair].point;
         spread(surface, point, m.spring, force);
         for (int c = 0; c < 8; ++c) {
-            bears_[surface.corner[point][c]] += std::abs(surface.weight[point][c]);
+            bears_[surface.corner[point][c]] +=
+                std::abs(surface.weight[point][c]) * m.law.stiffness;
         }
     }
     parallel_for((meeting.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
@@ -143,6 +148,7 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
                 push += lightness * force.at(p);
                 give += std::abs(lightness) * bears_[p];
             }
+            give /= m.law.stiffness;
             if (way_step_ > 0) {
                 const ToolWay& way = tool_way_[pair.tool];
                 v -= (way.to * pair.next.local - way.from * pair.next.local) / way_step_;
@@ -173,6 +179,7 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
         next.bond = f.bond;
         next.stiffness = m.law.stiffness;
         next.friction = f.friction;
+        next.stored = f.stored;
         next.history = f.history;
         next.anchor = pose.inverse() * (m.place + f.reach);
         motion_energy_ += f.stored;
@@ -201,10 +208,14 @@ ToolLosses ContactSet::commit_motion(const Drive& now) {
                     parting_loss(last.stiffness, last.bond, way / last_step_, last_step_);
             }
         }
+        // What its spring held when its cell broke.
+        if (pair.gone) lost.damped += next.stored;
+        come_out(pair, next.local);
         pair.history = next.history;
         pair.anchor = next.anchor;
         pair.stuck = next.history.touches;
     }
+    forget_gone();
     return lost;
 }
 

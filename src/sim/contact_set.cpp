@@ -54,42 +54,68 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       settings_(settings),
       spacing_(matter.lattice.spacing),
       young_modulus_(matter.material.young_modulus),
-      point_modulus_(surface_moduli(matter, matter.surface)),
+      grip_modulus_(surface_moduli(matter, matter.surface)),
       law_(law_on_tools(matter.material)),
       holding_(matter.material.holding_friction()),
       ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
       stickiness_(matter.material.stickiness),
       tool_way_(apparatus.tool.size()),
-      motion_load_(apparatus.tool.size() + apparatus.grip.size()) {}
-
-double ContactSet::pair_stiffness(const Aggregate& matter, const Pair& pair) const {
-    const double tool_says = apparatus_->tool[pair.tool].contact_stiffness;
-    return point_stiffness(matter, pair.point, settings_.stiffness_of_contacts(tool_says));
+      motion_load_(apparatus.tool.size() + apparatus.grip.size()) {
+    if (apparatus.tool.empty()) return;
+    touch_ = std::make_shared<TouchPoints>(matter, TouchPoints::With::tools);
+    point_modulus_ = surface_moduli(matter, points());
 }
 
-double ContactSet::point_stiffness(const Aggregate& matter, int point, double factor) const {
-    const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[point];
-    const double k = factor * modulus * matter.surface.area[point] / spacing_;
-    return stiffness_limit_.empty() ? k : std::min(k, stiffness_limit_[point]);
+double ContactSet::pair_stiffness(const Pair& pair) const {
+    const double tool_says = apparatus_->tool[pair.tool].contact_stiffness;
+    const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[pair.point];
+    const double k =
+        settings_.stiffness_of_contacts(tool_says) * modulus * points().area[pair.point] / spacing_;
+    return stiffness_limit_.empty() ? k : std::min(k, stiffness_limit_[pair.point]);
+}
+
+double ContactSet::grip_stiffness(const Aggregate& matter, int point) const {
+    const double modulus = grip_modulus_.empty() ? young_modulus_ : grip_modulus_[point];
+    const double k = settings_.grip_stiffness * modulus * matter.surface.area[point] / spacing_;
+    return grip_limit_.empty() ? k : std::min(k, grip_limit_[point]);
 }
 
 void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
-    stiffness_limit_.resize(matter.surface.size());
-    for (std::size_t p = 0; p < stiffness_limit_.size(); ++p) {
-        stiffness_limit_[p] = 0.25 * lightest_carrier(matter, p) / (step * step);
+    const auto limits = [&](const SurfacePoints& surface, double share) {
+        std::vector<double> limit;
+        for (std::size_t p = 0; p < surface.size(); ++p) {
+            limit.push_back(share * lightest_carrier(matter, surface, p) / (step * step));
+        }
+        return limit;
+    };
+    grip_limit_ = limits(matter.surface, 0.25);
+    if (touch_ != nullptr) stiffness_limit_ = limits(points(), 0.125);
+    limit_step_ = last_step_ = step;
+}
+
+void ContactSet::connections_changed(const Aggregate& matter) {
+    if (touch_ == nullptr) return;
+    if (touch_.use_count() > 1) touch_ = std::make_shared<TouchPoints>(*touch_);  // saved states'
+    const std::size_t before = touch_->size();
+    touch_->connections_changed(matter);
+    for (Pair& pair : pair_) pair.gone = pair.gone || !touch_->meets(pair.point);
+    if (touch_->size() == before) return;
+    point_modulus_ = surface_moduli(matter, points());
+    if (!stiffness_limit_.empty()) limit_stiffness(matter, limit_step_);
+    for (std::size_t p = start_position_.size(); p < points().size(); ++p) {
+        start_position_.push_back(place_of(points(), int(p), matter.particle_position));
     }
-    last_step_ = step;
 }
 
 void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
     tool_from_world_at_start_.clear();
     if (apparatus_->tool.empty()) return;
-    start_position_.resize(matter.surface.size());
+    start_position_.resize(points().size());
     const std::size_t chunks = (start_position_.size() + kPointsPerChunk - 1) / kPointsPerChunk;
     parallel_for(chunks, [&](std::size_t chunk) {
         const std::size_t end = std::min(start_position_.size(), (chunk + 1) * kPointsPerChunk);
         for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
-            start_position_[p] = matter.surface_position(p);
+            start_position_[p] = place_of(points(), int(p), matter.particle_position);
         }
     });
     for (const Pose& pose : from.world_from_tool)
@@ -97,8 +123,9 @@ void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
 }
 
 void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
-    const std::size_t points = matter.surface.size();
-    const std::size_t chunks = (points + kPointsPerChunk - 1) / kPointsPerChunk;
+    if (touch_ == nullptr) return;
+    const std::size_t count = points().size();
+    const std::size_t chunks = (count + kPointsPerChunk - 1) / kPointsPerChunk;
     std::vector<Pair> found;
     std::vector<double> clearances;
     const auto keep = [&](const Pair& pair) {
@@ -114,13 +141,15 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
         reach.high.array() += spacing_;
         struct Near {
             int point;
-            double clearance;
+            double clearance, distance;
         };
         std::vector<std::vector<Near>> near(chunks);
         parallel_for(chunks, [&](std::size_t chunk) {
-            const std::size_t end = std::min(points, (chunk + 1) * kPointsPerChunk);
+            const std::size_t end = std::min(count, (chunk + 1) * kPointsPerChunk);
             for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
-                const Vec3 local = tool_from_world * matter.surface_position(p);
+                if (!touch_->meets(int(p))) continue;
+                const Vec3 local =
+                    tool_from_world * place_of(points(), int(p), matter.particle_position);
                 if ((local.array() < reach.low.array()).any() ||
                     (local.array() > reach.high.array()).any()) {
                     continue;
@@ -128,14 +157,15 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                 const double distance = distance_to(tool.shape, local).value;
                 if (distance >= spacing_) continue;
                 double carried = 0;  // at most, of how far its particles move
-                for (float w : matter.surface.weight[p]) carried += std::abs(w);
-                near[chunk].push_back(
-                    {static_cast<int>(p), kSureShare * distance / (std::sqrt(3.0) * carried)});
+                for (float w : points().weight[p]) carried += std::abs(w);
+                near[chunk].push_back({static_cast<int>(p),
+                                       kSureShare * distance / (std::sqrt(3.0) * carried),
+                                       distance});
             }
         });
         const int tool_id = static_cast<int>(t);
         for (const std::vector<Near>& part : near) {
-            for (const auto& [p, clearance] : part) {
+            for (const auto& [p, clearance, distance] : part) {
                 for (;
                      old != pair_.end() && std::pair(old->tool, old->point) < std::pair(tool_id, p);
                      ++old) {
@@ -145,8 +175,11 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                 if (old != pair_.end() && old->tool == tool_id && old->point == p) {
                     found.push_back(*old++);
                 } else {
-                    found.push_back({tool_id, p, false, Vec3::Zero()});
-                    found.back().next.local = tool_from_world * matter.surface_position(p);
+                    Pair& pair = found.emplace_back(Pair{tool_id, p, false, Vec3::Zero()});
+                    const bool is_new_surface = static_cast<std::size_t>(p) >= touch_->own();
+                    if (is_new_surface) pair.deep = std::max(0.0, -distance);
+                    pair.next.local =
+                        tool_from_world * place_of(points(), p, matter.particle_position);
                 }
             }
         }
@@ -159,20 +192,18 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
 }
 
 void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
-    const SurfacePoints& surface = matter.surface;
-    const auto add = [&](int point, double k) {
+    const auto add = [&](const SurfacePoints& surface, int point, double k) {
         for (int c = 0; c < 8; ++c) {
             stiffness[surface.corner[point][c]] += std::abs(surface.weight[point][c]) * k;
         }
     };
     // Normal and tangential stiffness are equal, so each point pulls with k in every direction.
-    for (const Pair& pair : pair_) {
-        add(pair.point, pair_stiffness(matter, pair));
-    }
+    for (const Pair& pair : pair_) add(points(), pair.point, pair_stiffness(pair));
+
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
         for (int point : apparatus_->grip[g].point) {
-            add(point, point_stiffness(matter, point, settings_.grip_stiffness));
+            add(matter.surface, point, grip_stiffness(matter, point));
         }
     }
 }
@@ -183,7 +214,8 @@ std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Dr
         matter, now,
         [&](std::size_t n, const Vec3&, const Distance& d, double k, const ContactForce& contact) {
             const Mat3 across = d.normal * d.normal.transpose();
-            held.push_back({pair_[n].point, k * (contact.slips ? across : Mat3(Mat3::Identity()))});
+            held.push_back(held_point(points(), pair_[n].point,
+                                      k * (contact.slips ? across : Mat3(Mat3::Identity()))));
         });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
@@ -191,8 +223,7 @@ std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Dr
         const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
         const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
         for (int point : grip.point) {
-            held.push_back(
-                {point, point_stiffness(matter, point, settings_.grip_stiffness) * hold});
+            held.push_back(held_point(matter.surface, point, grip_stiffness(matter, point) * hold));
         }
     }
     return held;
@@ -202,7 +233,7 @@ Vec3 ContactSet::grip_force(const Aggregate& matter, const Drive& now, std::size
                             std::size_t n) const {
     const Grip& grip = apparatus_->grip[g];
     const Pose& pose = now.world_from_grip[g];
-    const double k = point_stiffness(matter, grip.point[n], settings_.grip_stiffness);
+    const double k = grip_stiffness(matter, grip.point[n]);
     const Vec3 x = matter.surface_position(grip.point[n]);
     if (grip.hold == Vec3::Ones()) return k * (pose * grip.anchor[n] - x);
     return pose.turn(k * grip.hold.cwiseProduct(grip.anchor[n] - pose.inverse() * x));
@@ -219,15 +250,16 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
     std::vector<Pose> tool_from_world;
     for (const Pose& pose : now.world_from_tool) tool_from_world.push_back(pose.inverse());
     for (std::size_t n = 0; n < pair_.size(); ++n) {
-        if (clearance_[n] > moved) continue;
         const Pair& pair = pair_[n];
+        if (clearance_[n] > moved || pair.gone) continue;
         const Tool& tool = apparatus_->tool[pair.tool];
         const Pose& pose = now.world_from_tool[pair.tool];
-        const Vec3 x = matter.surface_position(pair.point);
+        const Vec3 x = place_of(points(), pair.point, matter.particle_position);
         Distance d = distance_to(tool.shape, tool_from_world[pair.tool] * x);
+        d.value += pair.deep;
         if (d.value >= 0) continue;
         d.normal = pose.turn(d.normal);
-        const double k = pair_stiffness(matter, pair);
+        const double k = pair_stiffness(pair);
         act(n, x, d, k,
             contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k,
                           tool.friction_on(body_)));
@@ -236,18 +268,17 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
 
 void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force,
                             double moved) const {
-    const auto push = [&](int point, const Vec3& f) { spread(matter.surface, point, f, force); };
     for_each_touch(
         matter, now,
         [&](std::size_t n, const Vec3&, const Distance&, double, const ContactForce& contact) {
-            push(pair_[n].point, contact.force);
+            spread(points(), pair_[n].point, contact.force, force);
         },
         moved);
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            push(grip.point[n], grip_force(matter, now, g, n));
+            spread(matter.surface, grip.point[n], grip_force(matter, now, g, n), force);
         }
     }
 }
@@ -294,7 +325,7 @@ double ContactSet::stored_energy(const Aggregate& matter, const Drive& now) cons
         if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const double k = point_stiffness(matter, grip.point[n], settings_.grip_stiffness);
+            const double k = grip_stiffness(matter, grip.point[n]);
             sum += 0.5 * grip_force(matter, now, g, n).squaredNorm() / k;
         }
     }
@@ -323,14 +354,32 @@ double ContactSet::commit(const Aggregate& matter, const Drive& now) {
     // Explicit steps that may follow find what rests.
     for (std::size_t n = 0; n < pair_.size(); ++n) {
         Pair& pair = pair_[n];
-        const Vec3 x = matter.surface_position(pair.point);
+        const Vec3 x = place_of(points(), pair.point, matter.particle_position);
+        const Vec3 local = now.world_from_tool[pair.tool].inverse() * x;
+        come_out(pair, local);
         pair.stuck = touches[n];
         pair.history = {.touches = pair.stuck, .rests = pair.stuck};
-        pair.next = {.local = now.world_from_tool[pair.tool].inverse() * x,
-                     .history = pair.history,
-                     .anchor = pair.anchor};
+        pair.next = {.local = local, .history = pair.history, .anchor = pair.anchor};
     }
+    forget_gone();
     return lost;
+}
+
+void ContactSet::come_out(Pair& pair, const Vec3& local) const {
+    if (pair.deep == 0) return;
+    const double depth = -distance_to(apparatus_->tool[pair.tool].shape, local).value;
+    pair.deep = std::clamp(depth, 0.0, pair.deep);
+}
+
+void ContactSet::forget_gone() {
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < pair_.size(); ++n) {
+        if (pair_[n].gone) continue;
+        clearance_[kept] = clearance_[n];
+        pair_[kept++] = pair_[n];
+    }
+    clearance_.resize(kept);
+    pair_.erase(pair_.begin() + std::ptrdiff_t(kept), pair_.end());
 }
 
 double ContactSet::travel(const Aggregate& matter, const Drive& from, const Drive& to) const {
@@ -343,8 +392,9 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
             continue;
         }
         const Pose tool_from_world = from.world_from_tool[t].inverse();
-        for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-            const Vec3 x = matter.surface_position(p);
+        for (std::size_t p = 0; p < points().size(); ++p) {
+            if (!touch_->meets(int(p))) continue;
+            const Vec3 x = place_of(points(), int(p), matter.particle_position);
             const Vec3 local = tool_from_world * x;
             if (distance_to(tool.shape, local).value > most + 2 * spacing_) continue;
             farthest = std::max(farthest, (to.world_from_tool[t] * local - x).norm());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of the body's true surface against tools and in grips. Forces act on the particles that
-// carry a point, with the point's own weights, so that force and moment are kept exactly.
+// Points of the body's true surface against tools (matter/touch_points.h) and in grips. Forces act
+// on the particles that carry a point, with the point's own weights, so that force and moment are
+// kept exactly.
 //
 // Equilibria, and the implicit step, which has no use for rates, take the law of laws/contact.h.
 // Explicit steps take that of laws/impact.h, the tool rigid and as heavy as can be: a step first
@@ -8,22 +9,26 @@
 // end the step with. Were dashpots taken one after the other, those of what rests would bear
 // against each other, and the first would slip before the last. Points share carriers, so that the
 // dashpots together would overshoot; each is therefore taken as if all that touch worked as it
-// does:
+// does, in proportion to their stiffness:
 //
-//     S_i = sum_p w_ip sum_j w_jp / m_p,   P_i = c_i dt v_i / (1 + c_i dt S_i)
+//     S_i = sum_p |w_ip| sum_j |w_jp| k_j / (m_p k_i),   P_i = c_i dt v_i / (1 + c_i dt S_i)
 //
-// No row of the matrix from the impulses P to what they change of v sums up to more than S, so its
-// product with c dt / (1 + c dt S) has eigenvalues from 0 to 1: dashpots never turn a speed round,
-// and only widen the bound of the step, as laws/impact.h says.
+// With P = D v they change v by -A D v; A is symmetric and not negative, D diagonal and D_i at most
+// 1 / S_i = k_i / (|A| k)_i. The eigenvalues of A D, those of D^1/2 A D^1/2, grow with D, and with
+// the largest one are those of A_ij k_j / (|A| k)_i, none of whose rows sums up to more than 1. So
+// they lie from 0 to 1: dashpots never turn a speed round, and only widen the bound of the step, as
+// laws/impact.h says.
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "laws/impact.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "matter/touch_points.h"
 #include "sim/held_point.h"
 #include "sim/settings.h"
 
@@ -52,9 +57,14 @@ class ContactSet {
     ContactSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
                int body = 0);
 
-    // Explicit steps of this length [s] must stay stable: no point is stiffer than a quarter of
-    // what its lightest carrier can follow.
+    // Explicit steps of this length [s] must stay stable: no point that touches is stiffer than an
+    // eighth of what its lightest carrier can follow, and none that is gripped than a quarter.
     void limit_stiffness(const Aggregate& matter, double step);
+
+    // A blade or a crack has changed which cells are whole. New surface that finds itself inside a
+    // tool without having gone there is only kept from going deeper. Candidates are to be found
+    // anew.
+    void connections_changed(const Aggregate& matter);
 
     // A move of the drive begins; points touched anew stick where they are now.
     void begin_move(const Aggregate& matter, const Drive& from);
@@ -119,6 +129,7 @@ class ContactSet {
         Vec3 bond = Vec3::Zero();     // ImpactForce::bond [N]
         double stiffness = 0;         // [N/m]
         double friction = 0;          // taken in the step [J]
+        double stored = 0;            // in its spring [J]
         ImpactHistory history{};      // to commit
         Vec3 anchor = Vec3::Zero();   // likewise, in the tool's frame
     };
@@ -127,6 +138,8 @@ class ContactSet {
         bool stuck;   // has a committed anchor
         Vec3 anchor;  // in the tool's frame
         ImpactHistory history{};
+        double deep = 0;       // new surface came to be this deep, and goes no deeper [m]
+        bool gone = false;     // its cell is no longer whole; until the step is kept
         Touch last{}, next{};  // before the present step and after it
     };
     // How a tool went in the last step.
@@ -137,8 +150,9 @@ class ContactSet {
     std::vector<Meeting> find_meetings(const Aggregate& matter, const Drive& now, bool anew);
     void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
               Vec3Array& force);
-    double point_stiffness(const Aggregate& matter, int point, double factor) const;  // [N/m]
-    double pair_stiffness(const Aggregate& matter, const Pair& pair) const;
+    double grip_stiffness(const Aggregate& matter, int point) const;  // [N/m]
+    double pair_stiffness(const Pair& pair) const;
+    const SurfacePoints& points() const { return touch_->points(); }
     // That grip g exerts on its point n [N].
     Vec3 grip_force(const Aggregate& matter, const Drive& now, std::size_t g, std::size_t n) const;
     Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame
@@ -148,17 +162,22 @@ class ContactSet {
                         double moved = kAnywhere) const;
 
     bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
+    void come_out(Pair& pair, const Vec3& local) const;
+    void forget_gone();
     void hold_by_grips(const Aggregate& matter, const Drive& now, Vec3Array& force);
 
     const Apparatus* apparatus_;
     int body_;
     SimSettings settings_;
     double spacing_, young_modulus_;
-    std::vector<double> point_modulus_;    // of bodies of several materials [Pa]
-    std::vector<double> stiffness_limit_;  // one a point [N/m]; empty: none
-    std::vector<Pair> pair_;               // sorted by tool, then point
-    std::vector<double> clearance_;        // by pair: it cannot touch while particles move by less
-    std::vector<Vec3> start_position_;     // of every surface point when the move began
+    std::shared_ptr<TouchPoints> touch_;  // null where there is no tool; copied on change
+    // Of bodies of several materials [Pa], and limits [N/m]: of each of those points, and of each
+    // of the surface's, which grips hold; empty: none.
+    std::vector<double> point_modulus_, grip_modulus_, stiffness_limit_, grip_limit_;
+    double limit_step_ = 0;             // [s]
+    std::vector<Pair> pair_;            // sorted by tool, then point
+    std::vector<double> clearance_;     // by pair: it cannot touch while particles move by less
+    std::vector<Vec3> start_position_;  // of every surface point when the move began
     std::vector<Pose> tool_from_world_at_start_;
 
     // Of explicit steps.
@@ -170,7 +189,8 @@ class ContactSet {
     double way_step_ = 0;   // that tool_way_ took; 0: none yet [s]
     std::vector<ToolWay> tool_way_;
     std::vector<Pose> world_from_tool_at_start_;
-    std::vector<double> bears_;  // of each particle, the shares of points that touch; 0 between
+    // Of each particle, what points that touch have of stiffness on it [N/m]; 0 between.
+    std::vector<double> bears_;
     std::vector<LoadSum> motion_load_;
     double motion_energy_ = 0;
 };

@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include "base/parallel.h"
-#include "sim/edge_points.h"
 
 namespace swage {
 
@@ -31,18 +30,20 @@ ContactSide::ContactSide(Aggregate& matter, bool itself)
     : matter_(&matter),
       patch_(matter),
       itself_(itself),
-      own_(matter.surface),
+      touch_(matter, TouchPoints::With::bodies),
       molded_(std::make_shared<const RestSurface>(matter.lattice, matter.surface)) {
-    add_edge_points(matter.lattice, own_);
-    connections_changed();
+    find_cells();
 }
 
 void ContactSide::connections_changed() {
-    find_whole();
-    find_points();
+    touch_.connections_changed(*matter_);
+    find_cells();
+}
+
+void ContactSide::find_cells() {
     rim_ = molded_->skin();
-    if (points_.size() > own_points()) {
-        cut_ = std::make_shared<const CutSurface>(matter_->lattice, whole_);
+    if (touch_.size() > touch_.own()) {
+        cut_ = std::make_shared<const CutSurface>(matter_->lattice, touch_.whole());
         std::vector<CellId> both;
         std::set_union(rim_.begin(), rim_.end(), cut_->skin().begin(), cut_->skin().end(),
                        std::back_inserter(both));
@@ -90,76 +91,14 @@ RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
     return own.distance > face.distance ? own : face;
 }
 
-void ContactSide::find_whole() {
-    const Aggregate& matter = *matter_;
-    whole_.assign(matter.cell_fill.size(), 0);
-    for (const CellRun& run : matter.lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
-            whole_[run.first + n] = cell_is_whole(matter, row);
-        }
-    }
-}
-
-void ContactSide::find_points() {
-    const Lattice& lattice = matter_->lattice;
-    const double a = lattice.spacing;
-    points_ = own_;
-    home_.clear();
-    meets_.assign(points_.size(), 1);
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-        const Vec3 inner = (points_.reference_position[p] - lattice.origin) / a -
-                           1e-3 * points_.reference_normal[p];
-        home_.push_back(inner.array().floor().cast<int>());
-    }
-    if (std::find(whole_.begin(), whole_.end(), 0) == whole_.end()) return;
-    std::vector<CellId> by_low_corner(matter_->particle_count(), -1);
-    for (const CellRun& run : lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) by_low_corner[run.row[0] + n] = run.first + n;
-    }
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-        meets_[p] = whole_[by_low_corner[points_.corner[p][0]]];
-    }
-    for (const CellRun& run : lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            const CellId cell = run.first + n;
-            if (!whole_[cell]) continue;
-            const Vec3i site(run.i + n, run.j, run.k);
-            for (int face = 0; face < 6; ++face) {
-                const int axis = face >> 1, side = face & 1;
-                const Vec3i out = (side ? 1 : -1) * Vec3i::Unit(axis);
-                const Vec3i next = site + out;
-                const CellId other = lattice.cell_at(next.x(), next.y(), next.z());
-                if (other < 0 || whole_[other]) continue;
-                Vec3 place = Vec3::Constant(0.5);
-                place[axis] += out[axis];
-                std::array<float, 8> weight;
-                for (int c = 0; c < 8; ++c) {
-                    double w = 1;
-                    for (int d = 0; d < 3; ++d) w *= c >> d & 1 ? place[d] : 1 - place[d];
-                    weight[c] = static_cast<float>(w);
-                }
-                points_.corner.push_back(lattice.cell_corners(cell));
-                points_.weight.push_back(weight);
-                points_.area.push_back(a * a);
-                points_.reference_position.push_back(lattice.origin +
-                                                     a * (site.cast<double>() + place));
-                points_.reference_normal.push_back(out.cast<double>());
-                home_.push_back(site);
-                meets_.push_back(1);
-            }
-        }
-    }
-}
-
 // Floods from each home through whole cells, within its box.
 void ContactSide::find_near() {
     const Lattice& lattice = matter_->lattice;
-    near_set_.assign(home_.size(), -1);
+    const std::vector<Vec3i>& home_of = touch_.home();
+    near_set_.assign(home_of.size(), -1);
     std::vector<Vec3i> home;  // of points that follow one another and share it
-    for (std::size_t p = 0; p < home_.size(); ++p) {
-        if (p == 0 || home_[p] != home_[p - 1]) home.push_back(home_[p]);
+    for (std::size_t p = 0; p < home_of.size(); ++p) {
+        if (p == 0 || home_of[p] != home_of[p - 1]) home.push_back(home_of[p]);
         near_set_[p] = static_cast<int>(home.size()) - 1;
     }
     near_.assign(home.size(), {});
@@ -174,7 +113,7 @@ void ContactSide::find_near() {
                 if (set[bit / 64] >> (bit % 64) & 1) return true;
                 const Vec3i site = home[s] + at;
                 const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
-                if (cell < 0 || !whole_[cell]) return false;
+                if (cell < 0 || !touch_.whole()[cell]) return false;
                 set[bit / 64] |= std::uint64_t(1) << (bit % 64);
                 open.push_back(at);
                 return true;
@@ -196,7 +135,7 @@ void ContactSide::find_near() {
 }
 
 bool ContactSide::is_neighbour(int point, const Vec3i& site) const {
-    const Vec3i at = site - home_[point];
+    const Vec3i at = site - touch_.home()[point];
     if (!in_box(at)) return false;
     const int bit = bit_of(at);
     return near_[near_set_[point]][bit / 64] >> (bit % 64) & 1;
@@ -217,7 +156,7 @@ ContactSide::OwnShare ContactSide::own_share(int point, const Vec3i& site,
     };
     if (far < kAll && is_neighbour(point, site)) return from(kNone, kAll);
     // Faces of a crack that loads have broken, not yet apart: a closed crack is the fracture law's.
-    const bool is_face = static_cast<std::size_t>(point) >= own_points();
+    const bool is_face = static_cast<std::size_t>(point) >= touch_.own();
     if (is_face && far < kApart && !matter_->connection[0].damage.empty()) {
         return from(kClosed, kApart);
     }

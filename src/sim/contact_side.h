@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body as contact with other bodies, and with itself, sees it: the points of its surface, the
-// cells that they may meet, and which of them belong together.
-//
-// Where cells are no longer whole, cut or broken, a new surface runs half-way through them: a point
-// before each face of a whole cell that looks at one, half a spacing out, which the whole cell
-// carries. Points that a cell no longer whole carries meet nothing.
+// A body as contact with other bodies, and with itself, sees it: the points of its surface
+// (matter/touch_points.h), the cells that they may meet, and which of them belong together.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +11,7 @@
 #include "sim/contact_patch.h"
 #include "sim/cut_surface.h"
 #include "sim/rest_surface.h"
+#include "matter/touch_points.h"
 
 namespace swage {
 
@@ -23,23 +20,15 @@ class ContactSide {
     // `itself`: whether it may meet itself. The body must outlive it.
     ContactSide(Aggregate& matter, bool itself);
 
-    // A blade or a crack has changed which cells are whole. The body's own points keep their
-    // numbers; those of new surface come after them, in any order.
+    // A blade or a crack has changed which cells are whole. Points keep their numbers.
     void connections_changed();
 
     Aggregate& matter() const { return *matter_; }
-    const SurfacePoints& points() const { return points_; }
-    // The body's own; those of faces where it has broken come after them.
-    std::size_t own_points() const { return own_.size(); }
-    bool meets(int point) const { return meets_[point] != 0; }
-    Vec3 position(int point) const {
-        Vec3 x = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) {
-            const double w = points_.weight[point][c];
-            if (w != 0) x += w * matter_->particle_position.at(points_.corner[point][c]);
-        }
-        return x;
-    }
+    const SurfacePoints& points() const { return touch_.points(); }
+    // The body's own; those of new surface come after them.
+    std::size_t own_points() const { return touch_.own(); }
+    bool meets(int point) const { return touch_.meets(point); }
+    Vec3 position(int point) const { return place_of(points(), point, matter_->particle_position); }
     // Of all ways that this side is part of.
     ContactPatch& patch() { return patch_; }
     const ContactPatch& patch() const { return patch_; }
@@ -55,10 +44,10 @@ class ContactSide {
     const std::vector<CellId>& rim() const { return rim_; }
     // A whole cell not deep inside, which a point may meet.
     bool may_hold(CellId cell) const {
-        return cell >= 0 && whole_[cell] &&
+        return cell >= 0 && touch_.whole()[cell] &&
                (molded_->is_rim(cell) || (cut_ != nullptr && cut_->is_rim(cell)));
     }
-    bool is_whole(CellId cell) const { return whole_[cell] != 0; }
+    bool is_whole(CellId cell) const { return touch_.whole()[cell] != 0; }
     // Particles of cells near the surface.
     const std::vector<ParticleId>& skin() const { return skin_; }
 
@@ -77,25 +66,21 @@ class ContactSide {
     bool is_neighbour(int point, const Vec3i& site) const;
 
   private:
-    void find_whole();
-    void find_points();
     RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;
+    void find_cells();
     void find_near();
     Vec3 own_place(int point) const {
-        return (points_.reference_position[point] - matter_->lattice.origin) /
+        return (points().reference_position[point] - matter_->lattice.origin) /
                matter_->lattice.spacing;
     }
 
     Aggregate* matter_;
     ContactPatch patch_;
     bool itself_;
-    SurfacePoints own_, points_;
-    std::vector<Vec3i> home_;  // of each point, the cell that it lies in or just outside of
-    std::vector<char> meets_;
+    TouchPoints touch_;
     std::shared_ptr<const RestSurface> molded_;
     std::shared_ptr<const CutSurface> cut_;  // null where all is whole
     std::vector<CellId> rim_;
-    std::vector<char> whole_;  // of each cell
     std::vector<ParticleId> skin_;
     // Of each point a set, of each set a bit for each cell of the box around its home.
     std::vector<int> near_set_;

@@ -97,9 +97,12 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
     for (ContactMemory& memory : list_.memory) memory.is_new = true;
     is_found_ = false;
     if (!points_too) return;
-    const int own = static_cast<int>(from_->own_points());
-    std::size_t kept = 0;  // new points come last
-    while (kept < list_.size() && list_.contact[kept].point < own) ++kept;
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < list_.size(); ++n) {
+        if (!from_->meets(list_.contact[n].point)) continue;
+        list_.contact[kept] = list_.contact[n];
+        list_.memory[kept++] = list_.memory[n];
+    }
     list_.contact.resize(kept);
     list_.memory.resize(kept);
     if (is_static_) meet_anew();

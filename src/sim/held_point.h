@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/math.h"
+#include <array>
+
+#include "matter/aggregate.h"
 
 namespace swage {
 
 // A point of the surface that something holds or presses on.
 struct HeldPoint {
-    int point;       // into Aggregate::surface
+    std::array<ParticleId, 8> corner;  // as of SurfacePoints
+    std::array<float, 8> weight;
     Mat3 stiffness;  // [N/m]
 };
+
+inline HeldPoint held_point(const SurfacePoints& points, int point, const Mat3& stiffness) {
+    return {points.corner[point], points.weight[point], stiffness};
+}
 
 }  // namespace swage

@@ -155,6 +155,12 @@ void MovingBody::find_candidates(const Drive& now) {
     gone_ = 0;
 }
 
+void MovingBody::surface_changed() {
+    if (!touches_) return;
+    contacts_.connections_changed(matter_);
+    gone_ = std::numeric_limits<double>::infinity();
+}
+
 void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {
     if (!touches_) return;
     const double far = 0.45 * matter_.lattice.spacing;
@@ -238,6 +244,7 @@ bool MovingBody::remember(double step, BodyOutcome& outcome) {
             book(lattice_.snap(matter_));
         }
     }
+    if (broken > 0) surface_changed();
     return broken > 0 || cracked.cells > 0;
 }
 

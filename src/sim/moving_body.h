@@ -89,6 +89,7 @@ class MovingBody {
     void connections_changed() {
         lattice_.connections_changed(matter_);
         branch_energy_ = -1;
+        surface_changed();
     }
     // In the lattice and in the branches of its damping [J].
     double elastic_energy();
@@ -130,6 +131,7 @@ class MovingBody {
   private:
     double branch_energy();
     void let_go();  // the branches
+    void surface_changed();
     void find_inner_forces(double step, BodyOutcome& outcome);
     bool remember(double step, BodyOutcome& outcome);  // whether the forces have changed by it
 

@@ -41,15 +41,14 @@ Multigrid::Multigrid(const Aggregate& matter) {
 }
 
 // A point follows the coarse corners as the weighted mean of its carriers does.
-void Multigrid::add_points(Level& level, const Aggregate& matter,
-                           const std::vector<HeldPoint>& held) const {
+void Multigrid::add_points(Level& level, const std::vector<HeldPoint>& held) const {
     for (const HeldPoint& h : held) {
-        const Vec3i low = site_[matter.surface.corner[h.point][0]];
+        const Vec3i low = site_[h.corner[0]];
         const Vec3i cell = low.cwiseQuotient(level.ratio);
         const CellId id = level.lattice.cell_at(cell.x(), cell.y(), cell.z());
         std::array<double, 8> weight{};
         for (int c = 0; c < 8; ++c) {
-            const double carried = matter.surface.weight[h.point][c];
+            const double carried = h.weight[c];
             for (int q = 0; q < 8; ++q) {
                 double share = carried;
                 for (int d = 0; d < 3; ++d) {
@@ -73,7 +72,7 @@ bool Multigrid::prepare(const Aggregate& matter, const CellTangent& tangent, Cel
         level.matrix->clear();
         level.matrix->add_cells(level.lattice,
                                 tangent.coarse_cells(matter, kind, level.lattice, level.ratio));
-        add_points(level, matter, held);
+        add_points(level, held);
         if (level.from_finer) {
             Vec3Array coarse;
             level.from_finer->restricted(held_back, coarse);
@@ -114,8 +113,8 @@ void Multigrid::find_own_blocks(const Aggregate& matter, const CellTangent& tang
     inverse_blocks_ = tangent.own_blocks(matter, kind);
     for (const HeldPoint& h : held) {
         for (int c = 0; c < 8; ++c) {
-            const double weight = matter.surface.weight[h.point][c];
-            inverse_blocks_[matter.surface.corner[h.point][c]] += weight * weight * h.stiffness;
+            const double weight = h.weight[c];
+            inverse_blocks_[h.corner[c]] += weight * weight * h.stiffness;
         }
     }
     for_each_chunk(drag.size(), [&](std::size_t begin, std::size_t end) {

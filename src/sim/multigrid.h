@@ -52,8 +52,7 @@ class Multigrid {
         Smoother smoother;
         Vec3Array b, x;
     };
-    void add_points(Level& level, const Aggregate& matter,
-                    const std::vector<HeldPoint>& held) const;
+    void add_points(Level& level, const std::vector<HeldPoint>& held) const;
     void find_own_blocks(const Aggregate& matter, const CellTangent& tangent,
                          CellTangent::Kind kind, const std::vector<HeldPoint>& held,
                          const std::vector<double>& drag);

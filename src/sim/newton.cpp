@@ -33,12 +33,10 @@ void Newton::product(const Aggregate& matter, const NewtonProblem& problem, Cell
                      const Vec3Array& direction, Vec3Array& result) {
     tangent_.product(matter, kind, direction, result);
     for (const HeldPoint& h : problem.held) {
-        const auto& corner = matter.surface.corner[h.point];
-        const auto& weight = matter.surface.weight[h.point];
         Vec3 way = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) way += double(weight[c]) * direction.at(corner[c]);
+        for (int c = 0; c < 8; ++c) way += double(h.weight[c]) * direction.at(h.corner[c]);
         const Vec3 force = h.stiffness * way;
-        for (int c = 0; c < 8; ++c) result.add(corner[c], double(weight[c]) * force);
+        for (int c = 0; c < 8; ++c) result.add(h.corner[c], double(h.weight[c]) * force);
     }
     for_each_chunk(direction.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {

@@ -80,6 +80,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
 
 void QuasistaticSolver::connections_changed(std::size_t) {
     lattice_.connections_changed(matter_);
+    contacts_.connections_changed(matter_);
     self_.connections_changed();
     find_bounds();
     find_carriers();

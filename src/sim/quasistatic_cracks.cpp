@@ -28,8 +28,8 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
     const auto booked = [&] {
         double pushed = 0;
         for (double work : outcome.body[0].push_work) pushed += work;
-        return elastic_energy() + self_.sums().stored + outcome.body[0].fracture_work +
-               outcome.body[0].plastic_work - pushed;
+        return elastic_energy() + contacts_.stored_energy(matter_, to) + self_.sums().stored +
+               outcome.body[0].fracture_work + outcome.body[0].plastic_work - pushed;
     };
     for (;;) {
         const double before = booked();

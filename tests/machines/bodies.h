@@ -12,6 +12,7 @@ inline Aggregate body_of(const std::vector<Vec3>& points, double spacing) {
     Aggregate body;
     body.lattice.spacing = spacing;
     body.particle_position.resize(points.size());
+    body.particle_mass.resize(points.size(), 1.0);
     for (std::size_t p = 0; p < points.size(); ++p) {
         body.particle_position.set(p, points[p]);
         std::array<ParticleId, 8> corner;

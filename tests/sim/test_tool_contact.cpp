@@ -317,3 +317,89 @@ TEST_CASE(
         CHECK(back < share);
     }
 }
+
+namespace {
+
+// Breaks what joins the particles of two layers of cells across y, in the cells of the one.
+void break_layer(Aggregate& block, int layer) {
+    for (const CellRun& run : block.lattice.cell_run) {
+        if (run.j != layer) continue;
+        for (int n = 0; n < run.count; ++n) {
+            for (const CellConnection& c : kCellConnection) {
+                if (kForward[c.direction][1] == 0) continue;
+                block.connection[c.direction].weight.set(
+                    run.row[c.corner >> 1] + n + (c.corner & 1), 0);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a piece that lands on the face where it was broken off lies on that face") {
+    // Of a block of 3 x 7 x 3 cells the lower half stands aside.
+    const double a = 0.1;
+    OnFloor floor(make_block(3, 7, 3, a, kSpringy), 0.5);
+    Aggregate& block = floor.block;
+    break_layer(block, 3);
+    const double half = 0.5 * 3 * a;
+    std::vector<std::size_t> upper;
+    for (std::size_t p = 0; p < block.particle_count(); ++p) {
+        Vec3 x = block.particle_position.at(p);
+        if (x.y() > 0) {
+            x.y() += 0.05 * a;  // its face, half a cell below its particles, over the floor
+            upper.push_back(p);
+        } else {
+            x += Vec3(20 * a, 3.5 * a + 0.05 * a, 0);
+        }
+        block.particle_position.set(p, x);
+    }
+    block.material.damping_ratio = 0.2;
+    Simulation simulation(block, floor.apparatus, floor.settings);
+    simulation.advance(floor.drive(0), floor.drive(1));
+    double low = 1;
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t p : upper) {
+        low = std::min(low, block.particle_position.at(p).y());
+        middle += block.particle_position.at(p) / double(upper.size());
+    }
+    CHECK(std::abs(low - 0.5 * a) < 0.05 * a);  // the face is half-way through the broken cells
+    CHECK(std::abs(middle.y() - (0.5 * a + half)) < 0.05 * a);
+    CHECK(std::abs(middle.x()) < 0.02 * a);
+}
+
+TEST_CASE("particles that are all that is left of cells do not fall through a floor") {
+    for (const double low : {0.05, -0.03}) {  // where they are found inside it they go no deeper
+        OnFloor floor(make_block(2, 5, 2, 0.1, kSpringy), 0.5);
+        for (int layer : {0, 1}) break_layer(floor.block, layer);  // two sheets of particles
+        floor.lift(0.25 + low);
+        Simulation simulation(floor.block, floor.apparatus, floor.settings);
+        const FrameReport r = simulation.advance(floor.drive(0), floor.drive(1));
+        for (double y : floor.block.particle_position.y) CHECK(y > std::min(low, 0.0) - 0.01);
+        CHECK(std::abs(r.remainder) < 0.01 * floor.block.mass() * kG * 0.3);
+    }
+}
+
+TEST_CASE("a block topples from a sloping floor where its edge says, of two cells as of many") {
+    // Twice as high as wide: its middle stands over the edge at an angle of atan(1/2), 26.57
+    // degrees.
+    for (const auto& [degrees, topples] : {std::pair(25.5, false), std::pair(27.5, true)}) {
+        INFO(degrees);
+        Material stiff = kSpringy;
+        stiff.young_modulus = 1e8;
+        stiff.damping_ratio = 0.05;
+        OnFloor floor(make_block(2, 4, 2, 0.1, stiff), 2);
+        floor.rise = 0.2;
+        floor.lift(0.2);
+        const double angle = degrees * kPi / 180;
+        floor.settings.gravity = kG * Vec3(std::sin(angle), -std::cos(angle), 0);
+        Simulation simulation(floor.block, floor.apparatus, floor.settings);
+        simulation.advance(floor.drive(0), floor.drive(2));
+        double lean = 0;
+        for (std::size_t p = 0; p < floor.block.particle_count(); ++p) {
+            const Vec3 stood = floor.block.particle_reference.at(p) + Vec3(0, 0.2, 0);
+            lean = std::max(lean, (floor.block.particle_position.at(p) - stood).norm());
+        }
+        CHECK((lean > 0.1) == topples);
+    }
+}

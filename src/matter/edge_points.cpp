@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/edge_points.h"
+#include "matter/edge_points.h"
 
 #include <algorithm>
 #include <cmath>

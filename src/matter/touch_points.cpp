@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "matter/touch_points.h"
+
+#include <algorithm>
+
+#include "matter/carrier_weights.h"
+#include "matter/edge_points.h"
+
+namespace swage {
+
+TouchPoints::TouchPoints(const Aggregate& matter, With with)
+    : with_(with), points_(matter.surface) {
+    const Lattice& lattice = matter.lattice;
+    add_edge_points(lattice, points_);
+    own_ = points_.size();
+    std::vector<CellId> by_low_corner(matter.particle_count(), -1);
+    for (const CellRun& run : lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) by_low_corner[run.row[0] + n] = run.first + n;
+    }
+    for (std::size_t p = 0; p < own_; ++p) {
+        carrier_.push_back(by_low_corner[points_.corner[p][0]]);
+        const Vec3 inner = (points_.reference_position[p] - lattice.origin) / lattice.spacing -
+                           1e-3 * points_.reference_normal[p];
+        home_.push_back(inner.array().floor().cast<int>());
+    }
+    connections_changed(matter);
+}
+
+int TouchPoints::face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face) {
+    const auto [at, is_new] = face_.try_emplace({cell, face}, static_cast<int>(points_.size()));
+    if (!is_new) return at->second;
+    const int axis = face >> 1, out = face & 1 ? 1 : -1;
+    Vec3 place = Vec3::Constant(0.5);
+    place[axis] += out;
+    const double a = lattice.spacing;
+    points_.corner.push_back(lattice.cell_corners(cell));
+    points_.weight.push_back(carrier_weights(place));
+    points_.area.push_back(a * a);
+    points_.reference_position.push_back(lattice.origin + a * (site.cast<double>() + place));
+    points_.reference_normal.push_back(out * Vec3::Unit(axis));
+    home_.push_back(site);
+    return at->second;
+}
+
+int TouchPoints::loose_point(const Aggregate& matter, ParticleId particle) {
+    const auto [at, is_new] = loose_.try_emplace(particle, static_cast<int>(points_.size()));
+    if (!is_new) return at->second;
+    const double a = matter.lattice.spacing;
+    points_.corner.emplace_back().fill(particle);
+    points_.weight.push_back({1, 0, 0, 0, 0, 0, 0, 0});
+    points_.area.push_back(a * a);
+    points_.reference_position.push_back(matter.particle_reference.at(particle));
+    points_.reference_normal.push_back(Vec3::UnitY());  // it has none
+    return at->second;
+}
+
+void TouchPoints::add_loose(const Aggregate& matter) {
+    std::vector<char> held(matter.particle_count(), 0);
+    for (const CellRun& run : matter.lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            if (!whole_[run.first + n]) continue;
+            for (ParticleId p : run.row) held[p + n] = held[p + n + 1] = 1;
+        }
+    }
+    for (std::size_t p = 0; p < held.size(); ++p) {
+        if (held[p]) continue;
+        const auto point =
+            static_cast<std::size_t>(loose_point(matter, static_cast<ParticleId>(p)));
+        if (point == meets_.size()) meets_.push_back(0);
+        meets_[point] = 1;
+    }
+}
+
+void TouchPoints::connections_changed(const Aggregate& matter) {
+    const Lattice& lattice = matter.lattice;
+    whole_.assign(matter.cell_fill.size(), 0);
+    for (const CellRun& run : lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            std::array<ParticleId, 4> row = run.row;
+            for (ParticleId& p : row) p += n;
+            whole_[run.first + n] = cell_is_whole(matter, row);
+        }
+    }
+    meets_.assign(points_.size(), 0);
+    for (std::size_t p = 0; p < own_; ++p) meets_[p] = carrier_[p] < 0 || whole_[carrier_[p]];
+    if (std::find(whole_.begin(), whole_.end(), 0) == whole_.end()) return;
+    for (const CellRun& run : lattice.cell_run) {
+        for (int n = 0; n < run.count; ++n) {
+            const CellId cell = run.first + n;
+            if (!whole_[cell]) continue;
+            const Vec3i site(run.i + n, run.j, run.k);
+            for (int face = 0; face < 6; ++face) {
+                const Vec3i next = site + (face & 1 ? 1 : -1) * Vec3i::Unit(face >> 1);
+                const CellId other = lattice.cell_at(next.x(), next.y(), next.z());
+                if (other < 0 || whole_[other]) continue;
+                const auto point = static_cast<std::size_t>(face_point(lattice, cell, site, face));
+                if (point == meets_.size()) meets_.push_back(0);
+                meets_[point] = 1;
+            }
+        }
+    }
+    if (with_ == With::tools) add_loose(matter);
+}
+
+}  // namespace swage

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The points of a body with which it meets tools, other bodies and itself: those of its surface as
+// molded, with its edges and corners, and where cells are no longer whole, cut or broken, a new
+// surface half-way through them: a point before each face of a whole cell that looks at one, half a
+// spacing out, which the whole cell carries. What a cell no longer whole carries meets nothing;
+// particles that no whole cell has left meet tools by themselves.
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "matter/aggregate.h"
+
+namespace swage {
+
+class TouchPoints {
+  public:
+    enum class With { tools, bodies };
+    TouchPoints(const Aggregate& matter, With with);
+
+    // A blade or a crack has changed which cells are whole, or a step back has made them so again.
+    // Points keep their numbers.
+    void connections_changed(const Aggregate& matter);
+
+    const SurfacePoints& points() const { return points_; }
+    std::size_t size() const { return points_.size(); }
+    // The body's own; those of new surface come after them.
+    std::size_t own() const { return own_; }
+    bool meets(int point) const { return meets_[point] != 0; }
+    // The cell that the point lies in or just outside of; of new surface, that which carries it.
+    // With bodies only.
+    const std::vector<Vec3i>& home() const { return home_; }
+    const std::vector<char>& whole() const { return whole_; }  // of each cell
+
+  private:
+    int face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face);
+    int loose_point(const Aggregate& matter, ParticleId particle);
+    void add_loose(const Aggregate& matter);
+
+    With with_;
+    SurfacePoints points_;
+    std::size_t own_;
+    std::vector<CellId> carrier_;  // of each point of its own; -1: no cell
+    std::vector<Vec3i> home_;
+    std::vector<char> meets_, whole_;
+    std::map<std::pair<CellId, int>, int> face_;  // the point before a face of a cell
+    std::map<ParticleId, int> loose_;             // the point of a particle
+};
+
+// Where a point is now [m].
+inline Vec3 place_of(const SurfacePoints& points, int point, const Vec3Array& position) {
+    Vec3 x = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) {
+        const double w = points.weight[point][c];
+        if (w != 0) x += w * position.at(points.corner[point][c]);
+    }
+    return x;
+}
+
+}  // namespace swage
