@@ -10,6 +10,7 @@
 #include "geometry/box_mesh.h"
 #include "mold/caps.h"
 #include "mold/insets.h"
+#include "mold/moments.h"
 #include "mold/prepare.h"
 #include "mold/shares.h"
 #include "mold/surface.h"
@@ -73,8 +74,8 @@ double density_of(const Aggregate& matter, CellId cell) {
 }
 
 // Each cell shares out its mass and its part of the connections along its edges and faces.
-// NOTE: mass goes to the corners in equal parts. Parts by the material's own place would keep its
-// centre of mass, but leave corners of nearly empty cells so light that no step is small enough.
+// Mass goes to the corners in equal parts, of which match_moments() leaves each enough that steps
+// stay long.
 void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Aggregate& matter) {
     const double corner_volume = frame.cell_volume() / 8;
     const double corner_mass = matter.material.density * corner_volume;
@@ -186,6 +187,7 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     place_particles(frame, matter);
     place_insets(insets, layers, frame, matter);
     share_out(layers, frame, matter);
+    match_moments(frame.step, matter);
     matter.surface = carry_patches(layers, frame, matter.lattice, matter.cell_fill);
     tell_findings(mesh, frame, volume, layers, lost, matter);
     return matter;

@@ -21,6 +21,9 @@ constexpr std::size_t kPointsPerChunk = 4096;
 // Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
 // grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
+// What points that touch, and that are gripped, may add to the square of a swing by which steps go
+// in turns, 4.
+constexpr double kTouchShare = 0.5, kGripShare = 1;
 
 // The farthest that any corner of the tool's bounds moves.
 double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
@@ -66,11 +69,13 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
     point_modulus_ = surface_moduli(matter, points());
 }
 
+double ContactSet::point_stiffness(std::size_t point, double tool_says) const {
+    const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[point];
+    return settings_.stiffness_of_contacts(tool_says) * modulus * points().area[point] / spacing_;
+}
+
 double ContactSet::pair_stiffness(const Pair& pair) const {
-    const double tool_says = apparatus_->tool[pair.tool].contact_stiffness;
-    const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[pair.point];
-    const double k =
-        settings_.stiffness_of_contacts(tool_says) * modulus * points().area[pair.point] / spacing_;
+    const double k = point_stiffness(pair.point, apparatus_->tool[pair.tool].contact_stiffness);
     return stiffness_limit_.empty() ? k : std::min(k, stiffness_limit_[pair.point]);
 }
 
@@ -81,16 +86,17 @@ double ContactSet::grip_stiffness(const Aggregate& matter, int point) const {
 }
 
 void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
-    const auto limits = [&](const SurfacePoints& surface, double share) {
-        std::vector<double> limit;
-        for (std::size_t p = 0; p < surface.size(); ++p) {
-            limit.push_back(share * lightest_carrier(matter, surface, p) / (step * step));
-        }
-        return limit;
-    };
-    grip_limit_ = limits(matter.surface, 0.25);
-    if (touch_ != nullptr) stiffness_limit_ = limits(points(), 0.125);
     limit_step_ = last_step_ = step;
+    std::vector<double> stiffness;
+    grip_limit_.clear();
+    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+        stiffness.push_back(grip_stiffness(matter, int(p)));
+    }
+    grip_limit_ = stiffest_of_points(matter, matter.surface, stiffness, kGripShare / (step * step));
+    if (touch_ == nullptr) return;
+    stiffness.clear();
+    for (std::size_t p = 0; p < points().size(); ++p) stiffness.push_back(point_stiffness(p, 0));
+    stiffness_limit_ = stiffest_of_points(matter, points(), stiffness, kTouchShare / (step * step));
 }
 
 void ContactSet::connections_changed(const Aggregate& matter) {

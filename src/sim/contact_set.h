@@ -57,8 +57,8 @@ class ContactSet {
     ContactSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
                int body = 0);
 
-    // Explicit steps of this length [s] must stay stable: no point that touches is stiffer than an
-    // eighth of what its lightest carrier can follow, and none that is gripped than a quarter.
+    // Explicit steps of this length [s] must stay stable, so there is a stiffness that no point
+    // that touches or is gripped exceeds (stiffest_of_points()).
     void limit_stiffness(const Aggregate& matter, double step);
 
     // A blade or a crack has changed which cells are whole. New surface that finds itself inside a
@@ -151,6 +151,7 @@ class ContactSet {
     void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
               Vec3Array& force);
     double grip_stiffness(const Aggregate& matter, int point) const;  // [N/m]
+    double point_stiffness(std::size_t point, double tool_says) const;
     double pair_stiffness(const Pair& pair) const;
     const SurfacePoints& points() const { return touch_->points(); }
     // That grip g exerts on its point n [N].

@@ -15,6 +15,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // contacts
+constexpr double kShare = 1;         // of the 4 by which explicit steps go in turns
 constexpr double kFaces = 2;         // of a cell, as which at most a point counts on it
 
 std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
@@ -118,7 +119,6 @@ void ContactWay::set_stiffness(double step) {
     // A point pushes one cell, which larger cells' points would drive in alone.
     const double most = kFaces * b.lattice.spacing * b.lattice.spacing;
     stiffness_.clear();
-    stiffest_.clear();
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
         const double one =
@@ -126,10 +126,10 @@ void ContactWay::set_stiffness(double step) {
         const double area = std::min(points.area[p], most);
         stiffness_.push_back(scale_ * one * other / (one + other) * area);
         hold_.push_back(hold * area);
-        // Half of which acts where the other way does as much.
-        stiffest_.push_back(step > 0 ? 0.25 * lightest_carrier(a, points, p) / (step * step)
-                                     : std::numeric_limits<double>::infinity());
     }
+    stiffest_.assign(points.size(), std::numeric_limits<double>::infinity());
+    // Half of which acts where the other way does as much.
+    if (step > 0) stiffest_ = stiffest_of_points(a, points, stiffness_, kShare / (step * step));
 }
 
 void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {

@@ -14,8 +14,8 @@
 //
 // The point pushes back with its own weights, the cell with the trilinear weights of the same place
 // in space, so that force and moment are kept to round-off. Friction's anchors are material points
-// of the other body. A point is never stiffer than an eighth of what its lightest carrier can
-// follow in one step.
+// of the other body. All points together never make their carriers swing faster than half the way
+// to what steps can follow (stiffest_of_points()).
 //
 // In each step: resolve() where contacts have been found anew; then of all ways meet(), of all
 // push(), of all respond(); and commit() where the step is kept. Both sides' patches are read

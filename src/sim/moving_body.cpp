@@ -9,7 +9,6 @@
 #include "base/parallel.h"
 #include "sim/cell_batch.h"
 #include "sim/crushed_cells.h"
-#include "sim/lattice_sweep.h"
 #include "sim/vector_clones.h"
 #include "sim/vector_sums.h"
 
@@ -17,24 +16,24 @@ namespace swage {
 
 namespace {
 
-double fastest(const Aggregate& matter, const std::vector<double>& bound) {
-    double highest = 0;
-    for (std::size_t p = 0; p < bound.size(); ++p) {
-        highest = std::max(highest, bound[p] / matter.particle_mass[p]);
-    }
-    return std::sqrt(highest);
-}
-
-double highest_frequency(const Aggregate& matter, const LatticeForces& lattice) {
-    return fastest(matter, lattice.stiffness_bound(matter));
-}
-
 double stable_step(const Aggregate& matter, double safety, const LatticeForces& lattice,
-                   const InternalDamping& damping) {
-    std::vector<double> bound = lattice.stiffness_bound(matter);
-    damping.add_stiffness_bound(matter, bound);
+                   const SwingBound& swings, const InternalDamping& damping) {
+    std::vector<double> damped(matter.particle_count(), 0.0);
+    damping.add_stiffness_bound(matter, damped);
+    double branches = 0;
+    for (std::size_t p = 0; p < damped.size(); ++p) {
+        branches = std::max(branches, damped[p] / matter.particle_mass[p]);
+    }
     const double zeta = largest_damping_ratio(matter);
-    return safety * 2 / fastest(matter, bound) * (std::sqrt(1 + zeta * zeta) - zeta);
+    return safety * 2 / std::sqrt(swings.squared(matter, lattice) + branches) *
+           (std::sqrt(1 + zeta * zeta) - zeta);
+}
+
+bool breaks(const Aggregate& matter) {
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        if (matter.material_at(m).breaks()) return true;
+    }
+    return false;
 }
 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
@@ -97,30 +96,31 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
     const LatticeForces lattice(matter);
-    return stable_step(matter, settings.step_safety, lattice,
-                       InternalDamping(matter, highest_frequency(matter, lattice)));
+    const SwingBound swings(matter, breaks(matter));
+    return stable_step(matter, settings.step_safety, lattice, swings,
+                       InternalDamping(matter, std::sqrt(swings.squared(matter, lattice))));
 }
 
 MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus,
                        const SimSettings& settings)
     : matter_(matter),
       lattice_(matter),
-      damping_(matter, highest_frequency(matter, lattice_)),
+      breaks_(breaks(matter)),
+      swings_(matter, breaks_ || !apparatus.blade.empty()),
+      damping_(matter, std::sqrt(swings_.squared(matter, lattice_))),
       contacts_(matter, apparatus, settings, number),
       pushes_(apparatus, settings, number),
       safety_(settings.step_safety),
-      step_(swage::stable_step(matter, safety_, lattice_, damping_)),
+      step_(swage::stable_step(matter, safety_, lattice_, swings_, damping_)),
       present_step_(step_),
       drag_(matter, settings, step_),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       touches_(!apparatus.tool.empty()),
       remembers_(false),
-      breaks_(false),
       implicit_(settings.solver == Solver::implicit_steps),
       saves_branches_(settings.solver == Solver::energy_stepped) {
     for (std::size_t m = 0; m < matter.material_count(); ++m) {
         const Material& material = matter.material_at(m);
-        breaks_ = breaks_ || material.breaks();
         remembers_ = remembers_ || material.breaks() || std::isfinite(material.yield_stress);
     }
 }
@@ -330,7 +330,8 @@ double MovingBody::top_speed() const {
 
 double MovingBody::present_step() {
     if (flowed_) {
-        present_step_ = std::min(step_, swage::stable_step(matter_, safety_, lattice_, damping_));
+        present_step_ =
+            std::min(step_, swage::stable_step(matter_, safety_, lattice_, swings_, damping_));
         flowed_ = false;
     }
     if (inside_out_ == 0) return present_step_;

@@ -5,6 +5,7 @@
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/contact_set.h"
+#include "sim/fastest_swing.h"
 #include "sim/internal_damping.h"
 #include "sim/lattice_forces.h"
 #include "sim/load_set.h"
@@ -15,8 +16,9 @@
 namespace swage {
 
 // The longest stable step times the settings' safety [s]; dt < 2 / w (sqrt(1 + zeta^2) - zeta), w
-// the lattice's highest angular frequency and zeta its damping ratio there; w^2 <= max(bound / m)
-// of stiffness_bound(), with all branches of the damping as if they were springs.
+// the lattice's highest angular frequency and zeta its damping ratio there; w^2 is twice what
+// sim/fastest_swing.h finds, no more than max(bound / m) of stiffness_bound(), and of what can part
+// no less than that of its springs; all branches of the damping are taken as springs beside it.
 double explicit_step(const Aggregate& matter, const SimSettings& settings);
 
 class MovingBody {
@@ -137,6 +139,8 @@ class MovingBody {
 
     Aggregate& matter_;
     LatticeForces lattice_;
+    bool breaks_;
+    SwingBound swings_;
     InternalDamping damping_;
     ContactSet contacts_;
     LoadSet pushes_;
@@ -149,7 +153,6 @@ class MovingBody {
     double gone_ = 0;    // no particle has gone farther since then [m]
     bool touches_;       // a tool could
     bool remembers_;     // its matter yields or breaks
-    bool breaks_;
     bool implicit_;
     bool saves_branches_;
     // In the branches [J]: now, negative where it is not known; when the block began.

@@ -32,6 +32,13 @@ inline double lightest_carrier(const Aggregate& matter, std::size_t point) {
     return lightest_carrier(matter, matter.surface, point);
 }
 
+// How stiff points may push [N/m], in proportion to `stiffness`, if all of them together are to
+// make no particle swing faster than sqrt(most) [rad/s]: their Gram matrix, G_ij = sqrt(k_i k_j)
+// sum_c w_ic w_jc / m_c, has the same largest eigenvalue as what they do to the particles, and
+// D^-1/2 G D^-1/2 has none above one, D being the sums of G's rows.
+std::vector<double> stiffest_of_points(const Aggregate& matter, const SurfacePoints& points,
+                                       const std::vector<double>& stiffness, double most);
+
 // Adds a force on the point to the particles that carry it; force and moment are kept exactly.
 inline void spread(const SurfacePoints& surface, int point, const Vec3& f, Vec3Array& force) {
     for (int c = 0; c < 8; ++c) {

@@ -42,7 +42,7 @@ void ball_drop(bool brief, Values& values) {
     for (int across : {4, 5}) {
         if (brief && across > 4) break;
         Material material;
-        material.young_modulus = 4e8;
+        material.young_modulus = 8e8;
         material.density = 1000;
         material.damping_ratio = 0.1;
         material.restitution = kShare;
@@ -55,7 +55,7 @@ void ball_drop(bool brief, Values& values) {
         SimSettings settings;
         settings.solver = Solver::explicit_steps;
         settings.gravity = {0, -kGravity, 0};
-        settings.contact_stiffness = 0.04 / across;  // of one stiffness at any resolution
+        settings.contact_stiffness = 0.015 / across;  // of one stiffness at any resolution
         const auto at_time = [](double time) {
             Drive drive;
             drive.time = time;

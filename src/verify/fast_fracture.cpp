@@ -20,7 +20,7 @@ constexpr double kNotch = -0.5 * kLength + kHalf;  // its end
 constexpr double kStill = 0.8;                     // share of G_c at which the motion begins
 constexpr int kRise = 8;                           // frames in which the clamps part on
 constexpr double kFrame = 0.5 * kHalf;             // [s]; the speed of sound in a bar is 1
-constexpr int kFew = 3;                            // frames that a speed is measured over
+constexpr int kFew = 8;                            // frames that a speed is measured over, 37 cells
 constexpr double kDamping = 0.02;
 
 // Rayleigh's speed over that of shear, within 0.5 % (Viktorov 1967).

@@ -297,7 +297,7 @@ TEST_CASE("damping that is slow to yield does not hold a crack together") {
             FrameReport r;
             for (int n = 1; n <= 80 && (n < 2 || r.pieces < 2); ++n) {
                 Drive to = bar.drive;
-                to.time += 2e-5;
+                to.time += 4e-5;
                 to.world_from_grip[1].translation.x() = kOpening * n / 40;
                 r = bar.simulation->advance(bar.drive, to);
                 bar.drive = to;
