@@ -5,7 +5,10 @@
 #include "geometry/triangle_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "base/error.h"
 
@@ -16,37 +19,55 @@ namespace {
 constexpr int kLeafSize = 4;
 constexpr double kDipoleReach = 2.5;  // radii from a cluster to where its dipole stands for it
 
-double squared_distance(const Vec3& p, const std::array<Vec3, 3>& t) {
+// Of the corners: their mean is the place of the triangle that is nearest to p.
+Vec3 nearest_weights(const Vec3& p, const std::array<Vec3, 3>& t) {
     const auto& [a, b, c] = t;
     const Vec3 ab = b - a, ac = c - a, ap = p - a;
     const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-    if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
+    if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
     const Vec3 bp = p - b;
     const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-    if (d3 >= 0 && d4 <= d3) return bp.squaredNorm();
+    if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
     const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 != d3) return (ap - d1 / (d1 - d3) * ab).squaredNorm();
+    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 != d3) {
+        const double s = d1 / (d1 - d3);
+        return {1 - s, s, 0};
+    }
     const Vec3 cp = p - c;
     const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-    if (d6 >= 0 && d5 <= d6) return cp.squaredNorm();
+    if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
     const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 != d6) return (ap - d2 / (d2 - d6) * ac).squaredNorm();
+    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 != d6) {
+        const double s = d2 / (d2 - d6);
+        return {1 - s, 0, s};
+    }
     const double va = d3 * d6 - d5 * d4;
     const double e4 = d4 - d3, e5 = d5 - d6;
     if (va <= 0 && e4 >= 0 && e5 >= 0 && e4 + e5 > 0) {
-        return (bp - e4 / (e4 + e5) * (c - b)).squaredNorm();
+        const double s = e4 / (e4 + e5);
+        return {0, 1 - s, s};
     }
     const double sum = va + vb + vc;
-    if (!(sum > 0)) {  // no area: the nearest of its edges, all of which were on one line
-        const auto to_edge = [&](const Vec3& from, const Vec3& to) {
-            const Vec3 along = to - from;
-            const double length = along.squaredNorm();
-            const double s = length > 0 ? std::clamp(along.dot(p - from) / length, 0.0, 1.0) : 0.0;
-            return (p - from - s * along).squaredNorm();
-        };
-        return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+    if (sum > 0) return {1 - vb / sum - vc / sum, vb / sum, vc / sum};
+    // No area: the nearest of its edges, all of which were on one line.
+    Vec3 best(1, 0, 0);
+    double least = std::numeric_limits<double>::infinity();
+    for (int e = 0; e < 3; ++e) {
+        const Vec3 along = t[(e + 1) % 3] - t[e];
+        const double length = along.squaredNorm();
+        const double s = length > 0 ? std::clamp(along.dot(p - t[e]) / length, 0.0, 1.0) : 0.0;
+        const double far = (p - t[e] - s * along).squaredNorm();
+        if (!(far < least)) continue;
+        least = far;
+        best.setZero();
+        best[e] = 1 - s, best[(e + 1) % 3] = s;
     }
-    return (ap - vb / sum * ab - vc / sum * ac).squaredNorm();
+    return best;
+}
+
+double squared_distance(const Vec3& p, const std::array<Vec3, 3>& t) {
+    const Vec3 weight = nearest_weights(p, t);
+    return (p - weight[0] * t[0] - weight[1] * t[1] - weight[2] * t[2]).squaredNorm();
 }
 
 double solid_angle(const Vec3& p, const std::array<Vec3, 3>& t) {
@@ -79,6 +100,7 @@ TriangleTree::TriangleTree(const TriMesh& mesh) {
     node_.reserve(2 * static_cast<std::size_t>(count) / kLeafSize + 1);
     build(order, centroid, 0, count);
     for (int t = 0; t < count; ++t) triangle_[t] = corners[order[t]];
+    number_ = std::move(order);
 }
 
 int TriangleTree::build(std::vector<int>& order, const std::vector<Vec3>& centroid, int first,
@@ -120,18 +142,19 @@ int TriangleTree::build(std::vector<int>& order, const std::vector<Vec3>& centro
     return self;
 }
 
-double TriangleTree::distance(const Vec3& point) const {
-    double best = std::numeric_limits<double>::infinity();
+TriangleTree::Found TriangleTree::find(const Vec3& point) const {
+    Found best{0, std::numeric_limits<double>::infinity()};
     std::array<std::pair<int, double>, 96> stack;  // deeper than any tree of 2^31 triangles
     int depth = 0;
     stack[depth++] = {0, 0.0};
     while (depth > 0) {
         const auto [at, near] = stack[--depth];
-        if (near >= best) continue;
+        if (near >= best.squared_distance) continue;
         const Node& node = node_[at];
         if (node.left < 0) {
             for (int n = node.first; n < node.first + node.count; ++n) {
-                best = std::min(best, squared_distance(point, triangle_[n]));
+                const double d = squared_distance(point, triangle_[n]);
+                if (d < best.squared_distance) best = {n, d};
             }
             continue;
         }
@@ -141,7 +164,16 @@ double TriangleTree::distance(const Vec3& point) const {
         stack[depth++] = left_first ? std::pair(node.right, right) : std::pair(node.left, left);
         stack[depth++] = left_first ? std::pair(node.left, left) : std::pair(node.right, right);
     }
-    return std::sqrt(best);
+    return best;
+}
+
+double TriangleTree::distance(const Vec3& point) const {
+    return std::sqrt(find(point).squared_distance);
+}
+
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
+    const int at = find(point).at;
+    return {number_[at], nearest_weights(point, triangle_[at])};
 }
 
 double TriangleTree::winding_number(const Vec3& point) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A binary tree of boxes over the triangles of a surface: nearest distance and winding number.
+// A binary tree of boxes over the triangles of a surface: what is nearest, how far it is, and the
+// winding number.
 #pragma once
 
 #include <vector>
@@ -18,6 +19,12 @@ class TriangleTree {
     // Unsigned distance [m] from `point` to the nearest triangle.
     double distance(const Vec3& point) const;
 
+    struct Nearest {
+        int triangle;  // of the mesh
+        Vec3 weight;   // of its corners, each 0 to 1: their mean is the nearest place
+    };
+    Nearest nearest(const Vec3& point) const;
+
     // How often the surface winds around `point`: 1 inside a closed outward surface, 0 outside,
     // between the two near the holes of an open one. Accurate to about 0.02.
     double winding_number(const Vec3& point) const;
@@ -31,9 +38,15 @@ class TriangleTree {
         int left = -1, right = -1;   // children; -1 in a leaf
         int first = 0, count = 0;    // triangles
     };
+    struct Found {
+        int at;  // in triangle_
+        double squared_distance;
+    };
+    Found find(const Vec3& point) const;
     int build(std::vector<int>& order, const std::vector<Vec3>& centroid, int first, int count);
 
     std::vector<std::array<Vec3, 3>> triangle_;  // in the order of the leaves
+    std::vector<int> number_;                    // of each in the mesh
     std::vector<Node> node_;                     // node 0 is the root
 };
 

@@ -45,10 +45,16 @@ void make_solid(InputMesh& input, MoldKind kind) {
     }
 }
 
+TriMesh block_mesh(const TriMesh& mesh) {
+    const Box box = box_of(mesh.position);
+    return box_mesh(box.low, box.high);
+}
+
 // One colour all over.
-void paint(TriMesh& skin, const Vec3& color) {
+void paint(TriMesh& skin, const Vec3& color, bool metal) {
     SurfaceMaterial look;
     look.color = color;
+    if (metal) look.metallic = 1, look.roughness = 0.35;
     skin.material = {look};
     skin.triangle_material.assign(skin.triangle.size(), 0);
     skin.position_color.clear();
@@ -141,11 +147,15 @@ void place_at_start(const StartSpec& start, Aggregate& matter) {
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, SkinKind skin) {
     WorkPiece piece;
     piece.name = body.name;
-    piece.color = body.color;
     piece.matter = mold(input.to_mold(), body.material, body.mold, insets_for(input, body));
-    if (skin != SkinKind::boundary) {
+    if (skin == SkinKind::boundary) {
+        TriMesh like =
+            body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
+        if (body.color) paint(like, *body.color, body.metal);
+        piece.look = std::make_shared<const NewLook>(like);
+    } else {
         piece.skin = input.mesh;
-        if (body.color) paint(piece.skin, *body.color);
+        if (body.color) paint(piece.skin, *body.color, body.metal);
         piece.position = input.mesh.position;
         piece.mount = mount_mesh(input.mesh.position, piece.matter, skin);
     }
@@ -203,8 +213,7 @@ CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sw
 
 void follow_matter(WorkPiece& piece, SkinKind kind) {
     if (kind == SkinKind::boundary) {
-        piece.skin = boundary_skin(piece.matter);
-        if (piece.color) paint(piece.skin, *piece.color);
+        piece.skin = boundary_skin(piece.matter, piece.look.get());
         piece.position = piece.skin.position;
     } else {
         skin_positions(piece.mount, piece.matter, piece.position);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "scene/spec.h"
 #include "skin/cut_mesh.h"
 #include "skin/mount.h"
+#include "skin/new_look.h"
 
 namespace swage {
 
@@ -45,10 +47,10 @@ std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body);
 
 struct WorkPiece {
     std::string name;
-    std::optional<Vec3> color;  // instead of its mesh's own
     Aggregate matter;
     TriMesh skin;                // its positions: as mounted
     Mount mount;                 // unless the skin is a boundary
+    std::shared_ptr<const NewLook> look;  // where it is
     std::vector<Vec3> position;  // of the skin now [m]
     // Once matter broke by load: what skin and mount were made from since.
     std::optional<TriMesh> whole_skin;

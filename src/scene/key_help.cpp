@@ -13,6 +13,7 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[mesh]", "spin", "at the start, about its centre of mass"},
         {"[mesh]", "color", "red, green, blue instead of what its file says",
          "[red, green, blue], each 0 to 1"},
+        {"[mesh]", "finish", "of that color"},
 
         {"[material]",
          "name",

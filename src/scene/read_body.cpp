@@ -53,6 +53,10 @@ void read_start(TableReader& table, BodySpec& body) {
     table.vector("velocity", Quantity::speed, body.start.velocity);
     table.vector("spin", Quantity::spin, body.start.spin);
     read_color(table, body.color);
+    if (table.choice<bool>("finish", {{"matt", false}, {"metal", true}}, body.metal) &&
+        !body.color) {
+        table.mistake("finish", "finish is that of a color, and there is none");
+    }
 }
 
 void read_fineness(TableReader& table, MoldSettings& mold) {

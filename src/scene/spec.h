@@ -44,6 +44,7 @@ struct BodySpec {
     MeshSpec mesh;
     StartSpec start;
     std::optional<Vec3> color;  // linear RGB, instead of what its file says
+    bool metal = false;         // that colour is
     Material material;
     std::vector<InsetSpec> inset;
     MoldSettings mold;

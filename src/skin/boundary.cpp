@@ -72,7 +72,7 @@ void drop_crumbs(const Aggregate& matter, const std::vector<Vec3>& place, VoxelS
 
 }  // namespace
 
-TriMesh boundary_skin(const Aggregate& matter) {
+TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
     VoxelSurface surface = voxel_surface(matter);
     const std::vector<Vec3> place = place_points(matter, surface);
     drop_crumbs(matter, place, surface);
@@ -99,10 +99,7 @@ TriMesh boundary_skin(const Aggregate& matter) {
     skin_positions(mount, matter, mesh.position);
     mesh.material.resize(2);
     mesh.material[0].name = "boundary";
-    mesh.material[0].color = {0.72, 0.45, 0.33};
-    mesh.material[1].name = "cut";
-    mesh.material[1].color = {0.86, 0.82, 0.76};
-    mesh.material[1].roughness = 0.7;
+    mesh.material[1].name = kCutMaterial;
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
         const auto& v = surface.face[f].vertex;
         const auto length = [&](int a, int b) {
@@ -120,6 +117,7 @@ TriMesh boundary_skin(const Aggregate& matter) {
             mesh.triangle_polygon.push_back(static_cast<int>(f));
         }
     }
+    if (look != nullptr) look->paint(mount.reference, mesh);
     constexpr double kCrease = 0.7;  // [rad]
     smooth_by_crease_angle(mesh, kCrease);
     return mesh;

@@ -6,12 +6,13 @@
 
 #include "geometry/trimesh.h"
 #include "matter/aggregate.h"
+#include "skin/new_look.h"
 
 namespace swage {
 
-// Closed and oriented, in the world of now. Two materials: "boundary", and "cut" for faces where
-// matter was severed. Its volume at molding is the matter's. Pieces that hold next to no material
+// Closed and oriented, in the world of now. Looks as `look` has it; without that it has two
+// materials, "boundary" and kCutMaterial, which faces have where matter was severed. Its volume at molding is the matter's. Pieces that hold next to no material
 // are left out.
-TriMesh boundary_skin(const Aggregate& matter);
+TriMesh boundary_skin(const Aggregate& matter, const NewLook* look = nullptr);
 
 }  // namespace swage

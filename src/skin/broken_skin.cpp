@@ -15,9 +15,9 @@
 
 #include "geometry/edges.h"
 #include "geometry/triangle_tree.h"
+#include "skin/new_look.h"
 #include "skin/parted_skin.h"
 #include "skin/section.h"
-#include "skin/split_attributes.h"
 
 namespace swage {
 

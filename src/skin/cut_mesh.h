@@ -12,8 +12,6 @@
 
 namespace swage {
 
-inline constexpr const char* kCutMaterial = "cut";
-
 struct CutResult {
     int planes = 0;           // along which the skin was split
     int cap_triangles = 0;    // on both sides together

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "skin/cut_mesh.h"
+#include "skin/new_look.h"
 
 namespace swage {
 
@@ -143,22 +143,6 @@ void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& ou
 }
 
 }  // namespace
-
-int cut_material(TriMesh& mesh) {
-    if (mesh.material.empty()) mesh.material.emplace_back();
-    const auto known =
-        std::find_if(mesh.material.begin(), mesh.material.end(),
-                     [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
-    const auto number = static_cast<int>(known - mesh.material.begin());
-    if (known == mesh.material.end()) {
-        SurfaceMaterial material;
-        material.name = kCutMaterial;
-        material.color = {0.86, 0.82, 0.76};
-        material.roughness = 0.7;
-        mesh.material.push_back(material);
-    }
-    return number;
-}
 
 TriMesh apply_split(const TriMesh& mesh, const SurfaceSplit& split,
                     const std::vector<Vec3>& reference, const std::vector<double>& share) {

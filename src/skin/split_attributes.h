@@ -7,10 +7,6 @@
 
 namespace swage {
 
-// The number of the material kCutMaterial, which is added where it is not there; so is the mesh's
-// own where it has none.
-int cut_material(TriMesh& mesh);
-
 // The mesh after the split. `reference`: the place at molding of each added vertex, in the order of
 // SurfaceSplit::added; `share`: of each cut point, along its edge at molding.
 TriMesh apply_split(const TriMesh& mesh, const SurfaceSplit& split,

@@ -257,6 +257,23 @@ TEST_CASE("the winding number of a closed surface is one inside and nought outsi
     }
 }
 
+TEST_CASE("the nearest place of a surface is as far as its distance, and no corner is nearer") {
+    const TriMesh mesh = ball(1, 12);
+    const TriangleTree tree(mesh);
+    for (const Vec3& p : spread_points({Vec3::Constant(-1.5), Vec3::Constant(1.5)}, 500)) {
+        const auto [triangle, weight] = tree.nearest(p);
+        CHECK(weight.sum() == Approx(1).margin(1e-12));
+        CHECK(weight.minCoeff() >= -1e-12);
+        Vec3 place = Vec3::Zero();
+        for (int c = 0; c < 3; ++c) {
+            const Vec3& corner = mesh.position[mesh.triangle[triangle][c]];
+            place += weight[c] * corner;
+            CHECK(tree.distance(p) <= (p - corner).norm() + 1e-12);
+        }
+        CHECK((p - place).norm() == Approx(tree.distance(p)).margin(1e-12));
+    }
+}
+
 TEST_CASE("a distance field is the same to the bit at any number of threads") {
     const TriMesh mesh = ball(1, 30);
     set_thread_count(1);

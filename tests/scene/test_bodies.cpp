@@ -27,6 +27,7 @@ turn = [0, 0, "90 deg"]
 velocity = [0, "-3 m/s", 0]
 spin = ["30 rpm", 0, 0]
 color = [1, 0.5, 0]
+finish = "metal"
 [[body]]
 name = "egg"
 file = "bar.obj"
@@ -54,6 +55,7 @@ friction = 0.4
     CHECK(body[1].start.velocity == Vec3(0, -3, 0));
     CHECK(body[1].start.spin.x() == Approx(kPi));
     CHECK(body[1].color.value().y() == Approx(0.2140).epsilon(1e-3));
+    CHECK(body[1].metal);
     CHECK(body[2].name == "egg");
     CHECK(body[2].mesh.length.value() == Approx(0.05));
     CHECK(body[2].material.name == "wax");
@@ -114,6 +116,9 @@ TEST_CASE("mistakes in bodies are found") {
          beside("file = \"bar.obj\"\nspin = [0, 0, \"3 m\"]\n"),
          {"14:18: spin: \"3 m\" is a length; a spin is wanted"}},
         {"colour", beside("file = \"bar.obj\"\ncolor = [2, 0, 0]\n"), {"14:9: color = [2, 0, 0]"}},
+        {"finish",
+         beside("file = \"bar.obj\"\nfinish = \"metal\"\n"),
+         {"finish is that of a color, and there is none"}},
         {"two in equilibrium",
          still,
          {"9:10: solver = \"quasistatic\" goes from equilibrium to equilibrium"}},

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/new_look.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "base/parallel.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kChunk = 512;  // squares
+// What a corner of a face may be off the face's middle in the texture, over what the middle's
+// triangle makes of the way there: more is another part of the mesh.
+constexpr double kStretch = 3;
+constexpr double kPaler = 0.35;
+const Vec3 kPale(0.86, 0.82, 0.76);
+
+double area_of(const TriMesh& mesh, std::size_t triangle) {
+    const auto& [a, b, c] = mesh.triangle[triangle];
+    const Vec3 &p = mesh.position[a], &q = mesh.position[b], &r = mesh.position[c];
+    return 0.5 * (q - p).cross(r - p).norm();
+}
+
+// The material that most of the surface has.
+SurfaceMaterial main_look(const TriMesh& mesh) {
+    if (mesh.material.empty()) return {};
+    std::vector<double> area(mesh.material.size(), 0.0);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        area[mesh.triangle_material.empty() ? 0 : mesh.triangle_material[t]] += area_of(mesh, t);
+    }
+    return mesh.material[std::max_element(area.begin(), area.end()) - area.begin()];
+}
+
+// Of what a blade or a break has laid open: metal is metal inside, and a plain colour goes through,
+// paler; what a texture hides is pale.
+SurfaceMaterial cut_look(const TriMesh& mesh) {
+    const SurfaceMaterial outside = main_look(mesh);
+    SurfaceMaterial look;
+    look.name = kCutMaterial;
+    const bool hides = !outside.texture.empty() || outside.embedded_texture != nullptr ||
+                       !mesh.position_color.empty();
+    if (outside.metallic > 0.5) {
+        look.color = outside.color;
+        look.metallic = outside.metallic;
+        look.roughness = std::max(0.45, outside.roughness);  // as a saw leaves it
+        return look;
+    }
+    look.color = hides ? kPale : Vec3(outside.color + kPaler * (kPale - outside.color));
+    look.roughness = 0.7;
+    return look;
+}
+
+std::vector<int> charts_of(const TriMesh& mesh) {
+    std::vector<int> parent(mesh.triangle.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    if (mesh.triangle_uv.empty()) return parent;
+    const auto root = [&](int t) {
+        while (parent[t] != t) t = parent[t] = parent[parent[t]];
+        return t;
+    };
+    std::map<std::tuple<int, double, double>, int> first;  // triangle at a corner of the texture
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        for (int c = 0; c < 3; ++c) {
+            const int uv = mesh.triangle_uv[t][c];
+            if (uv < 0) continue;
+            const std::tuple corner(mesh.triangle[t][c], mesh.uv[uv].x(), mesh.uv[uv].y());
+            const int other = first.emplace(corner, static_cast<int>(t)).first->second;
+            const int a = root(other), b = root(static_cast<int>(t));
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    for (std::size_t t = 0; t < parent.size(); ++t) parent[t] = root(static_cast<int>(t));
+    return parent;
+}
+
+}  // namespace
+
+int cut_material(TriMesh& mesh) {
+    if (mesh.material.empty()) mesh.material.emplace_back();
+    const auto known =
+        std::find_if(mesh.material.begin(), mesh.material.end(),
+                     [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
+    const auto number = static_cast<int>(known - mesh.material.begin());
+    if (known == mesh.material.end()) {
+        mesh.material.push_back(cut_look(mesh));
+    }
+    return number;
+}
+
+NewLook::NewLook(const TriMesh& mesh) : mesh_(mesh), tree_(mesh), chart_(charts_of(mesh)) {
+    if (mesh_.material.empty()) mesh_.material.emplace_back();
+}
+
+bool NewLook::is_textured(int triangle) const {
+    if (mesh_.triangle_uv.empty()) return false;
+    const Corners& uv = mesh_.triangle_uv[triangle];
+    return uv[0] >= 0 && uv[1] >= 0 && uv[2] >= 0;
+}
+
+Vec2 NewLook::texture_at(int triangle, const Vec3& weight) const {
+    Vec2 at = Vec2::Zero();
+    for (int c = 0; c < 3; ++c) at += weight[c] * mesh_.uv[mesh_.triangle_uv[triangle][c]];
+    return at;
+}
+
+// Those of the triangle's corners whose mean is the place, as seen along its normal.
+Vec3 NewLook::weights_in_plane(int triangle, const Vec3& place) const {
+    const auto& [a, b, c] = mesh_.triangle[triangle];
+    const Vec3 &p = mesh_.position[a], &q = mesh_.position[b], &r = mesh_.position[c];
+    const Vec3 normal = (q - p).cross(r - p);
+    const double size = normal.squaredNorm();
+    if (!(size > 0)) return Vec3::Constant(1.0 / 3);
+    const double v = (place - p).cross(r - p).dot(normal) / size;
+    const double w = (q - p).cross(place - p).dot(normal) / size;
+    return {1 - v - w, v, w};
+}
+
+double NewLook::texture_scale(int triangle) const {
+    const Corners& uv = mesh_.triangle_uv[triangle];
+    const Vec2 u = mesh_.uv[uv[1]] - mesh_.uv[uv[0]], v = mesh_.uv[uv[2]] - mesh_.uv[uv[0]];
+    const double area = area_of(mesh_, static_cast<std::size_t>(triangle));
+    return area > 0 ? std::sqrt(0.5 * std::abs(u.x() * v.y() - u.y() * v.x()) / area) : 0;
+}
+
+struct NewLook::Face {
+    int like = 0;  // triangle of the mesh
+    bool textured = false;
+    std::array<Vec2, 4> uv;
+};
+
+NewLook::Face NewLook::look_of(const std::array<Vec3, 4>& place,
+                               const std::array<TriangleTree::Nearest, 4>& corner) const {
+    const Vec3 middle = 0.25 * (place[0] + place[1] + place[2] + place[3]);
+    const TriangleTree::Nearest at = tree_.nearest(middle);
+    Face face{at.triangle, is_textured(at.triangle), {}};
+    if (!face.textured) return face;
+    const Vec2 here = texture_at(at.triangle, at.weight);
+    const double most = kStretch * texture_scale(at.triangle);
+    for (int k = 0; k < 4; ++k) {
+        face.uv[k] = texture_at(at.triangle, weights_in_plane(at.triangle, place[k]));
+        const auto [triangle, weight] = corner[k];
+        if (chart_[triangle] != chart_[at.triangle] || !is_textured(triangle)) continue;
+        const Vec2 uv = texture_at(triangle, weight);
+        if ((uv - here).norm() <= most * (place[k] - middle).norm()) face.uv[k] = uv;
+    }
+    return face;
+}
+
+void NewLook::paint(const std::vector<Vec3>& place, TriMesh& mesh) const {
+    const auto for_each = [](std::size_t count, const auto& act) {
+        parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+            const std::size_t end = std::min(count, (chunk + 1) * kChunk);
+            for (std::size_t n = chunk * kChunk; n < end; ++n) act(n);
+        });
+    };
+    std::vector<TriangleTree::Nearest> near(place.size());
+    for_each(place.size(), [&](std::size_t v) { near[v] = tree_.nearest(place[v]); });
+    const std::size_t count = mesh.triangle.size() / 2;
+    std::vector<Face> face(count);
+    for_each(count, [&](std::size_t f) {
+        if (mesh.triangle_material[2 * f] == 1) return;
+        const Corners &one = mesh.triangle[2 * f], &other = mesh.triangle[2 * f + 1];
+        const auto of = [&](const auto& all) {
+            return std::array{all[one[0]], all[one[1]], all[one[2]], all[other[2]]};
+        };
+        face[f] = look_of(of(place), of(near));
+    });
+    mesh.material = mesh_.material;
+    const bool has_cut = std::find(mesh.triangle_material.begin(), mesh.triangle_material.end(),
+                                   1) != mesh.triangle_material.end();
+    const int cut = has_cut ? cut_material(mesh) : -1;
+    if (!mesh_.triangle_uv.empty()) mesh.triangle_uv.assign(2 * count, {-1, -1, -1});
+    for (std::size_t f = 0; f < count; ++f) {
+        const bool is_cut = mesh.triangle_material[2 * f] == 1;
+        const int own = mesh_.triangle_material.empty() ? 0 : mesh_.triangle_material[face[f].like];
+        mesh.triangle_material[2 * f] = mesh.triangle_material[2 * f + 1] = is_cut ? cut : own;
+        if (!face[f].textured) continue;
+        const int at = static_cast<int>(mesh.uv.size());
+        mesh.uv.insert(mesh.uv.end(), face[f].uv.begin(), face[f].uv.end());
+        mesh.triangle_uv[2 * f] = {at, at + 1, at + 2};
+        mesh.triangle_uv[2 * f + 1] = {at, at + 2, at + 3};
+    }
+    if (mesh_.position_color.empty()) return;
+    for (const auto& [triangle, weight] : near) {
+        Eigen::Vector3f color = Eigen::Vector3f::Zero();
+        for (int c = 0; c < 3; ++c) {
+            color += float(weight[c]) * mesh_.position_color[mesh_.triangle[triangle][c]];
+        }
+        mesh.position_color.push_back(color);
+    }
+}
+
+}  // namespace swage

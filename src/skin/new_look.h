@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What surfaces that come to be look like, from the look of the mesh.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/triangle_tree.h"
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+// Of faces that a blade or a break has laid open.
+inline constexpr const char* kCutMaterial = "cut";
+
+// The number of that material, which is added where it is not there; so is the mesh's own where it
+// has none. Metal is metal inside, and a plain colour goes through, paler; what a texture hides is
+// pale.
+int cut_material(TriMesh& mesh);
+
+// The look of a mesh for surfaces that are made anew from the same matter: each face has material,
+// texture and colours of where the mesh is nearest at molding.
+class NewLook {
+  public:
+    // The mesh as it was molded, not empty.
+    explicit NewLook(const TriMesh& mesh);
+
+    // `mesh`: a boundary (skin/boundary.h), made of squares, two triangles each; `place`: of its
+    // positions at molding. Faces of a cut, of its material 1, get kCutMaterial and no texture.
+    void paint(const std::vector<Vec3>& place, TriMesh& mesh) const;
+
+  private:
+    struct Face;
+    Face look_of(const std::array<Vec3, 4>& place,
+                 const std::array<TriangleTree::Nearest, 4>& corner) const;
+    bool is_textured(int triangle) const;
+    Vec2 texture_at(int triangle, const Vec3& weight) const;
+    Vec3 weights_in_plane(int triangle, const Vec3& place) const;
+    double texture_scale(int triangle) const;  // texture a length [1/m]
+
+    TriMesh mesh_;
+    TriangleTree tree_;
+    std::vector<int> chart_;  // of each triangle: those that no seam parts share a number
+};
+
+}  // namespace swage

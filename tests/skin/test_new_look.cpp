@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/new_look.h"
+
+#include "geometry/box_mesh.h"
+#include "skin/boundary.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
+
+using namespace swage;
+
+namespace {
+
+// A side of a box: 0 to 5, by its outward normal.
+int side_of(const TriMesh& mesh, const Corners& triangle) {
+    const Vec3& a = mesh.position[triangle[0]];
+    const Vec3 normal = (mesh.position[triangle[1]] - a).cross(mesh.position[triangle[2]] - a);
+    int axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    return 2 * axis + (normal[axis] > 0);
+}
+
+// The texture of each side is another, and turned another way: seams run along all edges.
+Vec2 texture_of(int side, const Vec3& place) {
+    const int u = (side / 2 + 1) % 3, v = (side / 2 + 2) % 3;
+    return Vec2(10.0 * side + place[u], 3.0 * side + (side % 2 ? -1 : 2) * place[v]);
+}
+
+// The box around a block of cells, textured, one material a side.
+TriMesh textured_box(const Aggregate& block) {
+    Box box;
+    for (std::size_t p = 0; p < block.particle_count(); ++p) box.grow(block.particle_reference.at(p));
+    TriMesh mesh = box_mesh(box);
+    for (int side = 0; side < 6; ++side) {
+        mesh.material.emplace_back();
+        mesh.material.back().name = std::to_string(side);
+        mesh.material.back().texture = "/texture.png";
+    }
+    for (const Corners& triangle : mesh.triangle) {
+        const int side = side_of(mesh, triangle);
+        const int at = static_cast<int>(mesh.uv.size());
+        for (int v : triangle) mesh.uv.push_back(texture_of(side, mesh.position[v]));
+        mesh.triangle_uv.push_back({at, at + 1, at + 2});
+        mesh.triangle_material.push_back(side);
+    }
+    for (const Vec3& p : mesh.position) mesh.position_color.push_back(p.cast<float>());
+    return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a boundary made anew keeps the mesh's texture, materials and colours, seams too") {
+    const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
+    const NewLook look(textured_box(block));
+    const TriMesh mesh = boundary_skin(block, &look);
+    REQUIRE(mesh.material.size() == 6);
+    double worst = 0, off = 0;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const int side = side_of(mesh, mesh.triangle[t]);
+        REQUIRE(mesh.triangle_material[t] == side);
+        for (int c = 0; c < 3; ++c) {
+            const int at = mesh.triangle_uv[t][c];
+            REQUIRE(at >= 0);
+            const Vec3& place = mesh.position[mesh.triangle[t][c]];
+            worst = std::max(worst, (mesh.uv[at] - texture_of(side, place)).norm());
+        }
+    }
+    for (std::size_t v = 0; v < mesh.position.size(); ++v) {
+        off = std::max(off, (mesh.position_color[v].cast<double>() - mesh.position[v]).norm());
+    }
+    CHECK(worst < 1e-9);
+    CHECK(off < 1e-6);
+}
+
+TEST_CASE("a texture stays where it was on matter that has moved") {
+    Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
+    const NewLook look(textured_box(block));
+    const TriMesh before = boundary_skin(block, &look);
+    test::deform(block, [](const Vec3& x) { return Vec3(2 * x.y(), x.x() + x.z(), -x.z()); });
+    const TriMesh after = boundary_skin(block, &look);
+    double worst = 0;
+    for (std::size_t t = 0; t < after.triangle.size(); ++t) {
+        for (int c = 0; c < 3; ++c) {
+            const Vec3& place = before.position[after.triangle[t][c]];
+            const Vec2 uv = texture_of(after.triangle_material[t], place);
+            worst = std::max(worst, (after.uv[after.triangle_uv[t][c]] - uv).norm());
+        }
+    }
+    CHECK(worst < 1e-9);
+}
+
+TEST_CASE("faces of a cut have a material of their own and no texture") {
+    Aggregate block = test::make_block(8, 4, 4, 0.1, Material{});
+    const NewLook look(textured_box(block));
+    test::sever_plane(block, {0.03, 0, 0}, Vec3::UnitX());
+    const TriMesh mesh = boundary_skin(block, &look);
+    double area = 0;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangle[t];
+        const bool cut = mesh.material[mesh.triangle_material[t]].name == kCutMaterial;
+        CHECK((mesh.triangle_uv[t][0] < 0) == cut);
+        const Vec3 &p = mesh.position[a], &q = mesh.position[b], &r = mesh.position[c];
+        if (cut) area += 0.5 * (q - p).cross(r - p).norm();
+    }
+    CHECK(area == Approx(2 * 0.4 * 0.4).epsilon(0.01));
+}
+
+TEST_CASE("metal is metal inside, a plain colour goes through, what a texture hides is pale") {
+    TriMesh mesh = box_mesh(Vec3::Zero(), Vec3::Ones());
+    mesh.material.resize(1);
+    SurfaceMaterial& look = mesh.material[0];
+    const auto cut = [](TriMesh of) { return of.material[cut_material(of)]; };
+    look.color = {0.8, 0.4, 0.2};
+    CHECK(cut(mesh).metallic == 0);
+    CHECK(cut(mesh).color.x() > 1.5 * cut(mesh).color.z());
+    TriMesh red = mesh;
+    red.material[0].color = {0.8, 0.1, 0.1};
+    CHECK(cut(red).color.y() < cut(mesh).color.y());
+    look.metallic = 1;
+    CHECK(cut(mesh).metallic == 1);
+    CHECK(cut(mesh).color == look.color);
+    look.metallic = 0;
+    look.texture = "/texture.png";
+    const Vec3 pale = cut(mesh).color;
+    look.color = {0.1, 0.1, 0.8};
+    CHECK(cut(mesh).color == pale);
+    TriMesh again = mesh;
+    CHECK(cut_material(again) == cut_material(again));
+    CHECK(again.material.size() == 2);
+}
