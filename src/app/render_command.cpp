@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "app/command.h"
 #include "base/error.h"
@@ -19,6 +20,7 @@ namespace {
 struct RenderArguments {
     std::string run, out, size, frames, gl = "auto";
     std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
+    std::vector<double> eye, target;                                      // [m]
     std::optional<int> frames_per_second;
     bool no_film = false, no_tools = false, no_ground = false, json = false;
 };
@@ -43,6 +45,12 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
             key.azimuth += *given.turn * kDegree;
             settings.camera.push_back(key);
         }
+    }
+    if (!given.eye.empty()) {
+        CameraKey key;
+        key.eye = Vec3(given.eye[0], given.eye[1], given.eye[2]);
+        key.target = Vec3(given.target[0], given.target[1], given.target[2]);
+        settings.camera.assign(1, key);
     }
     if (given.frames_per_second) settings.frames_per_second = *given.frames_per_second;
     if (given.no_film) settings.film = false;
@@ -94,7 +102,8 @@ void add_render_command(CLI::App& app, Action& chosen) {
         app, "render", "Draw a finished run again, without simulating",
         "  swage render renders/calf-line --camera-azimuth 90 --size 1920x1080 --out /tmp/side\n"
         "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
-        "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n",
+        "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n"
+        "  swage render renders/calf-line --camera-eye 0.5 0.2 0.4 --camera-target 0 0.1 0\n",
         chosen, [] { return render(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
     command->add_option("--out", given.out, "where to draw (default: RUN/again)")->type_name("DIR");
@@ -109,6 +118,18 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(CLI::Range(0.01, 1000.0));
     command->add_option("--camera-turn", given.turn, "how far it goes round during the film")
         ->type_name("DEG");
+    // Instead of all these.
+    CLI::Option* eye =
+        command->add_option("--camera-eye", given.eye, "where the camera stands [m]");
+    CLI::Option* target =
+        command->add_option("--camera-target", given.target, "what it looks at [m]");
+    for (CLI::Option* place : {eye, target}) place->expected(3)->type_name("X Y Z");
+    eye->needs(target);
+    target->needs(eye);
+    for (const char* other :
+         {"--camera-azimuth", "--camera-elevation", "--camera-zoom", "--camera-turn"}) {
+        eye->excludes(command->get_option(other));
+    }
     command->add_option("--field-of-view", given.field_of_view, "vertical")
         ->check(CLI::Range(1.0, 170.0))
         ->type_name("DEG");

@@ -145,6 +145,7 @@ double srgb(float linear) { return srgb_from_linear(std::clamp<double>(linear, 0
 
 // Per-vertex texture coordinates, when every place has just one; empty otherwise.
 std::vector<Vec2> uv_of_positions(const TriMesh& mesh) {
+    if (mesh.triangle_uv.empty()) return {};
     std::vector<int> id(mesh.position.size(), -1);
     for (std::size_t t = 0; t < mesh.triangle_uv.size(); ++t)
         for (int k = 0; k < 3; ++k) {
@@ -240,15 +241,16 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
         most_corners = std::max(most_corners, polygons.first[p + 1] - polygons.first[p]);
     const bool wide = 2 * most_corners > 255;  // lists count in a byte when they can
     const std::vector<Vec2> uv = uv_of_positions(mesh);
-    bool corner_uv = uv.empty() && !mesh.triangle_uv.empty();
-    for (const Corners& c : mesh.triangle_uv)
-        corner_uv = corner_uv && std::min({c[0], c[1], c[2]}) >= 0;
+    const bool corner_uv = uv.empty() && !mesh.triangle_uv.empty();
 
     std::string bytes = "ply\nformat binary_little_endian 1.0\n";
-    if (mesh.material.size() == 1) {
-        const std::string image = copy_textures(file, mesh.material)[0];
+    std::vector<int> image_of;  // of each material, -1: none
+    int images = 0;
+    for (const std::string& image : copy_textures(file, mesh.material)) {
+        image_of.push_back(image.empty() ? -1 : images++);
         if (!image.empty()) bytes += "comment TextureFile " + image + "\n";
     }
+    const bool several = images > 1 && !mesh.triangle_material.empty();
     bytes +=
         fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
                     mesh.position.size());
@@ -259,6 +261,7 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     bytes += fmt::format("element face {}\nproperty list {} int vertex_indices\n", polygons.count(),
                          count_type);
     if (corner_uv) bytes += fmt::format("property list {} double texcoord\n", count_type);
+    if (several) bytes += "property int texnumber\n";
     bytes += "end_header\n";
 
     bytes.reserve(bytes.size() + 43 * mesh.position.size() + 8 * polygons.count() +
@@ -286,13 +289,20 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
         for (std::size_t i = begin; i < end; ++i)
             pack(bytes, static_cast<std::int32_t>(
                             mesh.triangle[polygons.corner[i] / 3][polygons.corner[i] % 3]));
-        if (!corner_uv) continue;
-        put_count(2 * (end - begin));
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec2& t =
-                mesh.uv[mesh.triangle_uv[polygons.corner[i] / 3][polygons.corner[i] % 3]];
-            pack(bytes, t.x());
-            pack(bytes, t.y());
+        const auto uv_at = [&](std::size_t i) {
+            return mesh.triangle_uv[polygons.corner[i] / 3][polygons.corner[i] % 3];
+        };
+        if (corner_uv) {
+            bool has_uv = true;
+            for (std::size_t i = begin; i < end; ++i) has_uv = has_uv && uv_at(i) >= 0;
+            put_count(has_uv ? 2 * (end - begin) : 0);
+            for (std::size_t i = begin; i < end && has_uv; ++i) {
+                pack(bytes, mesh.uv[uv_at(i)].x());
+                pack(bytes, mesh.uv[uv_at(i)].y());
+            }
+        }
+        if (several) {
+            pack(bytes, std::int32_t(image_of[mesh.triangle_material[polygons.corner[begin] / 3]]));
         }
     }
     write_file_whole(file, bytes);

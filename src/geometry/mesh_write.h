@@ -16,7 +16,8 @@ namespace swage {
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 
 // Binary little-endian PLY in double precision: polygons, colours (8 bit sRGB), texture
-// coordinates at vertices (s, t) when no seam forbids it, else at face corners (texcoord).
+// coordinates at vertices (s, t) when no seam forbids it, else at face corners (texcoord, an empty
+// list where a face has none), names of textures and, where there are several, texnumber.
 void write_ply(const std::filesystem::path& file, const TriMesh& mesh);
 
 }  // namespace swage

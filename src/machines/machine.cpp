@@ -25,6 +25,7 @@ constexpr double kDeepStart = 0.05;
 constexpr double kGripSlack = 1e-9;  // for points on the border of a grip's box: share of the size
 constexpr double kClampClearance = 0.1;  // between a grip's drawn plates and the points; the same
 const std::string kMaterialFriction = "material_friction";
+constexpr double kMostReach = 10;    // spacings
 constexpr int kTravelSamples = 64;  // of a blade's way, to see where it goes
 
 struct Setting {  // what every part of a machine is set up in
@@ -255,6 +256,18 @@ std::vector<Pose> placed(const Pose& world_from_work, const std::vector<Pose>& w
     return world_from_part;
 }
 
+// How far particles stick out of the work-piece's box, at the most [m]: corners of cells that the
+// mesh does not fill. What has been driven farther than kMostReach holds next to nothing.
+double lattice_reach(const Aggregate& matter, const WorkFrame& frame) {
+    const Pose work_from_world = frame.world_from_work.inverse();
+    double reach = 0;
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        const Vec3 at = work_from_world * matter.particle_position.at(p);
+        reach = std::max(reach, (at.cwiseAbs() - 0.5 * frame.size).maxCoeff());
+    }
+    return std::min(reach, kMostReach * matter.lattice.spacing);
+}
+
 }  // namespace
 
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
@@ -273,6 +286,7 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
                      {"height", frame.size.y()},
                      {"width", frame.size.z()},
                      {"spacing", setting.spacing},
+                     {"lattice_reach", lattice_reach(matter, frame)},
                      {kMaterialFriction, matter.material.friction}};
 
     Machine machine;

@@ -2,8 +2,8 @@
 // A machine as its file says it: plain data and expressions, nothing evaluated.
 //
 // Expressions (base/expression.h) see the machine's parameters, and of the work-piece: length,
-// height, width (its box along the work frame's x, y, z), spacing (of the lattice) and
-// material_friction; tools also the placed centres of the tools before them, as NAME_x, NAME_y,
+// height, width (its box along the work frame's x, y, z), spacing (of the lattice), lattice_reach
+// (how far particles stick out of that box, at the most) and material_friction; tools also the placed centres of the tools before them, as NAME_x, NAME_y,
 // NAME_z in the work frame, and motions, grips, blades, loads and checks those of all tools.
 // Motions and strengths of loads also see t, 0 at the start of the stage and 1 at its end.
 //

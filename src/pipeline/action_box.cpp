@@ -63,6 +63,7 @@ SkinPieces find_pieces_of(const TriMesh& skin) {
 
 constexpr double kStray = 0.05;  // of the surface that may leave the picture
 constexpr double kReach = 0.12;  // of the action's size, that what lies near it may add
+constexpr double kDeep = 1;      // of that size, that tools may reach below it and stand on ground
 
 // Which pieces the picture frames: all but the farthest from the middle.
 std::vector<char> framed(const SkinPieces& pieces, const std::vector<Eigen::Vector3f>& position) {
@@ -191,7 +192,10 @@ ActionBox find_action(const FrameStore& store, bool tools) {
     const Vec3 reach = Vec3::Constant(kReach * skin.size().maxCoeff());
     action.bounds.grow(machines.low.cwiseMax(skin.low - reach).cwiseMin(skin.high));
     action.bounds.grow(machines.high.cwiseMin(skin.high + reach).cwiseMax(skin.low));
-    action.ground_height = action.bounds.low.y();
+    // The ground does not cut through what stands a little lower, seen or not.
+    const double deep = skin.low.y() - kDeep * skin.size().maxCoeff();
+    action.ground_height =
+        machines.low.y() > deep ? std::min(machines.low.y(), skin.low.y()) : action.bounds.low.y();
     for (const Vec3& corner : tool_corners) {
         outline.grow(corner.cwiseMax(action.bounds.low).cwiseMin(action.bounds.high));
     }

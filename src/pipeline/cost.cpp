@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "machines/machine.h"
 #include "pipeline/stage_machine.h"
+#include "pipeline/start_overlap.h"
 #include "sim/advance.h"
 
 namespace swage {
@@ -239,6 +240,11 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         cost.mold.connections += static_cast<double>(matter[b].connection_count());
         cost.mold.bytes += static_cast<double>(matter[b].bytes());
     }
+    std::vector<NamedMatter> named;
+    for (std::size_t b = 0; b < matter.size(); ++b) {
+        named.push_back({scene.body[b].name, &matter[b]});
+    }
+    cost.note = start_overlaps(named);
     const StageSpec& first = scene.stage.front();
     std::vector<Material> beside;
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);

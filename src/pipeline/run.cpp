@@ -12,6 +12,7 @@
 #include "pipeline/plot.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
+#include "pipeline/start_overlap.h"
 
 namespace swage {
 
@@ -76,6 +77,13 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
         if (strength.empty()) continue;
         log_warning("{}", strength);
         warnings.push_back(strength);
+    }
+
+    std::vector<NamedMatter> named;
+    for (const WorkPiece& body : bodies) named.push_back({body.name, &body.matter});
+    for (const std::string& overlap : start_overlaps(named)) {
+        log_warning("{}", overlap);
+        warnings.push_back(overlap);
     }
 
     MotionRecorder recorder(directory.store());

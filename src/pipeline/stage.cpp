@@ -161,6 +161,12 @@ std::size_t connection_count(const std::vector<WorkPiece>& bodies) {
     return count;
 }
 
+int piece_count(const std::vector<WorkPiece>& bodies) {
+    int count = 0;
+    for (const WorkPiece& body : bodies) count += find_pieces(body.matter).count;
+    return count;
+}
+
 }  // namespace
 
 StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkPiece>& bodies,
@@ -178,6 +184,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         log_info("{}: molded anew: {} particles", stage.name, particle_count(bodies));
     }
     const std::size_t connections_before = connection_count(bodies);
+    const int pieces_before = piece_count(bodies);
 
     const Aggregate& work_piece = bodies.front().matter;
     std::vector<Material> beside;
@@ -261,6 +268,12 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     const bool ended_early = outcome.stopped || outcome.interrupted;
     if (!machine.apparatus.tool.empty() && !totals.touched && !ended_early) {
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
+    }
+    if (totals.severed > 0 && !ended_early && piece_count(bodies) == pieces_before) {
+        outcome.warning.push_back(fmt::format(
+            "{}: the blade has severed {} connections and parted nothing: it passed through a part "
+            "of the work-piece only, by its place, its width or its way",
+            stage.name, totals.severed));
     }
     double overlap = 0;  // [m]
     const bool meets = stage.sim.self_contact;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/work_piece.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/units.h"
 #include "geometry/box_mesh.h"
 #include "geometry/mesh_read.h"
 #include "geometry/mesh_repair.h"
+#include "mold/carry_hardening.h"
 #include "mold/mold.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
@@ -15,6 +19,8 @@
 namespace swage {
 
 namespace {
+
+constexpr double kHuge = 50;  // [m], beyond which a mesh is likely to be in other units
 
 double scale_to(double length, const TriMesh& mesh) {
     const double longest = box_of(mesh.position).size().maxCoeff();
@@ -70,6 +76,13 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
         if (input.scale != 1) {
             for (Vec3& p : input.mesh.position) p *= input.scale;
         }
+    }
+    const double longest = box_of(input.mesh.position).size().maxCoeff();
+    if (!length && longest > kHuge) {
+        input.finding.push_back(fmt::format(
+            "{} is {} long, for a file's numbers are taken as metres: say how long it is with "
+            "`length`",
+            file.filename().string(), quantity_text(longest, Quantity::length)));
     }
     input.report = check_mesh(input.mesh);
     return input;
@@ -149,8 +162,7 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, SkinKind
     piece.name = body.name;
     piece.matter = mold(input.to_mold(), body.material, body.mold, insets_for(input, body));
     if (skin == SkinKind::boundary) {
-        TriMesh like =
-            body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
+        TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         if (body.color) paint(like, *body.color, body.metal);
         piece.look = std::make_shared<const NewLook>(like);
     } else {
@@ -176,7 +188,9 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, SkinKind skin)
     // Bent, its box says nothing of how thick it is.
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = piece.matter.lattice.spacing;
-    return make_work_piece(input, as_it_stands, skin);
+    WorkPiece anew = make_work_piece(input, as_it_stands, skin);
+    carry_hardening(piece.matter, anew.matter);
+    return anew;
 }
 
 std::uint64_t state_hash(const std::vector<WorkPiece>& bodies) {

@@ -6,8 +6,8 @@
 namespace swage {
 
 const std::vector<std::string>& work_piece_names() {
-    static const std::vector<std::string> names = {"length", "height", "width", "spacing",
-                                                   "material_friction"};
+    static const std::vector<std::string> names = {"length",  "height",        "width",
+                                                   "spacing", "lattice_reach", "material_friction"};
     return names;
 }
 

@@ -2,6 +2,7 @@
 #include "scene/table_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "base/math.h"
@@ -131,6 +132,14 @@ void TableReader::missing(const std::string& key, const std::string& what) {
     reading_.mistakes.add(node_.place, fmt::format("{} needs \"{}\": {}", section_, key, what));
 }
 
+void TableReader::warn_of_turns(const std::string& key, const Node& node, double angle) {
+    if (!(std::abs(angle) > 2 * kPi)) return;
+    reading_.mistakes.warn(node.place,
+                           fmt::format("{0} = {1:g} without a unit is {1:g} rad: that is {2:.4g} "
+                                       "turns; degrees are written \"{1:g} deg\"",
+                                       key, angle, angle / (2 * kPi)));
+}
+
 bool TableReader::number(const std::string& key, const Node& node, Quantity quantity,
                          double& into) {
     if (node.kind == Node::Kind::whole || node.kind == Node::Kind::real) {
@@ -139,17 +148,16 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
             return false;
         }
         into = node.number;
-        if (quantity == Quantity::angle && std::abs(into) > 2 * kPi) {
-            reading_.mistakes.warn(
-                node.place, fmt::format("{0} = {1:g} without a unit is {1:g} rad: that is {2:.4g} "
-                                        "turns; degrees are written \"{1:g} deg\"",
-                                        key, into, into / (2 * kPi)));
-        }
+        if (quantity == Quantity::angle) warn_of_turns(key, node, into);
         return true;
     }
     if (node.kind == Node::Kind::text) {
         try {
             into = parse_quantity(node.text, quantity);
+            const bool has_unit = std::any_of(node.text.begin(), node.text.end(), [](char c) {
+                return std::isalpha(static_cast<unsigned char>(c)) && c != 'e' && c != 'E';
+            });
+            if (quantity == Quantity::angle && !has_unit) warn_of_turns(key, node, into);
             return true;
         } catch (const TextError& error) {
             reading_.mistakes.add(place_inside(node, error.at()), key + ": " + error.what());

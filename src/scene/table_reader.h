@@ -125,6 +125,7 @@ class TableReader {
     int chosen_name(const std::string& key, const std::vector<std::string>& names,
                     const std::string& usual);
     bool number(const std::string& key, const Node& node, Quantity quantity, double& into);
+    void warn_of_turns(const std::string& key, const Node& node, double angle);  // without a unit
 
     const Node& node_;
     std::string section_;

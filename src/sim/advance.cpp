@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
+#include <utility>
 #include <variant>
 
 #include "base/error.h"
@@ -21,14 +23,39 @@ namespace {
 
 constexpr int kCrumb = 8;  // a piece of fewer particles is less than one cell
 
-// Marks the particles of pieces that are less than a cell.
-std::vector<char> crumbs_of(const Aggregate& matter) {
-    const Pieces pieces = find_pieces(matter);
+// Of each piece, whether it is less than a cell.
+std::vector<char> crumbs_of(const Pieces& pieces) {
     std::vector<int> size(pieces.count, 0);
     for (int piece : pieces.particle_piece) ++size[piece];
     std::vector<char> crumb;
-    for (int piece : pieces.particle_piece) crumb.push_back(size[piece] < kCrumb);
+    for (int particles : size) crumb.push_back(particles < kCrumb);
     return crumb;
+}
+
+// What would fall off as a crumb stays with one side that it is cut from, that which held it by
+// most; with both it would join them. `cut`: the matter with all of the plan severed.
+void keep_crumbs(const Aggregate& cut, std::deque<std::vector<SeverEvent>>& plan) {
+    const Pieces pieces = find_pieces(cut);
+    const std::vector<char> crumb = crumbs_of(pieces);
+    const std::vector<int>& of = pieces.particle_piece;
+    std::map<std::pair<int, int>, double> held;  // of a crumb by a piece: weights
+    for (const std::vector<SeverEvent>& events : plan) {
+        for (const SeverEvent& e : events) {
+            const int a = of[e.lower], b = of[e.upper];
+            if (crumb[a] && !crumb[b]) held[{a, b}] += e.weight;
+            if (crumb[b] && !crumb[a]) held[{b, a}] += e.weight;
+        }
+    }
+    std::vector<int> side(pieces.count, -1);
+    std::vector<double> most(pieces.count, 0.0);
+    for (const auto& [pair, weight] : held) {
+        if (weight > most[pair.first]) most[pair.first] = weight, side[pair.first] = pair.second;
+    }
+    const auto stays = [&](const SeverEvent& e) {
+        const int a = of[e.lower], b = of[e.upper];
+        return (crumb[a] && (a == b || side[a] == b)) || (crumb[b] && side[b] == a);
+    };
+    for (std::vector<SeverEvent>& events : plan) std::erase_if(events, stays);
 }
 
 using AnySolver = std::variant<QuasistaticSolver, ExplicitSolver, EnergySteps>;
@@ -151,13 +178,15 @@ int Simulation::Rooms::sever(std::size_t b, const Drive& from, const Drive& to) 
 void Simulation::Rooms::count_pieces(std::size_t b, const char* who,
                                      std::vector<std::string>& warning) {
     WorkedBody& at = body[b];
-    const std::vector<char> crumb = crumbs_of(*at.matter);
-    const auto loose = std::count(crumb.begin(), crumb.end(), 1);
+    const Pieces pieces = find_pieces(*at.matter);
+    const std::vector<char> crumb = crumbs_of(pieces);
+    const auto loose = std::count_if(pieces.particle_piece.begin(), pieces.particle_piece.end(),
+                                     [&](int piece) { return crumb[piece] != 0; });
     if (loose > at.crumbs) {
         warning.push_back(fmt::format("{} left crumbs of less than one cell", who));
     }
     at.crumbs = loose;
-    at.pieces = find_pieces(*at.matter).count;
+    at.pieces = pieces.count;
 }
 
 void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
@@ -233,12 +262,7 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
             ahead.connection[e.direction].weight.set(e.lower, 0);
         }
     }
-    // What would fall off as a crumb stays with the side that it is cut from.
-    const std::vector<char> crumb = crumbs_of(ahead);
-    for (std::vector<SeverEvent>& events : at.plan) {
-        std::erase_if(events,
-                      [&](const SeverEvent& e) { return crumb[e.lower] || crumb[e.upper]; });
-    }
+    keep_crumbs(ahead, at.plan);
 }
 
 std::vector<ToolLoad> Simulation::loads(const Drive& now) const {

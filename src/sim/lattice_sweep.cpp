@@ -301,8 +301,10 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
             whole.keep[j] = step->forward[j].keep;
             whole.gain[j] = step->forward[j].gain;
         }
+        whole.half_step = 0.5 * step->step;
         for (int kind : {0, 1}) {
             whole.stretch_scale[kind] = step->step * whole.inverse_square[kind];
+            whole.turn_scale[kind] = step->step * whole.stretch_scale[kind];
         }
         whole.grows = step->grown != nullptr;
         whole.yield_strain = step->yield_strain;

@@ -7,7 +7,8 @@ namespace swage {
 
 namespace {
 
-// Particles by their place along the axis that has most of them.
+// Particles by their place along the axis that has most of them. Where there are none, between
+// parts of a body, there is no slab: nothing couples across the gap.
 std::vector<std::vector<ParticleId>> slabs_of(const Lattice& lattice) {
     int axis = 0;
     lattice.cell_count.maxCoeff(&axis);
@@ -18,6 +19,7 @@ std::vector<std::vector<ParticleId>> slabs_of(const Lattice& lattice) {
             slab[site[axis]].push_back(run.first + n);
         }
     }
+    std::erase_if(slab, [](const auto& particles) { return particles.empty(); });
     return slab;
 }
 

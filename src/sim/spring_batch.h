@@ -32,6 +32,8 @@ struct SpringTask {
     int branches = 0;
     double keep[kMostBranches] = {}, gain[kMostBranches] = {};
     double stretch_scale[2] = {};  // step over the square of the reference length
+    double half_step = 0;          // [s]
+    double turn_scale[2] = {};     // step squared over the square of the reference length
     float* strain = nullptr;       // by batches of eight: direction, branch, lane
     bool grows = false;            // what flowed takes its branches along
     const float* grown[kForwardCount] = {};
@@ -118,7 +120,13 @@ struct SpringKernel {
             for (int n = 0; n < 3; ++n) {
                 const int c = direction[n];
                 const Triple<V> speed = load_triple<V>(at.v[kRowAbove[c]], kForward[c][0]) - v;
-                stretch[n] = task.stretch_scale[kind(c)] * (dot(speed, way[n]) * y[n]);
+                // (d^2 now less d^2 before the step) / 2 d: what turns is not stretched. Less and
+                // less of that where a step goes as far as d, which nears nought.
+                const V fast = dot(speed, speed);
+                const V steady =
+                    larger(1.0 - task.turn_scale[kind(c)] * (fast * (y[n] * y[n])), V{});
+                stretch[n] = task.stretch_scale[kind(c)] *
+                             ((dot(speed, way[n]) - task.half_step * (fast * steady)) * y[n]);
                 if constexpr (kKind != BatchKind::plain) {
                     stretch[n] = weight[n] > 0.0 ? stretch[n] : V{};
                 }

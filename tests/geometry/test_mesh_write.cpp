@@ -90,6 +90,23 @@ TEST_CASE("PLY keeps double precision, polygons, colours and texture seams") {
         for (int k = 0; k < 3; ++k)
             CHECK(again.uv[again.triangle_uv[t][k]] == cube.uv[cube.triangle_uv[t][k]]);
 
+    // Faces of a cut have none, and those of the skin keep theirs.
+    TriMesh cut = cube;
+    for (std::size_t t : {0u, 1u}) cut.triangle_uv[t] = {-1, -1, -1};
+    write_ply(folder / "cut.ply", cut);
+    const TriMesh read = read_quietly(folder / "cut.ply");
+    REQUIRE(read.triangle_uv.size() == cut.triangle.size());
+    for (std::size_t t = 0; t < cut.triangle.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            if (t < 2) CHECK(read.triangle_uv[t][k] == -1);
+            if (t >= 2) CHECK(read.uv[read.triangle_uv[t][k]] == cut.uv[cut.triangle_uv[t][k]]);
+        }
+    }
+    TriMesh bare = cube;
+    bare.uv.clear(), bare.triangle_uv.clear();
+    write_ply(folder / "bare.ply", bare);
+    CHECK(fixtures::bytes_of(folder / "bare.ply").find("property double s") == std::string::npos);
+
     TriMesh ball = fixtures::ball_mesh(4, 1);  // no seam: coordinates at the vertices
     write_ply(folder / "ball.ply", ball);
     CHECK(fixtures::bytes_of(folder / "ball.ply").find("property double s") != std::string::npos);

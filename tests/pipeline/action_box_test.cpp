@@ -63,3 +63,11 @@ TEST_CASE("the picture shows where tools are, but no end of what is endless") {
     CHECK(widest(Finish::metal) > 1.1);
     CHECK(widest(Finish::endless) == Approx(1));
 }
+
+TEST_CASE("tools that reach a little lower than the work-piece stand on the ground, not in it") {
+    DrawnPart post;
+    post.surface = box_mesh(Vec3(0, -0.8, 0), Vec3(0.1, 1.2, 0.1));
+    CHECK(action_of(1, 2, false, {post}).ground_height == Approx(-0.8));
+    post.surface = box_mesh(Vec3(0, -80, 0), Vec3(0.1, 1.2, 0.1));
+    CHECK(action_of(1, 2, false, {post}).ground_height > -3);
+}

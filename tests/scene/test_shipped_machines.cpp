@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The machine files that swage ships do what they say (S2.13 to S2.15).
+#include <Eigen/Geometry>
 #include <algorithm>
 
+#include "geometry/make_shape.h"
 #include "machines/machine.h"
 #include "machines/touch.h"
+#include "mold/mold.h"
 #include "scene/read_machine.h"
+#include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/machines/bodies.h"
 
@@ -220,6 +224,25 @@ TEST_CASE("the cutter's edge sweeps the whole section, in one plane through its 
             CHECK((drive_at(machine, 1, 1).world_from_grip[1].translation - start.translation -
                    Vec3(0.15, 0, 0))
                       .norm() < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("the cutter parts a rod however its cells lie in it, and however they stick out") {
+    const TriMesh rod = make_shape("rod", {{"length", 1.0}, {"diameter", 0.1}}).mesh;
+    for (int across : {1, 3, 4}) {
+        MoldSettings settings;
+        settings.across = across;
+        const Aggregate molded = mold(rod, Material{}, settings);
+        for (double turned : {0.0, 0.3, 0.65}) {
+            Aggregate body = molded;
+            const Eigen::AngleAxisd turn(turned, Vec3::UnitX());
+            for (std::size_t p = 0; p < body.particle_count(); ++p) {
+                body.particle_position.set(p, turn * body.particle_position.at(p));
+            }
+            const Machine machine = at_bar("cut", {}, body);
+            sever(body, swept_triangles(machine.apparatus, drives_of(machine, 40, 1)));
+            CHECK(find_pieces(body).count == 2);
         }
     }
 }

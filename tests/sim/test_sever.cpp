@@ -103,3 +103,24 @@ TEST_CASE("pieces part freely: a severed half follows its grip and feels no forc
         CHECK((moved - Vec3(wanted, 0, 0)).norm() < 0.01);
     }
 }
+
+TEST_CASE("a crumb between two cuts stays with one side and does not join them") {
+    Aggregate m = make_block(6, 1, 1, 0.1, Material{});
+    Apparatus apparatus;
+    apparatus.name = "cut";
+    for (double x : {-0.03, 0.04}) {
+        apparatus.blade.push_back({"blade", {Vec3(x, 0, -1), Vec3(x, 0, 1)}, {}});
+    }
+    const auto drive = [](double y) {
+        Drive d;
+        d.world_from_blade.assign(2, Pose{Quat::Identity(), Vec3(0, y, 0)});
+        return d;
+    };
+    const SimSettings settings;
+    Simulation simulation(m, apparatus, settings);
+    const std::vector<Drive> way = {drive(0.5), drive(-0.5)};
+    simulation.plan_cuts(0, way, 1);
+    const FrameReport r = simulation.advance(way[0], way[1]);
+    CHECK(r.severed > 0);
+    CHECK(r.pieces == 2);
+}

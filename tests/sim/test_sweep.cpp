@@ -209,7 +209,9 @@ TEST_CASE("each connection pulls its two ends, whatever is missing around it, at
                 const Vec3 speed = m.particle_velocity.at(upper) - m.particle_velocity.at(lower);
                 const double k = law.stiffness * double(c.weight[lower]);
                 const double rest = length * (1 + c.plastic_of(lower));
-                const double stretch = step * speed.dot(way) / way.norm() / length;
+                const double gone2 = (step * speed).squaredNorm();
+                const double turn = 0.5 * gone2 * std::max(0.0, 1 - gone2 / way.squaredNorm());
+                const double stretch = (step * speed.dot(way) - turn) / way.norm() / length;
                 double tension = spring_tension(SpringDamper{k, 0, rest}, way.norm(), 0.0);
                 for (int j = 0; j < branches.count; ++j) {
                     const auto [keep, gain] = steps.forward[j];

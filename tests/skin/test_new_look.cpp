@@ -29,7 +29,8 @@ Vec2 texture_of(int side, const Vec3& place) {
 // The box around a block of cells, textured, one material a side.
 TriMesh textured_box(const Aggregate& block) {
     Box box;
-    for (std::size_t p = 0; p < block.particle_count(); ++p) box.grow(block.particle_reference.at(p));
+    for (std::size_t p = 0; p < block.particle_count(); ++p)
+        box.grow(block.particle_reference.at(p));
     TriMesh mesh = box_mesh(box);
     for (int side = 0; side < 6; ++side) {
         mesh.material.emplace_back();
