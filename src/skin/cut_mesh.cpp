@@ -18,6 +18,9 @@ namespace {
 
 using Triangle = std::array<Vec3, 3>;
 
+// A part that a cut leaves is a chip below this, in cells, and below this share of the mesh.
+constexpr double kChip = 0.3, kChipShare = 0.01;
+
 // One sweep for each blade: triangles that hang together by corners.
 std::vector<std::vector<Triangle>> separate_sweeps(const std::vector<Triangle>& sweep) {
     std::map<std::array<double, 3>, int> first;
@@ -80,6 +83,7 @@ class PlaneCut {
             mount_.cell.push_back(place.cell);
             mount_.side.push_back(place.side);
         }
+        leave_chips(split, world, own);
         for (std::size_t v = 0; v < own.size(); ++v) {
             if (own[v] != 0) take_side(static_cast<int>(v), own[v], world[v]);
         }
@@ -89,6 +93,34 @@ class PlaneCut {
     }
 
   private:
+    // What is cut off thinner than the matter knows would hang in the air beside what is not of it:
+    // it stays where it was cut from.
+    void leave_chips(const SurfaceSplit& split, const std::vector<Vec3>& world,
+                     std::vector<int>& own) const {
+        DisjointSets sets(own.size());
+        for (const SplitTriangle& t : split.triangle) {
+            sets.unite(t.vertex[0], t.vertex[1]), sets.unite(t.vertex[0], t.vertex[2]);
+        }
+        std::vector<int> part;
+        std::vector<double> volume(sets.number_sets(part), 0.0);
+        std::vector<char> is_cut(volume.size(), 0);
+        double all = 0;
+        for (const SplitTriangle& t : split.triangle) {
+            const auto& [a, b, c] = t.vertex;
+            const Vec3& from = plane_.point;
+            const double under =
+                (world[a] - from).dot((world[b] - from).cross(world[c] - from)) / 6;
+            volume[part[a]] += under;
+            all += under;
+            if (t.parent < 0) is_cut[part[a]] = 1;
+        }
+        const double least = std::min(kChip * std::pow(matter_.lattice.spacing, 3),
+                                      kChipShare * std::abs(all));
+        for (std::size_t v = 0; v < own.size(); ++v) {
+            if (is_cut[part[v]] && std::abs(volume[part[v]]) < least) own[v] = -own[v];
+        }
+    }
+
     BodyPlace on_edge(const CutPoint& cut, double share) const {
         const std::array<BodyPlace, 2> ends = {place_of(cut.low), place_of(cut.high)};
         return map_.beside(ends[0].reference + share * (ends[1].reference - ends[0].reference),

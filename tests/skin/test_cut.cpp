@@ -373,3 +373,39 @@ TEST_CASE("after a curved sweep, triangles between two pieces are taken out") {
     CHECK(f.mesh.triangle_uv.size() == f.mesh.triangle.size());
     CHECK(parts_of(f.mesh).size() == 2);
 }
+
+TEST_CASE("a chip thinner than the matter knows stays where it is cut from") {
+    // Two thirds of a bar are cut off, and of a foot that stands out beyond the cut a sliver.
+    TriMesh mesh = bar();
+    const TriMesh foot = box_mesh({.04, .06, .04}, {4, 6, 4}, false);
+    for (const Vec3& p : foot.position) mesh.position.push_back(p + Vec3(.057, -.209, 0));
+    const int first = static_cast<int>(mesh.position.size() - foot.position.size());
+    for (const Corners& t : foot.triangle) {
+        mesh.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    Fixture f(mesh);
+    const double whole = signed_volume(f.mesh);
+    // The foot reaches from x = .017 on: the cut leaves 3 mm of it, a cell being 50.
+    const CutResult result = f.cut(sweep_of({.02, 0, 0}, Vec3::UnitX(), 3));
+    REQUIRE(result.planes == 1);
+    test::sever_plane(f.matter, {.02, 0, 0}, Vec3::UnitX());
+    for (std::size_t p = 0; p < f.matter.particle_count(); ++p) {
+        if (f.matter.particle_reference.at(p).x() > .02) {
+            f.matter.particle_position.add(p, {.2, 0, 0});
+        }
+    }
+    f.follow();
+    CHECK(fixtures::is_closed(f.mesh));
+    double volume = 0;
+    for (const TriMesh& part : parts_of(f.mesh)) {
+        TriMesh moved = part;
+        moved.position = f.position;
+        volume += signed_volume(moved);
+        Box box;
+        for (const Corners& t : part.triangle) {
+            for (int v : t) box.grow(f.position[v]);
+        }
+        if (box.low.y() < -.16) CHECK(box.low.x() > .2);  // of the foot, all went together
+    }
+    CHECK(volume == Approx(whole).epsilon(1e-6));
+}
