@@ -18,8 +18,8 @@ namespace {
 
 using Triangle = std::array<Vec3, 3>;
 
-// A part that a cut leaves is a chip below this, in cells, and below this share of the mesh.
-constexpr double kChip = 0.3, kChipShare = 0.01;
+// A part that a cut leaves is a chip below one cell and this share of the mesh.
+constexpr double kChipShare = 0.01;
 
 // One sweep for each blade: triangles that hang together by corners.
 std::vector<std::vector<Triangle>> separate_sweeps(const std::vector<Triangle>& sweep) {
@@ -114,8 +114,8 @@ class PlaneCut {
             all += under;
             if (t.parent < 0) is_cut[part[a]] = 1;
         }
-        const double least = std::min(kChip * std::pow(matter_.lattice.spacing, 3),
-                                      kChipShare * std::abs(all));
+        const double least =
+            std::min(std::pow(matter_.lattice.spacing, 3), kChipShare * std::abs(all));
         for (std::size_t v = 0; v < own.size(); ++v) {
             if (is_cut[part[v]] && std::abs(volume[part[v]]) < least) own[v] = -own[v];
         }
