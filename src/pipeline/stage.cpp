@@ -161,6 +161,16 @@ std::size_t connection_count(const std::vector<WorkPiece>& bodies) {
     return count;
 }
 
+// In motion, of what the books hold by now, the share that is missing or too much.
+double unaccounted(const Books& b) {
+    const double in = std::abs(b.work) + std::abs(b.load_work) + std::abs(b.gravity_work);
+    const double out = b.kinetic + b.elastic + b.contact + b.plastic + b.damped + b.friction +
+                       b.drag + std::abs(b.severed_energy) + std::abs(b.fracture);
+    const double play = std::max(in, out);
+    return play > 0 ? b.remainder / play : 0;
+}
+constexpr double kUnaccounted = 0.05;  // that is told: what the guard lets pass at once
+
 int piece_count(const std::vector<WorkPiece>& bodies) {
     int count = 0;
     for (const WorkPiece& body : bodies) count += find_pieces(body.matter).count;
@@ -274,6 +284,15 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
             "{}: the blade has severed {} connections and parted nothing: it passed through a part "
             "of the work-piece only, by its place, its width or its way",
             stage.name, totals.severed));
+    }
+    const bool keeps_energy =
+        stage.sim.solver == Solver::explicit_steps || stage.sim.solver == Solver::energy_stepped;
+    if (const double share = unaccounted(last); keeps_energy && std::abs(share) > kUnaccounted) {
+        outcome.warning.push_back(fmt::format(
+            "{}: the energy books do not close: {:.2g} % of the energy in play is {}; try a lower "
+            "step_safety, more cells, or, where bodies are pressed deep into each other, a larger "
+            "contact_stiffness",
+            stage.name, 100 * std::abs(share), share > 0 ? "lost" : "from nowhere"));
     }
     double overlap = 0;  // [m]
     const bool meets = stage.sim.self_contact;

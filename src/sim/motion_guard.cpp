@@ -122,7 +122,8 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
         lost ? most_strained(matter, static_cast<std::ptrdiff_t>(p)) : most_strained(matter);
     return fmt::format(
         "{}: step {} at {:.6g} s: {}, and {}, even with steps of {:.3g} s; move the tools slower "
-        "(a longer duration), lower step_safety, raise [mold] across where matter is crushed, or "
+        "(a longer duration), lower step_safety, raise [mold] across where matter is crushed or "
+        "contact_stiffness where bodies are pressed deep into each other, or "
         "use solver = \"quasistatic\"",
         stage, finding.step, finding.time, what, text_of(worst), step);
 }
