@@ -11,6 +11,7 @@ namespace swage {
 namespace {
 
 constexpr double kBeside = 0.6;  // cells that a point may go beyond the one that it has met
+constexpr double kJump = 0.1;    // of the coarser spacing, beyond what a point can have gone
 constexpr double kTurned = 0.1;  // of a reach squared, across a surface that has turned, that holds
 
 }  // namespace
@@ -108,6 +109,15 @@ struct ContactWay::Kernel {
         at.inverse[1][3] = at.normal[3] > 0 || (last.history.touches && hold > 0);
     }
 
+    // Whether a cell that was squeezed inside out, and held nothing, holds the point again: that
+    // may be deep by then, without having been pressed there.
+    SWAGE_INLINE bool comes_back(const Meeting& at, const ContactMemory& last, double step) const {
+        if (way.is_static_ || last.is_new) return false;
+        const double pressed = last.history.touches ? last.pressed : 0;
+        const double gone = 2 * step * std::sqrt(dot3(at.now, at.now));
+        return last.sunk > 0 || at.normal[3] - pressed > gone + kJump * way.coarser_;
+    }
+
     // All that does not depend on forces.
     SWAGE_INLINE void prepare(const Contact& contact, const ContactMemory& last,
                               const CellCorners& corner, const CellGradient& gradient, double step,
@@ -127,7 +137,7 @@ struct ContactWay::Kernel {
         }
         sums.took -= dot3(at.now, vec4(contact.dashed));
         const double hold = way.hold_[contact.point];
-        if (way.has_broken_ && is_known(at)) {
+        if (is_known(at) && (way.has_broken_ || comes_back(at, last, step))) {
             // At rest as long as in the shape at rest: strain must not change what is stored.
             const double stretch =
                 way.is_static_ ? std::sqrt(at.inverse[2][3] / way.stiffness_[contact.point]) : 1;

@@ -29,8 +29,8 @@ struct ContactMemory {
     Vec3 bond = Vec3::Zero();  // ImpactForce::bond [N]
     double stiffness = 0;      // with which it was found [N/m]
     ImpactHistory history{};
-    // Where matter has broken a point may be deep in what lies there at once, and deeper than it
-    // can have gone: nobody has pressed it in. That much of the depth does not count until it has
+    // Where matter has broken, or a cell has let go of it, a point may be deep in what lies there at
+    // once, and deeper than it can have gone: nobody has pressed it in. That much of the depth does not count until it has
     // come out again [m].
     double sunk = 0, pressed = 0;  // pressed: what counted
     bool is_new = true;            // to the surfaces as they are

@@ -33,7 +33,8 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& 
     : from_(&from),
       onto_(&onto),
       scale_(settings.stiffness_of_contacts()),
-      is_static_(settings.solver == Solver::quasistatic) {
+      is_static_(settings.solver == Solver::quasistatic),
+      coarser_(std::max(from.matter().lattice.spacing, onto.matter().lattice.spacing)) {
     const Material &m = from.matter().material, &n = onto.matter().material;
     const double soft = surface_modulus(from.matter()) / from.matter().lattice.spacing,
                  other = surface_modulus(onto.matter()) / onto.matter().lattice.spacing;

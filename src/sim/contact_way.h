@@ -124,6 +124,7 @@ class ContactWay {
     ContactSide *from_, *onto_;
     double scale_;                                           // contact_stiffness
     bool is_static_;                                         // equilibria: nothing has a speed
+    double coarser_;                                         // spacing of the two sides [m]
     bool has_broken_ = false;                                // one of them
     bool has_changed_ = false;                               // since the last commit
     ImpactLaw law_{};                                        // stiffness and hold: of each point
