@@ -25,7 +25,7 @@ constexpr double kDeepStart = 0.05;
 constexpr double kGripSlack = 1e-9;  // for points on the border of a grip's box: share of the size
 constexpr double kClampClearance = 0.1;  // between a grip's drawn plates and the points; the same
 const std::string kMaterialFriction = "material_friction";
-constexpr double kMostReach = 10;    // spacings
+constexpr double kMostReach = 10;   // spacings
 constexpr int kTravelSamples = 64;  // of a blade's way, to see where it goes
 
 struct Setting {  // what every part of a machine is set up in

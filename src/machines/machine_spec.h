@@ -3,9 +3,10 @@
 //
 // Expressions (base/expression.h) see the machine's parameters, and of the work-piece: length,
 // height, width (its box along the work frame's x, y, z), spacing (of the lattice), lattice_reach
-// (how far particles stick out of that box, at the most) and material_friction; tools also the placed centres of the tools before them, as NAME_x, NAME_y,
-// NAME_z in the work frame, and motions, grips, blades, loads and checks those of all tools.
-// Motions and strengths of loads also see t, 0 at the start of the stage and 1 at its end.
+// (how far particles stick out of that box, at the most) and material_friction; tools also the
+// placed centres of the tools before them, as NAME_x, NAME_y, NAME_z in the work frame, and
+// motions, grips, blades, loads and checks those of all tools. Motions and strengths of loads also
+// see t, 0 at the start of the stage and 1 at its end.
 //
 // The work frame stands at the centre of the work-piece's box: x along its length, y the way the
 // machine calls up, z across.

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 #include "base/parallel.h"
+#include "geometry/disjoint_sets.h"
 
 namespace swage {
 
@@ -58,26 +58,20 @@ SurfaceMaterial cut_look(const TriMesh& mesh) {
 }
 
 std::vector<int> charts_of(const TriMesh& mesh) {
-    std::vector<int> parent(mesh.triangle.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    if (mesh.triangle_uv.empty()) return parent;
-    const auto root = [&](int t) {
-        while (parent[t] != t) t = parent[t] = parent[parent[t]];
-        return t;
-    };
+    DisjointSets sets(mesh.triangle.size());
     std::map<std::tuple<int, double, double>, int> first;  // triangle at a corner of the texture
-    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+    for (std::size_t t = 0; t < mesh.triangle_uv.size(); ++t) {
         for (int c = 0; c < 3; ++c) {
             const int uv = mesh.triangle_uv[t][c];
             if (uv < 0) continue;
             const std::tuple corner(mesh.triangle[t][c], mesh.uv[uv].x(), mesh.uv[uv].y());
             const int other = first.emplace(corner, static_cast<int>(t)).first->second;
-            const int a = root(other), b = root(static_cast<int>(t));
-            parent[std::max(a, b)] = std::min(a, b);
+            sets.unite(other, static_cast<int>(t));
         }
     }
-    for (std::size_t t = 0; t < parent.size(); ++t) parent[t] = root(static_cast<int>(t));
-    return parent;
+    std::vector<int> chart;
+    sets.number_sets(chart);
+    return chart;
 }
 
 }  // namespace
@@ -88,9 +82,7 @@ int cut_material(TriMesh& mesh) {
         std::find_if(mesh.material.begin(), mesh.material.end(),
                      [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
     const auto number = static_cast<int>(known - mesh.material.begin());
-    if (known == mesh.material.end()) {
-        mesh.material.push_back(cut_look(mesh));
-    }
+    if (known == mesh.material.end()) mesh.material.push_back(cut_look(mesh));
     return number;
 }
 
