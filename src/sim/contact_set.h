@@ -97,6 +97,14 @@ class ContactSet {
     // that friction took on the way that they slipped [J].
     double commit(const Aggregate& matter, const Drive& now);
 
+    // On the way from where the move began; to be asked before commit().
+    struct Stroke {
+        // By tool, then grip: what the trapezoid rule (add_work()) counts and was not done [J].
+        std::vector<double> idle;
+        double friction = 0;  // taken by it [J]
+    };
+    Stroke stroke(const Aggregate& matter, const Drive& from, const Drive& to) const;
+
     // Whether a tool that is near or a grip has moved.
     bool is_stirred(const Drive& since, const Drive& now) const;
 

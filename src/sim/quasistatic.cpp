@@ -368,7 +368,9 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     stay(to);
     outcome.body[0].friction_work += self_.commit();
     const bool breaks = commit(outcome);
-    outcome.body[0].friction_work += contacts_.commit(matter_, to);
+    const ContactSet::Stroke stroke = contacts_.stroke(matter_, from, to);
+    outcome.body[0].friction_work += stroke.friction;
+    contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
     for (std::size_t n = 0; n < load.size(); ++n) {
         largest_push_ = std::max(largest_push_, load[n].size);
@@ -382,6 +384,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     std::vector<double> work(load_.size(), 0.0);
     add_work(from, to, load_, load, work);
     for (std::size_t n = 0; n < work.size(); ++n) {
+        work[n] -= stroke.idle[n];
         outcome.body[0].work[n] += work[n];
         if (n < carries_.size() && carries_[n] && work[n] > 0) {
             std::copy_n(motion.begin() + 6 * n, 6, pressing_motion_.begin() + 6 * n);
@@ -401,6 +404,8 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     pushes_.start(matter_, from);
     if (!begun_) {
         self_.presses();
+        contacts_.begin_move(matter_, from);
+        contacts_.find_candidates(matter_, from);
         outcome.body[0].before = {0, elastic_energy(),
                                   contacts_.stored_energy(matter_, from) + self_.sums().stored};
         begun_ = true;

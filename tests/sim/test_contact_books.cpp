@@ -3,6 +3,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/machines.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -163,4 +164,40 @@ TEST_CASE(
     for (int n = 0; n < 26; ++n)
         r = simulation.advance(floor_at(5e-4 * n), floor_at(5e-4 * (n + 1)));
     CHECK(std::abs(r.remainder) < 0.03 * energy);
+}
+
+TEST_CASE("a plate that leaves an elastic block gets back what it put in") {
+    // Within one move the plate goes ten times farther than it takes the block to spring back.
+    for (const double friction : {0.0, 0.3}) {
+        Aggregate block = make_block(4, 4, 4, 0.25, {.young_modulus = 1e7, .poisson_ratio = 0.3});
+        const Press press{1};
+        Apparatus apparatus = press.apparatus();
+        for (Tool& tool : apparatus.tool) tool.friction = friction;
+        Simulation simulation(block, apparatus, {.tolerance = 1e-3});
+        const double down[] = {-0.05, 0.005, 0.01, -0.09, -0.1};  // of the side
+        double put_in = 0;
+        FrameReport report;
+        for (int f = 1; f < 5; ++f) {
+            report =
+                simulation.advance(press.drive_at(f - 1, down[f - 1]), press.drive_at(f, down[f]));
+            put_in = std::max(put_in, report.work);
+            CHECK(std::abs(report.remainder) < 0.02 * put_in);
+        }
+        CHECK(report.load[1].contacts == 0);
+        CHECK(put_in > 300);
+        CHECK(std::abs(report.work - report.friction) < 0.02 * put_in);
+    }
+}
+
+TEST_CASE("what a bar bent over rollers stores and slides away is what they put in") {
+    Aggregate bar = make_block(40, 4, 4, 0.025, {.young_modulus = 1e7});
+    const Bender bender{0.1, 0.2, 0.12, 0.045, kPi / 3, 0.3};
+    const Apparatus apparatus = bender.apparatus();
+    Simulation simulation(bar, apparatus, {.tolerance = 1e-3});
+    FrameReport report;
+    for (int f = 0; f < 24; ++f) {
+        report = simulation.advance(bender.drive_at(f / 40.0), bender.drive_at((f + 1) / 40.0));
+    }
+    CHECK(report.friction > 0.2 * report.elastic);
+    CHECK(std::abs(report.remainder) < 0.002 * report.work);
 }
