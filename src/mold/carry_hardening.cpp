@@ -5,6 +5,7 @@
 
 #include "geometry/box.h"
 #include "geometry/near_pairs.h"
+#include "matter/cell_middle.h"
 
 namespace swage {
 
@@ -17,16 +18,13 @@ void carry_hardening(const Aggregate& from, Aggregate& to) {
         for (ParticleId p : from.lattice.cell_corners(static_cast<CellId>(c))) {
             box.back().grow(from.particle_position.at(p));
         }
-        middle.push_back(box.back().center());
+        middle.push_back(cell_middle(from, static_cast<CellId>(c)));
     }
     const std::size_t count = to.cell_fill.size();
     std::vector<Vec3> place;
     for (std::size_t c = 0; c < count; ++c) {
-        Vec3 at = to.lattice.spacing * to.cell_centroid[c].cast<double>();
-        for (ParticleId p : to.lattice.cell_corners(static_cast<CellId>(c))) {
-            at += 0.125 * to.particle_position.at(p);
-        }
-        place.push_back(at);
+        place.push_back(cell_middle(to, static_cast<CellId>(c)) +
+                        to.lattice.spacing * to.cell_centroid[c].cast<double>());
     }
     const auto far = [&](std::size_t cell, std::size_t other) {
         return (place[cell] - middle[other]).squaredNorm();

@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "geometry/near_pairs.h"
+#include "matter/cell_middle.h"
 
 namespace swage {
 
@@ -18,16 +19,9 @@ constexpr float kSolid = 0.5f;  // share of a cell, that its middle is in the bo
 
 std::vector<Vec3> solid_middles(const Aggregate& matter) {
     std::vector<Vec3> middles;
-    for (const CellRun& run : matter.lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            if (matter.cell_fill[run.first + n] < kSolid) continue;
-            Vec3 at = Vec3::Zero();
-            for (ParticleId row : run.row) {
-                at += 0.125 * (matter.particle_position.at(row + n) +
-                               matter.particle_position.at(row + n + 1));
-            }
-            middles.push_back(at);
-        }
+    for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+        if (matter.cell_fill[c] < kSolid) continue;
+        middles.push_back(cell_middle(matter, static_cast<CellId>(c)));
     }
     return middles;
 }

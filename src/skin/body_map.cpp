@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "matter/cell_middle.h"
+
 namespace swage {
 
 BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(find_pieces(matter)) {
@@ -30,12 +32,6 @@ Vec3 BodyMap::world(const BodyPlace& place) const {
     return place.reference + (followed == kAllCorners
                                   ? whole_displacement(half_frames(cell), carrier)
                                   : part_displacement(cell, carrier, followed));
-}
-
-Vec3 BodyMap::center(CellId cell) const {
-    Vec3 sum = Vec3::Zero();
-    for (ParticleId p : matter_.lattice.cell_corners(cell)) sum += matter_.particle_position.at(p);
-    return sum / 8;
 }
 
 std::optional<BodyPlace> BodyMap::solve(CellId cell, CornerMask side, const Vec3& world) const {
@@ -67,7 +63,7 @@ std::optional<BodyPlace> BodyMap::place_at(const Vec3& world,
                                            const std::vector<CellId>& cells) const {
     constexpr std::size_t kTried = 8;
     std::vector<std::pair<double, CellId>> nearest;
-    for (CellId cell : cells) nearest.emplace_back((center(cell) - world).squaredNorm(), cell);
+    for (CellId cell : cells) nearest.emplace_back((cell_middle(matter_, cell) - world).squaredNorm(), cell);
     const std::size_t tried = std::min(kTried, nearest.size());
     std::partial_sort(nearest.begin(), nearest.begin() + tried, nearest.end());
 

@@ -28,7 +28,6 @@ class BodyMap {
     // The place that is now at `world`; searched in the cells, of those given, whose centres are
     // nearest. A place outside of all is the best guess. Nothing if no cell is given.
     std::optional<BodyPlace> place_at(const Vec3& world, const std::vector<CellId>& cells) const;
-    Vec3 center(CellId cell) const;  // now
 
     const Pieces& pieces() const { return pieces_; }
     // Corners of the cell that belong to one piece and hang together with the one next to the

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "geometry/disjoint_sets.h"
+#include "matter/cell_middle.h"
 #include "skin/body_map.h"
 #include "skin/split_attributes.h"
 #include "skin/surface_split.h"
@@ -161,7 +162,7 @@ class PlaneCut {
         const double a = matter_.lattice.spacing;
         for (const CellRun& run : matter_.lattice.cell_run) {
             for (int n = 0; n < run.count; ++n) {
-                const Vec3 center = map_.center(run.first + n);
+                const Vec3 center = cell_middle(matter_, run.first + n);
                 if (std::abs(plane_.height(center)) < 2 * a &&
                     plane_.near(plane_.flat(center), a)) {
                     cells.push_back(run.first + n);

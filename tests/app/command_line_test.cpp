@@ -104,6 +104,13 @@ TEST_CASE("a wrong command line ends with 2 and a hint") {
     for (const char* size : {"0x10", "10", "axb", "99999x5", "10x10x10"}) {
         CHECK(code_of({"render", "somewhere", std::string("--size=") + size}) == 2);
     }
+    const std::vector<std::string> eye = {"render", "somewhere", "--camera-eye", "1", "2", "3"};
+    CHECK(code_of(eye) == 2);  // looks at nothing
+    std::vector<std::string> both = eye;
+    for (const char* word : {"--camera-target", "0", "0", "0", "--camera-zoom", "2"}) {
+        both.push_back(word);
+    }
+    CHECK(code_of(both) == 2);
     const Outcome command = run_swage({"chekc", "a.toml"});
     CHECK(command.code == 2);
     CHECK(command.out.empty());

@@ -96,6 +96,12 @@ TEST_CASE(
                      "--no-film", "--camera-azimuth", "120"})
               .code == 0);
     CHECK(bytes_of(elsewhere / "frames/frame_0003.png") != still);
+    const std::string turned = bytes_of(elsewhere / "frames/frame_0003.png");
+    CHECK(run_swage({"render", run.string(), "--out", elsewhere.string(), "--frames", "3",
+                     "--no-film", "--camera-eye", "-0.5", "0.2", "0.4", "--camera-target", "0",
+                     "-0.01", "0"})
+              .code == 0);
+    CHECK(bytes_of(elsewhere / "frames/frame_0003.png") != turned);
     CHECK(run_swage({"render", run.string(), "--out", elsewhere.string(), "--frames", "9"}).code ==
           2);
     CHECK(run_swage({"render", run.string(), "--out", run.string()}).code == 8);

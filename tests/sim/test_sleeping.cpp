@@ -103,8 +103,7 @@ TEST_CASE("a pebble that lands wakes what lies there, as if it had never slept")
         Material stiffer = kSoft;
         stiffer.young_modulus = 1e6;
         stiffer.damping_ratio = 0.15;  // more creeps too long to sleep by then
-        // With dull contacts the blow is another where a tremor has lifted the rim of what lay
-        // there.
+        // With dull contacts the blow is another where a tremor has lifted the rim of what lay there.
         stiffer.restitution = 0.3;
         auto ground = std::make_unique<Ground>(std::vector<double>{0, 15.0}, sleep, stiffer);
         int asleep = 0;
