@@ -43,6 +43,28 @@ const MixedCell* Aggregate::mixed_at(CellId cell) const {
     return at != mixed_cell.end() && at->cell == cell ? &*at : nullptr;
 }
 
+namespace {
+std::ptrdiff_t place_of(const std::vector<CellSet>& all, CellId cell) {
+    return std::lower_bound(all.begin(), all.end(), cell,
+                            [](const CellSet& s, CellId c) { return s.cell < c; }) -
+           all.begin();
+}
+}  // namespace
+
+const CellSet* Aggregate::set_of(CellId cell) const {
+    const auto at = static_cast<std::size_t>(place_of(cell_set, cell));
+    return at < cell_set.size() && cell_set[at].cell == cell ? &cell_set[at] : nullptr;
+}
+
+void Aggregate::lay_down(const CellSet& set) {
+    const std::ptrdiff_t at = place_of(cell_set, set.cell);
+    if (set_of(set.cell) != nullptr) {
+        cell_set[static_cast<std::size_t>(at)] = set;
+    } else {
+        cell_set.insert(cell_set.begin() + at, set);
+    }
+}
+
 double Aggregate::mass() const {
     double sum = 0;
     for (double m : particle_mass) sum += m;
@@ -113,7 +135,7 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_position) + bytes_of(particle_velocity) +
                       bytes_of(particle_mass) + bytes_of(cell_fill) + cell_centroid.bytes() +
-                      bytes_of(cell_cracked) + bytes_of(cell_hardening) + bytes_of(inset) +
+                      bytes_of(cell_cracked) + bytes_of(cell_set) + bytes_of(cell_hardening) + bytes_of(inset) +
                       bytes_of(cell_material) + bytes_of(mixed_cell) + bytes_of(surface.corner) +
                       bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
@@ -200,6 +222,7 @@ std::uint64_t state_hash(const Aggregate& matter) {
         for (const auto& part : cell.flowed) hasher.add(std::span<const float>(part));
     }
     hasher.add(std::span<const char>(matter.cell_cracked));
+    for (const CellSet& set : matter.cell_set) hasher.add(std::span<const float>(set.strain));
     return hasher.value();
 }
 

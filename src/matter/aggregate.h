@@ -162,6 +162,12 @@ struct MixedCell {
     std::array<std::array<float, kHistory>, 2> flowed{};  // committed
 };
 
+// What the connections of a cell are at rest with, beside what has flowed: l' = (1 + strain) l.
+struct CellSet {
+    CellId cell;
+    std::array<float, kCellConnectionCount> strain;
+};
+
 struct Aggregate {
     Material material;  // its mechanics, friction and damping are the whole body's
     Lattice lattice;
@@ -184,6 +190,8 @@ struct Aggregate {
     std::vector<std::uint8_t> cell_material;
     std::vector<MixedCell> mixed_cell;
     std::vector<char> cell_cracked;  // 1: has reached its strength; empty while none has
+    // Of cells that have turned into springs: strain that is at rest, by slot; in the cells' order.
+    std::vector<CellSet> cell_set;
 
     // History of the cells, committed; all empty while nothing has ever yielded.
     std::vector<float> cell_hardening;  // accumulated plastic strain
@@ -199,6 +207,8 @@ struct Aggregate {
 
     std::size_t particle_count() const { return particle_mass.size(); }
     const MixedCell* mixed_at(CellId cell) const;  // null: of one material
+    const CellSet* set_of(CellId cell) const;      // null: none
+    void lay_down(const CellSet& set);             // in its place, or for that of the same cell
     std::size_t material_count() const { return 1 + inset.size(); }
     const Material& material_at(std::size_t number) const {
         return number == 0 ? material : inset[number - 1];

@@ -95,7 +95,8 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             if (count < kWidth) size = lane < count ? size : smallest;
             smallest = size < smallest ? size : smallest;
             if constexpr (kWatched) {
-                V strain = strain_measure(c, task.constants->gram);
+                V strain = strain_measure(c, task.constants->gram,
+                                          shares == kWholeCells ? kInMiddle : kAnywhere);
                 if (count < kWidth) strain = lane < count ? strain : V{};
                 strained = larger(strained, strain);
             }

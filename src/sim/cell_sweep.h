@@ -21,9 +21,11 @@ class CellSweep {
   public:
     explicit CellSweep(const Aggregate& matter);
 
-    // Cells with such a strain are told from now on: of their mean, or of a connection.
+    // Cells with such a strain are told from now on: of their material, or of a connection.
     void watch_strain(double onset) { onset_ = onset; }
 
+    // Cells that it carries though they are sound no more, and what they hold.
+    std::vector<HeldCell> turned(const Aggregate& matter) const;
     // Cells that are not whole any more carry nothing from now on.
     void cells_changed(const Aggregate& matter);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole

@@ -23,6 +23,7 @@ Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n);
 CornerSums<double> corner_sums(const Aggregate& matter, const CellRun& run, int n);
 Triple<double> material_place(const Aggregate& matter, CellId cell);
 Mat3 material_gradient(const Aggregate& matter, const CellRun& run, int n);
+CellHistory<double> committed_history(const Aggregate& matter, CellId cell);
 Mat3 matrix_of(const Columns<double>& f);
 
 struct SmallCell {

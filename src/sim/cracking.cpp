@@ -25,9 +25,9 @@ constexpr double kTogether = 0.98;
 constexpr float kOffCentre = 0.15f;  // of the cell
 constexpr double kSpared = 1.5;      // times onset
 
-// Largest principal strain of the cell's mean, less what has flowed.
-double mean_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
-    const Mat3 f = cell_gradient(matter, run, n);
+// Largest principal strain where the cell's material is, less what has flowed.
+double material_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
+    const Mat3 f = material_gradient(matter, run, n);
     Mat3 c = f.transpose() * f;
     if (matter.cell_plastic_stretch[0].empty()) {
         // No eigenvalue is farther from 1 than the whole of C - I is from 0.
@@ -78,7 +78,7 @@ void strain_measures(const Aggregate& matter, const CellRun& run, std::vector<do
     const int room = static_cast<int>(x.size()) - run.row[3];
     for (int begin = 0; begin < run.count; begin += kLanes) {
         const int count = std::min(kLanes, run.count - begin);
-        const Lanes m = strain_measure(gather<Lanes>(rows, begin, count, room), gram);
+        const Lanes m = strain_measure(gather<Lanes>(rows, begin, count, room), gram, kAnywhere);
         std::memcpy(measure.data() + begin, &m, sizeof m);
     }
 }
@@ -146,7 +146,7 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
                     !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
                 if (!springs && !flowed && measure[n] < far) continue;
                 if (!cell_is_sound(matter, cell, row)) continue;
-                double strain = springs ? 0 : mean_strain(matter, run, n, law.onset);
+                double strain = springs ? 0 : material_strain(matter, run, n, law.onset);
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }

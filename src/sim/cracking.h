@@ -10,10 +10,11 @@
 
 namespace swage {
 
-// Sound cells whose largest elastic strain, of their mean or of one of their connections, is beyond
-// onset and near the largest of all: those that are next, in the order of the cells. What is
+// Sound cells whose largest elastic strain, of their material or of one of their connections, is
+// beyond onset and near the largest of all: those that are next, in the order of the cells. What is
 // committed counts; the state should have converged. `only`: runs of cells that are looked at.
-// Cells beside a crack are spared up to half as much again, and those off its track up to twice as much (sim/crack_path.h).
+// Cells beside a crack are spared up to half as much again, and those off its track up to twice as
+// much (sim/crack_path.h).
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
                                           const std::vector<const CellRun*>* only = nullptr);
 

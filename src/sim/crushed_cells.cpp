@@ -69,7 +69,7 @@ struct Crushed {
         volume = fill * a * a * a;
         at = material_place(matter, id);
         sums = corner_sums(matter, *cell.run, cell.n);
-        if (fades && !matter.cell_hardening.empty()) load(matter, id);
+        if (fades) history = committed_history(matter, id);
         gradient = centroid_gradient(sums, at, a) * taken_back(history);
         guard = guard_cell({matter.material_of(id).young_modulus, law->shear, law->bulk, fades},
                            matrix_of(gradient));
@@ -98,18 +98,6 @@ struct Crushed {
         }
         const Symmetric<double> a = taken_back(history);
         return sum_forces(sums, gradient, a, columns(volume * stress) * a, modes, at, law->spacing);
-    }
-
-  private:
-    void load(const Aggregate& matter, CellId id) {
-        const auto& e = matter.cell_plastic_stretch;
-        const auto& m = matter.cell_plastic_modes;
-        const auto triple = [&](int n) {
-            return Triple<double>{m[n][id], m[n + 1][id], m[n + 2][id]};
-        };
-        history = {{e[0][id], e[1][id], e[2][id], e[3][id], e[4][id], e[5][id]},
-                   {triple(0), triple(3), triple(6), triple(9)},
-                   matter.cell_hardening[id]};
     }
 };
 

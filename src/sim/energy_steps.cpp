@@ -212,7 +212,7 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
         t.done += is.done() - was.done();
         t.turned += std::abs(is.done() - was.done());
         t.gain += t.after[n].sum() - held[n].sum();
-        t.astray += is.lost() - was.lost();
+        t.astray += is.lost_since(was);
     }
     t.gain -= t.done;
     t.astray += t.gain;

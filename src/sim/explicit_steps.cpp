@@ -296,7 +296,7 @@ bool ExplicitSolver::energy_holds(const Block& block, const std::vector<Stored>&
         turned += turned_over(so_far[b].work, now[b].work) +
                   turned_over(so_far[b].push_work, now[b].push_work);
         done += now[b].done() - so_far[b].done();
-        lost += now[b].lost() - so_far[b].lost();
+        lost += now[b].lost_since(so_far[b]);
         gain += after[b].sum() - held[b].sum();
     }
     if (energy_.accepts(turned, done, lost, gain, 0)) return true;

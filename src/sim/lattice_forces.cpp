@@ -29,10 +29,15 @@ LatticeForces::LatticeForces(const Aggregate& matter)
         spring_flow_ = std::make_unique<CellFlow>(matter);
     }
     if (cells_) cells_->watch_strain(loose_.law().onset);
-    connections_changed(matter);
+    take_in(matter);
 }
 
-void LatticeForces::connections_changed(const Aggregate& matter) {
+void LatticeForces::connections_changed(Aggregate& matter) {
+    if (cells_) loose_.take_over(matter, cells_->turned(matter));
+    take_in(matter);
+}
+
+void LatticeForces::take_in(const Aggregate& matter) {
     if (cells_) cells_->cells_changed(matter);
     loose_.connections_changed(matter);
     if (spring_flow_) spring_flow_->history_changed(matter);

@@ -32,8 +32,11 @@ class LatticeForces {
     explicit LatticeForces(const Aggregate& matter);
 
     // Connections have been severed or broken, or cells cracked. Such a cell is no cell any more;
-    // what it has left acts as plain springs, with the plastic strain it had.
-    void connections_changed(const Aggregate& matter);
+    // what it has left acts as plain springs, with the plastic strain it had. Those of matter that
+    // breaks are laid down so that they hold no more than it did.
+    void connections_changed(Aggregate& matter);
+    // The matter has been put back to what it was before such changes.
+    void take_in(const Aggregate& matter);
 
     // Forces on every particle at the present positions [N].
     // Returns the number of cells that are inside out: they are stiffer than stiffness_bound()

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laws/cell_rest.h"
 #include "laws/spring_damper.h"
+#include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
 #include "sim/rest_lengths.h"
 
@@ -15,6 +17,9 @@ namespace {
 // A broken edge that is pressed stands for the diagonals around it too: with 0.4 E a / (E a) of a
 // plane's stiffness in its edges, a closed crack presses back as sound matter does.
 constexpr double kClosedStiffness = 2.5;
+
+// Halvings of a share that is looked for.
+constexpr int kShareRounds = 40;
 
 // The slot of the other diagonal in the face of each; -1: an edge.
 constexpr std::array<int, kCellConnectionCount> kPartner = [] {
@@ -52,44 +57,106 @@ void LooseSprings::connections_changed(const Aggregate& matter) {
     spring_.clear();
     const bool breaks = law_.onset > 0;
     if (beside_sweep_ && !breaks) return;
-    // Each cell that is not sound gives its share of what its connections have left, as stiff as
-    // the materials in it.
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
-            const CellId cell = run.first + n;
             std::array<ParticleId, 4> row = run.row;
             for (ParticleId& p : row) p += n;
-            if (cell_is_sound(matter, cell, row)) continue;
-            const MixedCell* two = matter.mixed_at(cell);
-            // Mechanics of springs have theirs in the sweep.
-            const SlotLengths rest =
-                beside_sweep_ ? SlotLengths{} : rest_lengths(matter, cell, two);
-            std::array<int, kCellConnectionCount> number;
-            number.fill(-1);
-            for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-                const CellConnection& c = kCellConnection[slot];
-                const ParticleId lower = row[c.corner >> 1] + (c.corner & 1);
-                const ConnectionArrays& all = matter.connection[c.direction];
-                const double damage = all.damage.empty() ? 0.0 : double(all.damage[lower]);
-                const bool holds = all.weight[lower] > 0;
-                // Nothing presses on what a blade has severed.
-                if (!holds && (damage < 1 || c.direction >= kEdgeCount)) continue;
-                const int high = upper_corner(c);
-                const ParticleId upper = row[high >> 1] + (high & 1);
-                const double share =
-                    cell_share(c.direction) * stiffness_in(matter, cell, two, c.direction);
-                const Kind kind = !holds ? Kind::closing : breaks ? Kind::softening : Kind::elastic;
-                number[slot] = static_cast<int>(spring_.size());
-                spring_.push_back({lower, upper, static_cast<char>(c.direction), kind,
-                                   stiffness_ * share * (holds ? 1 : kClosedStiffness), rest[slot],
-                                   breaks ? worst_strain(law_, damage) : 0.0, number[slot]});
-            }
-            for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-                const int other = kPartner[slot];
-                if (number[slot] < 0 || other < 0 || number[other] < 0) continue;
-                spring_[number[slot]].partner = number[other];
-            }
+            if (!cell_is_sound(matter, run.first + n, row)) add_springs(matter, run, n);
         }
+    }
+}
+
+// A cell that is not sound gives its share of what its connections have left, as stiff as the
+// materials in it.
+void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int n) {
+    const bool breaks = law_.onset > 0;
+    const CellId cell = run.first + n;
+    const MixedCell* two = matter.mixed_at(cell);
+    // Mechanics of springs have theirs in the sweep.
+    const SlotLengths rest = beside_sweep_ ? SlotLengths{} : rest_lengths(matter, cell, two);
+    const CellSet* const set = matter.set_of(cell);
+    std::array<int, kCellConnectionCount> number;
+    number.fill(-1);
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        const CellConnection& c = kCellConnection[slot];
+        const ParticleId lower = run.row[c.corner >> 1] + n + (c.corner & 1);
+        const ConnectionArrays& all = matter.connection[c.direction];
+        const double damage = all.damage.empty() ? 0.0 : double(all.damage[lower]);
+        const bool holds = all.weight[lower] > 0;
+        // Nothing presses on what a blade has severed.
+        if (!holds && (damage < 1 || c.direction >= kEdgeCount)) continue;
+        const int high = upper_corner(c);
+        const ParticleId upper = run.row[high >> 1] + n + (high & 1);
+        const double share = cell_share(c.direction) * stiffness_in(matter, cell, two, c.direction);
+        const Kind kind = !holds ? Kind::closing : breaks ? Kind::softening : Kind::elastic;
+        number[slot] = static_cast<int>(spring_.size());
+        spring_.push_back({.lower = lower,
+                           .upper = upper,
+                           .direction = static_cast<char>(c.direction),
+                           .slot = static_cast<char>(slot),
+                           .kind = kind,
+                           .stiffness = stiffness_ * share * (holds ? 1 : kClosedStiffness),
+                           .rest_length = rest[slot] * (1 + (set ? double(set->strain[slot]) : 0)),
+                           .worst = breaks ? worst_strain(law_, damage) : 0.0,
+                           .partner = number[slot]});
+    }
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        const int other = kPartner[slot];
+        if (number[slot] < 0 || other < 0 || number[other] < 0) continue;
+        spring_[number[slot]].partner = number[other];
+    }
+}
+
+void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const {
+    if (!(law_.onset > 0) || beside_sweep_) return;
+    const double a = matter.lattice.spacing;
+    // Less than this is rounding [J].
+    const double least = 1e-9 * stiffness_ * a * a * law_.onset * law_.onset;
+    LooseSprings own(matter);
+    for (const HeldCell& held : turned) {
+        own.spring_.clear();
+        own.add_springs(matter, *held.run, held.n);
+        own.find_strains(matter, nullptr);
+        const std::vector<Stretch> now = own.now_;
+        const Mat3 gradient = material_gradient(matter, *held.run, held.n);
+        const Symmetric<double> metric =
+            flowed_metric(committed_history(matter, held.id()).stretch);
+        std::vector<double> mean(now.size());  // strain that the material's is along each
+        for (std::size_t n = 0; n < now.size(); ++n) {
+            const auto& way = kForward[own.spring_[n].direction];
+            const Vec3 along(way[0], way[1], way[2]);
+            const Triple<double> t = {along.x(), along.y(), along.z()};
+            mean[n] = (gradient * along).norm() / std::sqrt(dot(t, metric * t)) - 1;
+        }
+        const auto strain = [&](std::size_t n, double bent, double all) {
+            return all * (mean[n] + bent * (now[n].strain - mean[n]));
+        };
+        const auto excess = [&](double bent, double all) {
+            for (std::size_t n = 0; n < now.size(); ++n) {
+                own.now_[n].strain = strain(n, bent, all);
+                own.now_[n].length = now[n].distance / (1 + own.now_[n].strain);
+            }
+            return own.sum_of(&LooseSprings::stored_in) + own.sum_of(&LooseSprings::loss_of) -
+                   held.energy;
+        };
+        if (excess(1, 1) <= least) continue;
+        double bent = 0, all = 1;
+        const bool bends = excess(0, 1) <= 0;
+        double& share = bends ? bent : all;
+        double low = 0, high = 1;
+        for (int round = 0; round < kShareRounds; ++round) {
+            share = 0.5 * (low + high);
+            (excess(bent, all) <= 0 ? low : high) = share;
+        }
+        share = low;
+        CellSet set{held.id(), {}};
+        if (const CellSet* had = matter.set_of(held.id())) set = *had;
+        for (std::size_t n = 0; n < now.size(); ++n) {
+            float& kept = set.strain[own.spring_[n].slot];
+            const double by = (1 + now[n].strain) / (1 + strain(n, bent, all));
+            kept = static_cast<float>((1 + double(kept)) * by - 1);
+        }
+        matter.lay_down(set);
     }
 }
 
@@ -189,35 +256,43 @@ Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
             ++result.count;
         }
     }
+    // What one cell's part of a connection has lost, all have: the others give up what they held.
+    std::vector<double> stored(spring_.size());
+    for (std::size_t n = 0; n < spring_.size(); ++n) stored[n] = stored_in(n);
     for (Spring& s : spring_) {
         const auto& damage = matter.connection[static_cast<std::size_t>(s.direction)].damage;
         if (!damage.empty()) s.worst = std::max(s.worst, worst_strain(law_, damage[s.lower]));
     }
+    for (std::size_t n = 0; n < spring_.size(); ++n) result.lost += stored[n] - stored_in(n);
     return result;
+}
+
+double LooseSprings::stored_in(std::size_t n) const {
+    const Spring& s = spring_[n];
+    const Stretch& now = now_[n];
+    if (s.kind == Kind::closing && now.strain > 0) return 0;
+    double share = 1;
+    if (s.kind == Kind::softening) {
+        if (now.strain > 0 || s.direction >= kEdgeCount) share = kept_share(law_, now_worst(n));
+        if (beside_sweep_) share -= 1;
+    }
+    return share * spring_energy(SpringDamper{s.stiffness, 0, now.length}, now.distance);
+}
+
+double LooseSprings::sum_of(double (LooseSprings::*part)(std::size_t) const) const {
+    double sum = 0;
+    for (std::size_t n = 0; n < spring_.size(); ++n) sum += (this->*part)(n);
+    return sum;
 }
 
 double LooseSprings::elastic_energy(const Aggregate& matter) {
     find_strains(matter, nullptr);
-    double sum = 0;
-    for (std::size_t n = 0; n < spring_.size(); ++n) {
-        const Spring& s = spring_[n];
-        const Stretch& now = now_[n];
-        if (s.kind == Kind::closing && now.strain > 0) continue;
-        double share = 1;
-        if (s.kind == Kind::softening) {
-            if (now.strain > 0 || s.direction >= kEdgeCount) share = kept_share(law_, now_worst(n));
-            if (beside_sweep_) share -= 1;
-        }
-        sum += share * spring_energy(SpringDamper{s.stiffness, 0, now.length}, now.distance);
-    }
-    return sum;
+    return sum_of(&LooseSprings::stored_in);
 }
 
 double LooseSprings::trial_loss(const Aggregate& matter) {
     find_strains(matter, nullptr);
-    double sum = 0;
-    for (std::size_t n = 0; n < spring_.size(); ++n) sum += loss_of(n);
-    return sum;
+    return sum_of(&LooseSprings::loss_of);
 }
 
 void LooseSprings::add_stiffness_bound(std::vector<double>& bound) const {

@@ -21,9 +21,25 @@ struct Broken {
     int count = 0;    // connections that broke
 };
 
+// A cell that has just ceased to be sound, and what it held then.
+struct HeldCell {
+    const CellRun* run;
+    int n;          // of the run
+    double energy;  // [J]
+
+    CellId id() const { return run->first + n; }
+};
+
 class LooseSprings {
   public:
     explicit LooseSprings(const Aggregate& matter);
+
+    // Lays down in the matter what the springs of such cells are at rest with (cell_set), so that
+    // they hold no more than the cells did. A cell that is partly filled resists being bent by its
+    // filling cubed, and springs by the filling itself: their excess of that is taken away first,
+    // and what their stretch holds too much then. Only where the matter breaks: what a blade
+    // severs, its tools pay for.
+    void take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const;
 
     const Fracture& law() const { return law_; }
     bool empty() const { return spring_.empty(); }
@@ -61,16 +77,20 @@ class LooseSprings {
     };
     struct Spring {
         ParticleId lower, upper;
-        char direction;
+        char direction, slot;
         Kind kind;
         double stiffness;    // [N/m]
         double rest_length;  // [m]; mechanics of cells only
         double worst;        // largest strain so far, committed; of a diagonal: of its face
         int partner;         // the other diagonal, or itself
     };
+    void add_springs(const Aggregate& matter, const CellRun& run, int n);
     void find_strains(const Aggregate& matter, const RestStrains* rest);
+    // At the strains found last.
     double now_worst(std::size_t n) const;
     double loss_of(std::size_t n) const;
+    double stored_in(std::size_t n) const;
+    double sum_of(double (LooseSprings::*part)(std::size_t) const) const;
 
     Fracture law_;
     bool beside_sweep_;

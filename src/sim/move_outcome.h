@@ -2,6 +2,7 @@
 // What a solver reports of one move of the drive.
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -49,6 +50,10 @@ struct BodyOutcome {
     double lost() const {  // [J]
         return plastic_work + fracture_work + friction_work + damped_work + drag_work + met.damped +
                met.friction;
+    }
+    // Fracture that gives energy is no account of it.
+    double lost_since(const BodyOutcome& then) const {  // [J]
+        return lost() - then.lost() + std::max(0.0, then.fracture_work - fracture_work);
     }
 };
 

@@ -357,6 +357,7 @@ void MovingBody::save(State& state) const {
         }
         state.plastic = m.cell_plastic;
         state.cracked = m.cell_cracked;
+        state.set = m.cell_set;
         state.strain = m.cell_plastic_stretch;
         state.modes = m.cell_plastic_modes;
         state.hardening = m.cell_hardening;
@@ -380,12 +381,13 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
         }
         matter_.cell_plastic = state.plastic;
         matter_.cell_cracked = state.cracked;
+        matter_.cell_set = state.set;
         matter_.cell_plastic_stretch = state.strain;
         matter_.cell_plastic_modes = state.modes;
         matter_.cell_hardening = state.hardening;
         matter_.mixed_cell = state.mixed;
         flowed_ = true;
-        lattice_.connections_changed(matter_);
+        lattice_.take_in(matter_);
     }
     contacts_ = state.contacts[0];
     pushes_ = state.pushes[0];

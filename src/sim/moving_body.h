@@ -115,6 +115,7 @@ class MovingBody {
         std::array<ConnectionArrays, kForwardCount> connection;
         std::array<std::vector<float>, kCellConnectionCount> plastic;
         std::vector<char> cracked;
+        std::vector<CellSet> set;
         std::array<std::vector<float>, 6> strain;
         std::array<std::vector<float>, 12> modes;
         std::vector<float> hardening;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "laws/cell_rest.h"
+#include "sim/cell_volume.h"
 
 namespace swage {
 
@@ -56,17 +57,8 @@ SlotLengths rest_lengths(const Aggregate& matter, CellId cell, const MixedCell* 
         lengths[slot] = along[kCellConnection[slot].direction];
     }
     if (mixed || matter.cell_hardening.empty() || matter.cell_hardening[cell] == 0) return lengths;
-    const auto& e = matter.cell_plastic_stretch;
-    const auto& q = matter.cell_plastic_modes;
-    const auto triple = [&](int m) {
-        return Triple<double>{q[m][cell], q[m + 1][cell], q[m + 2][cell]};
-    };
-    const CellHistory<double> history = {
-        {e[0][cell], e[1][cell], e[2][cell], e[3][cell], e[4][cell], e[5][cell]},
-        {triple(0), triple(3), triple(6), triple(9)},
-        matter.cell_hardening[cell]};
-    const Vec3 at = 2 * matter.cell_centroid[cell].cast<double>();
-    const CellRest<double> rest = cell_rest(history, Triple<double>{at.x(), at.y(), at.z()}, a);
+    const CellRest<double> rest =
+        cell_rest(committed_history(matter, cell), material_place(matter, cell), a);
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {
         const CellConnection& c = kCellConnection[slot];
         lengths[slot] =
