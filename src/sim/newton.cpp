@@ -11,13 +11,24 @@ namespace swage {
 
 namespace {
 
-constexpr int kMostSteps = 60;
+constexpr int kMostSteps = 60, kMostFalling = 300;
 constexpr int kMostIterations = 400;  // of conjugate gradients
 constexpr int kKeptSteps = 3;         // that coarse matrices serve in one solution
 constexpr int kMostTries = 12;        // of the length of a step
 constexpr int kUnwatched = 3;         // increments without a look at the softest motion, at most
+constexpr double kStrains = 0.02;     // of what it falls by: less is a turn of the whole
 constexpr double kFalls = 0.01;       // of the matter's own stiffness: less is no instability
-constexpr double kOvershoot = 0.5;    // of the work along a step that may be left, either way
+constexpr double kDownhill = 2;       // spacings, where the curvature is negative
+constexpr double kFarthest = 0.1;     // of the body, for what leaves an equilibrium
+constexpr double kProbe = 0.05;       // spacings, to find how that bends
+constexpr double kBendAccuracy = 0.1;
+constexpr double kOvershoot = 0.5;  // of the work along a step that may be left, either way
+
+double longest_of(const Vec3Array& way) {
+    double longest = 0;
+    for (std::size_t p = 0; p < way.size(); ++p) longest = std::max(longest, way.at(p).norm());
+    return longest;
+}
 
 Mat3 rotation_by(const Vec3& turn) {
     const double angle = turn.norm();
@@ -27,7 +38,9 @@ Mat3 rotation_by(const Vec3& turn) {
 }  // namespace
 
 Newton::Newton(const Aggregate& matter, const std::vector<float>& carried_fill)
-    : tangent_(matter, carried_fill), multigrid_(matter) {}
+    : tangent_(matter, carried_fill),
+      multigrid_(matter),
+      extent_(matter.lattice.spacing * matter.lattice.cell_count.maxCoeff()) {}
 
 void Newton::product(const Aggregate& matter, const NewtonProblem& problem, CellTangent::Kind kind,
                      const Vec3Array& direction, Vec3Array& result) {
@@ -92,7 +105,9 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
         const double curvature = dot(search_, image_);
         if (!(curvature > 0)) {
             if (!std::isfinite(curvature)) return false;
-            if (n == 1) direction_ = search_;
+            falls_ = true;
+            combine(1, kDownhill * matter.lattice.spacing / longest_of(search_), search_,
+                    direction_);
             return true;
         }
         const double length = size / curvature;
@@ -141,30 +156,78 @@ Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {
 }
 
 // Goes as far as the forces still work along the way; they are found there. Returns the share of
-// the direction gone, 0 when nowhere is better.
+// the direction gone, 0 when nowhere is better. Where the body leaves an equilibrium that does not
+// hold, forces on the way say nothing of how far it will go: there it goes all the way, bent as the
+// matter would go by itself, for straight ways stretch what is slender.
 double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool turns) {
     from_ = matter.particle_position;
     const double start = dot(force_, direction_);
     if (!(start > 0)) return 0;
+    const bool bends = falls_ && !turns && find_bend(matter, problem);
     const Way way = way_of(matter, turns);
     Vec3Array& x = matter.particle_position;
-    double share = 1;
+    double share = bends ? std::min(1.0, kFarthest * extent_ / longest_of(direction_)) : 1;
     for (int n = 0; n < kMostTries; ++n) {
         const Mat3 turned = rotation_by(share * way.turn);
         for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 const Vec3 arm = turned * (from_.at(p) - way.center);
-                x.set(p, way.center + arm + share * (way.shift + way.rest.at(p)));
+                Vec3 place = way.center + arm + share * (way.shift + way.rest.at(p));
+                if (bends) place += share * share * bent_.at(p);
+                x.set(p, place);
                 direction_.set(p, way.turn.cross(arm) + way.shift + way.rest.at(p));
             }
         });
         problem.forces(force_);
         const double work = dot(force_, direction_);
-        if (std::isfinite(work) && work >= -kOvershoot * start) return share;
+        if (std::isfinite(work) && (bends || work >= -kOvershoot * start)) return share;
         const double zero = std::isfinite(work) ? start / (start - work) : 0;
         share *= std::clamp(zero, 0.1, 0.7);
     }
     return 0;
+}
+
+// What forces at a small part of the way have that is of its square, and what gives way to that.
+bool Newton::find_bend(Aggregate& matter, const NewtonProblem& problem) {
+    const double part = kProbe * matter.lattice.spacing / longest_of(direction_);
+    Vec3Array& x = matter.particle_position;
+    const Vec3Array force = force_;
+    Vec3Array ahead;
+    for (double side : {1.0, -1.0}) {
+        x = from_;
+        combine(1, side * part, direction_, x);
+        problem.forces(force_);
+        if (side > 0) ahead = force_;
+    }
+    x = from_;
+    for (std::size_t p = 0; p < ahead.size(); ++p) {
+        ahead.set(p, (ahead.at(p) + force_.at(p) - 2 * force.at(p)) / (2 * part * part));
+    }
+    // The stable part of the tangent: a stretched way is no reason to go on down.
+    const bool found = prepare(matter, problem, false);
+    const CellTangent::Kind kind = kind_;
+    stale_ = true;
+    if (!found) return false;
+    const auto times = [&](const Vec3Array& d, Vec3Array& r) {
+        product(matter, problem, kind, d, r);
+    };
+    set_zero(x.size(), bent_);
+    multigrid_.solve(times, ahead, better_);
+    search_ = better_;
+    double size = dot(ahead, better_);
+    const double enough = kBendAccuracy * kBendAccuracy * size;
+    for (int n = 0; n < kMostIterations && size > enough; ++n) {
+        product(matter, problem, kind, search_, image_);
+        const double curvature = dot(search_, image_);
+        if (!(curvature > 0)) return false;
+        combine(1, size / curvature, search_, bent_);
+        combine(1, -size / curvature, image_, ahead);
+        multigrid_.solve(times, ahead, better_);
+        const double next = dot(ahead, better_);
+        combine(next / size, 1, better_, search_);
+        size = next;
+    }
+    return std::isfinite(size);
 }
 
 bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
@@ -189,7 +252,7 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
         [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
     // Looked at again when half of what is left could have gone.
     const double fall = (firmness_ - quotient) / (since_ + 1);
-    unwatched_ = since_ < 0 ? 0
+    unwatched_ = since_ < 0 || firmness_ < 0 ? 0
                  : 2 * kUnwatched * fall < quotient
                      ? kUnwatched
                      : static_cast<int>(std::max(0.5 * quotient / fall, 0.0));
@@ -200,7 +263,23 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     times(0)(softest_.motion(), image_);
     const double material = dot(softest_.motion(), image_);
     times(1)(softest_.motion(), better_);
-    return dot(softest_.motion(), better_) < -kFalls * material;
+    const double whole = dot(softest_.motion(), better_);
+    return whole < -kFalls * material && material > -kStrains * whole;
+}
+
+Newton::Astray Newton::astray(const Aggregate& matter, const Vec3Array& force) const {
+    const Vec3Array& way = softest_.motion();
+    if (way.size() != force.size() || !(firmness_ > 0)) return {};
+    double size = 0, gone = 0;
+    for (std::size_t p = 0; p < way.size(); ++p) {
+        const double mass = matter.particle_mass[p];
+        size += mass * way.at(p).squaredNorm();
+        gone +=
+            mass * way.at(p).dot(matter.particle_position.at(p) - matter.particle_reference.at(p));
+    }
+    const double longest = longest_of(way);
+    return {.gone = std::abs(gone / size) * longest,
+            .left = std::abs(dot(force, way) / (firmness_ * size)) * longest};
 }
 
 Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
@@ -208,7 +287,8 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
     problem.forces(force_);
     const bool turns = problem.held.empty() && !problem.held_now;
     tangent_.moved();
-    for (result.steps = 0; result.steps < kMostSteps; ++result.steps) {
+    falls_ = false;
+    for (result.steps = 0; result.steps < (falls_ ? kMostFalling : kMostSteps); ++result.steps) {
         result.residual = problem.residual(force_);
         if (!std::isfinite(result.residual)) break;
         result.converged = result.residual <= problem.tolerance;
@@ -228,6 +308,7 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
         if (share == 0) break;
         if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) stale_ = true;
     }
+    if (falls_) unwatched_ = 0;  // its softest motion is another by now
     return result;
 }
 

@@ -45,11 +45,19 @@ class Newton {
     bool buckles(const Aggregate& matter, const NewtonProblem& problem);
     const Vec3Array& softest_motion() const { return softest_.motion(); }
 
+    // How far the body has gone by its softest motion, as when last looked at, and how far these
+    // forces, left over, would still take it.
+    struct Astray {
+        double gone = 0, left = 0;  // [m]
+    };
+    Astray astray(const Aggregate& matter, const Vec3Array& force) const;
+
   private:
     bool prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact);
     bool find_direction(const Aggregate& matter, const NewtonProblem& problem, double accuracy);
     // `turns`: nothing holds the body, it may turn as a whole.
     double line_search(Aggregate& matter, const NewtonProblem& problem, bool turns);
+    bool find_bend(Aggregate& matter, const NewtonProblem& problem);
     void product(const Aggregate& matter, const NewtonProblem& problem, CellTangent::Kind kind,
                  const Vec3Array& direction, Vec3Array& result);
 
@@ -63,6 +71,8 @@ class Newton {
 
     CellTangent tangent_;
     Multigrid multigrid_;
+    double extent_;  // [m]
+    bool falls_ = false;  // some direction has had negative curvature
     bool prepared_ = false;
     CellTangent::Kind kind_;
     int fresh_iterations_ = -1;  // of the first solution with these coarse matrices; -1: none yet
@@ -73,7 +83,7 @@ class Newton {
     double firmness_ = 0;  // of the softest motion, when last looked at
     int since_ = -1;       // increments since then; -1: never looked
     int unwatched_ = 0;    // increments that need no look at it
-    Vec3Array force_, direction_, residual_, search_, image_, better_, from_;
+    Vec3Array force_, direction_, residual_, search_, image_, better_, from_, bent_;
 };
 
 }  // namespace swage

@@ -153,7 +153,7 @@ NewtonProblem QuasistaticSolver::problem_of(const Drive& to) {
         force = force_;
     };
     problem.residual = [&](const Vec3Array& force) { return residual_of(force, to); };
-    problem.tolerance = settings_.tolerance;
+    problem.tolerance = accuracy_;
     problem.held = contacts_.held_points(matter_, to);
     problem.diagonal = lattice_bound_;
     contacts_.add_stiffness(matter_, problem.diagonal);
@@ -206,12 +206,12 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         if (iteration % kCheckInterval == 0) {
             result.residual = residual_of(f, to);
             if (!std::isfinite(result.residual)) return result;
-            if (result.residual <= settings_.tolerance) {
+            if (result.residual <= accuracy_) {
                 result.converged = true;
                 if (rounds++ == kMostRounds || !self_.meet_anew()) return result;
                 evaluate(to, moved);
                 result.residual = residual_of(f, to);
-                if (result.residual <= settings_.tolerance) return result;
+                if (result.residual <= accuracy_) return result;
                 result.converged = false;
             }
         }
@@ -250,6 +250,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
 
 constexpr double kNudge = 0.02;  // spacings: the least that a body that buckles is moved
 constexpr int kMostTurns = 4;
+constexpr double kDriven = 0.03;  // of what drives a body that buckles may be left over
+constexpr double kFinest = 1e-4;  // of the tolerance: less is never asked for
+constexpr double kAstray = 0.01;  // of the way that the body has gone
 
 // How many rounds of letting go of the drag Newton's method goes ahead.
 constexpr double kSmoothHold = 1e-3;
@@ -281,26 +284,50 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         const double dragged = hold_ * chunked_sum(x.size(), [&](std::size_t p) {
                                    return drag_[p] * (x.at(p) - held_.at(p)).norm();
                                });
-        if (dragged <= settings_.tolerance * push_limit(to)) return result;
+        if (dragged <= accuracy_ * push_limit(to)) return result;
         held_ = x;
     }
 }
 
 // A body that buckles is moved the way it wants to go, as far as the forces drive it there, and
-// comes to rest from there.
+// comes to rest from there. What a slender body's push leaves over may be nothing beside the push,
+// and yet take it far: then less has to be left.
 QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
                                                               MoveOutcome& outcome) {
+    accuracy_ = settings_.tolerance;
     Relaxation result = relax(to);
-    for (int turn = 0; turn < kMostTurns && newton_ && result.converged; ++turn) {
+    const auto again = [&](double accuracy) {
+        accuracy_ = accuracy;
+        const Relaxation next = relax(to);
+        result = {next.converged, result.iterations + next.iterations, next.residual};
+    };
+    for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(apparatus_) || self_.presses()) break;
         NewtonProblem problem = problem_of(to);
+        if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
         // Whether the matter itself gives way is asked: what slides now would stick if turned back.
         for (HeldPoint& h : problem.held) {
             const Eigen::SelfAdjointEigenSolver<Mat3> across(h.stiffness, Eigen::EigenvaluesOnly);
             h.stiffness = across.eigenvalues().maxCoeff() * Mat3::Identity();
         }
-        if (!newton_->buckles(matter_, problem)) break;
-        Vec3Array way = newton_->softest_motion();
+        if (!newton_->buckles(matter_, problem)) {
+            if (touches() || accuracy_ < kFinest * settings_.tolerance) break;
+            const double hold = std::exchange(hold_, 0);  // the drag holds back what is left over
+            evaluate(to);
+            hold_ = hold;
+            const Newton::Astray soft = newton_->astray(matter_, force_);
+            if (soft.left <= kAstray * soft.gone + kNudge * kAstray * matter_.lattice.spacing)
+                break;
+            const Relaxation enough = result;
+            const Vec3Array there = matter_.particle_position;
+            again(0.1 * accuracy_);
+            if (result.converged) continue;
+            matter_.particle_position = there;
+            result = {true, result.iterations, enough.residual};
+            break;
+        }
+        ++turn;
+        const Vec3Array way = newton_->softest_motion();
         double longest = 0;
         for (std::size_t p = 0; p < way.size(); ++p) longest = std::max(longest, way.at(p).norm());
         const Vec3Array from = matter_.particle_position;
@@ -315,8 +342,14 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
         if (work_at(-far) > work_at(far)) far = -far;
         while (std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
         work_at(far);
-        const Relaxation next = relax(to);
-        result = {next.converged, result.iterations + next.iterations, next.residual};
+        rest_ = matter_.particle_position;
+        again(std::clamp(kDriven * residual_of(force_, to), kFinest * settings_.tolerance,
+                         settings_.tolerance));
+        // What falls far takes long.
+        for (int more = 0; more < kMostTurns && !result.converged; ++more) {
+            rest_ = matter_.particle_position;
+            again(settings_.tolerance);
+        }
         outcome.buckled = true;
     }
     return result;

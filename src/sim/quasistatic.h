@@ -89,7 +89,8 @@ class QuasistaticSolver {
     double body_size_;  // [m]
     std::vector<double> lattice_bound_;
     std::vector<double> mass_, inverse_mass_, drag_;
-    int mirrored_ = 0;  // cells inside out
+    double accuracy_ = 0;  // of the residual: the tolerance, or less
+    int mirrored_ = 0;     // cells inside out
     Vec3Array force_, velocity_;
     double hold_ = 1;        // share of the drag that acts
     Vec3Array held_, rest_;  // positions that the drag pulls back to: now, at first

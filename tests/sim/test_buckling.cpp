@@ -88,3 +88,67 @@ TEST_CASE("a column pressed between two plates buckles too") {
     CHECK(column.sideways() > 0.3 * kSide);
     CHECK(most < 1.2 * kCritical);
 }
+
+TEST_CASE("a column that bears more than Euler's load bends to where the elastica is") {
+    // Clamped at one end, with what theory gives for the way of the other: P / P_0 = (2 K / pi)^2,
+    // sideways 2 k L / K, with K(k) the complete elliptic integral.
+    const double share = GENERATE(1.2, 1.5), aside = GENERATE(0.0, 1e-4);
+    CAPTURE(share, aside);
+    Column column;
+    Grip grip;
+    Load load;
+    load.name = "push";
+    const auto& surface = column.matter.surface;
+    for (std::size_t n = 0; n < surface.size(); ++n) {
+        const Vec3 x = surface.reference_position[n];
+        if (x.x() < -0.5 * kLength + 1e-9) {
+            grip.point.push_back(static_cast<int>(n));
+            grip.anchor.push_back(x + Vec3(0.5 * kLength, 0, 0));
+        }
+        if (x.x() > 0.5 * kLength - 1e-9) load.point.push_back(static_cast<int>(n));
+    }
+    column.apparatus.grip.push_back(grip);
+    column.drive.world_from_grip.push_back({Quat::Identity(), Vec3(-0.5 * kLength, 0, 0)});
+    const double critical = kCritical / 16, push = share * critical;
+    load.force.assign(load.point.size(), Vec3(-push, aside * push, 0) / double(load.point.size()));
+    column.apparatus.load.push_back(load);
+    column.drive.load_strength = {0.0};
+    Simulation simulation(column.matter, column.apparatus, {});
+    for (int frame = 1; frame <= 10; ++frame) {
+        Drive to = column.drive;
+        to.time += 1;
+        to.load_strength = {0.1 * frame};
+        simulation.advance(column.drive, to);
+        column.drive = to;
+    }
+    double low = 0, high = 1;  // of k^2
+    for (int round = 0; round < 60; ++round) {
+        const double middle = 0.5 * (low + high);
+        const double ratio = 2 / kPi * std::comp_ellint_1(std::sqrt(middle));
+        (ratio * ratio < share ? low : high) = middle;
+    }
+    const double k = std::sqrt(low), theory = 2 * k * kLength / std::comp_ellint_1(k);
+    const Vec3Array& x = column.matter.particle_position;
+    const std::size_t last = x.size() - 1;
+    CHECK(std::hypot(x.y[last], x.z[last]) == Approx(theory).epsilon(0.03));
+}
+
+TEST_CASE("what nothing bears on does not buckle") {
+    Aggregate block =
+        make_block(4, 4, 4, 0.1, {.young_modulus = 1e6, .poisson_ratio = 0.3, .yield_stress = 1e4});
+    Apparatus press;
+    press.name = "press";
+    Drive drive;
+    for (double end : {-1.0, 1.0}) {
+        press.tool.push_back({"plate", BoxShape{Vec3(2, 1, 2), 0}, 0.3});
+        drive.world_from_tool.push_back({Quat::Identity(), Vec3(0, end * 0.7, 0)});
+    }
+    Simulation simulation(block, press, {});
+    for (double depth : {0.05, 0.1, 0.1, 0.05, 0.0, -0.05}) {
+        Drive to = drive;
+        to.time += 1;
+        to.world_from_tool[1].translation.y() = 0.7 - depth;
+        CHECK(simulation.advance(drive, to).warning.empty());
+        drive = to;
+    }
+}
