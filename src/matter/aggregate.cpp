@@ -135,9 +135,9 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_position) + bytes_of(particle_velocity) +
                       bytes_of(particle_mass) + bytes_of(cell_fill) + cell_centroid.bytes() +
-                      bytes_of(cell_cracked) + bytes_of(cell_set) + bytes_of(cell_hardening) + bytes_of(inset) +
-                      bytes_of(cell_material) + bytes_of(mixed_cell) + bytes_of(surface.corner) +
-                      bytes_of(surface.weight) + bytes_of(surface.area) +
+                      bytes_of(cell_cracked) + bytes_of(cell_set) + bytes_of(cell_hardening) +
+                      bytes_of(inset) + bytes_of(cell_material) + bytes_of(mixed_cell) +
+                      bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
                       bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& v : cell_plastic_stretch) sum += bytes_of(v);

@@ -195,8 +195,8 @@ struct Aggregate {
 
     // History of the cells, committed; all empty while nothing has ever yielded.
     std::vector<float> cell_hardening;  // accumulated plastic strain
-    // Mechanics of cells (laws/cell.h): inverse of the plastic stretch less one, xx, yy, zz, xy, yz,
-    // zx, and plastic part of the modes xy, yz, zx, xyz, three components each [m].
+    // Mechanics of cells (laws/cell.h): inverse of the plastic stretch less one, xx, yy, zz, xy,
+    // yz, zx, and plastic part of the modes xy, yz, zx, xyz, three components each [m].
     std::array<std::vector<float>, 6> cell_plastic_stretch;
     std::array<std::vector<float>, 12> cell_plastic_modes;
     // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24

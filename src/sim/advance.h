@@ -37,8 +37,8 @@ struct Books {
     double friction = 0, drag = 0;   // likewise; drag of the medium
     double severed_energy = 0;       // elastic energy lost with severed connections, likewise [J]
     double fracture = 0;             // energy that breaking took, likewise [J]
-    // By cracks that ran on while the drive stood, likewise [J]: what an equilibrium loses of a
-    // snap. Quasi-static only.
+    // While the drive stood, likewise [J]: what an equilibrium has less than the one before when
+    // cracks have run on, a blade has cut or what held it is gone. Quasi-static only.
     double set_free = 0;
     // Of all work since the stage began, what none of the others accounts for [J]: in motion the
     // error of the steps; else what relaxation lets go where something snaps or is put on at once.

@@ -246,10 +246,10 @@ std::vector<HeldCell> CellSweep::turned(const Aggregate& matter) const {
             const double fill = matter.cell_fill[cell];
             const double mean = kind == CellKind::rubber ? rubber_energy(law, f)
                                                          : strain_energy(law, cell_strain(elastic));
-            found.push_back({&run, n,
-                             a * a * a * fill * mean +
-                                 0.5 * mode_fill(fill) *
-                                     product(mode_stress(law, taken_back(history), q), q)});
+            found.push_back(
+                {&run, n,
+                 a * a * a * fill * mean +
+                     0.5 * mode_fill(fill) * product(mode_stress(law, taken_back(history), q), q)});
         }
     }
     return found;

@@ -26,8 +26,8 @@ struct BodyOutcome {
     double plastic_work = 0;        // [J]
     double fracture_work = 0;       // [J]
     double friction_work = 0;       // [J]
-    double set_free = 0;            // elastic energy that cracks let go of at a standing drive [J];
-                                    // quasi-static only
+    double set_free = 0;            // that cracks, cuts and grips that are gone let go of at a
+                                    // standing drive [J]; quasi-static only
     int broken = 0;                 // connections
     double damped_work = 0;         // [J]; in motion only
     double drag_work = 0;           // [J]; in motion only

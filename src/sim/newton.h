@@ -71,7 +71,7 @@ class Newton {
 
     CellTangent tangent_;
     Multigrid multigrid_;
-    double extent_;  // [m]
+    double extent_;       // [m]
     bool falls_ = false;  // some direction has had negative curvature
     bool prepared_ = false;
     CellTangent::Kind kind_;

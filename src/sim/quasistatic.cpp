@@ -79,6 +79,12 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
 }
 
 void QuasistaticSolver::connections_changed(std::size_t) {
+    severed_ = true;
+    connections_renewed();
+}
+
+// Masses are found anew.
+void QuasistaticSolver::connections_renewed() {
     lattice_.connections_changed(matter_);
     contacts_.connections_changed(matter_);
     self_.connections_changed();
@@ -355,8 +361,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     return result;
 }
 
-void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
-                                  MoveOutcome& outcome) {
+bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
+                                  MoveOutcome& outcome, Unsolved unsolved) {
     start_ = matter_.particle_position;
     contacts_.begin_move(matter_, from);
     self_.begin_move();
@@ -381,6 +387,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         matter_.particle_position = start_;
         self_.take_back();
         previous_motion_.clear();
+        if (unsolved == Unsolved::leave) return false;
         if (depth >= settings_.halving_limit) {
             fail(ExitCode::stopped,
                  "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings "
@@ -395,7 +402,7 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         const Drive middle = drive_between(from, to, 0.5);
         increment(from, middle, depth + 1, outcome);
         increment(middle, to, depth + 1, outcome);
-        return;
+        return true;
     }
 
     stay(to);
@@ -429,22 +436,17 @@ void QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     pushes_.commit(matter_, to, outcome.body[0].push_work);
     if (buckled || breaks) previous_motion_.clear();  // neither goes on as it did
     ++outcome.increments;
+    return true;
 }
 
 MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     outcome.body.emplace_back(apparatus_, pushes_.count());
     pushes_.start(matter_, from);
-    if (!begun_) {
-        self_.presses();
-        contacts_.begin_move(matter_, from);
-        contacts_.find_candidates(matter_, from);
-        outcome.body[0].before = {0, elastic_energy(),
-                                  contacts_.stored_energy(matter_, from) + self_.sums().stored};
-        begun_ = true;
-    }
+    const bool let_go_of = begin(from, outcome.body[0]) || std::exchange(severed_, false);
     moved_ = moved_ || contacts_.travel(matter_, from, to) > 0;
     const int count = increments_between(contacts_, matter_, from, to);
+    if (let_go_of) let_go(from, outcome);
     Drive before = from;
     for (int n = 1; n <= count; ++n) {
         const Drive after = n == count ? to : drive_between(from, to, double(n) / count);

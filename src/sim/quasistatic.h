@@ -42,7 +42,7 @@ class QuasistaticSolver {
     // it was before that increment.
     MoveOutcome advance(const Drive& from, const Drive& to);
 
-    // The connections have changed (severed): masses are found anew.
+    // A blade has severed connections.
     void connections_changed(std::size_t body = 0);
     double elastic_energy(std::size_t = 0) { return lattice_.elastic_energy(matter_); }  // [J]
     const LoadSet& pushes(std::size_t = 0) const { return pushes_; }
@@ -53,13 +53,17 @@ class QuasistaticSolver {
         int iterations = 0;
         double residual = 0;
     };
-    void increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome);
+    enum class Unsolved { stop, leave };
+    // Whether there is an equilibrium at `to`; without one the matter stays as it was, or it stops.
+    bool increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome,
+                   Unsolved unsolved = Unsolved::stop);
     Relaxation relax(const Drive& to);
     Relaxation settle(const Drive& to);
     Relaxation relax_stably(const Drive& to, MoveOutcome& outcome);
     Relaxation solve_smooth(const Drive& to);
     NewtonProblem problem_of(const Drive& to);
     double residual_of(const Vec3Array& force, const Drive& to) const;
+    void connections_renewed();
     void find_bounds();
     void find_masses();
     // `moved`: as ContactSet::add_forces() takes it.
@@ -73,6 +77,9 @@ class QuasistaticSolver {
     bool draws_back(const Drive& from, const Drive& to, const std::vector<double>& motion) const;
     void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome);
     void let_crack(const Drive& to, MoveOutcome& outcome);
+    double booked(const Drive& now, const BodyOutcome& outcome);
+    bool begin(const Drive& from, BodyOutcome& outcome);
+    void let_go(const Drive& from, MoveOutcome& outcome);
     void stay(const Drive& to);
     bool commit(MoveOutcome& outcome);
 
@@ -102,6 +109,7 @@ class QuasistaticSolver {
     std::vector<double> previous_motion_;  // empty: nothing to extrapolate from
     bool moved_ = false;                   // any tool or grip, ever
     bool begun_ = false;
+    bool severed_ = false;                 // by a blade, since the last equilibrium
     double largest_push_ = 0;              // of any tool so far [N]
     std::vector<LoadSum> load_;            // at the end of the last increment, by tool, then grip
     std::vector<double> most_load_;        // that each has carried so far [N]

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the quasi-static solver does when matter breaks.
+// What the quasi-static solver does when matter breaks, is cut or is let go.
 #include <algorithm>
 
 #include "sim/quasistatic.h"
 
 namespace swage {
+
+namespace {
+constexpr double kRoundOff = 1e-20;  // of E a^3: what a body at rest holds
+}
 
 bool QuasistaticSolver::commit(MoveOutcome& outcome) {
     const Committed lost = lattice_.commit(matter_);
@@ -12,11 +16,20 @@ bool QuasistaticSolver::commit(MoveOutcome& outcome) {
     outcome.body[0].fracture_work += lost.fracture;
     outcome.body[0].broken += lost.broken;
     if (lost.broken > 0) {
-        connections_changed();
+        connections_renewed();
     } else if (lost.plastic > 0) {
         lattice_bound_ = lattice_.stiffness_bound(matter_);
     }
     return lost.fracture > 0;
+}
+
+// What the matter holds and took, less what loads have put in: at a standing drive it only changes
+// by what is set free.
+double QuasistaticSolver::booked(const Drive& now, const BodyOutcome& outcome) {
+    double pushed = 0;
+    for (double work : outcome.push_work) pushed += work;
+    return elastic_energy() + contacts_.stored_energy(matter_, now) + self_.sums().stored +
+           outcome.lost() - pushed;
 }
 
 // Cracks run on, round by round, until everything stands at this drive: in each the cells that are
@@ -24,26 +37,44 @@ bool QuasistaticSolver::commit(MoveOutcome& outcome) {
 // far breaks, and all come to rest again.
 void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
     if (!matter_.material.breaks()) return;
-    // What the matter holds and took, less what loads have put in.
-    const auto booked = [&] {
-        double pushed = 0;
-        for (double work : outcome.body[0].push_work) pushed += work;
-        return elastic_energy() + contacts_.stored_energy(matter_, to) + self_.sums().stored +
-               outcome.body[0].fracture_work + outcome.body[0].plastic_work - pushed;
-    };
     for (;;) {
-        const double before = booked();
+        const double before = booked(to, outcome.body[0]);
         const Cracked cracked = lattice_.crack(matter_);
         Committed snapped;
         if (cracked.cells == 0 && lattice_.may_snap(matter_)) snapped = lattice_.snap(matter_);
         if (cracked.cells == 0 && snapped.broken == 0) return;
-        connections_changed();
+        connections_renewed();
         std::fill(carries_.begin(), carries_.end(), false);
         outcome.body[0].fracture_work += cracked.lost + snapped.fracture;
         outcome.body[0].broken += snapped.broken;
         increment(to, to, settings_.halving_limit, outcome);
-        outcome.body[0].set_free += before - booked();
+        outcome.body[0].set_free += before - booked(to, outcome.body[0]);
     }
+}
+
+// The books of a stage begin. Whether what held the body before it does so no more.
+bool QuasistaticSolver::begin(const Drive& from, BodyOutcome& outcome) {
+    if (begun_) return false;
+    begun_ = true;
+    self_.presses();
+    contacts_.begin_move(matter_, from);
+    contacts_.find_candidates(matter_, from);
+    outcome.before = {0, elastic_energy(),
+                      contacts_.stored_energy(matter_, from) + self_.sums().stored};
+    const double a = matter_.lattice.spacing;
+    if (outcome.before.sum() < kRoundOff * matter_.mean_modulus() * a * a * a) return false;
+    held_ = matter_.particle_position;
+    evaluate(from);
+    return residual_of(force_, from) > settings_.tolerance;
+}
+
+// What was cut, or lost its grips, comes to rest before anything moves, so that what it lets go of
+// is not taken for an error. NOTE: where there is no rest the move goes on without; then it is.
+void QuasistaticSolver::let_go(const Drive& from, MoveOutcome& outcome) {
+    std::fill(carries_.begin(), carries_.end(), false);
+    const double before = booked(from, outcome.body[0]);
+    if (!increment(from, from, settings_.halving_limit, outcome, Unsolved::leave)) return;
+    outcome.body[0].set_free += before - booked(from, outcome.body[0]);
 }
 
 }  // namespace swage

@@ -104,6 +104,63 @@ TEST_CASE("pieces part freely: a severed half follows its grip and feels no forc
     }
 }
 
+TEST_CASE("what a cut or an opened grip lets go of is set free, not left over by the books") {
+    const bool cuts = GENERATE(true, false);
+    Aggregate m = make_block(12, 2, 2, 0.1, Material{.young_modulus = 1e6, .poisson_ratio = 0.3});
+    const auto gripped = [&](std::initializer_list<int> sides) {
+        Apparatus a;
+        a.name = "stretch";
+        for (int side : sides) {
+            Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
+            grip.point = points_where(m, [&](const Vec3& x) { return side * x.x() > 0.5; });
+            for (int p : grip.point) grip.anchor.push_back(m.surface.reference_position[p]);
+            a.grip.push_back(grip);
+        }
+        return a;
+    };
+    Drive drive;
+    drive.world_from_grip = {Pose{}, Pose{}};
+    drive.world_from_blade = {Pose{Quat::Identity(), Vec3(0, 0.5, 0)}};
+    const auto on = [&](double pull, double blade) {
+        Drive to = drive;
+        to.time += 1;
+        to.world_from_grip.back().translation.x() = pull;
+        to.world_from_blade[0].translation.y() = blade;
+        return to;
+    };
+    SimSettings settings;
+    settings.tolerance = 1e-4;
+    Apparatus both = gripped({-1, 1});
+    both.blade.push_back({"blade", {Vec3(0.02, 0, -1), Vec3(0.02, 0, 1)}, {}});
+    Simulation simulation(m, both, settings);
+    FrameReport r;
+    for (double pull : {0.01, 0.02, 0.03, 0.04, 0.05}) {
+        const Drive next = on(pull, 0.5);
+        r = simulation.advance(drive, next);
+        drive = next;
+    }
+    const double stored = r.elastic;
+    REQUIRE(stored > 1);
+    CHECK(std::abs(r.remainder) < 0.01 * stored);
+    CHECK(r.set_free == 0);
+    if (cuts) {
+        r = simulation.advance(drive, on(0.07, -0.5));  // it pulls on while it is cut
+        CHECK(r.pieces == 2);
+        CHECK(r.set_free + r.severed_energy > 0.9 * stored);
+    } else {
+        const Apparatus one = gripped({-1});
+        Drive from;
+        from.world_from_grip = {Pose{}};
+        Drive to = from;
+        to.time = 1;
+        to.world_from_grip[0].translation.x() = 0.05;
+        Simulation after(m, one, settings);
+        r = after.advance(from, to);
+        CHECK(r.set_free == Approx(stored).epsilon(0.05));
+    }
+    CHECK(std::abs(r.remainder) < 0.01 * stored);
+}
+
 TEST_CASE("a crumb between two cuts stays with one side and does not join them") {
     Aggregate m = make_block(6, 1, 1, 0.1, Material{});
     Apparatus apparatus;
