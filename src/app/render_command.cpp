@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct RenderArguments {
-    std::string run, out, size, frames, gl = "auto";
+    std::string run, out, size, frames, up, gl = "auto";
     std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
     std::vector<double> eye, target;                                      // [m]
     std::optional<int> frames_per_second;
@@ -52,6 +52,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
         key.target = Vec3(given.target[0], given.target[1], given.target[2]);
         settings.camera.assign(1, key);
     }
+    if (!given.up.empty()) settings.up = given.up == "x" ? Up::x : given.up == "z" ? Up::z : Up::y;
     if (given.frames_per_second) settings.frames_per_second = *given.frames_per_second;
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;
@@ -109,7 +110,8 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("--out", given.out, "where to draw (default: RUN/again)")->type_name("DIR");
     command
         ->add_option("--camera-azimuth", given.azimuth,
-                     "where the camera stands about the upward axis, 0 is +z, 90 is +x")
+                     "where the camera stands about the upward axis: 0 is +z and 90 +x, or "
+                     "with z up +x and +y")
         ->type_name("DEG");
     command->add_option("--camera-elevation", given.elevation, "how high it stands")
         ->check(CLI::Range(-90.0, 90.0))
@@ -130,6 +132,8 @@ void add_render_command(CLI::App& app, Action& chosen) {
          {"--camera-azimuth", "--camera-elevation", "--camera-zoom", "--camera-turn"}) {
         eye->excludes(command->get_option(other));
     }
+    command->add_option("--camera-up", given.up, "what the pictures have upward")
+        ->check(CLI::IsMember({"x", "y", "z"}));
     command->add_option("--field-of-view", given.field_of_view, "vertical")
         ->check(CLI::Range(1.0, 170.0))
         ->type_name("DEG");

@@ -105,7 +105,8 @@ struct MachineSpec {
     std::string name;
     std::string help;
     std::filesystem::path file;
-    bool moves = false;  // for bodies in motion: no equilibrium is to be expected
+    bool moves = false;    // for bodies in motion: no equilibrium is to be expected
+    bool upright = false;  // what lies on its tools does so by gravity
     // The work frame's x and y, as place_work_frame takes them, where a stage leaves them "auto".
     std::string axis = "auto", up = "auto";
     std::vector<ParameterSpec> parameter;

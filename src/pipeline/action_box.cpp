@@ -152,7 +152,7 @@ class FramedSkin {
 
 }  // namespace
 
-ActionBox find_action(const FrameStore& store, bool tools) {
+ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world) {
     Box skin, machines;
     Outline outline;
     FramedSkin framed_skin(store);
@@ -168,7 +168,8 @@ ActionBox find_action(const FrameStore& store, bool tools) {
     }
     for (int f = 0; f < store.frame_count(); ++f) {
         const StoredFrame frame = store.frame(f);
-        framed_skin.for_each(frame, [&](const Vec3& p) {
+        framed_skin.for_each(frame, [&](const Vec3& world) {
+            const Vec3 p = drawn_from_world * world;
             skin.grow(p);
             outline.grow(p);
         });
@@ -177,9 +178,10 @@ ActionBox find_action(const FrameStore& store, bool tools) {
             if (boxes[b].empty()) continue;
             for (int corner = 0; corner < 8; ++corner) {
                 const Vec3 at =
-                    frame.pose[b] * Vec3(corner & 1 ? boxes[b].high[0] : boxes[b].low[0],
-                                         corner & 2 ? boxes[b].high[1] : boxes[b].low[1],
-                                         corner & 4 ? boxes[b].high[2] : boxes[b].low[2]);
+                    drawn_from_world *
+                    (frame.pose[b] * Vec3(corner & 1 ? boxes[b].high[0] : boxes[b].low[0],
+                                          corner & 2 ? boxes[b].high[1] : boxes[b].low[1],
+                                          corner & 4 ? boxes[b].high[2] : boxes[b].low[2]));
                 machines.grow(at);
                 tool_corners.push_back(at);
             }

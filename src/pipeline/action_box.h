@@ -13,9 +13,10 @@ namespace swage {
 // body's surface may leave the picture: chips fly far.
 struct ActionBox {
     Box bounds;
-    double ground_height = 0;   // world y
+    double ground_height = 0;   // y
     std::vector<Vec3> outline;  // points that together reach as far as the action
 };
-ActionBox find_action(const FrameStore& store, bool tools);
+// As drawn, with y up.
+ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_from_world);
 
 }  // namespace swage

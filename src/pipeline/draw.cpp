@@ -26,7 +26,8 @@ constexpr int kSheetPictureWidth = 384;
 // One frame of the run as the renderer wants it; skins and machines are read when they change.
 class FrameSource {
   public:
-    FrameSource(const FrameStore& store, bool tools) : store_(store), tools_(tools) {}
+    FrameSource(const FrameStore& store, bool tools, const Quat& drawn_from_world)
+        : store_(store), tools_(tools), drawn_from_world_{drawn_from_world, Vec3::Zero()} {}
 
     Picture picture(int frame) {
         const StoredFrame stored = store_.frame(frame - 1);
@@ -46,7 +47,8 @@ class FrameSource {
             for (const Eigen::Vector3f& p : stored.body[b].position) {
                 body.position.push_back(p.cast<double>());
             }
-            picture.item.push_back({&body.skin, &body.position, {}, std::nullopt, false});
+            picture.item.push_back(
+                {&body.skin, &body.position, drawn_from_world_, std::nullopt, false});
         }
         for (std::size_t b = 0; tools_ && b < machine_.size(); ++b) {
             if (machine_[b].surface.triangle.empty()) continue;
@@ -56,7 +58,8 @@ class FrameSource {
             const Finish finish = machine_[b].finish;
             look.roughness = finish == Finish::metal ? 0.4 : 0.95;
             look.metallic = finish == Finish::metal ? 0.6 : 0;
-            picture.item.push_back({&machine_[b].surface, nullptr, stored.pose.at(b), look,
+            picture.item.push_back({&machine_[b].surface, nullptr,
+                                    drawn_from_world_ * stored.pose.at(b), look,
                                     finish == Finish::endless});
         }
         return picture;
@@ -65,6 +68,7 @@ class FrameSource {
   private:
     const FrameStore& store_;
     bool tools_;
+    Pose drawn_from_world_;
     struct Body {
         int skin_id = -1;
         TriMesh skin;
@@ -91,6 +95,14 @@ int sheet_columns(int pictures) {
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(pictures) - 1e-9)));
 }
 
+// The renderer has y up: the axes take turns.
+Quat drawn_from_world(Up up) {
+    Mat3 turn = Mat3::Identity();
+    if (up == Up::z) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    if (up == Up::x) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    return Quat(turn);
+}
+
 }  // namespace
 
 void check_drawing(const RenderSettings& settings) {
@@ -98,14 +110,21 @@ void check_drawing(const RenderSettings& settings) {
     log_verbose("drawing by {}", canvas.renderer_string());
 }
 
-DrawOutcome draw_run(const FrameStore& store, const RenderSettings& settings,
+DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
                      const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch) {
     if (frames.first < 1 || frames.last > store.frame_count()) {
         fail(ExitCode::command_line, "--frames {}-{}: the run has the frames 1 to {}", frames.first,
              frames.last, store.frame_count());
     }
     make_folder(files.folder());
-    const ActionBox action = find_action(store, settings.tools);
+    const Quat turn = drawn_from_world(wanted.up);
+    RenderSettings settings = wanted;
+    for (CameraKey& key : settings.camera) {
+        for (std::optional<Vec3>* place : {&key.eye, &key.target}) {
+            if (*place) *place = turn * **place;
+        }
+    }
+    const ActionBox action = find_action(store, settings.tools, turn);
     Renderer renderer(settings, action.bounds, action.ground_height, thread_count(),
                       action.outline);
     DrawOutcome outcome{renderer.renderer_string(), settings.width, settings.height, frames, false};
@@ -116,7 +135,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& settings,
     }
     const std::vector<int> on_sheet = sheet_frames(frames);
     std::vector<Image> thumbnails;
-    FrameSource source(store, settings.tools);
+    FrameSource source(store, settings.tools, turn);
     Progress progress("draw", frames.last - frames.first + 1);
     std::future<void> writing;  // of the picture before, while the next is drawn
     for (int frame = frames.first; frame <= frames.last; ++frame) {

@@ -133,6 +133,10 @@ Json seconds_json(const Stopwatch& watch) {
     return json;
 }
 
+namespace {
+constexpr const char* kUpName[] = {"auto", "x", "y", "z"};  // in the order of Up
+}
+
 Json render_json(const RenderSettings& settings) {
     Json camera = Json::array();
     for (const CameraKey& key : settings.camera) {
@@ -150,7 +154,8 @@ Json render_json(const RenderSettings& settings) {
             {"frames_per_second", settings.frames_per_second},
             {"film", settings.film},
             {"tools", settings.tools},
-            {"ground", settings.ground}};
+            {"ground", settings.ground},
+            {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
 }
 
 RenderSettings render_settings_of(const Json& record) {
@@ -164,6 +169,9 @@ RenderSettings render_settings_of(const Json& record) {
         settings.film = json.at("film").get<bool>();
         settings.tools = json.at("tools").get<bool>();
         settings.ground = json.at("ground").get<bool>();
+        // Runs of before this was asked had y.
+        const std::string up = json.value("up", "y");
+        settings.up = up == "x" ? Up::x : up == "z" ? Up::z : Up::y;
         const auto vector_of = [](const Json& three) {
             return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),
                         three.at(2).get<double>());

@@ -9,13 +9,15 @@
 
 namespace swage {
 
+enum class Up { automatic, x, y, z };  // automatic is y to the renderer
+
 enum class GlProviderKind { automatic, osmesa, egl };
 
 // A camera that looks at the framed action from an angle. `at` is the share of the film, 0 to 1;
 // between keys the values move smoothly.
 struct CameraKey {
     double at = 0;
-    double azimuth = 0.6;             // about world up, from the world's +z toward +x
+    double azimuth = 0.6;             // about up, from the world's +z toward +x where y is up
     double elevation = 0.35;          // above the horizon, -pi/2 to pi/2
     double zoom = 1.0;                // 1 frames the whole motion; 2 is twice as near; > 0
     std::optional<Vec3> eye, target;  // both given: these instead of azimuth, elevation and zoom
@@ -29,6 +31,7 @@ struct RenderSettings {
     bool film = true;                               // also write film.mp4
     bool tools = true;                              // draw tools, grips and blades
     bool ground = true;
+    Up up = Up::automatic;  // of the world in the pictures
     GlProviderKind gl = GlProviderKind::automatic;
 };
 

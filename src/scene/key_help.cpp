@@ -105,7 +105,8 @@ const std::vector<KeyHelp>& scene_key_help() {
          "and speed at the end"},
         {"[[stage]]", "directional_drag_along",
          "against the motion, or along the surface's normal"},
-        {"[[stage]]", "gravity", "a single number points down; y is up",
+        {"[[stage]]", "gravity",
+         "a single number points down: against y, or up with machines that are upright",
          "acceleration, or [x, y, z] of them", "0"},
         {"[[stage]]", "load", "forces and pressures on the surface"},
         {"[[stage]]", "gravity_strength", "gravity's share over the stage, 0 < t < 1",
@@ -134,9 +135,14 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "ground", "draw a ground under it all"},
         {"[render]", "gl", "who draws"},
         {"[render]", "field_of_view", "of the camera, vertical"},
+        {"[render]", "up",
+         "what the pictures have upward; auto: against gravity where all stages that have it "
+         "agree, "
+         "else y"},
         {"[render]", "camera", "where one looks from"},
 
-        {"[render.camera]", "azimuth", "about the upward axis, from z toward x"},
+        {"[render.camera]", "azimuth",
+         "about the upward axis; y up: from z toward x, z up: from x toward y"},
         {"[render.camera]", "elevation", "above the horizon", "angle, -90 deg to 90 deg"},
         {"[render.camera]", "zoom", "1 frames the whole motion"},
         {"[render.camera]", "eye", "with target, instead of azimuth, elevation and zoom"},
@@ -156,6 +162,8 @@ const std::vector<KeyHelp>& machine_key_help() {
         {"top of the file", "moves",
          "for bodies in motion: stages are explicit when they say no "
          "solver"},
+        {"top of the file", "upright",
+         "the work-piece lies on it: a gravity that is a single number points against up"},
         {"top of the file", "axis", "as in [[stage]], which may say otherwise"},
         {"top of the file", "up", "as in [[stage]], which may say otherwise"},
         {"top of the file", "parameter",

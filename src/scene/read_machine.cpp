@@ -37,6 +37,7 @@ class MachineReader {
         TableReader root(document.root, "the machine file", reading_);
         root.text("help", machine.help);
         root.truth("moves", machine.moves);
+        root.truth("upright", machine.upright);
         read_frame_words(root, machine.axis, machine.up);
         read_parameters(root.table("parameter"), machine);
         for (const Node* node : root.tables("tool", "[[tool]]")) read_tool(*node, machine);

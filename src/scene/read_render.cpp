@@ -122,6 +122,8 @@ void read_render(TableReader& table, RenderSettings& settings) {
                                   {"osmesa", GlProviderKind::osmesa},
                                   {"egl", GlProviderKind::egl}},
                                  settings.gl);
+    table.choice<Up>("up", {{"auto", Up::automatic}, {"x", Up::x}, {"y", Up::y}, {"z", Up::z}},
+                     settings.up);
     table.quantity("field_of_view", Quantity::angle, inside(0, kPi), settings.field_of_view);
     TableReader camera(table.table("camera"), "[render.camera]", table.reading());
     read_camera(camera, settings.camera);

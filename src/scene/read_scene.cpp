@@ -19,6 +19,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Against gravity where all stages that have it agree on an axis.
+Up up_of(const std::vector<StageSpec>& stages) {
+    Up found = Up::automatic;
+    for (const StageSpec& stage : stages) {
+        const Vec3& g = stage.sim.gravity;
+        if (g == Vec3::Zero()) continue;
+        const Up own = -g.x() == g.norm() ? Up::x : -g.z() == g.norm() ? Up::z : Up::y;
+        if (found != Up::automatic && found != own) return Up::y;
+        found = own;
+    }
+    return found == Up::automatic ? Up::y : found;
+}
+
 void read_skin(TableReader& table, SkinSettings& skin) {
     table.choice<SkinKind>("kind",
                            {{"mount", SkinKind::mount},
@@ -89,6 +102,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
                              "    [[stage]]\n    machine = \"bend\"\n    angle = \"60 deg\"");
     }
     read_render(render, scene.render);
+    if (scene.render.up == Up::automatic) scene.render.up = up_of(scene.stage);
     output.truth("meshes_per_frame", scene.output.meshes_per_frame);
     output.finish();
     report_unknown_sections(document, reading);

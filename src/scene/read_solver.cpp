@@ -42,9 +42,17 @@ void refuse(TableReader& table, const BodySpec& body, Solver solver) {
     }
 }
 
+// "x", "-x", "y", ...; y for "auto".
+Vec3 upward(const std::string& up) {
+    if (up == "auto") return Vec3::UnitY();
+    const Vec3 axis = Vec3::Unit(up.back() - 'x');
+    return up.front() == '-' ? Vec3(-axis) : axis;
+}
+
 }  // namespace
 
-void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves, SimSettings& sim) {
+void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
+                 const std::string& up, SimSettings& sim) {
     const bool several = scene.body.size() > 1;
     const bool starts = std::any_of(scene.body.begin(), scene.body.end(),
                                     [](const BodySpec& body) { return body.start.moves(); });
@@ -116,16 +124,19 @@ void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
     idle("drag_coefficient", "medium_density", sim.medium_density);
     idle("directional_drag_along", "directional_drag", sim.directional_drag);
     const Node* gravity = table.find("gravity");
+    const Vec3 above = upward(up);
     if (gravity != nullptr && gravity->kind != Node::Kind::array) {
         double down = 0;  // a single number points down
         table.quantity("gravity", Quantity::acceleration, {}, down);
-        sim.gravity = {0, -down + 0.0, 0};
+        sim.gravity = (-down * above).array() + 0.0;
     } else {
         table.vector("gravity", Quantity::acceleration, sim.gravity);
     }
-    if (sim.gravity != Vec3::Zero() && !(sim.gravity.y() < 0)) {
+    if (sim.gravity != Vec3::Zero() && !(sim.gravity.dot(above) < 0)) {
         table.warn("gravity",
-                   "gravity does not point down: y is up, and a single number points down");
+                   fmt::format("gravity does not point down: {} is up, and a single number points "
+                               "down",
+                               up == "auto" ? "y" : up));
     }
     if (machine_moves && sim.gravity == Vec3::Zero() && !starts && table.find("load") == nullptr) {
         table.warn("machine",

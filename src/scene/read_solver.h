@@ -9,7 +9,9 @@ namespace swage {
 // The keys of a [[stage]] that say how its matter moves; the scene's materials have been read. What
 // a solver cannot do with them is a mistake at `solver`, a key that it does not ask a warning.
 // `machine_moves`: its machine is one for bodies in motion. The solver left out is then explicit,
-// as it is for several bodies and for one that has a speed at the start; else quasi-static.
-void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves, SimSettings& sim);
+// as it is for several bodies and for one that has a speed at the start; else quasi-static. `up`:
+// against which gravity points that is a single number, as a stage has it.
+void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
+                 const std::string& up, SimSettings& sim);
 
 }  // namespace swage

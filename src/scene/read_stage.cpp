@@ -253,14 +253,15 @@ StageSpec StageReader::read(const Node& node) {
     table.quantity("duration", Quantity::time, above(0), stage.duration);
     table.truth("remold", stage.remold);
     read_frame_words(table, stage.axis, stage.up);
-    read_solver(table, scene_, loaded != nullptr && loaded->machine && loaded->machine->moves,
-                stage.sim);
-    if (loaded != nullptr && loaded->machine) {
+    const bool has_machine = loaded != nullptr && loaded->machine;
+    if (has_machine && stage.axis == "auto" && stage.up == "auto") {
+        stage.axis = loaded->machine->axis;
+        stage.up = loaded->machine->up;
+    }
+    read_solver(table, scene_, has_machine && loaded->machine->moves,
+                has_machine && loaded->machine->upright ? stage.up : "auto", stage.sim);
+    if (has_machine) {
         stage.machine = *loaded->machine;
-        if (stage.axis == "auto" && stage.up == "auto") {
-            stage.axis = stage.machine.axis;
-            stage.up = stage.machine.up;
-        }
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
         read_parameters(table, *loaded, stage);
         read_loads(table, stage);

@@ -102,6 +102,12 @@ TEST_CASE(
                      "-0.01", "0"})
               .code == 0);
     CHECK(bytes_of(elsewhere / "frames/frame_0003.png") != turned);
+    const std::string upright = bytes_of(elsewhere / "frames/frame_0003.png");
+    CHECK(run_swage({"render", run.string(), "--out", elsewhere.string(), "--frames", "3",
+                     "--no-film", "--camera-eye", "-0.5", "0.2", "0.4", "--camera-target", "0",
+                     "-0.01", "0", "--camera-up", "z"})
+              .code == 0);
+    CHECK(bytes_of(elsewhere / "frames/frame_0003.png") != upright);
     CHECK(run_swage({"render", run.string(), "--out", elsewhere.string(), "--frames", "9"}).code ==
           2);
     CHECK(run_swage({"render", run.string(), "--out", run.string()}).code == 8);

@@ -36,7 +36,7 @@ ActionBox action_of(double size, double away, bool broken_off,
     writer.add_frame(frame(broken_off ? 0 : 1, 1));
     writer.add_frame(frame(1, away));
     writer.finish();
-    return find_action(FrameStore(file), true);
+    return find_action(FrameStore(file), true, Quat::Identity());
 }
 
 }  // namespace

@@ -139,6 +139,7 @@ film = false
 tools = false
 ground = false
 gl = "osmesa"
+up = "x"
 field_of_view = "40 deg"
 [render.camera]
 azimuth = "90 deg"
@@ -218,6 +219,7 @@ meshes_per_frame = true
     CHECK_FALSE(scene.render.tools);
     CHECK_FALSE(scene.render.ground);
     CHECK(scene.render.gl == GlProviderKind::osmesa);
+    CHECK(scene.render.up == Up::x);
     CHECK(scene.render.field_of_view == Approx(40 * kPi / 180));
     REQUIRE(scene.render.camera.size() == 2);
     CHECK(scene.render.camera[0].azimuth == Approx(kPi / 2));
@@ -245,6 +247,28 @@ keys = [
     CHECK(camera[0].azimuth == Approx(20 * kPi / 180));
     CHECK(camera[1].eye.value() == Vec3(0, 0.5, 1));
     CHECK(camera[1].target.value() == Vec3(0, 0, 0));
+}
+
+TEST_CASE("a single gravity points against a stage's up, and the pictures have that upward") {
+    const Scratch scratch;
+    const auto scene_with = [&](const std::string& stages) {
+        const SceneReading reading = read(scratch, kHead + stages);
+        INFO(told(reading.mistakes, scratch.folder()));
+        REQUIRE(reading.scene);
+        return *reading.scene;
+    };
+    const std::string z =
+        "[[stage]]\nmachine = \"floor\"\nup = \"z\"\ngravity = \"9.81 m/s2\"\n";
+    const std::string bare = "[[stage]]\nmachine = \"bend\"\nup = \"z\"\n";
+    const std::string y = "[[stage]]\nmachine = \"floor\"\ngravity = \"9.81 m/s2\"\n";
+    const SceneSpec up = scene_with(z + bare);
+    CHECK(up.stage[0].sim.gravity == Vec3(0, 0, -9.81));
+    CHECK(up.render.up == Up::z);
+    CHECK(scene_with(bare).render.up == Up::y);
+    CHECK(scene_with(y).render.up == Up::y);
+    CHECK(scene_with(y).stage[0].sim.gravity == Vec3(0, -9.81, 0));
+    CHECK(scene_with(z + y).render.up == Up::y);
+    CHECK(scene_with(z + "[render]\nup = \"x\"\n").render.up == Up::x);
 }
 
 TEST_CASE("a byte order mark, carriage returns and comments change nothing") {
