@@ -20,8 +20,8 @@ constexpr double kMostBent = 3;
 
 }  // namespace
 
-LatticeForces::LatticeForces(const Aggregate& matter)
-    : spring_law_(lattice_law(matter)), loose_(matter) {
+LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
+    : in_motion_(in_motion), spring_law_(lattice_law(matter)), loose_(matter) {
     const bool springs = matter.material.mechanics == Mechanics::springs;
     if (springs) spring_sweep_ = std::make_unique<LatticeSweep>(matter);
     if (!springs) cells_ = std::make_unique<CellSweep>(matter);
@@ -33,7 +33,7 @@ LatticeForces::LatticeForces(const Aggregate& matter)
 }
 
 void LatticeForces::connections_changed(Aggregate& matter) {
-    if (cells_) loose_.take_over(matter, cells_->turned(matter));
+    if (cells_ && in_motion_) loose_.take_over(matter, cells_->turned(matter));
     take_in(matter);
 }
 

@@ -29,11 +29,14 @@ struct Cracked {
 
 class LatticeForces {
   public:
-    explicit LatticeForces(const Aggregate& matter);
+    // `in_motion`: energy that a change of the matter made would go on in its motion, so none is
+    // made. NOTE: at rest it is gone at once, and shapes at rest that were laid down for it load
+    // what is beside a crack as the crack closes: a bar of ice went to 23 pieces instead of 2.
+    explicit LatticeForces(const Aggregate& matter, bool in_motion = false);
 
     // Connections have been severed or broken, or cells cracked. Such a cell is no cell any more;
-    // what it has left acts as plain springs, with the plastic strain it had. Those of matter that
-    // breaks are laid down so that they hold no more than it did.
+    // what it has left acts as plain springs, with the plastic strain it had. In motion those of
+    // matter that breaks are laid down so that they hold no more than it did.
     void connections_changed(Aggregate& matter);
     // The matter has been put back to what it was before such changes.
     void take_in(const Aggregate& matter);
@@ -87,6 +90,7 @@ class LatticeForces {
     // on to the present positions will [J].
     double energy_of_change(Aggregate& matter, double before);
 
+    bool in_motion_;
     LatticeLaw spring_law_;
     std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act
     std::vector<LatticeSweep> branch_sweep_;      // the branches' own, of several materials

@@ -104,7 +104,7 @@ double explicit_step(const Aggregate& matter, const SimSettings& settings) {
 MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus,
                        const SimSettings& settings)
     : matter_(matter),
-      lattice_(matter),
+      lattice_(matter, true),
       breaks_(breaks(matter)),
       swings_(matter, breaks_ || !apparatus.blade.empty()),
       damping_(matter, std::sqrt(swings_.squared(matter, lattice_))),
