@@ -52,7 +52,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
         key.target = Vec3(given.target[0], given.target[1], given.target[2]);
         settings.camera.assign(1, key);
     }
-    if (!given.up.empty()) settings.up = given.up == "x" ? Up::x : given.up == "z" ? Up::z : Up::y;
+    if (!given.up.empty()) settings.up = up_named(given.up);
     if (given.frames_per_second) settings.frames_per_second = *given.frames_per_second;
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;

@@ -222,7 +222,10 @@ std::uint64_t state_hash(const Aggregate& matter) {
         for (const auto& part : cell.flowed) hasher.add(std::span<const float>(part));
     }
     hasher.add(std::span<const char>(matter.cell_cracked));
-    for (const CellSet& set : matter.cell_set) hasher.add(std::span<const float>(set.strain));
+    for (const CellSet& set : matter.cell_set) {
+        hasher.add(std::span<const CellId>(&set.cell, 1));
+        hasher.add(std::span<const float>(set.strain));
+    }
     return hasher.value();
 }
 

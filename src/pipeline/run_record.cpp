@@ -133,10 +133,6 @@ Json seconds_json(const Stopwatch& watch) {
     return json;
 }
 
-namespace {
-constexpr const char* kUpName[] = {"auto", "x", "y", "z"};  // in the order of Up
-}
-
 Json render_json(const RenderSettings& settings) {
     Json camera = Json::array();
     for (const CameraKey& key : settings.camera) {
@@ -158,6 +154,11 @@ Json render_json(const RenderSettings& settings) {
             {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
 }
 
+Up up_named(const std::string& name) {
+    const auto at = std::find(kUpName.begin(), kUpName.end(), name);
+    return at != kUpName.end() ? static_cast<Up>(at - kUpName.begin()) : Up::automatic;
+}
+
 RenderSettings render_settings_of(const Json& record) {
     RenderSettings settings;
     try {
@@ -170,8 +171,7 @@ RenderSettings render_settings_of(const Json& record) {
         settings.tools = json.at("tools").get<bool>();
         settings.ground = json.at("ground").get<bool>();
         // Runs of before this was asked had y.
-        const std::string up = json.value("up", "y");
-        settings.up = up == "x" ? Up::x : up == "z" ? Up::z : Up::y;
+        settings.up = up_named(json.value("up", "y"));
         const auto vector_of = [](const Json& three) {
             return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),
                         three.at(2).get<double>());

@@ -2,6 +2,7 @@
 // What a user may ask of the pictures. Angles in radians, lengths in m.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -9,7 +10,9 @@
 
 namespace swage {
 
-enum class Up { automatic, x, y, z };  // automatic is y to the renderer
+// What is upward in the pictures; automatic is y where nobody says otherwise.
+enum class Up { automatic, x, y, z };
+inline constexpr std::array<const char*, 4> kUpName = {"auto", "x", "y", "z"};  // in that order
 
 enum class GlProviderKind { automatic, osmesa, egl };
 
@@ -31,7 +34,7 @@ struct RenderSettings {
     bool film = true;                               // also write film.mp4
     bool tools = true;                              // draw tools, grips and blades
     bool ground = true;
-    Up up = Up::automatic;  // of the world in the pictures
+    Up up = Up::automatic;
     GlProviderKind gl = GlProviderKind::automatic;
 };
 

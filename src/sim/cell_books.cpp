@@ -228,31 +228,19 @@ double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) con
     return lost + mixed_.commit(matter, law_, seen, mixed_growths);
 }
 
-std::vector<HeldCell> CellSweep::turned(const Aggregate& matter) const {
-    std::vector<HeldCell> found;
-    const double a = matter.lattice.spacing;
-    for (const CellRun& run : matter.lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            const CellId cell = run.first + n;
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
-            if (swept()[cell] <= 0 || cell_is_sound(matter, cell, row)) continue;
-            const auto& [law, kind] = law_of(matter, cell);
-            const CellHistory<double> history = committed_history(matter, cell);
-            const CornerSums<double> sums = corner_sums(matter, run, n);
-            const Columns<double> f = centroid_gradient(sums, material_place(matter, cell), a);
-            const Columns<double> elastic = f * taken_back(history);
-            const CellModes<double> q = pulled_back(elastic, sums) - history.modes;
-            const double fill = matter.cell_fill[cell];
-            const double mean = kind == CellKind::rubber ? rubber_energy(law, f)
-                                                         : strain_energy(law, cell_strain(elastic));
-            found.push_back(
-                {&run, n,
-                 a * a * a * fill * mean +
-                     0.5 * mode_fill(fill) * product(mode_stress(law, taken_back(history), q), q)});
-        }
-    }
-    return found;
+double CellSweep::energy_of(const Aggregate& matter, const CellRun& run, int n) const {
+    const CellId cell = run.first + n;
+    const double a = matter.lattice.spacing, fill = matter.cell_fill[cell];
+    const auto& [law, kind] = law_of(matter, cell);
+    const CellHistory<double> history = committed_history(matter, cell);
+    const CornerSums<double> sums = corner_sums(matter, run, n);
+    const Columns<double> f = centroid_gradient(sums, material_place(matter, cell), a);
+    const Columns<double> elastic = f * taken_back(history);
+    const CellModes<double> q = pulled_back(elastic, sums) - history.modes;
+    const double mean =
+        kind == CellKind::rubber ? rubber_energy(law, f) : strain_energy(law, cell_strain(elastic));
+    return a * a * a * fill * mean +
+           0.5 * mode_fill(fill) * product(mode_stress(law, taken_back(history), q), q);
 }
 
 double CellSweep::elastic_energy(const Aggregate& matter) const {

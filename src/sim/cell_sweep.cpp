@@ -202,14 +202,19 @@ CellSweep::CellSweep(const Aggregate& matter)
     cells_changed(matter);
 }
 
-void CellSweep::cells_changed(const Aggregate& matter) {
+void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* turned) {
+    const std::vector<float> carried = turned ? swept() : std::vector<float>();
     fill_ = matter.cell_fill;
     const std::vector<CellRun>& runs = this->runs(matter);
     for_each_cell(matter, 0, matter.lattice.cell_run.size(),
                   [&](const CellRun& run, int n, CellId cell) {
                       std::array<ParticleId, 4> row = run.row;
                       for (ParticleId& p : row) p += n;
-                      if (!cell_is_sound(matter, cell, row)) fill_[cell] = 0;
+                      if (cell_is_sound(matter, cell, row)) return;
+                      fill_[cell] = 0;
+                      if (turned && carried[cell] > 0) {
+                          turned->push_back({&run, n, energy_of(matter, run, n)});
+                      }
                   });
     mixed_.cells_changed(matter, fill_);
     swept_.clear();

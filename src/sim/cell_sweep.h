@@ -24,10 +24,9 @@ class CellSweep {
     // Cells with such a strain are told from now on: of their material, or of a connection.
     void watch_strain(double onset) { onset_ = onset; }
 
-    // Cells that it carries though they are sound no more, and what they hold.
-    std::vector<HeldCell> turned(const Aggregate& matter) const;
-    // Cells that are not whole any more carry nothing from now on.
-    void cells_changed(const Aggregate& matter);
+    // Cells that are not whole any more carry nothing from now on. Adds those of one material that
+    // have carried until now to `turned`, where that is asked for.
+    void cells_changed(const Aggregate& matter, std::vector<HeldCell>* turned = nullptr);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole
 
     // force = sum of the cells' forces on each particle [N].
@@ -57,6 +56,7 @@ class CellSweep {
         return matter.cell_material.empty() ? law_[0] : law_[matter.cell_material[cell]];
     }
 
+    double energy_of(const Aggregate& matter, const CellRun& run, int n) const;  // of one cell [J]
     template <typename Act>
     double sum_of_runs(const Aggregate& matter, const SlabRuns* of, const Act& act) const;
 

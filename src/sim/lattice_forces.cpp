@@ -33,12 +33,19 @@ LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
 }
 
 void LatticeForces::connections_changed(Aggregate& matter) {
-    if (cells_ && in_motion_) loose_.take_over(matter, cells_->turned(matter));
-    take_in(matter);
+    const bool lays_down = cells_ && in_motion_ && matter.material.breaks();
+    std::vector<HeldCell> turned;
+    if (cells_) cells_->cells_changed(matter, lays_down ? &turned : nullptr);
+    if (lays_down) loose_.take_over(matter, turned);
+    others_changed(matter);
 }
 
 void LatticeForces::take_in(const Aggregate& matter) {
     if (cells_) cells_->cells_changed(matter);
+    others_changed(matter);
+}
+
+void LatticeForces::others_changed(const Aggregate& matter) {
     loose_.connections_changed(matter);
     if (spring_flow_) spring_flow_->history_changed(matter);
     if (spring_sweep_) spring_sweep_->connections_changed(matter, loose_.softening_ends(matter));

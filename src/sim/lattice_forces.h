@@ -83,6 +83,7 @@ class LatticeForces {
     std::vector<double> stiffness_bound(const Aggregate& matter) const;
 
   private:
+    void others_changed(const Aggregate& matter);  // after the sweep over cells knows of it
     double add_branches(const Aggregate& matter, std::span<const BranchStep> branches,
                         Vec3Array& force);
 

@@ -108,7 +108,6 @@ void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int 
 }
 
 void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const {
-    if (!(law_.onset > 0) || beside_sweep_) return;
     const double a = matter.lattice.spacing;
     // Less than this is rounding [J].
     const double least = 1e-9 * stiffness_ * a * a * law_.onset * law_.onset;
@@ -257,13 +256,16 @@ Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
         }
     }
     // What one cell's part of a connection has lost, all have: the others give up what they held.
-    std::vector<double> stored(spring_.size());
-    for (std::size_t n = 0; n < spring_.size(); ++n) stored[n] = stored_in(n);
-    for (Spring& s : spring_) {
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        Spring& s = spring_[n];
         const auto& damage = matter.connection[static_cast<std::size_t>(s.direction)].damage;
-        if (!damage.empty()) s.worst = std::max(s.worst, worst_strain(law_, damage[s.lower]));
+        if (damage.empty()) continue;
+        const double worst = worst_strain(law_, damage[s.lower]);
+        if (!(worst > s.worst)) continue;
+        const double stored = stored_in(n);
+        s.worst = worst;
+        result.lost += stored - stored_in(n);
     }
-    for (std::size_t n = 0; n < spring_.size(); ++n) result.lost += stored[n] - stored_in(n);
     return result;
 }
 

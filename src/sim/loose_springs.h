@@ -37,8 +37,8 @@ class LooseSprings {
     // Lays down in the matter what the springs of such cells are at rest with (cell_set), so that
     // they hold no more than the cells did. A cell that is partly filled resists being bent by its
     // filling cubed, and springs by the filling itself: their excess of that is taken away first,
-    // and what their stretch holds too much then. Only where the matter breaks: what a blade
-    // severs, its tools pay for.
+    // and what their stretch holds too much then. For matter that breaks: what a blade severs,
+    // its tools pay for.
     void take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const;
 
     const Fracture& law() const { return law_; }

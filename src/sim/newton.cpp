@@ -21,14 +21,7 @@ constexpr double kFalls = 0.01;       // of the matter's own stiffness: less is 
 constexpr double kDownhill = 2;       // spacings, where the curvature is negative
 constexpr double kFarthest = 0.1;     // of the body, for what leaves an equilibrium
 constexpr double kProbe = 0.05;       // spacings, to find how that bends
-constexpr double kBendAccuracy = 0.1;
-constexpr double kOvershoot = 0.5;  // of the work along a step that may be left, either way
-
-double longest_of(const Vec3Array& way) {
-    double longest = 0;
-    for (std::size_t p = 0; p < way.size(); ++p) longest = std::max(longest, way.at(p).norm());
-    return longest;
-}
+constexpr double kOvershoot = 0.5;    // of the work along a step that may be left, either way
 
 Mat3 rotation_by(const Vec3& turn) {
     const double angle = turn.norm();
@@ -205,29 +198,13 @@ bool Newton::find_bend(Aggregate& matter, const NewtonProblem& problem) {
     }
     // The stable part of the tangent: a stretched way is no reason to go on down.
     const bool found = prepare(matter, problem, false);
-    const CellTangent::Kind kind = kind_;
     stale_ = true;
     if (!found) return false;
     const auto times = [&](const Vec3Array& d, Vec3Array& r) {
-        product(matter, problem, kind, d, r);
+        product(matter, problem, kind_, d, r);
     };
-    set_zero(x.size(), bent_);
-    multigrid_.solve(times, ahead, better_);
-    search_ = better_;
-    double size = dot(ahead, better_);
-    const double enough = kBendAccuracy * kBendAccuracy * size;
-    for (int n = 0; n < kMostIterations && size > enough; ++n) {
-        product(matter, problem, kind, search_, image_);
-        const double curvature = dot(search_, image_);
-        if (!(curvature > 0)) return false;
-        combine(1, size / curvature, search_, bent_);
-        combine(1, -size / curvature, image_, ahead);
-        multigrid_.solve(times, ahead, better_);
-        const double next = dot(ahead, better_);
-        combine(next / size, 1, better_, search_);
-        size = next;
-    }
-    return std::isfinite(size);
+    multigrid_.solve(times, ahead, bent_);  // about; the next step mends it
+    return true;
 }
 
 bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {

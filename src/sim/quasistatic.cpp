@@ -334,8 +334,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
         }
         ++turn;
         const Vec3Array way = newton_->softest_motion();
-        double longest = 0;
-        for (std::size_t p = 0; p < way.size(); ++p) longest = std::max(longest, way.at(p).norm());
+        const double longest = longest_of(way);
         const Vec3Array from = matter_.particle_position;
         const auto work_at = [&](double far) {
             matter_.particle_position = from;

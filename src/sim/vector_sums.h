@@ -61,6 +61,12 @@ inline double farthest_move(const Vec3Array& from, const Vec3Array& to) {
     return farthest;
 }
 
+inline double longest_of(const Vec3Array& ways) {
+    double longest = 0;
+    for (std::size_t p = 0; p < ways.size(); ++p) longest = std::max(longest, ways.at(p).norm());
+    return longest;
+}
+
 inline void set_zero(std::size_t count, Vec3Array& v) {
     for (auto* x : {&v.x, &v.y, &v.z}) x->assign(count, 0.0);
 }

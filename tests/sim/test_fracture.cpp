@@ -345,6 +345,27 @@ TEST_CASE("a cell that turns into springs sets no energy free, however little of
     CHECK(turned > 10);
 }
 
+TEST_CASE("a sliver breaks by the strain of its matter, not of the void around it") {
+    const double a = 1e-3, onset = kStrength / kModulus;
+    const auto cracked = [&](double at, double pull) {
+        // One cell with matter at one corner, whose far corners are driven away by `pull`.
+        Aggregate m = make_block(1, 1, 1, a, brittle(Mechanics::cells));
+        m.cell_fill[0] = 0.05f;
+        const float centre = static_cast<float>(at);
+        m.cell_centroid.set(0, {centre, centre, centre});
+        const auto corner = m.lattice.cell_corners(0);
+        for (int c : {1, 3, 5, 7}) {
+            const int far = (c >> 1 & 1) + (c >> 2 & 1);
+            Vec3 x = m.particle_position.at(corner[c]);
+            x.x() += pull * onset * a * far * 0.5;
+            m.particle_position.set(corner[c], x);
+        }
+        return LatticeForces(m).crack(m).cells == 1;
+    };
+    CHECK_FALSE(cracked(-0.45, 4));  // its matter is pulled by a fifth of its strength
+    CHECK(cracked(0.45, 1.2));
+}
+
 TEST_CASE("what the sweep tells of flow and strength is what a look at every cell finds") {
     Material ductile{.young_modulus = 1e6, .poisson_ratio = 0.3};
     ductile.yield_stress = 1e4, ductile.hardening = 1e4;
