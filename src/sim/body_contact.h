@@ -4,7 +4,8 @@
 // Both bodies' surface points meet the other's cells (sim/contact_way.h). Alone either way would
 // have the stiffness of both bodies' tools' in series,
 //
-//     1/k = 1/k_1 + 1/k_2,   k_i = contact_stiffness E_i A / a_i        A the point's area,
+//     1/k = 1/k_1 + 1/k_2,   k_i = contact_stiffness E_i A / a_i        A the point's area, E_i
+//                                                                       of sim/surface_modulus.h,
 //
 // and its springs would hold E_1, E_2. Together they hold a mean, and each way has its share of it:
 //

@@ -11,7 +11,6 @@ namespace swage {
 namespace {
 
 constexpr double kBeside = 0.6;  // cells that a point may go beyond the one that it has met
-constexpr double kJump = 0.1;    // of the coarser spacing, beyond what a point can have gone
 constexpr double kTurned = 0.1;  // of a reach squared, across a surface that has turned, that holds
 
 }  // namespace
@@ -24,13 +23,6 @@ struct ContactWay::Kernel {
 
     static bool is_known(const Meeting& at) { return at.inverse[0][3] != 0; }
     static bool meets(const Meeting& at) { return at.inverse[1][3] != 0; }
-
-    // Of a depth that is counted as it is now where the depth at rest is stretched by 1 / slope
-    // [m].
-    SWAGE_INLINE double stiffness(int point, double slope) const {
-        const double stretch = onto.matter().lattice.spacing * slope;
-        return std::min(way.stiffness_[point] * stretch * stretch, way.stiffest_[point]);
-    }
 
     // How deep the point lies as it goes on from where it has met; false where it has left the
     // cell and what is around it.
@@ -102,20 +94,33 @@ struct ContactWay::Kernel {
         }
         const double size = std::sqrt(dot3(slope, slope));
         if (!(size > 0)) return;
-        at.inverse[2][3] = stiffness(contact.point, size);
+        const double stretch = onto.matter().lattice.spacing * size;
+        const double whole = way.stiffness_[contact.point] * stretch * stretch;
+        double soft = last.history.touches ? last.soft : 1;
+        if (soft * whole > way.stiffest_[contact.point]) {
+            soft = way.stiffest_[contact.point] / whole;
+        }
+        at.inverse[2][3] = soft * whole;
         at.normal = slope / size;
         at.normal[3] = -depth.distance / size;
-        at.inverse[0][3] = 1;
-        at.inverse[1][3] = at.normal[3] > 0 || (last.history.touches && hold > 0);
+        at.inverse[0][3] = stretch;
+        if (at.normal[3] > 0 || (last.history.touches && hold > 0)) at.inverse[1][3] = soft;
     }
 
-    // Whether a cell that was squeezed inside out, and held nothing, holds the point again: that
-    // may be deep by then, without having been pressed there.
-    SWAGE_INLINE bool comes_back(const Meeting& at, const ContactMemory& last, double step) const {
-        if (way.is_static_ || last.is_new) return false;
-        const double pressed = last.history.touches ? last.pressed : 0;
-        const double gone = 2 * step * std::sqrt(dot3(at.now, at.now));
-        return last.sunk > 0 || at.normal[3] - pressed > gone + kJump * way.coarser_;
+    // Of its depth, what nobody has pressed: that does not count.
+    SWAGE_INLINE void take_off_sunk(const ContactMemory& last, double step, double hold,
+                                    Meeting& at) const {
+        const double stretch = at.inverse[0][3], whole = stretch * at.normal[3];
+        double sunk = last.sunk;
+        if (last.is_new) {
+            const double pressed = last.history.touches ? last.pressed : 0;
+            const double gone =
+                way.is_static() ? 0 : 2 * step * stretch * std::sqrt(dot3(at.now, at.now));
+            sunk = whole - pressed - gone;
+        }
+        at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, whole));
+        at.normal[3] -= at.now[3] / stretch;
+        if (!(at.normal[3] > 0 || hold > 0)) at.inverse[1][3] = 0;
     }
 
     // All that does not depend on forces.
@@ -137,21 +142,7 @@ struct ContactWay::Kernel {
         }
         sums.took -= dot3(at.now, vec4(contact.dashed));
         const double hold = way.hold_[contact.point];
-        if (is_known(at) && (way.has_broken_ || comes_back(at, last, step))) {
-            // At rest as long as in the shape at rest: strain must not change what is stored.
-            const double stretch =
-                way.is_static_ ? std::sqrt(at.inverse[2][3] / way.stiffness_[contact.point]) : 1;
-            double& depth = at.normal[3];
-            const double whole = stretch * depth, pressed = last.history.touches ? last.pressed : 0;
-            double sunk = last.is_new ? 0 : last.sunk;
-            if (last.is_new || !way.is_static_) {
-                const double could = last.is_new ? 0 : 2 * step * std::sqrt(dot3(at.now, at.now));
-                sunk = std::max(sunk, whole - pressed - could);
-            }
-            at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, whole));
-            depth -= at.now[3] / stretch;
-            if (!(depth > 0 || hold > 0)) at.inverse[1][3] = 0;
-        }
+        if (is_known(at) && (last.is_new || last.sunk > 0)) take_off_sunk(last, step, hold, at);
         if (!meets(at)) return;
         const double k = at.inverse[2][3];
         const double push = std::max(k * at.normal[3], -hold);
@@ -213,7 +204,7 @@ struct ContactWay::Kernel {
             find<kOwn>(contact, last, way.plane_.empty() ? nullptr : &way.plane_[n], corner,
                        gradient, at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
-            if (meets(at) && is_twice(begin, n)) at.inverse[1][3] = 0;
+            if (meets(at) && is_twice(begin, n)) at.inverse[0][3] = at.inverse[1][3] = 0;
             if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
             prepare(contact, last, corner, gradient, step, at, result);
         }
@@ -313,8 +304,9 @@ struct ContactWay::Kernel {
             next.bond = f.bond;
             next.stiffness = way.share_ * at.inverse[2][3];
             next.sunk = at.now[3];
-            next.pressed = at.normal[3];
-            next.is_new = last.is_new && !is_known(at);
+            next.pressed = at.inverse[0][3] * at.normal[3];
+            next.soft = at.inverse[1][3];
+            next.is_new = !is_known(at) && (last.is_new || !way.is_static());
             contact.dashed = f.force - f.elastic;
             if (f.history.touches) {
                 const Vec4 reach = vec4(f.reach);
@@ -322,14 +314,20 @@ struct ContactWay::Kernel {
                 next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
                                   dot3(at.inverse[2], reach));
                 next.held = 0.5 * at.inverse[2][3] * dot3(reach, reach);
+                next.stored = f.stored;
                 sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
                 sums.stored += 0.5 * f.stored;
                 sums.friction += 0.5 * f.friction;
                 sums.penetration = std::max(sums.penetration, at.normal[3]);
                 ++sums.contacts;
                 sums.sliding += f.history.slides;
+                if (last.history.touches && next.soft < last.soft) {
+                    sums.damped += 0.5 * (last.soft / next.soft - 1) * f.stored;
+                }
             } else if (last.history.touches) {
-                sums.damped += 0.5 * parting_loss(last.stiffness, last.bond, vec3(at.now), step);
+                sums.damped += 0.5 * (is_known(at) ? parting_loss(last.stiffness, last.bond,
+                                                                  vec3(at.now), step)
+                                                   : last.stored);
             }
         }
     }

@@ -29,11 +29,15 @@ struct ContactMemory {
     Vec3 bond = Vec3::Zero();  // ImpactForce::bond [N]
     double stiffness = 0;      // with which it was found [N/m]
     ImpactHistory history{};
-    // Where matter has broken, or a cell has let go of it, a point may be deep in what lies there at
-    // once, and deeper than it can have gone: nobody has pressed it in. That much of the depth does not count until it has
-    // come out again [m].
+    double stored = 0;  // in its springs [J]
+    // Where matter has broken, or a cell turned inside out has held nothing for a while, a point
+    // may be deeper in what lies there than it can have gone: nobody has pressed it in. That much
+    // of the depth does not count until it has come out again. Depths as at rest [m].
     double sunk = 0, pressed = 0;  // pressed: what counted
-    bool is_new = true;            // to the surfaces as they are
+    // Share of its stiffness that is left since a cell was squeezed so thin that no step could have
+    // followed the whole.
+    double soft = 1;
+    bool is_new = true;  // to the surfaces as they are: its depth is not known from before
 };
 
 // Sorted by point.

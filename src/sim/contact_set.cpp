@@ -56,8 +56,8 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       body_(body),
       settings_(settings),
       spacing_(matter.lattice.spacing),
-      young_modulus_(matter.material.young_modulus),
-      grip_modulus_(surface_moduli(matter, matter.surface)),
+      pressed_modulus_(pressed_modulus(matter.material, settings.solver)),
+      grip_modulus_(surface_moduli(matter, matter.surface, settings.solver)),
       law_(law_on_tools(matter.material)),
       holding_(matter.material.holding_friction()),
       ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
@@ -66,11 +66,11 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       motion_load_(apparatus.tool.size() + apparatus.grip.size()) {
     if (apparatus.tool.empty()) return;
     touch_ = std::make_shared<TouchPoints>(matter, TouchPoints::With::tools);
-    point_modulus_ = surface_moduli(matter, points());
+    point_modulus_ = surface_moduli(matter, points(), settings_.solver);
 }
 
 double ContactSet::point_stiffness(std::size_t point, double tool_says) const {
-    const double modulus = point_modulus_.empty() ? young_modulus_ : point_modulus_[point];
+    const double modulus = point_modulus_.empty() ? pressed_modulus_ : point_modulus_[point];
     return settings_.stiffness_of_contacts(tool_says) * modulus * points().area[point] / spacing_;
 }
 
@@ -80,7 +80,7 @@ double ContactSet::pair_stiffness(const Pair& pair) const {
 }
 
 double ContactSet::grip_stiffness(const Aggregate& matter, int point) const {
-    const double modulus = grip_modulus_.empty() ? young_modulus_ : grip_modulus_[point];
+    const double modulus = grip_modulus_.empty() ? pressed_modulus_ : grip_modulus_[point];
     const double k = settings_.grip_stiffness * modulus * matter.surface.area[point] / spacing_;
     return grip_limit_.empty() ? k : std::min(k, grip_limit_[point]);
 }
@@ -106,7 +106,7 @@ void ContactSet::connections_changed(const Aggregate& matter) {
     touch_->connections_changed(matter);
     for (Pair& pair : pair_) pair.gone = pair.gone || !touch_->meets(pair.point);
     if (touch_->size() == before) return;
-    point_modulus_ = surface_moduli(matter, points());
+    point_modulus_ = surface_moduli(matter, points(), settings_.solver);
     if (!stiffness_limit_.empty()) limit_stiffness(matter, limit_step_);
     for (std::size_t p = start_position_.size(); p < points().size(); ++p) {
         start_position_.push_back(place_of(points(), int(p), matter.particle_position));

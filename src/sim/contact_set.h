@@ -178,7 +178,7 @@ class ContactSet {
     const Apparatus* apparatus_;
     int body_;
     SimSettings settings_;
-    double spacing_, young_modulus_;
+    double spacing_, pressed_modulus_;
     std::shared_ptr<TouchPoints> touch_;  // null where there is no tool; copied on change
     // Of bodies of several materials [Pa], and limits [N/m]: of each of those points, and of each
     // of the surface's, which grips hold; empty: none.

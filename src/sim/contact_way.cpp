@@ -32,12 +32,13 @@ std::size_t ContactWay::begin_of(std::size_t chunk) const {
 ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& settings)
     : from_(&from),
       onto_(&onto),
-      scale_(settings.stiffness_of_contacts()),
-      is_static_(settings.solver == Solver::quasistatic),
-      coarser_(std::max(from.matter().lattice.spacing, onto.matter().lattice.spacing)) {
+      solver_(settings.solver),
+      scale_(settings.stiffness_of_contacts()) {
     const Material &m = from.matter().material, &n = onto.matter().material;
-    const double soft = surface_modulus(from.matter()) / from.matter().lattice.spacing,
-                 other = surface_modulus(onto.matter()) / onto.matter().lattice.spacing;
+    const double soft = surface_modulus(from.matter(), settings.solver) /
+                        from.matter().lattice.spacing,
+                 other = surface_modulus(onto.matter(), settings.solver) /
+                         onto.matter().lattice.spacing;
     const double e = shared_restitution(m.restitution, soft, n.restitution, other);
     law_ = {.stiffness = 0,
             .restitution = e,
@@ -46,23 +47,24 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& 
             .friction = 0.5 * (m.friction + n.friction),
             .holding = 0.5 * (m.holding_friction() + n.holding_friction()),
             .hold = 0};
-    if (is_static_) law_.holding = law_.friction;
+    if (is_static()) law_.holding = law_.friction;
     set_stiffness(0);
 }
 
 void ContactWay::set_contacts(const ContactList& contacts) {
     list_ = contacts;
     is_found_ = false;
-    if (is_static_) meet_anew();
+    if (is_static()) meet_anew();
 }
 
 void ContactWay::search(double margin) {
     list_ = find_contacts(*from_, *onto_, margin, list_);
     is_found_ = false;
-    // An equilibrium is sought by any way: what it finds deep has been pressed in.
-    if (!is_static_) return;
-    meet_anew();
-    if (has_changed_) return;
+    if (is_static()) meet_anew();
+    // An equilibrium is sought by any way, and a stage begins with bodies that may press each
+    // other: what they find deep has been pressed in.
+    const bool all_pressed = is_static() ? !has_changed_ : begins_;
+    if (!all_pressed) return;
     for (ContactMemory& memory : list_.memory) memory.is_new = false;
 }
 
@@ -95,7 +97,7 @@ void ContactWay::resolve() {
 }
 
 void ContactWay::surfaces_changed(bool points_too, double step) {
-    has_broken_ = has_changed_ = true;
+    has_changed_ = true;
     for (ContactMemory& memory : list_.memory) memory.is_new = true;
     is_found_ = false;
     if (!points_too) return;
@@ -107,23 +109,23 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
     }
     list_.contact.resize(kept);
     list_.memory.resize(kept);
-    if (is_static_) meet_anew();
+    if (is_static()) meet_anew();
     set_stiffness(step);
 }
 
 void ContactWay::set_stiffness(double step) {
     const Aggregate &a = from_->matter(), &b = onto_->matter();
     const SurfacePoints& points = from_->points();
-    const std::vector<double> modulus = surface_moduli(a, points);
-    const double other = surface_modulus(b) / b.lattice.spacing;
-    const double hold = is_static_ ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
+    const std::vector<double> modulus = surface_moduli(a, points, solver_);
+    const double other = surface_modulus(b, solver_) / b.lattice.spacing;
+    const double hold = is_static() ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
     // A point pushes one cell, which larger cells' points would drive in alone.
     const double most = kFaces * b.lattice.spacing * b.lattice.spacing;
     stiffness_.clear();
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const double one =
-            (modulus.empty() ? a.material.young_modulus : modulus[p]) / a.lattice.spacing;
+        const double one = (modulus.empty() ? pressed_modulus(a.material, solver_) : modulus[p]) /
+                           a.lattice.spacing;
         const double area = std::min(points.area[p], most);
         stiffness_.push_back(scale_ * one * other / (one + other) * area);
         hold_.push_back(hold * area);
@@ -192,7 +194,7 @@ void ContactWay::add_stiffness(std::vector<double>& stiffness) const {
 
 void ContactWay::commit() {
     if (is_found_) std::swap(list_.memory, next_);
-    is_found_ = has_changed_ = false;
+    is_found_ = has_changed_ = begins_ = false;
 }
 
 }  // namespace swage

@@ -68,14 +68,17 @@ class ContactWay {
     void commit();
 
   private:
+    // Nothing has a speed.
+    bool is_static() const { return solver_ == Solver::quasistatic; }
     // How a point meets the cell that holds it, at the present positions. The fourth lanes hold
     // what has no vector.
     struct alignas(32) Meeting {
-        Vec4 normal;      // and the depth that counts [m]
-        Vec4 reach;       // from the point to where it sticks [m]; ImpactState::give [1/kg]
-        Vec4 now;         // speed of the point over the other side [m/s]; depth that does not [m]
-        Vec4 spring;      // what its springs would do if this way were alone [N]
-        Vec4 inverse[3];  // rows of J^-1 [1/m]; 1 where its depth is known, where it meets; [N/m]
+        Vec4 normal;  // and the depth that counts [m]
+        Vec4 reach;   // from the point to where it sticks [m]; ImpactState::give [1/kg]
+        Vec4 now;     // speed of the point over the other side [m/s]; depth that does not [m]
+        Vec4 spring;  // what its springs would do if this way were alone [N]
+        // Rows of J^-1 [1/m]; s, 0: depth not known; ContactMemory::soft, 0: does not meet; [N/m].
+        Vec4 inverse[3];
     };
     struct Chunk {
         std::vector<int> moved;  // contacts that have come into other cells
@@ -122,11 +125,10 @@ class ContactWay {
     void middle_respond(double step, bool again);
 
     ContactSide *from_, *onto_;
+    Solver solver_;
     double scale_;                                           // contact_stiffness
-    bool is_static_;                                         // equilibria: nothing has a speed
-    double coarser_;                                         // spacing of the two sides [m]
-    bool has_broken_ = false;                                // one of them
     bool has_changed_ = false;                               // since the last commit
+    bool begins_ = true;                                     // nothing committed yet
     ImpactLaw law_{};                                        // stiffness and hold: of each point
     std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
     double share_ = 0.5;                                     // of what this way would do alone

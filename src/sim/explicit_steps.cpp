@@ -299,13 +299,16 @@ bool ExplicitSolver::energy_holds(const Block& block, const std::vector<Stored>&
         lost += now[b].lost_since(so_far[b]);
         gain += after[b].sum() - held[b].sum();
     }
-    if (energy_.accepts(turned, done, lost, gain, 0)) return true;
+    const double at_once = has_half_kicks() && halvings_ < kSuddenHalvings
+                               ? kSuddenGain
+                               : std::numeric_limits<double>::infinity();
+    if (energy_.accepts(turned, done, lost, gain, 0, at_once)) return true;
     double noise = 0;
     for_each_awake([&](std::size_t b) {
         const double step = std::min(block.dt, body_[b].stable_step());
         noise += double(block.count) * body_[b].round_off(step);
     });
-    return energy_.accepts(turned, done, lost, gain, noise);
+    return energy_.accepts(turned, done, lost, gain, noise, at_once);
 }
 
 void ExplicitSolver::keep(const Block& block, MoveOutcome& outcome) {

@@ -128,12 +128,14 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
         stage, finding.step, finding.time, what, text_of(worst), step);
 }
 
-bool EnergyGuard::accepts(double turned_over, double done, double lost, double gain, double noise) {
+bool EnergyGuard::accepts(double turned_over, double done, double lost, double gain, double noise,
+                          double at_once) {
     const double budget = budget_ + turned_over;
     double more = gain + lost - done;
     if (more > 0) more = std::max(0.0, more - noise);
     tried_ = excess_ + more;
     if (!(tried_ <= kMostGain * budget || more <= kLeastGain * budget)) return false;
+    if (more > at_once * budget) return false;
     budget_ = budget;
     excess_ = std::max(tried_, -kMostGain * budget);
     return true;

@@ -7,18 +7,23 @@
 //     a cell turns inside out (with an eighth of the step it still may: fast matter can crush
 //         itself, and comes back by laws/volume_guard.h);
 //     the energy that the bodies hold is more than was put in, by over a twentieth of all that ever
-//         was, and still grows.
+//         was, and still grows; or grows in one block by a two-hundredth (with a quarter of the
+//         step it still may: what is squeezed to a tenth is a hundred times as stiff, and steps
+//         that were found for it at rest are too long, but a shorter one does not mend everything).
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "sim/moving_body.h"
 
 namespace swage {
 
-inline constexpr double kFarthestWay = 0.5;   // spacings a step
-inline constexpr double kMostGain = 0.05;     // of all energy that was ever put in
-inline constexpr double kLeastGain = 0.002;   // the same, in one block: less is no alarm
+inline constexpr double kFarthestWay = 0.5;  // spacings a step
+inline constexpr double kMostGain = 0.05;    // of all energy that was ever put in
+inline constexpr double kLeastGain = 0.002;  // the same, in one block: less is no alarm
+inline constexpr double kSuddenGain = 0.005;
+inline constexpr int kSuddenHalvings = 2;     // after which as much may be gained
 inline constexpr int kInsideOutHalvings = 3;  // after which a cell may turn inside out
 
 enum class Fault { none, lost, unsolved, too_far, inside_out, gains };
@@ -49,9 +54,10 @@ class EnergyGuard {
     // A stage begins with this in the bodies [J].
     void start(double stored) { budget_ = stored > 0 ? stored : 0; }
     // In a block of steps `done` was put in, `turned_over` with every sign made positive, `lost`
-    // went for good, and the bodies hold `gain` more [J]. Whether that can be; if so it counts,
-    // but for what may be `noise`.
-    bool accepts(double turned_over, double done, double lost, double gain, double noise = 0);
+    // went for good, and the bodies hold `gain` more [J]. Whether that can be, and is no more than
+    // `at_once` of all that was ever put in; if so it counts, but for what may be `noise`.
+    bool accepts(double turned_over, double done, double lost, double gain, double noise = 0,
+                 double at_once = std::numeric_limits<double>::infinity());
     double excess_share() const { return budget_ > 0 ? tried_ / budget_ : 0; }
 
   private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/surface_modulus.h"
 
+#include <algorithm>
+
 namespace swage {
 
 namespace {
@@ -19,7 +21,15 @@ int material_at(const MixedCell& cell, const Vec3& place) {
 
 }  // namespace
 
-std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints& points) {
+double pressed_modulus(const Material& material, Solver solver) {
+    const double nu = material.mechanics == Mechanics::springs ? 0.25 : material.poisson_ratio;
+    const double bulk = material.young_modulus / (3 * (1 - 2 * nu));
+    return solver == Solver::quasistatic ? material.young_modulus
+                                         : std::max(material.young_modulus, bulk);
+}
+
+std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints& points,
+                                   Solver solver) {
     if (matter.inset.empty()) return {};
     std::vector<CellId> cell(matter.particle_count(), -1);  // by its lowest corner
     for (const CellRun& run : matter.lattice.cell_run) {
@@ -38,20 +48,21 @@ std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints&
             }
             material = material_at(*mixed, place);
         }
-        modulus.push_back(matter.material_at(material).young_modulus);
+        modulus.push_back(pressed_modulus(matter.material_at(material), solver));
     }
     return modulus;
 }
 
-double surface_modulus(const Aggregate& matter) {
-    const std::vector<double> modulus = surface_moduli(matter, matter.surface);
-    if (modulus.empty()) return matter.material.young_modulus;
+double surface_modulus(const Aggregate& matter, Solver solver) {
+    const std::vector<double> modulus = surface_moduli(matter, matter.surface, solver);
+    const double own = pressed_modulus(matter.material, solver);
+    if (modulus.empty()) return own;
     double sum = 0, area = 0;
     for (std::size_t p = 0; p < modulus.size(); ++p) {
         sum += matter.surface.area[p] * modulus[p];
         area += matter.surface.area[p];
     }
-    return area > 0 ? sum / area : matter.material.young_modulus;
+    return area > 0 ? sum / area : own;
 }
 
 }  // namespace swage

@@ -183,6 +183,8 @@ TEST_CASE("energy that appears from nowhere is refused once it is a twentieth of
     CHECK_FALSE(guard.accepts(0, 0, 0, kNan));
     CHECK(guard.accepts(0, 0, 0, -90));  // losses are no alarm, and are not saved up for long
     CHECK_FALSE(guard.accepts(0, 0, 0, 20));
+    CHECK_FALSE(guard.accepts(0, 0, 0, 2, 0, 0.01));  // much at once
+    CHECK(guard.accepts(0, 0, 0, 2));
 }
 
 TEST_CASE("steps beyond the stable one are halved until energy keeps") {

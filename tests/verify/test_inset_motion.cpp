@@ -93,13 +93,21 @@ TEST_CASE("connections along a series are as soft as it, those beside as stiff a
 
 TEST_CASE("a surface is as stiff as the material just beneath it") {
     const Aggregate m = row_of_two(elastic(1, 0), elastic(100, 0), 2.1);
-    const std::vector<double> modulus = surface_moduli(m, m.surface);
+    const Solver rest = Solver::quasistatic, moves = Solver::explicit_steps;
+    const std::vector<double> modulus = surface_moduli(m, m.surface, rest);
     REQUIRE(modulus.size() == m.surface.size());
     for (std::size_t p = 0; p < modulus.size(); ++p) {
         const double x = m.surface.reference_position[p].x();
         if (std::abs(x - 2.1) > 0.01) CHECK(modulus[p] == (x < 2.1 ? 1.0 : 100.0));
     }
-    CHECK(surface_modulus(m) == Approx(1 + 99 * (1.9 + 0.0625) / (4 + 0.125)).epsilon(0.02));
+    CHECK(surface_modulus(m, rest) == Approx(1 + 99 * (1.9 + 0.0625) / (4 + 0.125)).epsilon(0.02));
+    CHECK(surface_modulus(m, moves) == surface_modulus(m, rest));
+    // What keeps its volume is as stiff as that where it is hit.
+    Material soft = elastic(1, 0), hard = elastic(100, 0);
+    soft.poisson_ratio = hard.poisson_ratio = 0.49;
+    const Aggregate rubber = row_of_two(soft, hard, 2.1);
+    CHECK(surface_modulus(rubber, rest) == surface_modulus(m, rest));
+    CHECK(surface_modulus(rubber, moves) == Approx(surface_modulus(m, rest) / 0.06));
 }
 
 TEST_CASE("a ball with a heavy core falls, bounces and keeps its books in every solver") {
