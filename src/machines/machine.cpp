@@ -333,12 +333,4 @@ Drive drive_at(const Machine& machine, double t, double duration) {
             machine.gravity_strength ? machine.gravity_strength->at(t) : 1};
 }
 
-std::vector<Drive> drives_of(const Machine& machine, int frames, double duration) {
-    std::vector<Drive> drives;
-    for (int n = 0; n <= frames; ++n) {
-        drives.push_back(drive_at(machine, static_cast<double>(n) / frames, duration));
-    }
-    return drives;
-}
-
 }  // namespace swage

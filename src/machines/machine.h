@@ -56,7 +56,5 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
 
 // Poses at `t` (0 to 1) of a stage of `duration` [s].
 Drive drive_at(const Machine& machine, double t, double duration);
-// At the start and at the end of each of so many frames.
-std::vector<Drive> drives_of(const Machine& machine, int frames, double duration);
 
 }  // namespace swage

@@ -40,11 +40,6 @@ constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two tri
 constexpr double kLongestRun = 30 * 86400.0;
 constexpr double kCountedCells = 300'000;  // molded for real by count_cost
 
-double stage_duration(const StageSpec& stage, const SceneSpec& scene) {
-    if (stage.duration > 0) return stage.duration;
-    return static_cast<double>(stage.frames) / scene.render.frames_per_second;
-}
-
 // The stable step of a full lattice: neither slivers nor damping.
 double lattice_steps_per_second(const BodySpec& body, double spacing, const SimSettings& sim) {
     double wave_speed = std::sqrt(body.material.young_modulus / body.material.density);
@@ -145,7 +140,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
                                    : solver == Solver::euler
                                        ? 1 / std::max(least_damping(scene), 1e-3)
                                        : 1;
-            const double steps = shorter * stage_duration(stage, scene) *
+            const double steps = shorter * scene.duration_of(stage) *
                                  steps_per_second(scene, cost, matter, stage.sim);
             cost.steps += steps, work += law_share(scene) * steps;
         }
@@ -250,13 +245,12 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
     const Machine machine = stage_machine(first, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
-    const int sampled = std::min(first.frames, kSampledFrames);
+    const Legs legs = stage_legs(machine, std::min(first.frames, kSampledFrames), matter[0]);
     const long equilibria =
         first.sim.solver == Solver::quasistatic
-            ? std::max<long>(
-                  first.frames,
-                  equilibria_along(matter[0], machine.apparatus, first.sim,
-                                   drives_of(machine, sampled, stage_duration(first, scene))))
+            ? std::max<long>(first.frames, equilibria_along(matter[0], machine.apparatus, first.sim,
+                                                            drives_of(machine, legs.leg, 1,
+                                                                      scene.duration_of(first))))
             : 0;
     add_up(cost, scene, input, options, matter, equilibria);
     return cost;

@@ -34,31 +34,41 @@ void begin_row(LoadCurve& load, const Pose& pose) {
 }  // namespace
 
 StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start)
-    : stage_(std::move(stage)), frame_{first_frame}, report_(1), turn_axis_(start.size()) {
+    : stage_(std::move(stage)), frame_{first_frame}, report_(1) {
     for (std::size_t n = 0; n < start.size(); ++n) {
         load_.emplace_back();
         load_.back().name = start[n].name;
         begin_row(load_.back(), start[n].pose);
-        turn_axis_[n] = Vec3::Zero();
+        way_.push_back({start[n].pose});
+    }
+}
+
+void StageCurves::pass(const std::vector<ToolLoad>& loads) {
+    for (std::size_t n = 0; n < way_.size() && n < loads.size(); ++n) {
+        Way& way = way_[n];
+        const Pose& now = loads[n].pose;
+        const Eigen::AngleAxisd turned(now.rotation * way.pose.rotation.conjugate());
+        const double angle = turned.angle() > kPi ? turned.angle() - 2 * kPi : turned.angle();
+        if (way.turn_axis.isZero() && std::abs(angle) > 1e-12) {
+            way.turn_axis = angle > 0 ? turned.axis() : Vec3(-turned.axis());
+        }
+        way.turn += turned.axis().dot(way.turn_axis) < 0 ? -angle : angle;
+        way.travel += (now.translation - way.pose.translation).norm();
+        way.pose = now;
     }
 }
 
 void StageCurves::add(int frame, const FrameReport& report) {
+    pass(report.load);
     frame_.push_back(frame);
     report_.push_back(report);
     report_.back().load.clear();
     for (std::size_t n = 0; n < load_.size() && n < report.load.size(); ++n) {
         const ToolLoad& felt = report.load[n];
         LoadCurve& load = load_[n];
-        const Pose before = load.pose.back();
         begin_row(load, felt.pose);
-        const Eigen::AngleAxisd turned(felt.pose.rotation * before.rotation.conjugate());
-        const double angle = turned.angle() > kPi ? turned.angle() - 2 * kPi : turned.angle();
-        if (turn_axis_[n].isZero() && std::abs(angle) > 1e-12) {
-            turn_axis_[n] = angle > 0 ? turned.axis() : Vec3(-turned.axis());
-        }
-        load.turn.back() += turned.axis().dot(turn_axis_[n]) < 0 ? -angle : angle;
-        load.travel.back() += (felt.pose.translation - before.translation).norm();
+        load.turn.back() = way_[n].turn;
+        load.travel.back() = way_[n].travel;
         load.force.back() = felt.force;
         load.torque.back() = felt.torque;
         load.work.back() = felt.work;

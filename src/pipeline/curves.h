@@ -28,6 +28,8 @@ class StageCurves {
     // The first row is the start of the stage, where nothing is felt yet: names and poses.
     StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start);
     void add(int frame, const FrameReport& report);
+    // Where the loads are within a frame, so that no turn between its ends is missed.
+    void pass(const std::vector<ToolLoad>& loads);
 
     const std::string& stage() const { return stage_; }
     std::size_t rows() const { return frame_.size(); }
@@ -40,7 +42,12 @@ class StageCurves {
     std::vector<int> frame_;
     std::vector<FrameReport> report_;
     std::vector<LoadCurve> load_;
-    std::vector<Vec3> turn_axis_;  // of the first turn of each load
+    struct Way {
+        Pose pose;
+        Vec3 turn_axis = Vec3::Zero();  // of its first turn
+        double turn = 0, travel = 0;
+    };
+    std::vector<Way> way_;  // of each load, so far
 };
 
 // Comma separated; the first line names each column and its unit, as in "pusher force x [N]".

@@ -10,14 +10,14 @@
 #include "base/text.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_write.h"
-#include "machines/machine.h"
+#include "machines/legs.h"
 #include "pipeline/curves.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_machine.h"
 #include "sim/advance.h"
-#include "sim/own_overlap.h"
 #include "sim/motion_guard.h"
+#include "sim/own_overlap.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
 
@@ -130,7 +130,7 @@ void write_curves(const StageCurves& curves, const StageContext& context) {
 // A blade that goes down and up again is followed in steps at most this long, whatever the frames:
 // else few of these would miss how far it went.
 constexpr int kBladeSteps = 64;  // of a stage, at least
-int blade_steps(int frames) { return (kBladeSteps + frames - 1) / frames; }
+int blade_steps(std::size_t legs) { return static_cast<int>((kBladeSteps + legs - 1) / legs); }
 
 // The skin is cut along the whole path of the stage's blades when they reach the matter. True when
 // that was not possible everywhere, so that torn triangles must be removed as they appear.
@@ -183,9 +183,7 @@ int piece_count(const std::vector<WorkPiece>& bodies) {
 StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkPiece>& bodies,
                        const StageContext& context) {
     const SkinKind skin = context.scene.skin.kind;
-    const double duration = stage.duration > 0 ? stage.duration
-                                               : static_cast<double>(stage.frames) /
-                                                     context.scene.render.frames_per_second;
+    const double duration = context.scene.duration_of(stage);
     StageOutcome outcome;
     if (stage.remold) {
         const auto lap = context.watch.lap("mold");
@@ -203,8 +201,9 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     const bool cuts_any = !machine.apparatus.blade.empty();
     const int pieces_before = cuts_any ? piece_count(bodies) : 0;
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
-    const int steps = cuts_any ? blade_steps(stage.frames) : 1;
-    const std::vector<Drive> way = drives_of(machine, steps * stage.frames, duration);
+    const Legs legs = stage_legs(machine, stage.frames, work_piece);
+    const int steps = cuts_any ? blade_steps(legs.leg.size()) : 1;
+    const std::vector<Drive> way = drives_of(machine, legs.leg, steps, duration);
     const Drive& start = way.front();
     context.recorder.set_machine(machine.apparatus);
     if (last_frame == 0) {
@@ -226,22 +225,28 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     std::vector<char> cuts(bodies.size(), 0);
     bool tears = false;
     FrameReport last;
+    std::span<const Drive> ahead(way);
+    std::size_t leg = 0;
     for (int n = 1; n <= stage.frames; ++n) {
         const int number = last_frame + n;
-        const std::span<const Drive> ahead = std::span(way).subspan((n - 1) * steps);
-        const Drive &before = ahead.front(), &after = ahead[steps];
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-            if (cuts[b] || !simulation.blades_reach(b, ahead.first(steps + 1))) continue;
-            // From here on the whole cut is settled: in the matter and, along the same path, the
-            // skin.
-            cuts[b] = 1;
-            simulation.plan_cuts(b, ahead, steps);
-            tears = cut_ahead(machine, ahead, bodies[b], skin, number, warnings) || tears;
-        }
         try {
-            const auto lap = context.watch.lap("simulate");
-            throw_if_interrupted();
-            last = simulation.advance(before, after);
+            FrameReport frame;
+            for (; leg < legs.leg.size() && legs.leg[leg].frame == n - 1; ++leg) {
+                for (std::size_t b = 0; b < bodies.size(); ++b) {
+                    if (cuts[b] || !simulation.blades_reach(b, ahead.first(steps + 1))) continue;
+                    // From here on the whole cut is settled: in the matter and, along the same
+                    // path, the skin.
+                    cuts[b] = 1;
+                    simulation.plan_cuts(b, ahead, steps);
+                    tears = cut_ahead(machine, ahead, bodies[b], skin, number, warnings) || tears;
+                }
+                const auto lap = context.watch.lap("simulate");
+                throw_if_interrupted();
+                frame.go_on(simulation.advance(ahead.front(), ahead[steps]));
+                curves.pass(frame.load);
+                ahead = ahead.subspan(steps);
+            }
+            last = std::move(frame);
         } catch (const Interrupted& interrupted) {
             outcome.interrupted = interrupted;
             break;
@@ -263,7 +268,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
             }
         }
         const auto lap = context.watch.lap("write");
-        context.recorder.add_frame(bodies, after);
+        context.recorder.add_frame(bodies, ahead.front());
         curves.add(number, last);
         totals.add(last, machine.apparatus.tool.size());
         for (const std::string& sentence : last.warning) warnings.add(number, sentence);
@@ -277,6 +282,11 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     for (std::size_t b = 0; b < bodies.size(); ++b) write_meshes(bodies[b].deformed(), meshes[b]);
     write_curves(curves, context);
     outcome.warning = warnings.told(stage.name);
+    if (legs.lost > 0) {
+        outcome.warning.push_back(fmt::format(
+            "{}: in {} of its frames the machine does what 64 steps do not follow; more frames do",
+            stage.name, legs.lost));
+    }
     const bool ended_early = outcome.stopped || outcome.interrupted;
     if (!machine.apparatus.tool.empty() && !totals.touched && !ended_early) {
         outcome.warning.push_back(stage.name + ": its tools never touched the work-piece");
@@ -318,6 +328,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         {"machine", stage.machine.name},
         {"parameters", parameters_json(machine)},
         {"frames", {first_frame, last_frame + static_cast<int>(curves.rows()) - 1}},
+        {"legs", legs.leg.size()},
         {"duration_s", duration},
         {"remolded", stage.remold},
         {"particles", particle_count(bodies)},

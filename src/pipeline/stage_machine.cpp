@@ -8,6 +8,8 @@ namespace swage {
 
 namespace {
 
+constexpr double kLegSlack = 0.05;  // spacings
+
 [[noreturn]] void fail_at(const std::string& place, const Error& error) {
     throw Error(error.code(), place.empty() ? error.what() : place + ": " + error.what());
 }
@@ -27,6 +29,10 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
         if (error.code() != ExitCode::scene) throw;
         fail_at(stage.place, error);
     }
+}
+
+Legs stage_legs(const Machine& machine, int frames, const Aggregate& work_piece) {
+    return legs_of(machine, frames, kLegSlack * work_piece.lattice.spacing);
 }
 
 }  // namespace swage

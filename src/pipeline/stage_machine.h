@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "machines/machine.h"
+#include "machines/legs.h"
 #include "scene/spec.h"
 
 namespace swage {
@@ -12,5 +12,8 @@ namespace swage {
 // bodies. Throws as build_machine does, with the place in the scene before the sentence.
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside);
+
+// Its way over so many frames, as straight as that matter's spacing asks for.
+Legs stage_legs(const Machine& machine, int frames, const Aggregate& work_piece);
 
 }  // namespace swage

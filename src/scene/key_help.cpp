@@ -74,7 +74,7 @@ const std::vector<KeyHelp>& scene_key_help() {
          "parameters are keys of the stage too",
          "name, or path from the scene"},
         {"[[stage]]", "name", "of its files", {}, "number-machine"},
-        {"[[stage]]", "frames", "of the film; equilibria or blocks of steps, too"},
+        {"[[stage]]", "frames", "of the film; equilibria are at least as many"},
         {"[[stage]]", "duration", "of the machine's motion", {}, "frames / fps"},
         {"[[stage]]", "remold", "mold the deformed mesh anew before the stage"},
         {"[[stage]]", "axis",

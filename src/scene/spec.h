@@ -78,6 +78,10 @@ struct SceneSpec {
     std::vector<StageSpec> stage;
 
     const BodySpec& work_piece() const { return body.front(); }
+    double duration_of(const StageSpec& of) const {  // [s]
+        return of.duration > 0 ? of.duration
+                               : static_cast<double>(of.frames) / render.frames_per_second;
+    }
     RenderSettings render;
     OutputSpec output;
     std::vector<std::filesystem::path> inputs;  // every file that was read, scene and machines

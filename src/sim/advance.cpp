@@ -291,6 +291,24 @@ std::vector<ToolLoad> Simulation::loads(const Drive& now) const {
     return loads;
 }
 
+void FrameReport::go_on(FrameReport next) {
+    next.iterations += iterations;
+    next.increments += increments;
+    next.halvings += halvings;
+    next.steps += steps;
+    next.rejected += rejected;
+    next.rescued += rescued;
+    if (steps > 0) next.shortest_step = std::min(next.shortest_step, shortest_step);
+    next.residual = std::max(next.residual, residual);
+    next.severed += severed;
+    next.broken += broken;
+    for (std::size_t n = 0; n < load.size(); ++n) {
+        next.load[n].touched = next.load[n].touched || load[n].touched;
+    }
+    next.warning.insert(next.warning.begin(), warning.begin(), warning.end());
+    *this = std::move(next);
+}
+
 FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     Rooms& r = *rooms_;
     FrameReport report;

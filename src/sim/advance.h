@@ -60,6 +60,9 @@ struct FrameReport : Books {  // of all bodies
     int severed = 0, broken = 0;   // connections, in this frame: by blades, by load
     int pieces = 1;                // of all bodies
     std::vector<std::string> warning;
+
+    // What comes next belongs to the same frame. To be begun with an empty one.
+    void go_on(FrameReport next);
 };
 
 class Simulation {

@@ -43,6 +43,19 @@ TEST_CASE("a turn is followed past half a turn and past a whole one") {
     CHECK(turning_grip(20, 5.0).load()[0].turn.back() == 0);
 }
 
+TEST_CASE("a turn by more than half a round within a frame is followed by its legs") {
+    StageCurves curves("s", 1, {{"turner", Pose{}}});
+    FrameReport report;
+    report.load.resize(1);
+    for (double angle : {1.2, 2.4, 3.6, 4.8}) {
+        report.load[0].pose = turned(angle);
+        curves.pass(report.load);
+    }
+    curves.add(2, report);
+    REQUIRE(curves.rows() == 2);
+    CHECK(curves.load()[0].turn.back() == Approx(4.8));
+}
+
 TEST_CASE("a turn there and back ends at nothing") {
     StageCurves curves("s", 1, {{"turner", Pose{}}});
     for (double angle : {0.5, 1.0, 0.5, 0.0}) {

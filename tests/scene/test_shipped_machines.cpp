@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "geometry/make_shape.h"
-#include "machines/machine.h"
+#include "machines/legs.h"
 #include "machines/touch.h"
 #include "mold/mold.h"
 #include "scene/read_machine.h"
@@ -241,7 +241,7 @@ TEST_CASE("the cutter parts a rod however its cells lie in it, and however they 
                 body.particle_position.set(p, turn * body.particle_position.at(p));
             }
             const Machine machine = at_bar("cut", {}, body);
-            sever(body, swept_triangles(machine.apparatus, drives_of(machine, 40, 1)));
+            sever(body, swept_triangles(machine.apparatus, drives_of(machine, legs_of(machine, 40, 1).leg, 1, 1)));
             CHECK(find_pieces(body).count == 2);
         }
     }

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A stage's way in legs, each so short that drive_between() follows the machine's own motions along
+// it. How often a run is looked at, its frames, does not decide where its tools go: a grip that
+// turns by 240 degrees between two frames would turn back by 120, and a load that swings between
+// them would be none.
+#pragma once
+
+#include <vector>
+
+#include "machines/machine.h"
+
+namespace swage {
+
+struct Leg {
+    int frame;          // 0 for the first
+    double begin, end;  // of the stage, 0 to 1
+};
+
+struct Legs {
+    std::vector<Leg> leg;  // of each frame one or more
+    int lost = 0;          // frames in which something changes too fast even for the shortest legs
+};
+
+// On no leg a turn of more than a quarter, nor anything beside its straight way by more than
+// `slack` at the work-piece [m], nor a load by more than a hundredth of its full strength. What
+// jumps does so within the shortest leg, a 64th of a frame.
+Legs legs_of(const Machine& machine, int frames, double slack);
+
+// At the start and at the end of each of `steps` parts of each leg, of a stage of `duration` [s].
+std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& legs, int steps,
+                             double duration);
+
+}  // namespace swage

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/legs.h"
+
+#include "tests/catch.h"
+#include "tests/machines/bodies.h"
+
+using namespace swage;
+
+namespace {
+
+// A grip that moves and turns, and one that stands.
+Machine vice(const Expression& turn, const Expression& move = "0",
+             const Expression& strength = "1") {
+    MachineSpec spec;
+    spec.name = "vice";
+    GripSpec hold;
+    hold.name = "hold";
+    hold.from = {"-length", "-height", "-width"};
+    hold.to = {"-0.4*length", "height", "width"};
+    GripSpec goes = hold;
+    goes.name = "goes";
+    goes.from[0] = "0.4*length";
+    goes.to[0] = "length";
+    goes.motion.turn = turn;
+    goes.motion.axis = Vec3::UnitX();
+    goes.motion.move[0] = move;
+    spec.grip = {hold, goes};
+    spec.gravity_strength = strength;
+    const Aggregate body = bar();
+    return build_machine(spec, {}, place_work_frame(body, "auto", "auto"), body);
+}
+
+constexpr double kSlack = 1e-3;
+
+// By straight legs, without missing what lies between their ends.
+double turned_along(const Machine& machine, const Legs& legs) {
+    double sum = 0;
+    const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1);
+    for (std::size_t n = 1; n < way.size(); ++n) {
+        sum += way[n].world_from_grip[1].rotation.angularDistance(
+            way[n - 1].world_from_grip[1].rotation);
+    }
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("what goes straight and evenly has one leg a frame, in their order") {
+    const Legs legs = legs_of(vice("80 deg*t", "0.2*length*t", "t"), 7, kSlack);
+    REQUIRE(legs.leg.size() == 7);
+    CHECK(legs.lost == 0);
+    for (int n = 0; n < 7; ++n) {
+        CHECK(legs.leg[n].frame == n);
+        CHECK(legs.leg[n].end == Approx((n + 1) / 7.0));
+        CHECK(legs.leg[n].begin == (n > 0 ? legs.leg[n - 1].end : 0));
+    }
+}
+
+TEST_CASE("turns are followed all round, however few the frames") {
+    for (const double degrees : {100.0, 240.0, 360.0, 480.0, 7200.0}) {
+        const Machine machine = vice(std::to_string(degrees) + " deg*t");
+        for (int frames : {1, 2, 5, 60}) {
+            const Legs legs = legs_of(machine, frames, kSlack);
+            INFO(degrees << " degrees in " << frames << " frames");
+            CHECK(legs.lost == (degrees / frames > 5760));
+            if (legs.lost == 0) {
+                CHECK(turned_along(machine, legs) == Approx(degrees * kPi / 180).epsilon(1e-6));
+            }
+        }
+    }
+}
+
+TEST_CASE("what swings between two frames is followed, within what the slack allows") {
+    for (int frames : {4, 10, 20}) {
+        const Machine machine = vice("0", "0.1*length*sin(2*pi*10*t)", "sin(2*pi*10*t)");
+        const Legs legs = legs_of(machine, frames, kSlack);
+        INFO(frames);
+        REQUIRE(legs.leg.size() > 100);
+        for (const Leg& leg : legs.leg) {
+            const Drive from = drive_at(machine, leg.begin, 1), to = drive_at(machine, leg.end, 1);
+            for (double s : {0.1, 0.3, 0.6, 0.9}) {
+                const Drive told = drive_between(from, to, s),
+                            is = drive_at(machine, leg.begin + s * (leg.end - leg.begin), 1);
+                CHECK((told.world_from_grip[1].translation - is.world_from_grip[1].translation)
+                          .norm() <= 1.1 * kSlack);
+                CHECK(std::abs(told.gravity_strength - is.gravity_strength) <= 0.011);
+            }
+        }
+    }
+}
+
+TEST_CASE("a jump or a kink takes few legs, and is where it is to within a 64th of a frame") {
+    for (const char* strength : {"t < 0.37 ? 0 : 1", "max(0, t - 0.37)", "t < 0.4 ? 0 : 1"}) {
+        const Legs legs = legs_of(vice("0", "0", strength), 10, kSlack);
+        INFO(strength);
+        CHECK(legs.lost == 0);
+        CHECK(legs.leg.size() > 10);
+        CHECK(legs.leg.size() <= 16);
+    }
+}
+
+TEST_CASE("what no leg can follow is told") {
+    CHECK(legs_of(vice("0", "0", "sin(2*pi*1000*t)"), 4, kSlack).lost == 4);
+}
