@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -18,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct RenderArguments {
-    std::string run, out, size, frames, up, gl = "auto";
+    std::string run, out, size, frames, up, gl;
     std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
     std::vector<double> eye, target;                                      // [m]
     std::optional<int> frames_per_second;
@@ -57,9 +59,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;
     if (given.no_ground) settings.ground = false;
-    settings.gl = given.gl == "osmesa" ? GlProviderKind::osmesa
-                  : given.gl == "egl"  ? GlProviderKind::egl
-                                       : GlProviderKind::automatic;
+    if (!given.gl.empty()) settings.gl = gl_named(given.gl);
     return settings;
 }
 
@@ -81,6 +81,7 @@ int render(const RenderArguments& given) {
              "--out",
              out.string());
     }
+    if (given.out.empty()) fs::remove_all(out);  // of another camera
     make_folder(out);
     set_unfinished_work(out);
     Stopwatch watch;
@@ -94,6 +95,15 @@ int render(const RenderArguments& given) {
     }
     return 0;
 }
+
+// CLI::Range lets "nan" pass.
+const CLI::Validator kFinite(
+    [](const std::string& text) {
+        char* end = nullptr;
+        return std::isfinite(std::strtod(text.c_str(), &end)) ? std::string()
+                                                              : text + " is no finite number";
+    },
+    "");
 
 }  // namespace
 
@@ -112,20 +122,22 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->add_option("--camera-azimuth", given.azimuth,
                      "where the camera stands about the upward axis: 0 is +z and 90 +x, or "
                      "with z up +x and +y")
+        ->check(kFinite)
         ->type_name("DEG");
     command->add_option("--camera-elevation", given.elevation, "how high it stands")
-        ->check(CLI::Range(-90.0, 90.0))
+        ->check(kFinite & CLI::Range(-90.0, 90.0))
         ->type_name("DEG");
     command->add_option("--camera-zoom", given.zoom, "2 is twice as near")
-        ->check(CLI::Range(0.01, 1000.0));
+        ->check(kFinite & CLI::Range(0.01, 1000.0));
     command->add_option("--camera-turn", given.turn, "how far it goes round during the film")
+        ->check(kFinite)
         ->type_name("DEG");
     // Instead of all these.
     CLI::Option* eye =
         command->add_option("--camera-eye", given.eye, "where the camera stands [m]");
     CLI::Option* target =
         command->add_option("--camera-target", given.target, "what it looks at [m]");
-    for (CLI::Option* place : {eye, target}) place->expected(3)->type_name("X Y Z");
+    for (CLI::Option* place : {eye, target}) place->expected(3)->check(kFinite)->type_name("X Y Z");
     eye->needs(target);
     target->needs(eye);
     for (const char* other :
@@ -135,7 +147,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("--camera-up", given.up, "what the pictures have upward")
         ->check(CLI::IsMember({"x", "y", "z"}));
     command->add_option("--field-of-view", given.field_of_view, "vertical")
-        ->check(CLI::Range(1.0, 170.0))
+        ->check(kFinite & CLI::Range(1.0, 170.0))
         ->type_name("DEG");
     command->add_option("--size", given.size, "of a still in pixels (default: 1280x720)")
         ->type_name("WxH")
@@ -146,7 +158,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("--fps", given.frames_per_second, "frames a second of the film")
         ->check(CLI::Range(1, 240));
     command->add_option("--gl", given.gl, "library that draws")
-        ->check(CLI::IsMember({"auto", "osmesa", "egl"}));
+        ->check(CLI::IsMember(std::vector<std::string>(kGlName.begin(), kGlName.end())));
     command->add_flag("--no-film", given.no_film, "stills only");
     command->add_flag("--no-tools", given.no_tools, "the work-piece alone");
     command->add_flag("--no-ground", given.no_ground, "no ground");

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/suggest.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/run_directory.h"
 #include "verify/table.h"
 
 namespace swage {
@@ -71,6 +72,7 @@ Json verified_json(const std::vector<Verified>& all) {
 }
 
 int verify(const VerifyArguments& given) {
+    if (!given.out.empty()) make_folder(given.out);
     std::vector<Verified> all;
     bool missed = false;
     for (const Case& c : chosen_cases(given)) {
@@ -81,7 +83,6 @@ int verify(const VerifyArguments& given) {
     }
     if (!given.out.empty()) {
         const std::filesystem::path out = given.out;
-        std::filesystem::create_directories(out);
         write_file_whole(out / "verify.json", json_text(verified_json(all)));
         write_file_whole(out / "verify.html", verified_page(all));
     }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 
@@ -85,7 +86,8 @@ class ObjReader {
                 mesh_.color.resize(mesh_.position.size() - 1, Eigen::Vector3f::Ones());
                 Eigen::Vector3f color;
                 for (int k = 0; k < 3; ++k)
-                    color[k] = linear_from_srgb(std::clamp(value[3 + k], 0.0, 1.0));
+                    color[k] =
+                        static_cast<float>(linear_from_srgb(std::clamp(value[3 + k], 0.0, 1.0)));
                 mesh_.color.push_back(color);
             }
         } else if (key == "vt") {

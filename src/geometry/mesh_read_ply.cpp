@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 
@@ -260,9 +261,9 @@ class PlyReader {
         const double c = value[channel];
         switch (element.property[channel].type) {
             case Number::uint8:
-                return linear_from_srgb(c / 255);
+                return static_cast<float>(linear_from_srgb(c / 255));
             case Number::uint16:
-                return linear_from_srgb(c / 65535);
+                return static_cast<float>(linear_from_srgb(c / 65535));
             default:
                 return static_cast<float>(std::clamp(c, 0.0, 1.0));
         }

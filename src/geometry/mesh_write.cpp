@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/srgb.h"
 #include "geometry/polygon.h"
 #include "geometry/text_scan.h"
 

@@ -57,12 +57,4 @@ inline bool to_integer(std::string_view word, long long& value) {
     return error == std::errc() && end == word.data() + word.size();
 }
 
-// Colours stored for display (sRGB), to and from linear light; both 0 to 1.
-inline float linear_from_srgb(double c) {
-    return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-}
-inline double srgb_from_linear(double c) {
-    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-}
-
 }  // namespace swage

@@ -66,6 +66,7 @@ FrameStoreWriter::FrameStoreWriter(const fs::path& file)
         fail(ExitCode::output, "{}: cannot be created: {}", file.string(), std::strerror(errno));
     }
     write_all(handle_, file_, &kMagic, sizeof kMagic);
+    size_ = sizeof kMagic;
 }
 
 FrameStoreWriter::~FrameStoreWriter() {
@@ -76,8 +77,15 @@ FrameStoreWriter::~FrameStoreWriter() {
 
 void FrameStoreWriter::put(std::uint32_t kind, const std::string& bytes) {
     const RecordHead head{kind, 0, bytes.size(), hash_of(bytes)};
-    write_all(handle_, file_, &head, sizeof head);
-    write_all(handle_, file_, bytes.data(), bytes.size());
+    try {
+        write_all(handle_, file_, &head, sizeof head);
+        write_all(handle_, file_, bytes.data(), bytes.size());
+    } catch (const Error&) {
+        const auto end = static_cast<off_t>(size_);
+        if (::ftruncate(handle_, end) == 0) ::lseek(handle_, end, SEEK_SET);
+        throw;
+    }
+    size_ += sizeof head + bytes.size();
 }
 
 int FrameStoreWriter::add_skin(const TriMesh& skin) {

@@ -50,10 +50,12 @@ class FrameStoreWriter {
     void finish();
 
   private:
+    // All of it or nothing: a full disk leaves what came before.
     void put(std::uint32_t kind, const std::string& bytes);
 
     std::filesystem::path file_, temporary_;
     int handle_ = -1;
+    std::uint64_t size_ = 0;  // of what is whole
     int skins_ = 0, machines_ = 0;
 };
 

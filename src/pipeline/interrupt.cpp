@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cctype>
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -60,7 +62,8 @@ void watch() {
     ::_exit(128 + asked_to_stop());
 }
 
-// ".frame_0001.part1234.png" of the process 1234 (see base/atomic_file.h).
+// ".frame_0001.part1234.png" of the process 1234 (see base/atomic_file.h). 0: of this process, or
+// of one that is no more.
 bool is_temporary(const std::string& name, long pid) {
     const std::size_t part = name.rfind(".part");
     if (name.empty() || name[0] != '.' || part == std::string::npos) return false;
@@ -68,7 +71,9 @@ bool is_temporary(const std::string& name, long pid) {
     while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
     const std::string digits = name.substr(part + 5, end - part - 5);
     if (digits.empty() || (end < name.size() && name[end] != '.')) return false;
-    return pid == 0 || digits == std::to_string(pid);
+    if (pid != 0) return digits == std::to_string(pid);
+    const long owner = std::strtol(digits.c_str(), nullptr, 10);
+    return owner == ::getpid() || (::kill(static_cast<pid_t>(owner), 0) != 0 && errno == ESRCH);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ void watch_for_interrupts();
 void set_unfinished_work(const std::filesystem::path& directory);
 
 // Removes temporaries left in a directory tree by processes that wrote files whole; `pid` 0: by
-// any.
+// this one, and by any that is no more.
 void remove_temporaries(const std::filesystem::path& directory, long pid);
 
 }  // namespace swage

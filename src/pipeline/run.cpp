@@ -100,8 +100,8 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
             for (const std::string& warning : outcome.warning) log_warning("{}", warning);
             ended = {outcome.stopped, outcome.interrupted};
         } catch (const Error& error) {
-            // A machine that cannot be set up at what the stages before have made.
-            if (error.code() != ExitCode::scene || recorder.frame_count() == 0) throw;
+            // A stage that cannot be set up at what those before have made, or written.
+            if (recorder.frame_count() == 0) throw;
             ended.stopped = error;
         }
         if (ended.early()) break;

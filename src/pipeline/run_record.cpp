@@ -151,12 +151,19 @@ Json render_json(const RenderSettings& settings) {
             {"film", settings.film},
             {"tools", settings.tools},
             {"ground", settings.ground},
+            {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
             {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
 }
 
 Up up_named(const std::string& name) {
     const auto at = std::find(kUpName.begin(), kUpName.end(), name);
     return at != kUpName.end() ? static_cast<Up>(at - kUpName.begin()) : Up::automatic;
+}
+
+GlProviderKind gl_named(const std::string& name) {
+    const auto at = std::find(kGlName.begin(), kGlName.end(), name);
+    return at != kGlName.end() ? static_cast<GlProviderKind>(at - kGlName.begin())
+                               : GlProviderKind::automatic;
 }
 
 RenderSettings render_settings_of(const Json& record) {
@@ -172,6 +179,7 @@ RenderSettings render_settings_of(const Json& record) {
         settings.ground = json.at("ground").get<bool>();
         // Runs of before this was asked had y.
         settings.up = up_named(json.value("up", "y"));
+        settings.gl = gl_named(json.value("gl", "auto"));
         const auto vector_of = [](const Json& three) {
             return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),
                         three.at(2).get<double>());

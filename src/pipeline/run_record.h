@@ -27,7 +27,8 @@ Json matter_json(const Aggregate& matter);
 Json drawing_json(const DrawOutcome& drawing);
 Json seconds_json(const Stopwatch& watch);
 Json render_json(const RenderSettings& settings);
-Up up_named(const std::string& name);  // automatic: no such name
+Up up_named(const std::string& name);              // automatic: no such name
+GlProviderKind gl_named(const std::string& name);  // likewise
 // Throws Error(output) when the record holds none.
 RenderSettings render_settings_of(const Json& record);
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "base/error.h"
-#include "render/srgb.h"
+#include "base/srgb.h"
 
 namespace swage {
 

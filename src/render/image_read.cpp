@@ -2,6 +2,7 @@
 // The one file that sees stb_image.
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "base/error.h"
@@ -28,6 +29,28 @@ namespace {
 struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
+
+// The size stands in the header: a bomb is refused before it is unpacked.
+template <typename Info, typename Load>
+Image unpacked(const std::string& name, int largest_side, const Info& info, const Load& load) {
+    int width = 0, height = 0, channels = 0;
+    if (info(&width, &height, &channels) == 0) {
+        fail(ExitCode::output, "{}: not a PNG, JPEG, BMP or TGA picture ({})", name,
+             stbi_failure_reason());
+    }
+    if (width > largest_side || height > largest_side) {
+        fail(ExitCode::output, "{}: {} x {} pixels are more than {} a side", name, width, height,
+             largest_side);
+    }
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(load(&width, &height, &channels),
+                                                           stbi_image_free);
+    if (!pixels) fail(ExitCode::output, "{}: {}", name, stbi_failure_reason());
+    Image image{width, height, {}};
+    image.rgb.assign(pixels.get(), pixels.get() + 3 * static_cast<std::size_t>(width) *
+                                                      static_cast<std::size_t>(height));
+    return image;
+}
+
 }  // namespace
 
 Image read_image(const std::filesystem::path& path, int largest_side) {
@@ -38,23 +61,22 @@ Image read_image(const std::filesystem::path& path, int largest_side) {
     }
     const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(name.c_str(), "rb"));
     if (!file) fail(ExitCode::output, "{}: cannot be opened", name);
-    int width = 0, height = 0, channels = 0;
-    // The size stands in the header: a bomb is refused before it is unpacked.
-    if (stbi_info_from_file(file.get(), &width, &height, &channels) == 0) {
-        fail(ExitCode::output, "{}: not a PNG, JPEG, BMP or TGA picture ({})", name,
-             stbi_failure_reason());
+    return unpacked(
+        name, largest_side,
+        [&](int* w, int* h, int* n) { return stbi_info_from_file(file.get(), w, h, n); },
+        [&](int* w, int* h, int* n) { return stbi_load_from_file(file.get(), w, h, n, 3); });
+}
+
+Image decode_image(const std::string& bytes, const std::string& name, int largest_side) {
+    if (bytes.size() > std::numeric_limits<int>::max()) {
+        fail(ExitCode::output, "{}: more than 2 GiB", name);
     }
-    if (width > largest_side || height > largest_side) {
-        fail(ExitCode::output, "{}: {} x {} pixels are more than {} a side", name, width, height,
-             largest_side);
-    }
-    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-        stbi_load_from_file(file.get(), &width, &height, &channels, 3), stbi_image_free);
-    if (!pixels) fail(ExitCode::output, "{}: {}", name, stbi_failure_reason());
-    Image image{width, height, {}};
-    image.rgb.assign(pixels.get(), pixels.get() + 3 * static_cast<std::size_t>(width) *
-                                                      static_cast<std::size_t>(height));
-    return image;
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const int size = static_cast<int>(bytes.size());
+    return unpacked(
+        name, largest_side,
+        [&](int* w, int* h, int* n) { return stbi_info_from_memory(data, size, w, h, n); },
+        [&](int* w, int* h, int* n) { return stbi_load_from_memory(data, size, w, h, n, 3); });
 }
 
 }  // namespace swage

@@ -18,5 +18,7 @@ void write_png(const std::filesystem::path& file, const Image& image);
 // PNG, JPEG, BMP or TGA; transparency is dropped. Throws Error(output) with the reason when the
 // file is missing, broken or larger than `largest_side` pixels.
 Image read_image(const std::filesystem::path& file, int largest_side = 16384);
+// The same of a file's bytes; `name` is for the reason.
+Image decode_image(const std::string& bytes, const std::string& name, int largest_side = 16384);
 
 }  // namespace swage

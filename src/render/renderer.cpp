@@ -176,9 +176,9 @@ std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& show
         if (item.mesh == nullptr || item.mesh->triangle.empty()) continue;
         grow(item.endless ? shown : casting, item);
         // Read now: loading one in the middle of a pass would unbind what the pass has bound.
-        if (item.material_override) textures.texture(item.material_override->texture);
+        if (item.material_override) textures.texture(*item.material_override);
         for (const SurfaceMaterial& material : item.mesh->material) {
-            textures.texture(material.texture);
+            textures.texture(material);
         }
         const GpuMesh& mesh = meshes.prepared(*item.mesh, item.position);
         drawables.push_back({&mesh, &item, stage.from_mesh(item.world_from_mesh, mesh.origin)});
@@ -250,7 +250,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
                                             : plain_material;
             const glm::vec4 color(to_glm(material.color), 1);
             const glm::vec4 finish(material.roughness, material.metallic, 0, 0);
-            const GLuint texture = mesh.uv.empty() ? 0 : textures.texture(material.texture);
+            const GLuint texture = mesh.uv.empty() ? 0 : textures.texture(material);
             const Shader& shader = texture != 0 ? textured_shader : surface_shader;
             shader.use();
             shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));

@@ -15,6 +15,7 @@ enum class Up { automatic, x, y, z };
 inline constexpr std::array<const char*, 4> kUpName = {"auto", "x", "y", "z"};  // in that order
 
 enum class GlProviderKind { automatic, osmesa, egl };
+inline constexpr std::array<const char*, 3> kGlName = {"auto", "osmesa", "egl"};  // in that order
 
 // A camera that looks at the framed action from an angle. `at` is the share of the film, 0 to 1;
 // between keys the values move smoothly.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "render/contact_sheet.h"
 #include "render/png.h"
@@ -39,16 +40,24 @@ GlHandle uploaded(const Gl& gl, const Image& image) {
 
 }  // namespace
 
-GLuint TextureCache::texture(const std::filesystem::path& file) {
-    if (file.empty()) return 0;
-    const auto [entry, is_new] = by_name_.try_emplace(file.string());
-    if (is_new) entry->second = loaded(file);
+GLuint TextureCache::texture(const SurfaceMaterial& material) {
+    const bool inside = material.embedded_texture != nullptr;
+    if (!inside && material.texture.empty()) return 0;
+    // A mesh read again has its picture again.
+    const std::string name =
+        inside ? hash_text(hash_of(*material.embedded_texture)) : material.texture.string();
+    const auto [entry, is_new] = by_name_.try_emplace(name);
+    if (is_new) entry->second = loaded(material);
     return entry->second.id();
 }
 
-GlHandle TextureCache::loaded(const std::filesystem::path& file) const {
+GlHandle TextureCache::loaded(const SurfaceMaterial& material) const {
     try {
-        const Image image = read_image(file);
+        const Image image =
+            material.embedded_texture != nullptr
+                ? decode_image(*material.embedded_texture,
+                               "the picture inside material \"" + material.name + "\"")
+                : read_image(material.texture);
         return uploaded(*gl_, thumbnail(image, kLargestSide, kLargestSide));
     } catch (const Error& error) {
         log_warning("{}; the surface is drawn in its plain colour", error.what());

@@ -3,10 +3,10 @@
 // surface shows its plain colour.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <string>
 
+#include "geometry/trimesh.h"
 #include "render/canvas.h"
 #include "render/gl_handle.h"
 
@@ -16,14 +16,14 @@ class TextureCache {
   public:
     explicit TextureCache(const Gl& gl) : gl_(&gl) {}
 
-    // The texture to bind; 0 for an empty path and for what cannot be read.
-    GLuint texture(const std::filesystem::path& file);
+    // The texture to bind; 0 for a material without one and for what cannot be read.
+    GLuint texture(const SurfaceMaterial& material);
 
   private:
-    GlHandle loaded(const std::filesystem::path& file) const;
+    GlHandle loaded(const SurfaceMaterial& material) const;
 
     const Gl* gl_;
-    std::map<std::string, GlHandle> by_name_;
+    std::map<std::string, GlHandle> by_name_;  // of the file, or of what came inside the mesh
 };
 
 }  // namespace swage

@@ -3,17 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "base/srgb.h"
 
 namespace swage {
-
-namespace {
-
-double linear_of(double srgb) {
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
-
-}  // namespace
 
 void read_color(TableReader& table, std::optional<Vec3>& color) {
     Vec3 seen = Vec3::Zero();
@@ -23,7 +15,7 @@ void read_color(TableReader& table, std::optional<Vec3>& color) {
                                            "each 0 to 1",
                                            seen.x(), seen.y(), seen.z()));
     }
-    color = Vec3(linear_of(seen.x()), linear_of(seen.y()), linear_of(seen.z()));
+    color = Vec3(linear_from_srgb(seen.x()), linear_from_srgb(seen.y()), linear_from_srgb(seen.z()));
 }
 
 }  // namespace swage

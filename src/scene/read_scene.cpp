@@ -2,6 +2,7 @@
 #include "scene/read_scene.h"
 
 #include <algorithm>
+#include <map>
 
 #include "base/suggest.h"
 #include "base/text.h"
@@ -60,6 +61,34 @@ void report_unknown_sections(const Document& document, Reading& reading) {
     }
 }
 
+void refuse_remolded_blocks(TableReader& root, const SceneSpec& scene) {
+    for (const StageSpec& stage : scene.stage) {
+        if (!stage.remold || scene.work_piece().mold.kind != MoldKind::block) continue;
+        root.mistake("mold", fmt::format("kind = \"block\" fills the box of the mesh, and stage "
+                                         "\"{}\" would mold the box of what is bent by then: "
+                                         "leave remold out, or kind",
+                                         stage.name));
+    }
+}
+
+// Where there are several bodies their meshes are named after stage and body.
+void refuse_same_files(TableReader& root, const SceneSpec& scene) {
+    if (scene.body.size() == 1) return;
+    std::map<std::string, std::string> of;
+    for (const StageSpec& stage : scene.stage) {
+        for (const BodySpec& body : scene.body) {
+            const std::string file = stage.name + "-" + body.name,
+                              what =
+                                  fmt::format("body \"{}\" of stage \"{}\"", body.name, stage.name);
+            const auto [at, is_new] = of.try_emplace(file, what);
+            if (is_new || at->second == what) continue;  // bodies of one name are told already
+            root.mistake("stage", fmt::format("{} and {} would both be written as {}: give one "
+                                              "another name",
+                                              at->second, what, file));
+        }
+    }
+}
+
 }  // namespace
 
 void read_scene_document(const Document& document, const AssetPaths& assets, Reading& reading,
@@ -96,6 +125,8 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     }
     scene.inputs.insert(scene.inputs.end(), stages.inputs().begin(), stages.inputs().end());
     refuse_with_insets(root, scene);
+    refuse_remolded_blocks(root, scene);
+    refuse_same_files(root, scene);
     if (root.find("stage") == nullptr && reading.is_complete) {
         reading.mistakes.add(absent.place,
                              "nothing to do: the scene has no [[stage]], such as\n"

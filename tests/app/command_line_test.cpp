@@ -11,7 +11,8 @@ using swage::Json;
 
 namespace {
 
-const std::vector<std::string> kCommands = {"run", "check", "info", "machines", "render", "make"};
+const std::vector<std::string> kCommands = {"run",  "check",  "info", "machines",
+                                            "keys", "render", "make", "verify"};
 
 // The words of a shell line that uses double quotes at most.
 std::vector<std::string> words_of(const std::string& line) {
@@ -75,6 +76,13 @@ TEST_CASE("the examples of every help work as they stand") {
         INFO(line);
         // A scene of a run is only checked and a finished run only named here: others run them.
         if (example[0] == "render") continue;
+        if (example[0] == "verify") {  // takes minutes: its cases need only be some
+            const std::string help = run_swage({"verify", "--help"}).out;
+            for (std::size_t n = 1; n < example.size() && example[n][0] != '-'; ++n) {
+                CHECK(help.find(example[n] + (n > 0 ? "," : "")) != std::string::npos);
+            }
+            continue;
+        }
         if (example[0] == "run") {
             std::vector<std::string> check = {"check", example.at(1)};
             for (std::size_t n = 2; n + 1 < example.size(); ++n) {
@@ -103,6 +111,9 @@ TEST_CASE("a wrong command line ends with 2 and a hint") {
     }
     for (const char* size : {"0x10", "10", "axb", "99999x5", "10x10x10"}) {
         CHECK(code_of({"render", "somewhere", std::string("--size=") + size}) == 2);
+    }
+    for (const char* angle : {"--camera-azimuth", "--camera-zoom", "--field-of-view"}) {
+        CHECK(code_of({"render", "somewhere", angle, "nan"}) == 2);
     }
     const std::vector<std::string> eye = {"render", "somewhere", "--camera-eye", "1", "2", "3"};
     CHECK(code_of(eye) == 2);  // looks at nothing
@@ -256,6 +267,20 @@ TEST_CASE("made meshes are the same to the bit each time, and as large as asked 
     std::string first = bytes_of(a), second = bytes_of(b);
     // Each names its own material library.
     CHECK(first.substr(first.find("\nv ")) == second.substr(second.find("\nv ")));
+}
+
+TEST_CASE(
+    "a made mesh takes no picture's name that something else has, and a wrong ending nothing") {
+    const Scratch scratch;
+    const fs::path picture = scratch.path() / "x.png", mesh = scratch.path() / "x.obj";
+    put_text(picture, "keep");
+    CHECK(code_of({"make", "calf", "--out", (scratch.path() / "x.stl").string()}) == 2);
+    for (int n = 0; n < 2; ++n) {  // the second time its own is there
+        REQUIRE(code_of({"make", "calf", "--out", mesh.string()}) == 0);
+        CHECK(bytes_of(picture) == "keep");
+        CHECK(bytes_of(scratch.path() / "x.mtl").find("map_Kd x_2.png") != std::string::npos);
+        CHECK_FALSE(fs::exists(scratch.path() / "x_3.png"));
+    }
 }
 
 TEST_CASE("data goes to stdout alone, and --quiet leaves stderr empty") {

@@ -178,6 +178,21 @@ TEST_CASE("a shipped scene ends in the state that it always ended in, at any num
     }
 }
 
+TEST_CASE("a stage that cannot begin leaves what those before it have done") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(
+        scratch.path(), 3, "[[stage]]\nmachine = \"twist\"\nangle = \"5 deg\"\nremold = true\n");
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--set", "mold.cell_limit=60"});
+    INFO(outcome.err);
+    CHECK(outcome.code == 7);
+    REQUIRE(fs::exists(run / "run.json"));
+    CHECK(Json::parse(bytes_of(run / "run.json")).at("frames") == 4);
+    CHECK(is_whole_png(bytes_of(run / "frames/frame_0004.png")));
+    CHECK(run_swage({"render", run.string(), "--no-film"}).code == 0);
+}
+
 TEST_CASE("how often a run is looked at does not change what its machine does") {
     const Scratch scratch;
     run_swage({"make", "bar", "--length", "10 cm", "--out", (scratch.path() / "bar.obj").string()},

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/frame_store.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <fstream>
 
 #include "base/error.h"
@@ -101,6 +104,30 @@ TEST_CASE("a motion file appears only when it is whole") {
         CHECK_FALSE(fs::exists(file));
     }
     CHECK(fs::is_empty(scratch.path()));
+}
+
+TEST_CASE("what was written before the disk was full is kept") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    FrameStoreWriter writer(file);
+    CHECK(writer.add_skin(tetrahedron()) == 0);
+    CHECK(writer.add_skin(tetrahedron()) == 1);
+    writer.add_machine({{"pusher", tetrahedron(), {1, 0, 0}}});
+    for (int f = 0; f < 2; ++f) writer.add_frame(some_frame(f));
+    StoredFrame large = some_frame(2);
+    large.body[0].position.resize(10'000);
+    const rlimit full{20'000, before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &full);
+    CHECK_THROWS_AS(writer.add_frame(large), Error);
+    writer.finish();
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    const FrameStore store(file);
+    REQUIRE(store.frame_count() == 2);
+    CHECK(store.frame(1).body[0].position == some_frame(1).body[0].position);
 }
 
 TEST_CASE("a damaged motion file is refused") {

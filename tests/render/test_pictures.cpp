@@ -9,7 +9,7 @@
 #include "render/contact_sheet.h"
 #include "render/film.h"
 #include "render/png.h"
-#include "render/srgb.h"
+#include "base/srgb.h"
 #include "tests/catch.h"
 
 using namespace swage;

@@ -7,11 +7,11 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "geometry/shape.h"
 #include "render/draw_mesh.h"
 #include "render/png.h"
 #include "render/renderer.h"
-#include "render/srgb.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -199,6 +199,10 @@ TEST_CASE("a texture's colours come through as if the surface had them", "[rende
         textured.texture = file;
         const Image a = drawn(settings, {{&mesh, nullptr, {}, textured}}, -0.5, action);
         const Image b = drawn(settings, {{&mesh, nullptr, {}, colored(linear)}}, -0.5, action);
+        // Also where it came inside the mesh.
+        SurfaceMaterial inside = colored({1, 1, 1});
+        inside.embedded_texture = std::make_shared<const std::string>(encode_png(texture));
+        CHECK((drawn(settings, {{&mesh, nullptr, {}, inside}}, -0.5, action).rgb == a.rgb));
         for (std::size_t c = 0; c < 3; ++c) {
             CHECK(std::abs(a.pixel(80, 60)[c] - b.pixel(80, 60)[c]) <= 1);
         }
@@ -236,9 +240,12 @@ TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {
     const TriMesh mesh = square(1);
     SurfaceMaterial broken = colored({0.8, 0.3, 0.1});
     broken.texture = "/no/such/picture.png";
+    SurfaceMaterial inside = colored({0.8, 0.3, 0.1});
+    inside.embedded_texture = std::make_shared<const std::string>("no picture");
     const Image a = drawn(small_picture(), {{&mesh, nullptr, {}, broken}});
     const Image b = drawn(small_picture(), {{&mesh, nullptr, {}, colored({0.8, 0.3, 0.1})}});
     CHECK((a.rgb == b.rgb));
+    CHECK((drawn(small_picture(), {{&mesh, nullptr, {}, inside}}).rgb == b.rgb));
 }
 
 TEST_CASE("both sides of a surface are lit", "[renderer]") {

@@ -412,6 +412,24 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
     });
 }
 
+TEST_CASE("a block is not molded anew, and no two meshes have one name") {
+    Parts block = stage("remold = true");
+    block.mold = "[mold]\nacross = 6\nkind = \"block\"\n";
+    Parts same;
+    same.stage =
+        "[[body]]\nname = \"b-c\"\nfile = \"bar.obj\"\nat = [0, 1, 0]\n"
+        "[[body]]\nname = \"c\"\nfile = \"bar.obj\"\nat = [0, 2, 0]\n"
+        "[[stage]]\nname = \"a\"\nmachine = \"floor\"\ngravity = 9.81\n"
+        "[[stage]]\nname = \"a-b\"\nmachine = \"floor\"\ngravity = 9.81\n";
+    check_all({
+        {"block", block, {"fills the box of the mesh, and stage \"1-bend\" would mold the box"}},
+        {"same",
+         same,
+         {"body \"b-c\" of stage \"a\" and body \"c\" of stage \"a-b\" would both be written "
+          "as a-b-c"}},
+    });
+}
+
 TEST_CASE("a solver that cannot move the scene's matter is refused where it is named") {
     const auto solver = [](const std::string& material, const std::string& lines) {
         Parts parts = with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\n" + lines);
