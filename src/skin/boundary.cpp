@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "matter/carrier_weights.h"
 #include "skin/mount.h"
 #include "skin/voxel_place.h"
 #include "skin/voxel_surface.h"
@@ -18,31 +20,125 @@ struct Owner {
     bool at_cut = false;
 };
 
-// The cell and the corners that a vertex follows: matter that hangs together with the particle
-// behind it.
-void bind_vertex(const Aggregate& matter, const Vec3& place, const Owner& owner, CellId& cell,
-                 CornerMask& side) {
-    const auto home = matter.lattice.cell_corners(owner.cell);
-    const CellId over = carrying_cell(matter, place);
-    const auto corner = matter.lattice.cell_corners(over);
-    const auto at = std::find(corner.begin(), corner.end(), home[owner.corner]);
-    if (at != corner.end()) {
-        cell = over;
-        side = corner_groups(matter, corner)[at - corner.begin()];
-    } else if (!owner.at_cut && is_whole(matter, corner)) {
-        cell = over;
-        side = kAllCorners;
-    } else {
-        cell = owner.cell;
-        side = corner_groups(matter, home)[owner.corner];
+// A cell, and what of it hangs together.
+struct Near {
+    CellId cell;
+    Vec3i site;
+    std::array<ParticleId, 8> corner;
+    CornerGroups group;
+};
+
+std::vector<Near> cells_within(const Aggregate& matter, const Vec3i& low, const Vec3i& high) {
+    std::vector<Near> cells;
+    for (int k = low.z(); k <= high.z(); ++k) {
+        for (int j = low.y(); j <= high.y(); ++j) {
+            for (int i = low.x(); i <= high.x(); ++i) {
+                const CellId cell = matter.lattice.cell_at(i, j, k);
+                if (cell < 0) continue;
+                const auto corner = matter.lattice.cell_corners(cell);
+                cells.push_back({cell, {i, j, k}, corner, corner_groups(matter, corner)});
+            }
+        }
     }
+    return cells;
+}
+
+bool is_in(const std::vector<ParticleId>& sorted, ParticleId p) {
+    return std::binary_search(sorted.begin(), sorted.end(), p);
+}
+
+// Adds what these cells join to what is reached.
+void reach_on(const std::vector<Near>& cells, std::vector<ParticleId>& reached) {
+    std::vector<ParticleId> more = reached;
+    for (const Near& near : cells) {
+        for (int c = 0; c < 8; ++c) {
+            if (!is_in(reached, near.corner[c])) continue;
+            for (int d = 0; d < 8; ++d) {
+                if (near.group[c] >> d & 1) more.push_back(near.corner[d]);
+            }
+        }
+    }
+    std::sort(more.begin(), more.end());
+    more.erase(std::unique(more.begin(), more.end()), more.end());
+    reached = std::move(more);
+}
+
+// The corners of a cell that hang together with a corner of another within the cells between both;
+// none where nothing does, or more than one part.
+CornerMask side_reached(const Aggregate& matter, CellId home, ParticleId from, CellId over) {
+    const Vec3i a = matter.lattice.cell_site(home), b = matter.lattice.cell_site(over);
+    if (((a - b).array().abs() > 2).any()) return 0;
+    const std::vector<Near> cells = cells_within(matter, a.cwiseMin(b), a.cwiseMax(b));
+    std::vector<ParticleId> reached{from};
+    for (std::size_t before = 0; before != reached.size();) {
+        before = reached.size();
+        reach_on(cells, reached);
+    }
+    const auto corner = matter.lattice.cell_corners(over);
+    const CornerGroups group = corner_groups(matter, corner);
+    CornerMask side = 0;
+    for (int c = 0; c < 8; ++c) {
+        if (!is_in(reached, corner[c])) continue;
+        if (side != 0 && side != group[c]) return 0;
+        side = group[c];
+    }
+    return side;
+}
+
+// The firm and whole cell nearest to a place among the first that are met on the way from a
+// particle, in three steps at most; -1: none. NOTE: what a severed cell has left on one side may be
+// two particles that next to nothing holds.
+CellId whole_cell_near(const Aggregate& matter, CellId home, ParticleId from, const Vec3& place) {
+    constexpr int kSteps = 3;
+    const Vec3i site = matter.lattice.cell_site(home), around = Vec3i::Constant(2);
+    const std::vector<Near> cells = cells_within(matter, site - around, site + around);
+    const Vec3 at = (place - matter.lattice.origin) / matter.lattice.spacing;
+    std::vector<ParticleId> reached{from};
+    for (int step = 0; step < kSteps; ++step) {
+        CellId nearest = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Near& near : cells) {
+            if (near.group[0] != kAllCorners || matter.cell_fill[near.cell] < kFirmFill ||
+                std::none_of(near.corner.begin(), near.corner.end(),
+                             [&](ParticleId p) { return is_in(reached, p); })) {
+                continue;
+            }
+            const Vec3 low = near.site.cast<double>(), high = low + Vec3::Ones();
+            const double d = (at - at.cwiseMax(low).cwiseMin(high)).squaredNorm();
+            if (d < least) least = d, nearest = near.cell;
+        }
+        if (nearest >= 0) return nearest;
+        reach_on(cells, reached);
+    }
+    return -1;
+}
+
+// The cell and the corners that a vertex follows: matter that hangs together with the particle
+// behind it, where the vertex lies if it can be.
+void bind_vertex(const Aggregate& matter, const Pieces& pieces, const Vec3& place,
+                 const Owner& owner, CellId& cell, CornerMask& side) {
+    const auto home = matter.lattice.cell_corners(owner.cell);
+    const ParticleId behind = home[owner.corner];
+    cell = carrying_cell(matter, place);
+    const auto corner = matter.lattice.cell_corners(cell);
+    const auto at = std::find(corner.begin(), corner.end(), behind);
+    side = at != corner.end() ? corner_groups(matter, corner)[at - corner.begin()]
+                              : side_reached(matter, owner.cell, behind, cell);
+    if (side != 0) return;
+    side = kAllCorners;
+    const bool is_own = pieces.particle_piece[corner[0]] == pieces.particle_piece[behind];
+    if (!owner.at_cut && is_own && is_whole(matter, corner)) return;
+    cell = whole_cell_near(matter, owner.cell, behind, place);
+    if (cell >= 0) return;
+    cell = owner.cell;
+    side = corner_groups(matter, home)[owner.corner];
 }
 
 // A blade may cut off particles whose cells hold next to no material on that side. Such crumbs are
 // not drawn: takes the faces out of all pieces that enclose less than a share of a cell.
-void drop_crumbs(const Aggregate& matter, const std::vector<Vec3>& place, VoxelSurface& surface) {
+void drop_crumbs(const Aggregate& matter, const Pieces& pieces, const std::vector<Vec3>& place,
+                 VoxelSurface& surface) {
     constexpr double kCrumb = 0.02;  // cells
-    const Pieces pieces = find_pieces(matter);
     if (pieces.count == 1) return;
     const auto piece_of = [&](const VoxelFace& face) {
         return pieces.particle_piece[matter.lattice.cell_corners(face.cell)[face.corner]];
@@ -75,7 +171,8 @@ void drop_crumbs(const Aggregate& matter, const std::vector<Vec3>& place, VoxelS
 TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
     VoxelSurface surface = voxel_surface(matter);
     const std::vector<Vec3> place = place_points(matter, surface);
-    drop_crumbs(matter, place, surface);
+    const Pieces pieces = find_pieces(matter);
+    drop_crumbs(matter, pieces, place, surface);
 
     Mount mount;
     mount.reference.resize(surface.vertex_count);
@@ -91,7 +188,7 @@ TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
         }
     }
     for (int v = 0; v < surface.vertex_count; ++v) {
-        bind_vertex(matter, mount.reference[v], owner[v], mount.cell[v], mount.side[v]);
+        bind_vertex(matter, pieces, mount.reference[v], owner[v], mount.cell[v], mount.side[v]);
     }
     finish_mount(mount, matter);
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  // points
 constexpr int kRounds = 4, kCutRounds = 40, kUnfoldRounds = 12;
+constexpr double kFarthest = 2;   // spacings that a point may go from where the voxels have it
 constexpr int kSlidingRings = 4;  // around a cut, of points that make room for its rim
 
 class Placer {
@@ -60,6 +61,7 @@ class Placer {
             const HalfSite& at = surface_.site[s];
             place_[s] = low + 0.5 * box.size.cwiseProduct(Vec3(at[0], at[1], at[2]));
         }
+        start_ = place_;
     }
 
     // Whether a point lies on the outer surface, exactly so or only near it.
@@ -164,6 +166,12 @@ class Placer {
         p += step;
     }
 
+    void stay_near(std::size_t s, Vec3& p) const {
+        const Vec3 way = p - start_[s];
+        const double far = way.norm(), most = kFarthest * a_;
+        if (far > most) p = start_[s] + most / far * way;
+    }
+
     bool any_cut() const {
         return std::any_of(slides_.begin(), slides_.end(), [](char slides) { return slides; });
     }
@@ -195,6 +203,7 @@ class Placer {
                 samples_.project(facing_[s], p, normal_[s]);
                 to_cut(s, p);
             }
+            stay_near(s, p);
         });
         place_ = std::move(next);
     }
@@ -271,7 +280,7 @@ class Placer {
     const double a_;
     const bool any_dropped_ = std::any_of(surface_.cell_kept.begin(), surface_.cell_kept.end(),
                                           [](char kept) { return !kept; });
-    std::vector<Vec3> place_, normal_;
+    std::vector<Vec3> start_, place_, normal_;
     std::vector<Vec3> facing_;  // normals of the voxels' faces, which tell edges from sides
     std::vector<char> outer_, on_cut_, exact_, fixed_axis_, slides_;
     std::vector<std::optional<CutTarget>> target_;

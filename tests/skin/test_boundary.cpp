@@ -167,6 +167,42 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
     }
 }
 
+TEST_CASE("every vertex goes with its own piece, wherever a cut of any shape runs") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> any(-1, 1);
+    const double a = 1.0 / 4;
+    for (int trial = 0; trial < 100; ++trial) {
+        Aggregate body = rod(4);
+        // A plane that is bent, as one is that a blade has cut through twisted matter.
+        const Vec3 normal = Vec3(1, any(random), any(random)).normalized();
+        const double bend = 3 * any(random), twist = 3 * any(random), at = 0.5 * any(random);
+        std::vector<char> beyond(body.particle_count());
+        for (std::size_t p = 0; p < beyond.size(); ++p) {
+            const Vec3 x = body.particle_reference.at(p);
+            beyond[p] = normal.dot(x) + bend * x.y() * x.y() + twist * x.y() * x.z() > at;
+        }
+        for (const Span& span : body.lattice.span) {
+            for (int n = 0; n < span.count; ++n) {
+                if (beyond[span.lower + n] != beyond[span.upper + n])
+                    body.connection[span.direction].weight.set(span.lower + n, 0);
+            }
+        }
+        for (std::size_t p = 0; p < beyond.size(); ++p) {
+            if (beyond[p]) body.particle_position.x[p] += 100;
+        }
+        const TriMesh mesh = boundary_skin(body);
+        double longest = 0;
+        for (const Corners& t : mesh.triangle) {
+            for (int k = 0; k < 3; ++k) {
+                longest =
+                    std::max(longest, (mesh.position[t[k]] - mesh.position[t[(k + 1) % 3]]).norm());
+            }
+        }
+        INFO(trial);
+        CHECK(longest < 4 * a);
+    }
+}
+
 TEST_CASE("a body half severed stays in one piece, with a slit") {
     Aggregate matter = test::make_block(16, 6, 6, .1, Material{});
     test::sever_plane(matter, {.03, 0, 0}, Vec3::UnitX(),
