@@ -166,6 +166,33 @@ void drop_crumbs(const Aggregate& matter, const Pieces& pieces, const std::vecto
     }
 }
 
+// Where cells touch at an edge or a corner only, their surfaces have vertices of their own at one
+// place. Each goes a little into its own cell, for what reads a mesh may join what lies at one
+// place. Not along a cut, which is closed until it opens.
+void part_touching(const Aggregate& matter, const VoxelSurface& surface,
+                   const std::vector<Owner>& owner, std::vector<Vec3>& reference) {
+    constexpr double kApart = 0.02;  // spacings
+    std::vector<int> first(surface.site.size(), -1), point(reference.size(), -1);
+    std::vector<char> shared(surface.site.size(), 0), cut(surface.site.size(), 0);
+    for (const VoxelFace& face : surface.face) {
+        for (int k = 0; k < 4; ++k) {
+            const int p = face.point[k], v = face.vertex[k];
+            point[v] = p;
+            cut[p] |= face.cut;
+            if (first[p] < 0) first[p] = v;
+            shared[p] |= first[p] != v;
+        }
+    }
+    for (std::size_t v = 0; v < reference.size(); ++v) {
+        const int p = point[v];
+        if (p < 0 || !shared[p] || cut[p]) continue;
+        const CellBox box = cell_box(matter, owner[v].cell);
+        const Vec3 way = box.low + 0.5 * box.size - reference[v];
+        const double far = way.norm();
+        if (far > 0) reference[v] += kApart * matter.lattice.spacing / far * way;
+    }
+}
+
 }  // namespace
 
 TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
@@ -187,6 +214,7 @@ TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
             mount.reference[face.vertex[k]] = place[face.point[k]];
         }
     }
+    part_touching(matter, surface, owner, mount.reference);
     for (int v = 0; v < surface.vertex_count; ++v) {
         bind_vertex(matter, pieces, mount.reference[v], owner[v], mount.cell[v], mount.side[v]);
     }
@@ -199,8 +227,9 @@ TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
     mesh.material[1].name = kCutMaterial;
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
         const auto& v = surface.face[f].vertex;
+        // As at rest: what bends keeps its triangles.
         const auto length = [&](int a, int b) {
-            return (mesh.position[v[a]] - mesh.position[v[b]]).squaredNorm();
+            return (mount.reference[v[a]] - mount.reference[v[b]]).squaredNorm();
         };
         if (length(0, 2) <= length(1, 3)) {
             mesh.triangle.push_back({v[0], v[1], v[2]});
