@@ -34,6 +34,7 @@ constexpr double kSecondsPerPixel = 1.8e-7;               // drawing and writing
 constexpr double kEnergyStepsPerStep = 100;               // while a body swings
 constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
 constexpr double kBytesPerVertex = 600;
+constexpr double kVerticesPerFace = 6;  // of a boundary, a cell's face: four, and its steps
 constexpr double kProgramBytes = 80e6;  // libraries and the drawing's own buffers
 constexpr double kStillBytesPerPixel = 0.7;
 constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two triangles
@@ -147,7 +148,12 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     }
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
     double vertices = 0;
-    for (const InputMesh& one : input) vertices += static_cast<double>(one.mesh.position.size());
+    for (const InputMesh& one : input) {
+        vertices += scene.skin.kind == SkinKind::boundary
+                        ? kVerticesPerFace * surface_area(one.to_mold()) /
+                              (cost.mold.spacing * cost.mold.spacing)
+                        : static_cast<double>(one.mesh.position.size());
+    }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
     const double cores = std::min(thread_count(), 2);

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "geometry/make_shape.h"
+#include "mold/mold.h"
+#include "skin/boundary.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -30,6 +32,30 @@ TEST_CASE("a body's thin parts are told in cells, and a solid one has none") {
         INFO(solid);
         CHECK_FALSE(cost.has_thin_parts());
         CHECK(cost.thickness == Approx(6));
+    }
+}
+
+TEST_CASE("what a boundary's meshes take is told by its cells, not by the mesh that came") {
+    for (const char* shape : {"bar", "sphere"}) {
+        InputMesh input;
+        input.mesh = make_shape(shape, {}).mesh;
+        SceneSpec scene;
+        scene.body.resize(1);
+        scene.body[0].mold.across = 8;
+        scene.skin.kind = SkinKind::boundary;
+        scene.stage.resize(1);
+        scene.stage[0].frames = 100;
+        RunOptions options;
+        options.draw = false;
+        const double once = estimate_cost(scene, {input}, options).disk_bytes;
+        scene.output.meshes_per_frame = true;
+        const double each = estimate_cost(scene, {input}, options).disk_bytes;
+        const TriMesh skin =
+            boundary_skin(mold(input.mesh, scene.body[0].material, scene.body[0].mold));
+        const double vertices = (each - once) / (100 * 330);
+        INFO(shape << ": " << vertices << " of " << skin.position.size());
+        CHECK(vertices > 0.7 * static_cast<double>(skin.position.size()));
+        CHECK(vertices < 2 * static_cast<double>(skin.position.size()));
     }
 }
 
