@@ -17,6 +17,11 @@ namespace {
 // torsion 6.82 % and 1.93 % (the bar); both fall with the square.
 constexpr double kBending = 0.9, kTorsion = 1.24;
 
+// With which the spacing resolves it [J/m2].
+double toughness_for(const Material& material, double spacing) {
+    return kLeastReach * spacing * material.strength * material.strength / material.young_modulus;
+}
+
 }  // namespace
 
 Accuracy accuracy_at(double cells) {
@@ -39,11 +44,12 @@ std::string strength_warning(const Material& material, double spacing, double ce
     if (resolved.whole()) return "";
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
-        "breaks at {} instead of {}; [mold] across = {} would do",
+        "breaks at {} instead of {}; [mold] across = {} would do, or at this one a toughness of {}",
         quantity_text(spacing, Quantity::length),
         material.name == Material{}.name ? "the material" : material.name,
         quantity_text(resolved.strength, Quantity::stress),
-        quantity_text(material.strength, Quantity::stress), resolved.cells_for_whole);
+        quantity_text(material.strength, Quantity::stress), resolved.cells_for_whole,
+        quantity_text(toughness_for(material, spacing), Quantity::toughness));
 }
 
 }  // namespace swage

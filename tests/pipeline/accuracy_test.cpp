@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/accuracy.h"
 
+#include <fmt/format.h>
+
+#include "base/units.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -18,4 +21,25 @@ TEST_CASE("the accuracy told of a resolution is the worst that was measured, and
     CHECK(accuracy_at(enough).torsion <= 0.01);
     CHECK(accuracy_at(enough).bending <= 0.01);
     CHECK(accuracy_at(enough - 1).torsion > 0.01);
+}
+
+TEST_CASE("what is told to resolve a break does: so many cells, or so much toughness") {
+    Material glass;
+    glass.name = "glass";
+    glass.young_modulus = 70e9, glass.strength = 45e6, glass.toughness = 8;
+    const double spacing = 2e-3, cells = 10;
+    const std::string told = strength_warning(glass, spacing, cells);
+    const int across = resolved_strength(glass, spacing, cells).cells_for_whole;
+    CHECK(told.find(fmt::format("across = {} would do", across)) != std::string::npos);
+    CHECK(strength_warning(glass, spacing * cells / across, across) == "");
+    CHECK(strength_warning(glass, spacing * cells / (across - 1), across - 1) != "");
+    const std::size_t at = told.find("a toughness of ");
+    REQUIRE(at != std::string::npos);
+    Material tough = glass;
+    tough.toughness = parse_quantity(told.substr(at + 15), Quantity::toughness);
+    CHECK(tough.toughness > glass.toughness);
+    tough.toughness *= 1.01;  // it is told in few figures
+    CHECK(strength_warning(tough, spacing, cells) == "");
+    tough.toughness *= 0.97;
+    CHECK(strength_warning(tough, spacing, cells) != "");
 }
