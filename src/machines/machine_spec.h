@@ -12,6 +12,7 @@
 // machine calls up, z across.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -42,6 +43,8 @@ struct MotionSpec {
     Expression turn = "0";               // [rad]
     Vec3 axis = Vec3::UnitZ();
     Expression3 pivot = {"0", "0", "0"};  // [m]; in the work frame
+
+    bool stands() const { return turn == "0" && move == Expression3{"0", "0", "0"}; }
 };
 
 struct ToolSpec {
@@ -116,6 +119,15 @@ struct MachineSpec {
     std::vector<LoadSpec> load;   // a scene adds its own
     Expression gravity_strength;  // a scene's; sees t; empty: 1
     std::vector<CheckSpec> check;
+
+    // Whether nothing of it goes anywhere.
+    bool stands() const {
+        const auto all = [](const auto& parts) {
+            return std::all_of(parts.begin(), parts.end(),
+                               [](const auto& part) { return part.motion.stands(); });
+        };
+        return all(tool) && all(grip) && all(blade);
+    }
 };
 
 }  // namespace swage

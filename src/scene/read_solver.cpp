@@ -51,8 +51,9 @@ Vec3 upward(const std::string& up) {
 
 }  // namespace
 
-void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
+void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
                  const std::string& up, SimSettings& sim) {
+    const bool machine_moves = machine != nullptr && machine->moves;
     const bool several = scene.body.size() > 1;
     const bool starts = std::any_of(scene.body.begin(), scene.body.end(),
                                     [](const BodySpec& body) { return body.start.moves(); });
@@ -138,7 +139,8 @@ void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
                                "down",
                                up == "auto" ? "y" : up));
     }
-    if (machine_moves && sim.gravity == Vec3::Zero() && !starts && table.find("load") == nullptr) {
+    if (machine_moves && machine->stands() && sim.gravity == Vec3::Zero() && !starts &&
+        table.find("load") == nullptr) {
         table.warn("machine",
                    "nothing moves: there is no gravity (gravity = \"9.81 m/s2\"), no load, and no "
                    "body starts with a velocity or a spin");

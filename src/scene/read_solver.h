@@ -8,10 +8,10 @@ namespace swage {
 
 // The keys of a [[stage]] that say how its matter moves; the scene's materials have been read. What
 // a solver cannot do with them is a mistake at `solver`, a key that it does not ask a warning.
-// `machine_moves`: its machine is one for bodies in motion. The solver left out is then explicit,
-// as it is for several bodies and for one that has a speed at the start; else quasi-static. `up`:
-// against which gravity points that is a single number, as a stage has it.
-void read_solver(TableReader& table, const SceneSpec& scene, bool machine_moves,
+// `machine`: null where there is none. With one for bodies in motion the solver left out is
+// explicit, as it is for several bodies and for one that has a speed at the start; else
+// quasi-static. `up`: against which gravity points that is a single number, as a stage has it.
+void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
                  const std::string& up, SimSettings& sim);
 
 }  // namespace swage

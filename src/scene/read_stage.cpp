@@ -258,7 +258,7 @@ StageSpec StageReader::read(const Node& node) {
         stage.axis = loaded->machine->axis;
         stage.up = loaded->machine->up;
     }
-    read_solver(table, scene_, has_machine && loaded->machine->moves,
+    read_solver(table, scene_, has_machine ? &*loaded->machine : nullptr,
                 has_machine && loaded->machine->upright ? stage.up : "auto", stage.sim);
     if (has_machine) {
         stage.machine = *loaded->machine;

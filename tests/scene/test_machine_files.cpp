@@ -274,3 +274,15 @@ TEST_CASE("assets are found in the given folder first") {
     CHECK(machines[0].file == scratch.folder() / "machines/zzz.toml");
     CHECK_THROWS_AS(find_assets(scratch.folder() / "nowhere"), Error);
 }
+
+TEST_CASE("a machine stands that gives none of its parts a motion") {
+    const auto stands = [](const std::string& more) {
+        const Scratch scratch;
+        const MachineReading reading = read_machine(scratch.write("m.toml", kHead + kGrip + more));
+        REQUIRE(reading.machine);
+        return reading.machine->stands();
+    };
+    CHECK(stands(""));
+    CHECK_FALSE(stands("[grip.motion]\nturn = \"30 deg*t\"\n"));
+    CHECK_FALSE(stands("[grip.motion]\nmove = [0, \"reach*t\", 0]\n"));
+}
