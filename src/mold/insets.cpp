@@ -62,7 +62,7 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
         double inside = 0, all = 0;
         const std::vector<CellLayer> own = share_cells(insets[n].solid, frame);
         for (std::size_t k = 0; k < own.size(); ++k) {
-            for (const CellShare& s : own[k].share) {
+            for (const CellFill& s : own[k].share) {
                 all += s.fill;
                 const CellId cell = matter.lattice.cell_at(s.i, s.j, static_cast<int>(k));
                 if (cell < 0) continue;

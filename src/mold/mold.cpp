@@ -41,7 +41,7 @@ void fill_cells(const std::vector<CellLayer>& layers, const MoldFrame& frame, Ag
     matter.cell_fill.reserve(count);
     matter.cell_centroid = SparseArray<Eigen::Vector3f>(count, Eigen::Vector3f::Zero());
     for (std::size_t k = 0; k < layers.size(); ++k) {
-        for (const CellShare& s : layers[k].share) {
+        for (const CellFill& s : layers[k].share) {
             site.emplace_back(s.i, s.j, static_cast<int>(k));
             const Vec3 centroid = s.moment / s.fill;
             matter.cell_centroid.set(matter.cell_fill.size(),
@@ -106,7 +106,7 @@ void share_out(const std::vector<CellLayer>& layers, const MoldFrame& frame, Agg
 double filled_cells(const std::vector<CellLayer>& layers) {
     double sum = 0;
     for (const CellLayer& layer : layers)
-        for (const CellShare& s : layer.share) sum += s.fill;
+        for (const CellFill& s : layer.share) sum += s.fill;
     return sum;
 }
 

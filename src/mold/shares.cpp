@@ -167,7 +167,7 @@ class LayerSharer {
         std::reverse(layer.share.begin() + begin, layer.share.end());
     }
 
-    static void add_share(CellShare share, CellLayer& layer) {
+    static void add_share(CellFill share, CellLayer& layer) {
         if (std::abs(share.fill) < kRoundOff) return;
         if (share.fill < -kWrinkle) {
             layer.deficit -= share.fill;

@@ -10,7 +10,7 @@
 namespace swage {
 
 // A cell that holds material.
-struct CellShare {
+struct CellFill {
     int i, j;
     double fill;  // share of its volume; may pass 0 or 1 a little where the surface crosses itself
     Vec3 moment;  // fill times the centroid, in cells from the cell's centre
@@ -26,7 +26,7 @@ struct SurfacePatch {
 
 // One layer of cells along z.
 struct CellLayer {
-    std::vector<CellShare> share;     // sorted by j, i
+    std::vector<CellFill> share;      // sorted by j, i
     std::vector<SurfacePatch> patch;  // sorted by j, i
     double surplus = 0;               // [cells], filled more than once by overlapping parts
     double deficit = 0;  // [cells], filled less than not at all by parts turned inside out

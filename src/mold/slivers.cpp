@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kSides[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
 
-CellShare* find_share(std::vector<CellLayer>& layers, int i, int j, int k) {
+CellFill* find_share(std::vector<CellLayer>& layers, int i, int j, int k) {
     if (k < 0 || k >= static_cast<int>(layers.size())) return nullptr;
-    std::vector<CellShare>& shares = layers[k].share;
+    std::vector<CellFill>& shares = layers[k].share;
     const auto at = std::lower_bound(shares.begin(), shares.end(), std::pair(j, i),
-                                     [](const CellShare& s, const std::pair<int, int>& site) {
+                                     [](const CellFill& s, const std::pair<int, int>& site) {
                                          return std::pair(s.j, s.i) < site;
                                      });
     return at != shares.end() && at->i == i && at->j == j ? &*at : nullptr;
@@ -30,7 +30,7 @@ double drop_slivers(std::vector<CellLayer>& layers) {
     };
     std::vector<Sliver> slivers;
     for (std::size_t k = 0; k < layers.size(); ++k) {
-        for (const CellShare& s : layers[k].share) {
+        for (const CellFill& s : layers[k].share) {
             if (s.fill < kLeastFill) slivers.push_back({s.fill, s.i, s.j, static_cast<int>(k)});
         }
     }
@@ -40,12 +40,12 @@ double drop_slivers(std::vector<CellLayer>& layers) {
     });
     double lost = 0;
     for (const Sliver& sliver : slivers) {
-        CellShare* share = find_share(layers, sliver.i, sliver.j, sliver.k);
+        CellFill* share = find_share(layers, sliver.i, sliver.j, sliver.k);
         if (share->fill >= kLeastFill) continue;  // has been given enough
-        CellShare* taker = nullptr;
+        CellFill* taker = nullptr;
         Vec3 offset;
         for (const auto& [di, dj, dk] : kSides) {
-            CellShare* other = find_share(layers, sliver.i + di, sliver.j + dj, sliver.k + dk);
+            CellFill* other = find_share(layers, sliver.i + di, sliver.j + dj, sliver.k + dk);
             if (other == nullptr || other->fill == 0) continue;
             if (taker != nullptr && other->fill <= taker->fill) continue;
             taker = other;
@@ -62,7 +62,7 @@ double drop_slivers(std::vector<CellLayer>& layers) {
         share->fill = 0;
     }
     for (CellLayer& layer : layers) {
-        std::erase_if(layer.share, [](const CellShare& s) { return s.fill == 0; });
+        std::erase_if(layer.share, [](const CellFill& s) { return s.fill == 0; });
     }
     return lost;
 }

@@ -80,7 +80,7 @@ TEST_CASE("shares and first moments are exact in double precision") {
     Vec3 moment = Vec3::Zero();
     const std::vector<CellLayer> layers = share_cells(mesh, frame);
     for (std::size_t k = 0; k < layers.size(); ++k) {
-        for (const CellShare& s : layers[k].share) {
+        for (const CellFill& s : layers[k].share) {
             const Vec3 center(s.i + 0.5, s.j + 0.5, static_cast<double>(k) + 0.5);
             volume += s.fill;
             moment += s.fill * center + s.moment;
@@ -98,7 +98,7 @@ TEST_CASE("each cell's share is the part of the mesh inside that cell") {
     const auto layers = share_cells(mesh, frame_over(box_of(mesh.position), 1));
     int cells = 0;
     for (int k = 0; k < 3; ++k) {
-        for (const CellShare& s : layers[k].share) {
+        for (const CellFill& s : layers[k].share) {
             ++cells;
             // Volume and centroid of the unit cube below x + y + z = rest.
             const int rest = 3 - s.i - s.j - k;
