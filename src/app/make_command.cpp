@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "app/command.h"
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text_error.h"
@@ -48,28 +43,17 @@ std::string shown(double value, ParameterKind kind) {
     return quantity_text(value, quantity_of(kind));
 }
 
-// Beside the mesh, under another name where something else has its own. Returns its file.
-fs::path put_picture(const fs::path& mesh, const std::string& bytes) {
-    const fs::path stem = fs::path(mesh).replace_extension();
-    fs::path file = fs::path(stem) += ".png";
-    for (int n = 2; fs::exists(file); ++n) {
-        std::ifstream in(file, std::ios::binary);
-        if (std::string(std::istreambuf_iterator<char>(in), {}) == bytes) return file;
-        file = fs::path(stem) += fmt::format("_{}.png", n);
-    }
-    write_file_whole(file, bytes);
-    return file;
-}
-
 void write_shape(const fs::path& file, MadeShape shape) {
     const std::string ending = file.extension().string();
     if (ending != ".obj" && ending != ".ply") {
         fail(ExitCode::command_line, "{}: can be written as .obj or .ply", file.string());
     }
     if (shape.texture && !shape.mesh.material.empty()) {
-        shape.mesh.material[0].texture = put_picture(
-            fs::absolute(file),
-            encode_png({shape.texture->width, shape.texture->height, shape.texture->rgb}));
+        const fs::path folder = fs::absolute(file).parent_path();
+        shape.mesh.material[0].texture =
+            folder / write_beside(folder, file.stem().string() + ".png",
+                                  encode_png({shape.texture->width, shape.texture->height,
+                                              shape.texture->rgb}));
     }
     ending == ".obj" ? write_obj(file, shape.mesh) : write_ply(file, shape.mesh);
 }

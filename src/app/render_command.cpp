@@ -63,6 +63,15 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     return settings;
 }
 
+// Pictures of another time, and maybe of another camera.
+void remove_others(const DrawnFiles& files, const FrameRange& drawn, int frames, bool film) {
+    std::error_code ignored;
+    for (int f = 1; f <= frames; ++f) {
+        if (f < drawn.first || f > drawn.last) fs::remove(files.still(f), ignored);
+    }
+    if (!film) fs::remove(files.film(), ignored);
+}
+
 int render(const RenderArguments& given) {
     const fs::path run = given.run;
     const std::optional<Json> record = read_record(run / "run.json");
@@ -81,11 +90,11 @@ int render(const RenderArguments& given) {
              "--out",
              out.string());
     }
-    if (given.out.empty()) fs::remove_all(out);  // of another camera
     make_folder(out);
     set_unfinished_work(out);
     Stopwatch watch;
     const DrawOutcome drawn = draw_run(store, settings_of(given, *record), frames, {out}, watch);
+    if (given.out.empty()) remove_others({out}, frames, store.frame_count(), drawn.film);
     log_info("{}: done", out.string());
     if (given.json) {
         Json json = drawing_json(drawn);

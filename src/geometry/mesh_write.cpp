@@ -99,13 +99,7 @@ std::vector<std::string> copy_textures(const fs::path& file,
             names.emplace_back();
             continue;
         }
-        std::string name = wanted, there;
-        for (int n = 2; read_whole(file.parent_path() / name, there) && there != bytes; ++n)
-            name = fmt::format("{}_{}{}", fs::path(wanted).stem().string(), n,
-                               fs::path(wanted).extension().string());
-        if (there != bytes || !fs::exists(file.parent_path() / name))
-            write_file_whole(file.parent_path() / name, bytes);
-        names.push_back(name);
+        names.push_back(write_beside(file.parent_path(), wanted, bytes));
     }
     return names;
 }
@@ -169,6 +163,17 @@ void pack(std::string& bytes, T value) {
 }
 
 }  // namespace
+
+std::string write_beside(const fs::path& folder, const std::string& wanted,
+                         const std::string& bytes) {
+    std::string name = wanted, there;
+    for (int n = 2; read_whole(folder / name, there) && there != bytes; ++n) {
+        name = fmt::format("{}_{}{}", fs::path(wanted).stem().string(), n,
+                           fs::path(wanted).extension().string());
+    }
+    if (there != bytes || !fs::exists(folder / name)) write_file_whole(folder / name, bytes);
+    return name;
+}
 
 void write_obj(const fs::path& file, const TriMesh& mesh) {
     check_indices(file, mesh);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "geometry/trimesh.h"
 
@@ -19,5 +20,10 @@ void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 // coordinates at vertices (s, t) when no seam forbids it, else at face corners (texcoord, an empty
 // list where a face has none), names of textures and, where there are several, texnumber.
 void write_ply(const std::filesystem::path& file, const TriMesh& mesh);
+
+// A file of these bytes in the folder, under the wanted name or, where something else has that,
+// under one like it. Returns its name.
+std::string write_beside(const std::filesystem::path& folder, const std::string& wanted,
+                         const std::string& bytes);
 
 }  // namespace swage

@@ -2,6 +2,7 @@
 #include "pipeline/stage.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <span>
 
@@ -127,10 +128,13 @@ void write_curves(const StageCurves& curves, const StageContext& context) {
     if (context.can_plot && !is_stopping()) draw_plot(curves, fs::path(stem) += ".svg");
 }
 
-// A blade that goes down and up again is followed in steps at most this long, whatever the frames:
-// else few of these would miss how far it went.
+// What a blade sweeps as it turns lies between its poses in steps at most this long.
 constexpr int kBladeSteps = 64;  // of a stage, at least
-int blade_steps(std::size_t legs) { return static_cast<int>((kBladeSteps + legs - 1) / legs); }
+int blade_steps(const std::vector<Leg>& legs) {
+    double longest = 0;
+    for (const Leg& leg : legs) longest = std::max(longest, leg.end - leg.begin);
+    return static_cast<int>(std::ceil(kBladeSteps * longest * (1 - 1e-9)));
+}
 
 // The skin is cut along the whole path of the stage's blades when they reach the matter. True when
 // that was not possible everywhere, so that torn triangles must be removed as they appear.
@@ -212,7 +216,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     const int pieces_before = cuts_any ? piece_count(bodies) : 0;
     for (const std::string& note : machine.notes) log_info("{}: {}", stage.name, note);
     const Legs legs = stage_legs(machine, stage.frames, work_piece);
-    const int steps = cuts_any ? blade_steps(legs.leg.size()) : 1;
+    const int steps = cuts_any ? blade_steps(legs.leg) : 1;
     const std::vector<Drive> way = drives_of(machine, legs.leg, steps, duration);
     const Drive& start = way.front();
     context.recorder.set_machine(machine.apparatus);
@@ -309,7 +313,8 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     }
     const bool keeps_energy =
         stage.sim.solver == Solver::explicit_steps || stage.sim.solver == Solver::energy_stepped;
-    if (const double share = unaccounted(last, round_off(bodies)); keeps_energy && std::abs(share) > kMostGain) {
+    if (const double share = unaccounted(last, round_off(bodies));
+        keeps_energy && std::abs(share) > kMostGain) {
         outcome.warning.push_back(fmt::format(
             "{}: the energy books do not close: {:.2g} % of the energy in play is {}; try a lower "
             "step_safety, more cells, or, where bodies are pressed deep into each other, a larger "

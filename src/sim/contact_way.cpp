@@ -117,15 +117,15 @@ void ContactWay::set_stiffness(double step) {
     const Aggregate &a = from_->matter(), &b = onto_->matter();
     const SurfacePoints& points = from_->points();
     const std::vector<double> modulus = surface_moduli(a, points, solver_);
-    const double other = surface_modulus(b, solver_) / b.lattice.spacing;
+    const double own = pressed_modulus(a.material, solver_),
+                 other = surface_modulus(b, solver_) / b.lattice.spacing;
     const double hold = is_static() ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
     // A point pushes one cell, which larger cells' points would drive in alone.
     const double most = kFaces * b.lattice.spacing * b.lattice.spacing;
     stiffness_.clear();
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const double one = (modulus.empty() ? pressed_modulus(a.material, solver_) : modulus[p]) /
-                           a.lattice.spacing;
+        const double one = (modulus.empty() ? own : modulus[p]) / a.lattice.spacing;
         const double area = std::min(points.area[p], most);
         stiffness_.push_back(scale_ * one * other / (one + other) * area);
         hold_.push_back(hold * area);

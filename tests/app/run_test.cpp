@@ -178,6 +178,19 @@ TEST_CASE("a shipped scene ends in the state that it always ended in, at any num
     }
 }
 
+TEST_CASE("drawn again, a run has no pictures of another time beside the new ones") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path()), run = scratch.path() / "run";
+    REQUIRE(run_swage({"run", scene.string(), "--out", run.string(), "--no-render"}).code == 0);
+    REQUIRE(run_swage({"render", run.string(), "--no-film"}).code == 0);
+    REQUIRE(fs::exists(run / "again/frames/frame_0004.png"));
+    put_text(run / "again/notes.txt", "mine");
+    REQUIRE(run_swage({"render", run.string(), "--no-film", "--frames", "1-2"}).code == 0);
+    CHECK(fs::exists(run / "again/frames/frame_0002.png"));
+    CHECK_FALSE(fs::exists(run / "again/frames/frame_0004.png"));
+    CHECK(fs::exists(run / "again/notes.txt"));
+}
+
 TEST_CASE("a stage that cannot begin leaves what those before it have done") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "machines/machine_spec.h"
 #include "matter/aggregate.h"
 
 namespace swage {
@@ -51,6 +52,20 @@ inline Aggregate bar(int axis = 0, const Vec3& centre = Vec3::Zero()) {
     half[axis] = 0.5;
     divisions[axis] = 80;
     return body_of(box_points(centre - half, centre + half, divisions), 0.0125);
+}
+
+// Grips that hold the two ends of the work-piece; the second may move.
+inline std::vector<GripSpec> vice_grips() {
+    GripSpec hold;
+    hold.name = "hold";
+    hold.from = {"-length", "-height", "-width"};
+    hold.to = {"-0.4*length", "height", "width"};
+    GripSpec turn = hold;
+    turn.name = "turn";
+    turn.from[0] = "0.4*length";
+    turn.to[0] = "length";
+    turn.motion.axis = Vec3::UnitX();
+    return {hold, turn};
 }
 
 }  // namespace swage

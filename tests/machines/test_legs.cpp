@@ -13,18 +13,9 @@ Machine vice(const Expression& turn, const Expression& move = "0",
              const Expression& strength = "1") {
     MachineSpec spec;
     spec.name = "vice";
-    GripSpec hold;
-    hold.name = "hold";
-    hold.from = {"-length", "-height", "-width"};
-    hold.to = {"-0.4*length", "height", "width"};
-    GripSpec goes = hold;
-    goes.name = "goes";
-    goes.from[0] = "0.4*length";
-    goes.to[0] = "length";
-    goes.motion.turn = turn;
-    goes.motion.axis = Vec3::UnitX();
-    goes.motion.move[0] = move;
-    spec.grip = {hold, goes};
+    spec.grip = vice_grips();
+    spec.grip[1].motion.turn = turn;
+    spec.grip[1].motion.move[0] = move;
     spec.gravity_strength = strength;
     const Aggregate body = bar();
     return build_machine(spec, {}, place_work_frame(body, "auto", "auto"), body);

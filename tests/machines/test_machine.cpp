@@ -48,18 +48,9 @@ MachineSpec roller() {
 MachineSpec vice() {
     MachineSpec spec;
     spec.name = "vice";
-    GripSpec hold;
-    hold.name = "hold";
-    hold.from = {"-length", "-height", "-width"};
-    hold.to = {"-0.4*length", "height", "width"};
-    GripSpec turn = hold;
-    turn.name = "turn";
-    turn.from[0] = "0.4*length";
-    turn.to[0] = "length";
-    turn.motion.turn = "450 deg*ramp(t, 0, 1)";
-    turn.motion.axis = Vec3::UnitX();
-    turn.motion.move = {"0.1*length*ramp(t, 0, 1)", "0", "0"};
-    spec.grip = {hold, turn};
+    spec.grip = vice_grips();
+    spec.grip[1].motion.turn = "450 deg*ramp(t, 0, 1)";
+    spec.grip[1].motion.move = {"0.1*length*ramp(t, 0, 1)", "0", "0"};
     return spec;
 }
 
