@@ -238,8 +238,8 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
     if (spec.force) {
         const Vec3 force = setting.frame.world_from_work.turn(evaluate(*spec.force, setting.known));
         double area = 0;
-        for (int p : load.point) area += matter.surface.area[p];
-        for (int p : load.point) load.force.push_back(matter.surface.area[p] / area * force);
+        for (int p : load.point) area += matter.surface.area(p);
+        for (int p : load.point) load.force.push_back(matter.surface.area(p) / area * force);
     } else {
         load.pressure = evaluate(spec.pressure, setting.known);
     }
@@ -280,7 +280,7 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
     for (int p = 0; p < int(touch.size()); ++p) {
         if (!touch.meets(p)) continue;
         setting.touch.push_back(work_from_world *
-                                place_of(touch.points(), p, matter.particle_position));
+                                touch.points().position(std::size_t(p), matter.particle_position));
     }
     setting.known = {{"length", frame.size.x()},
                      {"height", frame.size.y()},

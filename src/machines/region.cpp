@@ -35,8 +35,8 @@ std::vector<int> region_points(const Aggregate& matter, const Pose& world_from_w
             continue;
         }
         if (side != Side::all) {
-            const Vec3 normal = present_area<double>(matter.surface_gradient(p),
-                                                     matter.surface.reference_normal[p]);
+            const Vec3 normal =
+                present_area<double>(matter.surface_gradient(p), matter.surface.normal(p));
             if (side_of(work_from_world * normal) != side) continue;
         }
         points.push_back(static_cast<int>(p));
@@ -50,7 +50,7 @@ bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
     const double a = matter.lattice.spacing;
     using Bin = std::array<int, 3>;
     const auto bin_of = [&](std::size_t p) -> Bin {
-        const Vec3 at = (surface.reference_position[p] - matter.lattice.origin) / a;
+        const Vec3 at = (matter.surface_reference(p) - matter.lattice.origin) / a;
         return {int(std::floor(at.x())), int(std::floor(at.y())), int(std::floor(at.z()))};
     };
     std::map<Bin, std::vector<int>> chosen;
@@ -68,9 +68,9 @@ bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
             if (at == chosen.end()) continue;
             for (int q : at->second) {
                 const double way =
-                    (surface.reference_position[p] - surface.reference_position[q]).norm();
+                    (matter.surface_reference(p) - matter.surface_reference(q)).norm();
                 if (way < kNeighbour * a &&
-                    surface.reference_normal[p].dot(surface.reference_normal[q]) > kLooksApart) {
+                    surface.normal(p).dot(surface.normal(q)) > kLooksApart) {
                     return false;
                 }
             }

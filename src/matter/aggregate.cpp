@@ -87,25 +87,9 @@ Vec3 Aggregate::mean_velocity() const {
     return sum / mass();
 }
 
-Vec3 Aggregate::surface_position(std::size_t point) const {
-    Vec3 x = Vec3::Zero();
-    for (int c = 0; c < 8; ++c) {
-        const double weight = surface.weight[point][c];
-        if (weight != 0) x += weight * particle_position.at(surface.corner[point][c]);
-    }
-    return x;
-}
-
 Mat3 Aggregate::surface_gradient(std::size_t point) const {
-    const auto& corner = surface.corner[point];
-    const auto& weight = surface.weight[point];
-    // The weights are trilinear in the place within the cell, so they tell it.
-    Vec3 at = Vec3::Zero();
-    for (int c = 0; c < 8; ++c) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (c >> axis & 1) at[axis] += double(weight[c]);
-        }
-    }
+    const std::array<ParticleId, 8> corner = surface.corner(point);
+    const Vec3 at = surface.place(point);
     std::array<Vec3, 8> x;
     for (int c = 0; c < 8; ++c) x[c] = particle_position.at(corner[c]);
     Mat3 gradient;
@@ -137,8 +121,7 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(particle_mass) + bytes_of(cell_fill) + cell_centroid.bytes() +
                       bytes_of(cell_cracked) + bytes_of(cell_set) + bytes_of(cell_hardening) +
                       bytes_of(inset) + bytes_of(cell_material) + bytes_of(mixed_cell) +
-                      bytes_of(surface.corner) + bytes_of(surface.weight) + bytes_of(surface.area) +
-                      bytes_of(surface.reference_position) + bytes_of(surface.reference_normal);
+                      surface.bytes();
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& v : cell_plastic_stretch) sum += bytes_of(v);
     for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "matter/carrier_weights.h"
-
 namespace swage {
 
 namespace {
@@ -49,14 +47,14 @@ struct EdgePoint {
 
 }  // namespace
 
-void add_edge_points(const Lattice& lattice, SurfacePoints& points) {
-    const double a = lattice.spacing;
+void add_edge_points(const Aggregate& matter, SurfacePoints& points) {
+    const Lattice& lattice = matter.lattice;
     const std::size_t own = points.size();
     std::vector<Patch> patch(own);
     std::vector<std::array<int, 3>> bin(own);
     for (std::size_t p = 0; p < own; ++p) {
-        patch[p] = {(points.reference_position[p] - lattice.origin) / a,
-                    points.reference_normal[p]};
+        const Vec3 at = points.reference(p, matter.particle_reference);
+        patch[p] = {(at - lattice.origin) / lattice.spacing, points.normal(p)};
         const Vec3 inner = patch[p].place - 1e-3 * patch[p].normal;
         for (int d = 0; d < 3; ++d) bin[p][d] = static_cast<int>(std::floor(2 * inner[d]));
     }
@@ -93,42 +91,24 @@ void add_edge_points(const Lattice& lattice, SurfacePoints& points) {
 
     std::vector<double> given(own, 0.0);          // of a patch's area
     std::vector<Vec3> moment(own, Vec3::Zero());  // about its middle
-    const std::vector<double> area = points.area;
-    const auto local_of = [&](std::size_t p) {
-        Vec3 local = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) {
-            for (int d = 0; d < 3; ++d) {
-                if (c >> d & 1) local[d] += points.weight[p][c];
-            }
-        }
-        return local;
-    };
-    std::vector<Vec3> local(own);
-    for (std::size_t p = 0; p < own; ++p) local[p] = local_of(p);
     for (const EdgePoint& edge : found) {
         const int carrier = edge.patch[0];
-        const Vec3 there = local[carrier] + edge.place - patch[carrier].place;
+        const Vec3 there = points.place(carrier) + edge.place - patch[carrier].place;
         if ((there.array() < -0.25).any() || (there.array() > 1.25).any()) continue;
         double sum = 0;
         Vec3 normal = Vec3::Zero();
         for (int p : edge.patch) {
-            sum += edge.share * area[p] / double(edge.patch.size());
+            sum += edge.share * points.area(p) / double(edge.patch.size());
             normal += patch[p].normal;
             given[p] += edge.share;
             moment[p] += edge.share * (patch[p].place - edge.place);
         }
-        points.corner.push_back(points.corner[carrier]);
-        points.weight.push_back(carrier_weights(there));
-        points.area.push_back(sum);
-        points.reference_position.push_back(lattice.origin + a * edge.place);
-        points.reference_normal.push_back(normal.normalized());
+        points.add(points.row(carrier), there, sum, normal.normalized());
     }
     for (std::size_t p = 0; p < own; ++p) {
         if (given[p] == 0) continue;
         const Vec3 inward = moment[p] / (1 - given[p]);
-        points.area[p] *= 1 - given[p];
-        points.weight[p] = carrier_weights(local[p] + inward);
-        points.reference_position[p] += a * inward;
+        points.move(p, points.place(p) + inward, (1 - given[p]) * points.area(p));
     }
 }
 

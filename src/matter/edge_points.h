@@ -13,6 +13,6 @@ namespace swage {
 // moments stay as they are, and along a straight patch the second too. The new point has the mean
 // of what it is given, since one side at a time lies on what it meets. New points come after the
 // others, which keep their carriers and numbers.
-void add_edge_points(const Lattice& lattice, SurfacePoints& points);
+void add_edge_points(const Aggregate& matter, SurfacePoints& points);
 
 }  // namespace swage

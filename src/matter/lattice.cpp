@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "matter/aggregate.h"
+#include "matter/lattice.h"
 
 namespace swage {
 
@@ -177,11 +177,17 @@ Vec3i Lattice::cell_site(CellId cell) const {
     return {run.i + (cell - run.first), run.j, run.k};
 }
 
-std::array<ParticleId, 8> Lattice::cell_corners(CellId cell) const {
+std::array<ParticleId, 4> Lattice::cell_row(CellId cell) const {
     const CellRun& run = run_of_cell(cell_run, cell);
-    const int n = cell - run.first;
+    std::array<ParticleId, 4> row = run.row;
+    for (ParticleId& p : row) p += cell - run.first;
+    return row;
+}
+
+std::array<ParticleId, 8> Lattice::cell_corners(CellId cell) const {
+    const std::array<ParticleId, 4> row = cell_row(cell);
     std::array<ParticleId, 8> corner;
-    for (int c = 0; c < 8; ++c) corner[c] = run.row[c >> 1] + n + (c & 1);
+    for (int c = 0; c < 8; ++c) corner[c] = row[c >> 1] + (c & 1);
     return corner;
 }
 

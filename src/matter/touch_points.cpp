@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "matter/carrier_weights.h"
 #include "matter/edge_points.h"
 
 namespace swage {
@@ -11,16 +10,16 @@ namespace swage {
 TouchPoints::TouchPoints(const Aggregate& matter, With with)
     : with_(with), points_(matter.surface) {
     const Lattice& lattice = matter.lattice;
-    add_edge_points(lattice, points_);
+    add_edge_points(matter, points_);
     own_ = points_.size();
     std::vector<CellId> by_low_corner(matter.particle_count(), -1);
     for (const CellRun& run : lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) by_low_corner[run.row[0] + n] = run.first + n;
     }
     for (std::size_t p = 0; p < own_; ++p) {
-        carrier_.push_back(by_low_corner[points_.corner[p][0]]);
-        const Vec3 inner = (points_.reference_position[p] - lattice.origin) / lattice.spacing -
-                           1e-3 * points_.reference_normal[p];
+        carrier_.push_back(by_low_corner[points_.row(p)[0]]);
+        const Vec3 at = points_.reference(p, matter.particle_reference);
+        const Vec3 inner = (at - lattice.origin) / lattice.spacing - 1e-3 * points_.normal(p);
         home_.push_back(inner.array().floor().cast<int>());
     }
     connections_changed(matter);
@@ -33,24 +32,14 @@ int TouchPoints::face_point(const Lattice& lattice, CellId cell, const Vec3i& si
     Vec3 place = Vec3::Constant(0.5);
     place[axis] += out;
     const double a = lattice.spacing;
-    points_.corner.push_back(lattice.cell_corners(cell));
-    points_.weight.push_back(carrier_weights(place));
-    points_.area.push_back(a * a);
-    points_.reference_position.push_back(lattice.origin + a * (site.cast<double>() + place));
-    points_.reference_normal.push_back(out * Vec3::Unit(axis));
+    points_.add(lattice.cell_row(cell), place, a * a, out * Vec3::Unit(axis));
     home_.push_back(site);
     return at->second;
 }
 
-int TouchPoints::loose_point(const Aggregate& matter, ParticleId particle) {
+int TouchPoints::loose_point(double spacing, ParticleId particle) {
     const auto [at, is_new] = loose_.try_emplace(particle, static_cast<int>(points_.size()));
-    if (!is_new) return at->second;
-    const double a = matter.lattice.spacing;
-    points_.corner.emplace_back().fill(particle);
-    points_.weight.push_back({1, 0, 0, 0, 0, 0, 0, 0});
-    points_.area.push_back(a * a);
-    points_.reference_position.push_back(matter.particle_reference.at(particle));
-    points_.reference_normal.push_back(Vec3::UnitY());  // it has none
+    if (is_new) points_.add_loose(particle, spacing * spacing, Vec3::UnitY());  // it has none
     return at->second;
 }
 
@@ -64,8 +53,8 @@ void TouchPoints::add_loose(const Aggregate& matter) {
     }
     for (std::size_t p = 0; p < held.size(); ++p) {
         if (held[p]) continue;
-        const auto point =
-            static_cast<std::size_t>(loose_point(matter, static_cast<ParticleId>(p)));
+        const auto point = static_cast<std::size_t>(
+            loose_point(matter.lattice.spacing, static_cast<ParticleId>(p)));
         if (point == meets_.size()) meets_.push_back(0);
         meets_[point] = 1;
     }

@@ -35,7 +35,7 @@ class TouchPoints {
 
   private:
     int face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face);
-    int loose_point(const Aggregate& matter, ParticleId particle);
+    int loose_point(double spacing, ParticleId particle);
     void add_loose(const Aggregate& matter);
 
     With with_;
@@ -47,15 +47,5 @@ class TouchPoints {
     std::map<std::pair<CellId, int>, int> face_;  // the point before a face of a cell
     std::map<ParticleId, int> loose_;             // the point of a particle
 };
-
-// Where a point is now [m].
-inline Vec3 place_of(const SurfacePoints& points, int point, const Vec3Array& position) {
-    Vec3 x = Vec3::Zero();
-    for (int c = 0; c < 8; ++c) {
-        const double w = points.weight[point][c];
-        if (w != 0) x += w * position.at(points.corner[point][c]);
-    }
-    return x;
-}
 
 }  // namespace swage

@@ -188,7 +188,7 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     place_insets(insets, layers, frame, matter);
     share_out(layers, frame, matter);
     match_moments(frame.step, matter);
-    matter.surface = carry_patches(layers, frame, matter.lattice, matter.cell_fill);
+    matter.surface = carry_patches(layers, matter.lattice, matter.cell_fill);
     tell_findings(mesh, frame, volume, layers, lost, matter);
     return matter;
 }

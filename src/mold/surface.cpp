@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "matter/carrier_weights.h"
 
 namespace swage {
 
@@ -82,8 +81,8 @@ CellId firm_cell(const Lattice& lattice, const std::vector<float>& fill, const V
 
 }  // namespace
 
-SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFrame& frame,
-                            const Lattice& lattice, const std::vector<float>& fill) {
+SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const Lattice& lattice,
+                            const std::vector<float>& fill) {
     struct Chunk {
         int k;
         std::size_t begin, end, first;  // patches of the layer; the first's number in all
@@ -99,11 +98,7 @@ SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFram
         }
     }
     SurfacePoints surface;
-    surface.corner.resize(count);
-    surface.weight.resize(count);
-    surface.area.resize(count);
-    surface.reference_position.resize(count);
-    surface.reference_normal.resize(count);
+    surface.resize(count);
     parallel_for(chunks.size(), [&](std::size_t c) {
         const Chunk& chunk = chunks[c];
         for (std::size_t n = chunk.begin; n < chunk.end; ++n) {
@@ -125,11 +120,7 @@ SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFram
             }
             const Vec3 free = point - site.cast<double>();
             const Vec3 local = free.cwiseMax(-overhang).cwiseMin(1 + overhang);
-            surface.corner[p] = lattice.cell_corners(cell);
-            surface.weight[p] = carrier_weights(local);
-            surface.area[p] = patch.area;
-            surface.reference_position[p] = frame.point(2 * (site.cast<double>() + local));
-            surface.reference_normal[p] = patch.normal;
+            surface.set(p, lattice.cell_row(cell), local, patch.area, patch.normal);
         }
     });
     return surface;

@@ -7,7 +7,7 @@
 
 namespace swage {
 
-SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const MoldFrame& frame,
-                            const Lattice& lattice, const std::vector<float>& fill);
+SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const Lattice& lattice,
+                            const std::vector<float>& fill);
 
 }  // namespace swage

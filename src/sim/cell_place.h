@@ -31,13 +31,6 @@ struct CellGradient {
     double volume;
 };
 
-// Of a place in a cell, by corner.
-SWAGE_INLINE std::array<double, 8> trilinear_weights(const Vec3& p) {
-    const double qx = 1 - p.x(), qy = 1 - p.y(), qz = 1 - p.z();
-    const double ll = qy * qz, hl = p.y() * qz, lh = qy * p.z(), hh = p.y() * p.z();
-    return {qx * ll, p.x() * ll, qx * hl, p.x() * hl, qx * lh, p.x() * lh, qx * hh, p.x() * hh};
-}
-
 // Whether x has been found by Newton's method from `place`, which goes on; false too where the
 // cell is inside out.
 SWAGE_INLINE bool find_in_cell(const CellCorners& corner, Vec4 x, double spacing, Vec3& place,

@@ -49,10 +49,10 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             if (pair.gone) continue;
             const Tool& tool = apparatus_->tool[pair.tool];
             const Pose& pose = now.world_from_tool[pair.tool];
-            const Vec3 x = place_of(points(), pair.point, matter.particle_position);
+            const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
             const Touch found = pair.next;
             pair.next = {.local = tool_from_world[pair.tool] * x};
-            const double hold = stickiness_ * points().area[pair.point];
+            const double hold = stickiness_ * points().area(pair.point);
             Distance d = distance_to(tool.shape, pair.next.local);
             d.value += pair.deep;
             if (d.value >= 0 && !(pair.history.touches && hold > 0)) continue;
@@ -127,9 +127,9 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
     for (const Meeting& m : meeting) {
         const int point = pair_[m.pair].point;
         spread(surface, point, m.spring, force);
+        const SurfacePoints::Carriers by = surface.carriers(static_cast<std::size_t>(point));
         for (int c = 0; c < 8; ++c) {
-            bears_[surface.corner[point][c]] +=
-                std::abs(surface.weight[point][c]) * m.law.stiffness;
+            bears_[by.corner[c]] += std::abs(by.weight[c]) * m.law.stiffness;
         }
     }
     parallel_for((meeting.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
@@ -139,10 +139,11 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
             const Pair& pair = pair_[m.pair];
             Vec3 v = Vec3::Zero(), push = gravity;
             double give = 0;  // S
+            const auto by = surface.carriers(static_cast<std::size_t>(pair.point));
             for (int c = 0; c < 8; ++c) {
-                const double w = surface.weight[pair.point][c];
+                const double w = by.weight[c];
                 if (w == 0) continue;
-                const ParticleId p = surface.corner[pair.point][c];
+                const ParticleId p = by.corner[c];
                 const double lightness = w / matter.particle_mass[p];
                 v += w * matter.particle_velocity.at(p);
                 push += lightness * force.at(p);
@@ -169,7 +170,7 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
     for (const Meeting& m : meeting) {
         Pair& pair = pair_[m.pair];
         const ImpactForce& f = m.result;
-        for (ParticleId p : surface.corner[pair.point]) bears_[p] = 0;
+        for (ParticleId p : surface.corner(pair.point)) bears_[p] = 0;
         spread(surface, pair.point, f.force - m.spring, force);
         if (!f.history.touches) continue;
         const Pose& pose = now.world_from_tool[pair.tool];

@@ -71,7 +71,7 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
 
 double ContactSet::point_stiffness(std::size_t point, double tool_says) const {
     const double modulus = point_modulus_.empty() ? pressed_modulus_ : point_modulus_[point];
-    return settings_.stiffness_of_contacts(tool_says) * modulus * points().area[point] / spacing_;
+    return settings_.stiffness_of_contacts(tool_says) * modulus * points().area(point) / spacing_;
 }
 
 double ContactSet::pair_stiffness(const Pair& pair) const {
@@ -81,7 +81,7 @@ double ContactSet::pair_stiffness(const Pair& pair) const {
 
 double ContactSet::grip_stiffness(const Aggregate& matter, int point) const {
     const double modulus = grip_modulus_.empty() ? pressed_modulus_ : grip_modulus_[point];
-    const double k = settings_.grip_stiffness * modulus * matter.surface.area[point] / spacing_;
+    const double k = settings_.grip_stiffness * modulus * matter.surface.area(point) / spacing_;
     return grip_limit_.empty() ? k : std::min(k, grip_limit_[point]);
 }
 
@@ -109,7 +109,7 @@ void ContactSet::connections_changed(const Aggregate& matter) {
     point_modulus_ = surface_moduli(matter, points(), settings_.solver);
     if (!stiffness_limit_.empty()) limit_stiffness(matter, limit_step_);
     for (std::size_t p = start_position_.size(); p < points().size(); ++p) {
-        start_position_.push_back(place_of(points(), int(p), matter.particle_position));
+        start_position_.push_back(points().position(std::size_t(p), matter.particle_position));
     }
 }
 
@@ -121,7 +121,7 @@ void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
     parallel_for(chunks, [&](std::size_t chunk) {
         const std::size_t end = std::min(start_position_.size(), (chunk + 1) * kPointsPerChunk);
         for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
-            start_position_[p] = place_of(points(), int(p), matter.particle_position);
+            start_position_[p] = points().position(std::size_t(p), matter.particle_position);
         }
     });
     for (const Pose& pose : from.world_from_tool)
@@ -155,7 +155,7 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
             for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
                 if (!touch_->meets(int(p))) continue;
                 const Vec3 local =
-                    tool_from_world * place_of(points(), int(p), matter.particle_position);
+                    tool_from_world * points().position(std::size_t(p), matter.particle_position);
                 if ((local.array() < reach.low.array()).any() ||
                     (local.array() > reach.high.array()).any()) {
                     continue;
@@ -163,7 +163,7 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                 const double distance = distance_to(tool.shape, local).value;
                 if (distance >= spacing_) continue;
                 double carried = 0;  // at most, of how far its particles move
-                for (float w : points().weight[p]) carried += std::abs(w);
+                for (double w : points().carriers(p).weight) carried += std::abs(w);
                 near[chunk].push_back({static_cast<int>(p),
                                        kSureShare * distance / (std::sqrt(3.0) * carried),
                                        distance});
@@ -184,8 +184,8 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                     Pair& pair = found.emplace_back(Pair{tool_id, p, false, Vec3::Zero()});
                     const bool is_new_surface = static_cast<std::size_t>(p) >= touch_->own();
                     if (is_new_surface) pair.deep = std::max(0.0, -distance);
-                    pair.next.local =
-                        tool_from_world * place_of(points(), p, matter.particle_position);
+                    pair.next.local = tool_from_world *
+                                      points().position(std::size_t(p), matter.particle_position);
                 }
             }
         }
@@ -199,9 +199,8 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
 
 void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
     const auto add = [&](const SurfacePoints& surface, int point, double k) {
-        for (int c = 0; c < 8; ++c) {
-            stiffness[surface.corner[point][c]] += std::abs(surface.weight[point][c]) * k;
-        }
+        const SurfacePoints::Carriers by = surface.carriers(static_cast<std::size_t>(point));
+        for (int c = 0; c < 8; ++c) stiffness[by.corner[c]] += std::abs(by.weight[c]) * k;
     };
     // Normal and tangential stiffness are equal, so each point pulls with k in every direction.
     for (const Pair& pair : pair_) add(points(), pair.point, pair_stiffness(pair));
@@ -260,7 +259,7 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
         if (clearance_[n] > moved || pair.gone) continue;
         const Tool& tool = apparatus_->tool[pair.tool];
         const Pose& pose = now.world_from_tool[pair.tool];
-        const Vec3 x = place_of(points(), pair.point, matter.particle_position);
+        const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
         Distance d = distance_to(tool.shape, tool_from_world[pair.tool] * x);
         d.value += pair.deep;
         if (d.value >= 0) continue;
@@ -360,7 +359,7 @@ double ContactSet::commit(const Aggregate& matter, const Drive& now) {
     // Explicit steps that may follow find what rests.
     for (std::size_t n = 0; n < pair_.size(); ++n) {
         Pair& pair = pair_[n];
-        const Vec3 x = place_of(points(), pair.point, matter.particle_position);
+        const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
         const Vec3 local = now.world_from_tool[pair.tool].inverse() * x;
         come_out(pair, local);
         pair.stuck = touches[n];
@@ -400,7 +399,7 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
         const Pose tool_from_world = from.world_from_tool[t].inverse();
         for (std::size_t p = 0; p < points().size(); ++p) {
             if (!touch_->meets(int(p))) continue;
-            const Vec3 x = place_of(points(), int(p), matter.particle_position);
+            const Vec3 x = points().position(std::size_t(p), matter.particle_position);
             const Vec3 local = tool_from_world * x;
             if (distance_to(tool.shape, local).value > most + 2 * spacing_) continue;
             farthest = std::max(farthest, (to.world_from_tool[t] * local - x).norm());

@@ -31,7 +31,7 @@ ContactSide::ContactSide(Aggregate& matter, bool itself)
       patch_(matter),
       itself_(itself),
       touch_(matter, TouchPoints::With::bodies),
-      molded_(std::make_shared<const RestSurface>(matter.lattice, matter.surface)) {
+      molded_(std::make_shared<const RestSurface>(matter)) {
     find_cells();
 }
 
@@ -95,11 +95,14 @@ RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
 void ContactSide::find_near() {
     const Lattice& lattice = matter_->lattice;
     const std::vector<Vec3i>& home_of = touch_.home();
+    own_place_.resize(home_of.size());
     near_set_.assign(home_of.size(), -1);
     std::vector<Vec3i> home;  // of points that follow one another and share it
     for (std::size_t p = 0; p < home_of.size(); ++p) {
         if (p == 0 || home_of[p] != home_of[p - 1]) home.push_back(home_of[p]);
         near_set_[p] = static_cast<int>(home.size()) - 1;
+        const Vec3 at = points().reference(p, matter_->particle_reference);
+        own_place_[p] = ((at - lattice.origin) / lattice.spacing).cast<float>();
     }
     near_.assign(home.size(), {});
     parallel_for((home.size() + kSets - 1) / kSets, [&](std::size_t chunk) {

@@ -28,7 +28,7 @@ class ContactSide {
     // The body's own; those of new surface come after them.
     std::size_t own_points() const { return touch_.own(); }
     bool meets(int point) const { return touch_.meets(point); }
-    Vec3 position(int point) const { return place_of(points(), point, matter_->particle_position); }
+    Vec3 position(int point) const { return points().position(std::size_t(point), matter_->particle_position); }
     // Of all ways that this side is part of.
     ContactPatch& patch() { return patch_; }
     const ContactPatch& patch() const { return patch_; }
@@ -69,10 +69,7 @@ class ContactSide {
     RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;
     void find_cells();
     void find_near();
-    Vec3 own_place(int point) const {
-        return (points().reference_position[point] - matter_->lattice.origin) /
-               matter_->lattice.spacing;
-    }
+    Vec3 own_place(int point) const { return own_place_[point].cast<double>(); }
 
     Aggregate* matter_;
     ContactPatch patch_;
@@ -82,6 +79,8 @@ class ContactSide {
     std::shared_ptr<const CutSurface> cut_;  // null where all is whole
     std::vector<CellId> rim_;
     std::vector<ParticleId> skin_;
+    // With itself: of each point its place at molding, from the lattice's origin, in cells.
+    std::vector<Eigen::Vector3f> own_place_;
     // Of each point a set, of each set a bit for each cell of the box around its home.
     std::vector<int> near_set_;
     std::vector<std::array<std::uint64_t, 12>> near_;

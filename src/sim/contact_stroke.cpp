@@ -65,7 +65,7 @@ ContactSet::Stroke ContactSet::stroke(const Aggregate& matter, const Drive& from
         if (pair.gone) continue;
         const Tool& tool = apparatus_->tool[pair.tool];
         const Pose &first = from.world_from_tool[pair.tool], &last = to.world_from_tool[pair.tool];
-        const Vec3 x = place_of(points(), pair.point, matter.particle_position);
+        const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
         const Vec3& start = start_position_[pair.point];
         const auto distance = [&](const Pose& pose, const Vec3& at) {
             Distance d = distance_to(tool.shape, pose.inverse() * at);

@@ -18,6 +18,19 @@ constexpr std::size_t kChunk = 256;  // contacts
 constexpr double kShare = 1;         // of the 4 by which explicit steps go in turns
 constexpr double kFaces = 2;         // of a cell, as which at most a point counts on it
 
+// Trilinear weights of a place in a cell, in steps of 2^-23, so that as floats they still sum to
+// exactly one.
+std::array<float, 8> shares_at(const Vec3& place) {
+    constexpr double kOne = 1 << 23;
+    std::array<double, 8> weight = trilinear_weights(place);
+    double sum = 0;
+    for (double& w : weight) sum += w = std::round(w * kOne);
+    *std::max_element(weight.begin(), weight.end()) += kOne - sum;
+    std::array<float, 8> share;
+    for (int c = 0; c < 8; ++c) share[c] = static_cast<float>(weight[c] / kOne);
+    return share;
+}
+
 std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
 }  // namespace
@@ -85,10 +98,13 @@ void ContactWay::resolve() {
         }
         contact.corner = corner;
         contact.carriers = 0;
+        const auto point = static_cast<std::size_t>(contact.point);
+        const std::array<ParticleId, 8> carrier = points.corner(point);
+        const std::array<float, 8> share = shares_at(points.place(point));
         for (int c = 0; c < 8; ++c) {
-            const float w = points.weight[contact.point][c];
+            const float w = share[c];
             if (w == 0) continue;
-            const int slot = from_->patch().slot_of(points.corner[contact.point][c]);
+            const int slot = from_->patch().slot_of(carrier[c]);
             point_push_.grow(slot);
             contact.carrier[contact.carriers] = slot;
             contact.share[contact.carriers++] = w;
@@ -126,7 +142,7 @@ void ContactWay::set_stiffness(double step) {
     hold_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
         const double one = (modulus.empty() ? own : modulus[p]) / a.lattice.spacing;
-        const double area = std::min(points.area[p], most);
+        const double area = std::min(points.area(p), most);
         stiffness_.push_back(scale_ * one * other / (one + other) * area);
         hold_.push_back(hold * area);
     }
@@ -179,10 +195,8 @@ void ContactWay::add_stiffness(std::vector<double>& stiffness) const {
     const SurfacePoints& points = from_->points();
     for (const Contact& contact : list_.contact) {
         const double k = share_ * stiffness_[contact.point];
-        for (int c = 0; c < 8; ++c) {
-            stiffness[points.corner[contact.point][c]] +=
-                k * std::abs(points.weight[contact.point][c]);
-        }
+        const auto by = points.carriers(static_cast<std::size_t>(contact.point));
+        for (int c = 0; c < 8; ++c) stiffness[by.corner[c]] += k * std::abs(by.weight[c]);
         // Until candidates are found anew the place may move by half a cell.
         const std::array<double, 8> weight = trilinear_weights(contact.place);
         const auto corner = onto_->matter().lattice.cell_corners(contact.cell);

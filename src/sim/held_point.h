@@ -10,12 +10,13 @@ namespace swage {
 // A point of the surface that something holds or presses on.
 struct HeldPoint {
     std::array<ParticleId, 8> corner;  // as of SurfacePoints
-    std::array<float, 8> weight;
+    std::array<double, 8> weight;
     Mat3 stiffness;  // [N/m]
 };
 
 inline HeldPoint held_point(const SurfacePoints& points, int point, const Mat3& stiffness) {
-    return {points.corner[point], points.weight[point], stiffness};
+    const SurfacePoints::Carriers by = points.carriers(static_cast<std::size_t>(point));
+    return {by.corner, by.weight, stiffness};
 }
 
 }  // namespace swage

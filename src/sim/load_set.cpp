@@ -18,8 +18,8 @@ Vec3 centre_of(const Aggregate& matter, const std::vector<int>& points,
     Vec3 sum = Vec3::Zero();
     double area = 0;
     for (std::size_t n = 0; n < points.size(); ++n) {
-        sum += matter.surface.area[points[n]] * position[n];
-        area += matter.surface.area[points[n]];
+        sum += matter.surface.area(points[n]) * position[n];
+        area += matter.surface.area(points[n]);
     }
     return area > 0 ? Vec3(sum / area) : sum;
 }
@@ -51,13 +51,13 @@ void balance(const Aggregate& matter, const std::vector<int>& points, std::vecto
     Mat3 inertia = Mat3::Zero();
     for (std::size_t n = 0; n < points.size(); ++n) {
         const Vec3 r = position[n] - sum.centre;
-        const double a = matter.surface.area[points[n]];
+        const double a = matter.surface.area(points[n]);
         area += a;
         inertia += a * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
     }
     const Vec3 push = sum.force / area, turn = inertia.ldlt().solve(sum.torque);
     for (std::size_t n = 0; n < points.size(); ++n) {
-        force[n] -= matter.surface.area[points[n]] * (push + turn.cross(position[n] - sum.centre));
+        force[n] -= matter.surface.area(points[n]) * (push + turn.cross(position[n] - sum.centre));
     }
 }
 
@@ -120,7 +120,7 @@ double LoadSet::size(const Aggregate& matter, const Drive& now) const {
         double sum = 0;
         for (const Vec3& force : load.force) sum += force.norm();
         if (load.force.empty()) {
-            for (int p : load.point) sum += std::abs(load.pressure) * matter.surface.area[p];
+            for (int p : load.point) sum += std::abs(load.pressure) * matter.surface.area(p);
         }
         largest = std::max(largest, std::abs(now.load_strength[l]) * sum);
     }

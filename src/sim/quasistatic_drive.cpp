@@ -49,9 +49,10 @@ void QuasistaticSolver::find_carriers() {
         const Grip& grip = apparatus_.grip[g];
         const int carries = grip.hold == Vec3::Ones() ? static_cast<int>(g) : kSeveral;
         for (int point : grip.point) {
+            const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
             for (int c = 0; c < 8; ++c) {
-                if (matter_.surface.weight[point][c] == 0) continue;
-                int& of = of_piece[pieces.particle_piece[matter_.surface.corner[point][c]]];
+                if (by.weight[c] == 0) continue;
+                int& of = of_piece[pieces.particle_piece[by.corner[c]]];
                 of = of == kNone || of == carries ? carries : kSeveral;
             }
         }

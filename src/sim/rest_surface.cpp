@@ -59,16 +59,18 @@ SurfaceDepth interpolate_depth(const std::array<float, 8>& d, const Vec3& p) {
             Vec3(q.z() * gx0 + p.z() * gx1, q.z() * (d10 - d00) + p.z() * (d11 - d01), d1 - d0)};
 }
 
-RestSurface::RestSurface(const Lattice& lattice, const SurfacePoints& surface) {
+RestSurface::RestSurface(const Aggregate& matter) {
+    const Lattice& lattice = matter.lattice;
+    const SurfacePoints& surface = matter.surface;
     const CellRun& last = lattice.cell_run.back();
     slot_.assign(last.first + last.count, -1);
     const double a = lattice.spacing;
     std::vector<Vec3> place;
     std::vector<std::uint64_t> key;
-    for (const Vec3& x : surface.reference_position) {
-        place.push_back((x - lattice.origin) / a);
+    for (std::size_t p = 0; p < surface.size(); ++p) {
+        place.push_back((matter.surface_reference(p) - lattice.origin) / a);
         // A point on a face between bins belongs to the inner one.
-        const Vec3 inner = place.back() - 1e-3 * surface.reference_normal[place.size() - 1];
+        const Vec3 inner = place.back() - 1e-3 * surface.normal(p);
         key.push_back(key_of(floor_of(inner)));
     }
     std::vector<int> order(place.size());
@@ -80,7 +82,7 @@ RestSurface::RestSurface(const Lattice& lattice, const SurfacePoints& surface) {
         }
         ++bin_.back().count;
         point_.push_back(place[p]);
-        normal_.push_back(surface.reference_normal[p]);
+        normal_.push_back(surface.normal(p));
     }
 
     std::vector<Vec3i> site_of_bin;

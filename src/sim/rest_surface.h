@@ -41,7 +41,7 @@ SurfaceDepth interpolate_depth(const std::array<float, 8>& corner, const Vec3& p
 
 class RestSurface {
   public:
-    RestSurface(const Lattice& lattice, const SurfacePoints& points);
+    explicit RestSurface(const Aggregate& matter);
 
     using Depth = SurfaceDepth;
     // `place` in the cell, each 0 to 1, or a little outside. Nothing is known of cells that lie

@@ -24,21 +24,13 @@ SurfaceDrag::SurfaceDrag(const Aggregate& matter, const SimSettings& settings, d
     const SurfacePoints& surface = matter.surface;
     const double a = matter.lattice.spacing;
     for (std::size_t p = 0; p < surface.size(); ++p) {
-        // The weights are trilinear in the place within the cell, so they tell it.
-        Vec3 place = Vec3::Zero();
-        for (int c = 0; c < 8; ++c) {
-            for (int d = 0; d < 3; ++d) {
-                if (c >> d & 1) place[d] += double(surface.weight[p][c]);
-            }
-        }
-        if (cell_.empty() || cell_.back().corner != surface.corner[p]) {
-            cell_.push_back({surface.corner[p], p, p});
-        }
+        const SurfacePoints::Carriers by = surface.carriers(p);
+        if (cell_.empty() || cell_.back().corner != by.corner) cell_.push_back({by.corner, p, p});
         ++cell_.back().end;
         Patch& patch = patch_.emplace_back();
-        patch.place = vec4(place, kMostShare * lightest_carrier(matter, p) / step);
-        patch.area = vec4(surface.area[p] / (a * a) * surface.reference_normal[p]);
-        for (int c = 0; c < 8; ++c) patch.weight[c] = double(surface.weight[p][c]);
+        patch.place = vec4(surface.place(p), kMostShare * lightest_carrier(matter, p) / step);
+        patch.area = vec4(surface.area(p) / (a * a) * surface.normal(p));
+        patch.weight = by.weight;
     }
     push_.resize(cell_.size());
     chunk_.resize((cell_.size() + kChunk - 1) / kChunk);

@@ -14,16 +14,17 @@ namespace swage {
 inline Vec3 surface_area_vector(const Aggregate& matter, int point) {
     const SurfacePoints& surface = matter.surface;
     return present_area<double>(matter.surface_gradient(point),
-                                surface.area[point] * surface.reference_normal[point]);
+                                surface.area(point) * surface.normal(point));
 }
 
 // Mass of the lightest particle that carries a good share of the point [kg].
 inline double lightest_carrier(const Aggregate& matter, const SurfacePoints& points,
                                std::size_t point) {
+    const SurfacePoints::Carriers by = points.carriers(point);
     double lightest = std::numeric_limits<double>::infinity();
     for (int c = 0; c < 8; ++c) {
-        if (points.weight[point][c] <= 0.05f) continue;
-        lightest = std::min(lightest, matter.particle_mass[points.corner[point][c]]);
+        if (by.weight[c] <= 0.05) continue;
+        lightest = std::min(lightest, matter.particle_mass[by.corner[c]]);
     }
     return lightest;
 }
@@ -41,9 +42,8 @@ std::vector<double> stiffest_of_points(const Aggregate& matter, const SurfacePoi
 
 // Adds a force on the point to the particles that carry it; force and moment are kept exactly.
 inline void spread(const SurfacePoints& surface, int point, const Vec3& f, Vec3Array& force) {
-    for (int c = 0; c < 8; ++c) {
-        force.add(surface.corner[point][c], double(surface.weight[point][c]) * f);
-    }
+    const SurfacePoints::Carriers by = surface.carriers(point);
+    for (int c = 0; c < 8; ++c) force.add(by.corner[c], by.weight[c] * f);
 }
 
 }  // namespace swage

@@ -37,16 +37,10 @@ std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints&
     }
     std::vector<double> modulus;
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const CellId own = cell[points.corner[p][0]];
+        const CellId own = cell[points.row(p)[0]];
         int material = matter.cell_material[own];
         if (const MixedCell* mixed = matter.mixed_at(own)) {
-            Vec3 place = Vec3::Constant(-0.5);
-            for (int c = 0; c < 8; ++c) {
-                for (int axis = 0; axis < 3; ++axis) {
-                    if (c >> axis & 1) place[axis] += double(points.weight[p][c]);
-                }
-            }
-            material = material_at(*mixed, place);
+            material = material_at(*mixed, points.place(p) - Vec3::Constant(0.5));
         }
         modulus.push_back(pressed_modulus(matter.material_at(material), solver));
     }
@@ -59,8 +53,8 @@ double surface_modulus(const Aggregate& matter, Solver solver) {
     if (modulus.empty()) return own;
     double sum = 0, area = 0;
     for (std::size_t p = 0; p < modulus.size(); ++p) {
-        sum += matter.surface.area[p] * modulus[p];
-        area += matter.surface.area[p];
+        sum += matter.surface.area(p) * modulus[p];
+        area += matter.surface.area(p);
     }
     return area > 0 ? sum / area : own;
 }

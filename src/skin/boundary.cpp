@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "matter/carrier_weights.h"
 #include "skin/mount.h"
 #include "skin/voxel_place.h"
 #include "skin/voxel_surface.h"

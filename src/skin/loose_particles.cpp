@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "matter/carrier_weights.h"
 
 namespace swage {
 

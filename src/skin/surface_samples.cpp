@@ -19,7 +19,7 @@ SurfaceSamples::SurfaceSamples(const Aggregate& matter) : lattice_(matter.lattic
     std::vector<CellId> cell(count);
     first_.assign(matter.cell_fill.size() + 1, 0);
     for (std::size_t s = 0; s < count; ++s) {
-        cell[s] = carrying_cell(matter, matter.surface.reference_position[s]);
+        cell[s] = carrying_cell(matter, matter.surface_reference(s));
         ++first_[cell[s] + 1];
     }
     for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
@@ -27,8 +27,8 @@ SurfaceSamples::SurfaceSamples(const Aggregate& matter) : lattice_(matter.lattic
     std::vector<int> next(first_.begin(), first_.end() - 1);
     for (std::size_t s = 0; s < count; ++s) {
         sample_[next[cell[s]]++] = {
-            (matter.surface.reference_position[s] - lattice_.origin) / lattice_.spacing,
-            matter.surface.reference_normal[s]};
+            (matter.surface_reference(s) - lattice_.origin) / lattice_.spacing,
+            matter.surface.normal(s)};
     }
 }
 

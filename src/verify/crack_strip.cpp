@@ -57,7 +57,7 @@ Tip tip_of(const Aggregate& m, const Vec3& along, const Vec3& across, double unt
 std::vector<int> clamped(const Aggregate& matter, const Vec3& across, int side, double half) {
     std::vector<int> points;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        const Vec3& x = matter.surface.reference_position[p];
+        const Vec3& x = matter.surface_reference(p);
         if (side * across.dot(x) > half) points.push_back(static_cast<int>(p));
     }
     return points;

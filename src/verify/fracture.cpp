@@ -98,9 +98,8 @@ void cantilevers(bool, Values& values) {
             // One row of points, so that the end may turn.
             std::vector<int> points = end_face(m, side * Vec3::UnitY());
             double first = 0;
-            for (int p : points) first = std::min(first, m.surface.reference_position[p].x());
-            std::erase_if(points,
-                          [&](int p) { return m.surface.reference_position[p].x() > first + 0.1; });
+            for (int p : points) first = std::min(first, m.surface_reference(p).x());
+            std::erase_if(points, [&](int p) { return m.surface_reference(p).x() > first + 0.1; });
             stand.grip(points);
         }
         // Slender beams: G = 3 E h^3 opening^2 / (16 a^4).

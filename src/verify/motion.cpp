@@ -132,7 +132,7 @@ double mode_frequency(int across, int mode, int swings) {
     clamp.name = "clamp";
     clamp.point = end_face(bar.matter, -Vec3::UnitX());
     for (int p : clamp.point) {
-        clamp.anchor.push_back(bar.matter.surface.reference_position[p]);
+        clamp.anchor.push_back(bar.matter.surface_reference(p));
     }
     bar.apparatus.grip.push_back(clamp);
     bar.drive.world_from_grip.push_back(Pose{});

@@ -56,11 +56,11 @@ double at_place(const Aggregate& matter, const std::vector<int>& points, const V
     Mat3 square = Mat3::Zero();
     Vec3 mixed = Vec3::Zero();
     for (int p : points) {
-        const Vec3 way = matter.surface.reference_position[p] - place;
+        const Vec3 way = matter.surface_reference(p) - place;
         if (way.norm() > reach) continue;
         const Vec3 terms(1, way.x(), way.y());
-        square += matter.surface.area[p] * terms * terms.transpose();
-        mixed += matter.surface.area[p] * quantity(p) * terms;
+        square += matter.surface.area(p) * terms * terms.transpose();
+        mixed += matter.surface.area(p) * quantity(p) * terms;
     }
     return square.ldlt().solve(mixed)[0];
 }
@@ -78,7 +78,7 @@ void thick_plate(bool, Values& values) {
         const auto points_on = [&](const auto& condition) {
             std::vector<int> points;
             for (std::size_t p = 0; p < surface.size(); ++p) {
-                if (condition(surface.reference_position[p], surface.reference_normal[p])) {
+                if (condition(stand.matter.surface_reference(p), surface.normal(p))) {
                     points.push_back(static_cast<int>(p));
                 }
             }
@@ -106,7 +106,7 @@ void thick_plate(bool, Values& values) {
 
         const auto move = [&](int axis) {
             return [&, axis](int p) {
-                return (stand.matter.surface_position(p) - surface.reference_position[p])[axis];
+                return (stand.matter.surface_position(p) - stand.matter.surface_reference(p))[axis];
             };
         };
         const auto stress_yy = [&](int p) {

@@ -53,7 +53,7 @@ void hollow_ball(bool, Values& values) {
         std::vector<int> inner, outer;
         const SurfacePoints& surface = stand.matter.surface;
         for (std::size_t p = 0; p < surface.size(); ++p) {
-            const bool inside = surface.reference_position[p].norm() < 0.5 * (kInner + kOuter);
+            const bool inside = stand.matter.surface_reference(p).norm() < 0.5 * (kInner + kOuter);
             (inside ? inner : outer).push_back(static_cast<int>(p));
         }
         stand.press(inner, kPressure, true);
@@ -61,8 +61,8 @@ void hollow_ball(bool, Values& values) {
         const auto move_outward = [&](const std::vector<int>& points) {
             double way = 0;
             for (int p : points) {
-                way += surface.area[p] * (stand.matter.surface_position(p).norm() -
-                                          surface.reference_position[p].norm());
+                way += surface.area(p) * (stand.matter.surface_position(p).norm() -
+                                          stand.matter.surface_reference(p).norm());
             }
             return way / area_of(stand.matter, points);
         };

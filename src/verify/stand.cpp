@@ -74,12 +74,14 @@ TriMesh turned(TriMesh mesh, const Quat& rotation) {
 std::vector<int> end_face(const Aggregate& matter, const Vec3& outward) {
     const SurfacePoints& surface = matter.surface;
     double farthest = -std::numeric_limits<double>::infinity();
-    for (const Vec3& x : surface.reference_position) farthest = std::max(farthest, outward.dot(x));
+    for (std::size_t p = 0; p < surface.size(); ++p) {
+        farthest = std::max(farthest, outward.dot(matter.surface_reference(p)));
+    }
     const double slack = 0.05 * matter.lattice.spacing;
     std::vector<int> points;
     for (std::size_t p = 0; p < surface.size(); ++p) {
-        if (outward.dot(surface.reference_normal[p]) > 0.9 &&
-            outward.dot(surface.reference_position[p]) > farthest - slack) {
+        if (outward.dot(surface.normal(p)) > 0.9 &&
+            outward.dot(matter.surface_reference(p)) > farthest - slack) {
             points.push_back(static_cast<int>(p));
         }
     }
@@ -88,21 +90,20 @@ std::vector<int> end_face(const Aggregate& matter, const Vec3& outward) {
 
 double area_of(const Aggregate& matter, const std::vector<int>& points) {
     double area = 0;
-    for (int p : points) area += matter.surface.area[p];
+    for (int p : points) area += matter.surface.area(p);
     return area;
 }
 
 Vec3 mean_position(const Aggregate& matter, const std::vector<int>& points) {
     Vec3 sum = Vec3::Zero();
-    for (int p : points) sum += matter.surface.area[p] * matter.surface_position(p);
+    for (int p : points) sum += matter.surface.area(p) * matter.surface_position(p);
     return sum / area_of(matter, points);
 }
 
 Vec3 mean_move(const Aggregate& matter, const std::vector<int>& points) {
     Vec3 sum = Vec3::Zero();
     for (int p : points) {
-        sum += matter.surface.area[p] *
-               (matter.surface_position(p) - matter.surface.reference_position[p]);
+        sum += matter.surface.area(p) * (matter.surface_position(p) - matter.surface_reference(p));
     }
     return sum / area_of(matter, points);
 }
@@ -131,7 +132,7 @@ int Stand::load(const std::vector<int>& points, const Vec3& force) {
     load.name = "load " + std::to_string(apparatus.load.size() + 1);
     load.point = points;
     const double area = area_of(matter, points);
-    for (int p : points) load.force.push_back(matter.surface.area[p] / area * force);
+    for (int p : points) load.force.push_back(matter.surface.area(p) / area * force);
     apparatus.load.push_back(std::move(load));
     drive.load_strength.push_back(1);
     return static_cast<int>(apparatus.load.size()) - 1;
@@ -212,7 +213,7 @@ namespace {
 std::vector<int> points_near(const Aggregate& matter, const Vec3& along, double s, double half) {
     std::vector<int> points;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        const double at = along.dot(matter.surface.reference_position[p]);
+        const double at = along.dot(matter.surface_reference(p));
         if (std::abs(at - s) <= half) points.push_back(static_cast<int>(p));
     }
     return points;
@@ -226,9 +227,9 @@ Mat3 mean_gradient(const Aggregate& matter, const Vec3& along, double s, double 
     const Vec3 to = mean_position(matter, points), from = to - mean_move(matter, points);
     Mat3 square = Mat3::Zero(), mixed = Mat3::Zero();
     for (int p : points) {
-        const Vec3 r = surface.reference_position[p] - from;
-        square += surface.area[p] * r * r.transpose();
-        mixed += surface.area[p] * (matter.surface_position(p) - to) * r.transpose();
+        const Vec3 r = matter.surface_reference(p) - from;
+        square += surface.area(p) * r * r.transpose();
+        mixed += surface.area(p) * (matter.surface_position(p) - to) * r.transpose();
     }
     return mixed * square.inverse();
 }

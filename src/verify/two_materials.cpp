@@ -53,12 +53,12 @@ void layers_along(bool brief, Values& values) {
                     load.point = end_face(stand.matter, side * Vec3::UnitX());
                     force = moment = 0;
                     for (int p : load.point) {
-                        const double at = stand.matter.surface.reference_position[p].y();
+                        const double at = stand.matter.surface_reference(p).y();
                         // The patch is half a cell high.
                         const double soft = std::clamp((y - at) / (0.5 * a) + 0.5, 0.0, 1.0);
                         const double modulus = soft + kStiff * (1 - soft);
                         const double pull =
-                            stand.matter.surface.area[p] * modulus * kStrain * (bends ? at : 1.0);
+                            stand.matter.surface.area(p) * modulus * kStrain * (bends ? at : 1.0);
                         load.force.push_back(side * pull * Vec3::UnitX());
                         force += pull, moment += pull * at;
                     }

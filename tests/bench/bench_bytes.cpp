@@ -57,7 +57,6 @@ void body(const char* name, double wanted, const Material& material) {
     for (const auto& v : m.cell_plastic_stretch) history += bytes_of(v);
     for (const auto& v : m.cell_plastic_modes) history += bytes_of(v);
     for (const auto& v : m.cell_plastic) history += bytes_of(v);
-    const SurfacePoints& s = m.surface;
     fmt::print(
         "{:<9}{:>8.0f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>10.1f}{:>9.1f}{:>10.1f}"
         "{:>10.1f}\n",
@@ -67,9 +66,8 @@ void body(const char* name, double wanted, const Material& material) {
             cells,
         weight / cells, plastic / cells,
         (bytes_of(m.cell_fill) + static_cast<double>(m.cell_centroid.bytes())) / cells,
-        history / cells,
-        bytes_of(s.corner, s.weight, s.area, s.reference_position, s.reference_normal) / cells,
-        (matter - empty) / cells, (stepped - empty) / cells);
+        history / cells, static_cast<double>(m.surface.bytes()) / cells, (matter - empty) / cells,
+        (stepped - empty) / cells);
 }
 
 }  // namespace

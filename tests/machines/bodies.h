@@ -2,6 +2,8 @@
 // Bodies for these tests: surface points only, each carried by a particle of its own.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "machines/machine_spec.h"
@@ -9,20 +11,29 @@
 
 namespace swage {
 
+// `points` lie on the sites of some lattice.
 inline Aggregate body_of(const std::vector<Vec3>& points, double spacing) {
     Aggregate body;
+    Lattice sites;
+    Vec3 low = points[0], step = Vec3::Constant(std::numeric_limits<double>::infinity());
+    for (const Vec3& x : points) low = low.cwiseMin(x);
+    for (const Vec3& x : points) {
+        for (int d = 0; d < 3; ++d) {
+            const double way = x[d] - low[d];
+            if (way > 1e-6 * spacing) step[d] = std::min(step[d], way);
+        }
+    }
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const Vec3i at = ((points[p] - low).cwiseQuotient(step)).array().round().cast<int>();
+        sites.particle_run.push_back({at.x(), at.y(), at.z(), ParticleId(p), 1});
+    }
+    body.particle_reference = ReferencePlaces(low, step, sites);
     body.lattice.spacing = spacing;
     body.particle_position.resize(points.size());
     body.particle_mass.resize(points.size(), 1.0);
     for (std::size_t p = 0; p < points.size(); ++p) {
         body.particle_position.set(p, points[p]);
-        std::array<ParticleId, 8> corner;
-        corner.fill(static_cast<ParticleId>(p));
-        body.surface.corner.push_back(corner);
-        body.surface.weight.push_back({1, 0, 0, 0, 0, 0, 0, 0});
-        body.surface.area.push_back(spacing * spacing);
-        body.surface.reference_position.push_back(points[p]);
-        body.surface.reference_normal.push_back(Vec3::UnitX());
+        body.surface.add_loose(static_cast<ParticleId>(p), spacing * spacing, Vec3::UnitX());
     }
     return body;
 }

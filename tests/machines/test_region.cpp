@@ -41,7 +41,7 @@ TEST_CASE("the six sides share out the surface, and each looks where its name sa
     for (const auto& [side, normal] : sides) {
         const Machine machine = with(matter, push(side));
         const Load& load = machine.apparatus.load.at(0);
-        for (int p : load.point) CHECK(matter.surface.reference_normal[p] == normal);
+        for (int p : load.point) CHECK(matter.surface.normal(p) == normal);
         CHECK_FALSE(load.closed);
         points += load.point.size();
     }
@@ -59,7 +59,7 @@ TEST_CASE(
     CHECK(load.point.size() == 2 * 3 * 4);
     Vec3 sum = Vec3::Zero();
     for (std::size_t n = 0; n < load.point.size(); ++n) {
-        const double y = matter.surface.reference_position[load.point[n]].y();
+        const double y = matter.surface_reference(load.point[n]).y();
         CHECK((y > 0 && y < 0.2));
         CHECK((load.force[n] - load.force[0]).norm() < 1e-15);
         sum += load.force[n];

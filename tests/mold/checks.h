@@ -57,9 +57,9 @@ inline void check_matter(const TriMesh& mesh, const Aggregate& matter) {
     double area = 0;
     double farthest = 0;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        area += matter.surface.area[p];
-        farthest = std::max(
-            farthest, (matter.surface_position(p) - matter.surface.reference_position[p]).norm());
+        area += matter.surface.area(p);
+        farthest =
+            std::max(farthest, (matter.surface_position(p) - matter.surface_reference(p)).norm());
     }
     CHECK(area == Approx(surface_area(mesh)).epsilon(1e-9));
     CHECK(farthest < 1e-6 * (matter.lattice.spacing + box_of(mesh.position).high.norm()));

@@ -42,15 +42,15 @@ TEST_CASE("a bar of whole cells is molded into exactly these cells") {
     check_matter(bar, matter);
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
         // On a face, not on an edge, one of four on the face of a cell.
-        CHECK(matter.surface.area[p] == Approx(h * h / 4));
-        const Vec3 u = (matter.surface.reference_position[p] - at) / h;
+        CHECK(matter.surface.area(p) == Approx(h * h / 4));
+        const Vec3 u = (matter.surface_reference(p) - at) / h;
         int on_face = 0;
         for (int d = 0; d < 3; ++d) {
             const double side = d == 0 ? 16 : 2;
             on_face += std::abs(u[d]) < 1e-9 || std::abs(u[d] - side) < 1e-9;
         }
         CHECK(on_face == 1);
-        CHECK(matter.surface.reference_normal[p].cwiseAbs().maxCoeff() == Approx(1));
+        CHECK(matter.surface.normal(p).cwiseAbs().maxCoeff() == Approx(1));
     }
     CHECK(matter.surface.size() == 4 * (4 * 32 + 2 * 4));
 }
@@ -95,8 +95,7 @@ TEST_CASE("the mold is the same at any number of threads") {
         const Aggregate more = mold_across(mesh, 14);
         CHECK(state_hash(more) == state_hash(one));
         CHECK(more.cell_fill == one.cell_fill);
-        CHECK(more.surface.weight == one.surface.weight);
-        CHECK(more.surface.area == one.surface.area);
+        CHECK(more.surface == one.surface);
     }
     set_thread_count(0);
 }
@@ -110,10 +109,10 @@ TEST_CASE("a surface point moves with its cell") {
         matter.particle_position.set(p, pose * (strain * matter.particle_reference.at(p)));
     double farthest = 0;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        const Vec3 expected = pose * (strain * matter.surface.reference_position[p]);
+        const Vec3 expected = pose * (strain * matter.surface_reference(p));
         farthest = std::max(farthest, (matter.surface_position(p) - expected).norm());
-        float sum = 0;
-        for (float w : matter.surface.weight[p]) sum += w;
+        double sum = 0;
+        for (double w : matter.surface.carriers(p).weight) sum += w;
         CHECK(sum == Approx(1).epsilon(1e-6));
     }
     CHECK(farthest < 1e-6);
@@ -131,11 +130,11 @@ TEST_CASE("a surface point is carried by a firm cell, or by the fullest within r
     };
     int thin = 0;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        const Vec3& point = matter.surface.reference_position[p];
+        const Vec3 point = matter.surface_reference(p);
         float carrier = 0, fullest = 0;
         for (CellId cell = 0; cell < static_cast<CellId>(matter.cell_fill.size()); ++cell) {
             const Vec3 low = corner(cell, 0), high = corner(cell, 7);
-            if (lattice.cell_corners(cell) == matter.surface.corner[p]) {
+            if (lattice.cell_corners(cell) == matter.surface.corner(p)) {
                 carrier = matter.cell_fill[cell];
             }
             if ((point - point.cwiseMax(low).cwiseMin(high)).norm() < 0.45 * lattice.spacing) {

@@ -54,19 +54,8 @@ inline Aggregate make_block(int nx, int ny, int nz, double a, const Material& ma
                     normal[axis] = end ? 1 : -1;
                     xi[(axis + 1) % 3] = q & 1 ? 0.75 : 0.25;
                     xi[(axis + 2) % 3] = q & 2 ? 0.75 : 0.25;
-                    std::array<float, 8> shares;
-                    for (int n = 0; n < 8; ++n) {
-                        shares[n] = 1;
-                        for (int s = 0; s < 3; ++s) {
-                            shares[n] *= static_cast<float>(n >> s & 1 ? xi[s] : 1 - xi[s]);
-                        }
-                    }
-                    m.surface.corner.push_back(corner);
-                    m.surface.weight.push_back(shares);
-                    m.surface.area.push_back(a * a / 4);
-                    m.surface.reference_normal.push_back(normal);
-                    m.surface.reference_position.push_back(origin +
-                                                           a * (cells[c].cast<double>() + xi));
+                    m.surface.add({corner[0], corner[2], corner[4], corner[6]}, xi, a * a / 4,
+                                  normal);
                 }
             }
         }
@@ -82,7 +71,7 @@ template <typename Condition>
 std::vector<int> points_where(const Aggregate& matter, const Condition& condition) {
     std::vector<int> points;
     for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        if (condition(matter.surface.reference_position[p])) points.push_back(static_cast<int>(p));
+        if (condition(matter.surface_reference(p))) points.push_back(static_cast<int>(p));
     }
     return points;
 }

@@ -104,18 +104,7 @@ inline Aggregate make_shape(const Distance& distance, const Vec3& low, const Vec
             const Vec3 xi = (at - corner) / (a / 2);
             if ((xi.array() < -slack).any() || (xi.array() > 1 + slack).any()) continue;
             const Vec3 local = (at - low) / a - cells[c].cast<double>();
-            std::array<float, 8> weight;
-            for (int n = 0; n < 8; ++n) {
-                weight[n] = 1;
-                for (int d = 0; d < 3; ++d) {
-                    weight[n] *= static_cast<float>(n >> d & 1 ? local[d] : 1 - local[d]);
-                }
-            }
-            m.surface.corner.push_back(m.lattice.cell_corners(static_cast<CellId>(c)));
-            m.surface.weight.push_back(weight);
-            m.surface.area.push_back(a * a / 4);
-            m.surface.reference_position.push_back(at);
-            m.surface.reference_normal.push_back(normal);
+            m.surface.add(m.lattice.cell_row(static_cast<CellId>(c)), local, a * a / 4, normal);
         }
     }
     return m;

@@ -283,7 +283,7 @@ struct Floor {
         Grip hold;
         hold.name = "hold";
         hold.point = points_where(plate, [](const Vec3& x) { return x.y() < -0.0999; });
-        for (int p : hold.point) hold.anchor.push_back(plate.surface.reference_position[p]);
+        for (int p : hold.point) hold.anchor.push_back(plate.surface_reference(p));
         apparatus.name = "floor";
         apparatus.grip.push_back(hold);
         place(block, {Quat::Identity(), Vec3(0, 0.09999, 0)});

@@ -41,7 +41,7 @@ TEST_CASE("a column between grips buckles at Euler's load and bears no more") {
     for (double end : {-1.0, 1.0}) {
         Grip grip;
         for (std::size_t n = 0; n < column.matter.surface.size(); ++n) {
-            const Vec3 x = column.matter.surface.reference_position[n];
+            const Vec3 x = column.matter.surface_reference(n);
             if (end * x.x() < 0.5 * kLength - 1e-9) continue;
             grip.point.push_back(static_cast<int>(n));
             grip.anchor.push_back(x - Vec3(end * 0.5 * kLength, 0, 0));
@@ -100,7 +100,7 @@ TEST_CASE("a column that bears more than Euler's load bends to where the elastic
     load.name = "push";
     const auto& surface = column.matter.surface;
     for (std::size_t n = 0; n < surface.size(); ++n) {
-        const Vec3 x = surface.reference_position[n];
+        const Vec3 x = column.matter.surface_reference(n);
         if (x.x() < -0.5 * kLength + 1e-9) {
             grip.point.push_back(static_cast<int>(n));
             grip.anchor.push_back(x + Vec3(0.5 * kLength, 0, 0));

@@ -112,7 +112,7 @@ TEST_CASE("an edge that falls on small cells gains nothing from them, nor by fra
         const double energy = b.mass() * 10 * 0.01;
         Grip hold;
         hold.point = points_where(a, [](const Vec3& x) { return x.y() < -0.0499; });
-        for (int p : hold.point) hold.anchor.push_back(a.surface.reference_position[p]);
+        for (int p : hold.point) hold.anchor.push_back(a.surface_reference(p));
         Apparatus apparatus;
         apparatus.grip.push_back(hold);
         SimSettings settings = motion_settings();

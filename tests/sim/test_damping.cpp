@@ -146,7 +146,7 @@ TEST_CASE("a body falling through air follows the tanh of quadratic drag") {
     // Terminal speed 10 m/s: m g = 1/2 c rho (A / 4) v^2.
     Aggregate m = make_block(3, 3, 3, 0.1, springy(0.1));
     double area = 0;
-    for (double a : m.surface.area) area += a;
+    for (std::size_t p = 0; p < m.surface.size(); ++p) area += m.surface.area(p);
     SimSettings settings = motion_settings();
     settings.gravity = {0, -9.81, 0};
     settings.step_safety = 0.2;

@@ -26,8 +26,8 @@ Load force_on(const Aggregate& matter, std::vector<int> points, const Vec3& forc
     Load load;
     load.name = "push";
     double area = 0;
-    for (int p : points) area += matter.surface.area[p];
-    for (int p : points) load.force.push_back(matter.surface.area[p] / area * force);
+    for (int p : points) area += matter.surface.area(p);
+    for (int p : points) load.force.push_back(matter.surface.area(p) / area * force);
     load.point = std::move(points);
     return load;
 }

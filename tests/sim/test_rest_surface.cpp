@@ -18,7 +18,7 @@ struct Error {
 
 // Against the exact distance, at places inside and less than `deep` spacings from the surface.
 Error error_of(const Aggregate& m, const test::Distance& exact, double deep) {
-    const RestSurface surface(m.lattice, m.surface);
+    const RestSurface surface(m);
     std::mt19937 random(1);
     std::uniform_real_distribution<double> any(0, 1);
     const double a = m.lattice.spacing;
@@ -71,7 +71,7 @@ TEST_CASE("a box keeps its edges, and a plate one cell thick its two sides") {
     for (const Vec3i& count : {Vec3i(6, 6, 6), Vec3i(8, 1, 8)}) {
         const Aggregate m = make_block(count.x(), count.y(), count.z(), 0.1, any);
         const Vec3 half = 0.05 * count.cast<double>();
-        const RestSurface surface(m.lattice, m.surface);
+        const RestSurface surface(m);
         std::mt19937 random(1);
         std::uniform_real_distribution<double> in(-0.97, 0.97);
         for (int n = 0; n < 4000; ++n) {
@@ -113,12 +113,12 @@ TEST_CASE("depth is continuous along any line through edges, corners and cells")
     for (const Aggregate& m : {make_block(4, 3, 3, 0.1, {}),
                                make_shape(box, Vec3(-0.6, -0.6, -0.6), Vec3i(12, 12, 12), 0.1),
                                make_shape(ball, Vec3(-0.4, -0.4, -0.4), Vec3i(8, 8, 8), 0.1)}) {
-        const RestSurface surface(m.lattice, m.surface);
+        const RestSurface surface(m);
         double jump = 0, slope = 0;
         int crossed = 0, odd = 0;
         for (int line = 0; line < 1000; ++line) {
             const std::size_t p = random() % m.surface.size();
-            const Vec3 start = (m.surface.reference_position[p] - m.lattice.origin) / 0.1;
+            const Vec3 start = (m.surface_reference(p) - m.lattice.origin) / 0.1;
             const Vec3 way = Vec3(any(random), any(random), any(random));
             // Both sides of every plane between samples.
             for (int axis = 0; axis < 3; ++axis) {
@@ -165,7 +165,7 @@ TEST_CASE("nothing is deeper than a sliver where the cells of parts thinner than
             return std::min(x.norm() - 0.17, cone);
         };
         const Aggregate m = make_shape(horn, Vec3(-0.3, -0.3, -0.3), Vec3i(9, 9, 9), 0.1);
-        const RestSurface surface(m.lattice, m.surface);
+        const RestSurface surface(m);
         double deepest = 0, at_once = 0;
         int slopes = 0, creases = 0;
         for (CellId cell : surface.skin()) {

@@ -60,9 +60,9 @@ TEST_CASE("what goes into a body from any side meets it at its surface, not deep
         ContactSide side(matter, false);
         for (int n = 0; n < 1500; ++n) {
             const std::size_t p = random() % matter.surface.size();
-            const Vec3 normal = matter.surface.reference_normal[p];
-            const Vec3 foot = matter.surface.reference_position[p] +
-                              0.3 * a * Vec3(any(random), any(random), any(random));
+            const Vec3 normal = matter.surface.normal(p);
+            const Vec3 foot =
+                matter.surface_reference(p) + 0.3 * a * Vec3(any(random), any(random), any(random));
             double depth = -1, above = 0;
             for (double way = 0.4; way > -0.4 && !(depth > 0); way -= 0.004) {
                 const Vec3 x = foot + way * a * normal;

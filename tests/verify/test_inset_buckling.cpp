@@ -40,7 +40,7 @@ TEST_CASE("a column with a stiff core between grips buckles at its own Euler loa
     for (double end : {-1.0, 1.0}) {
         Grip grip;
         for (std::size_t n = 0; n < column.surface.size(); ++n) {
-            const Vec3 x = column.surface.reference_position[n];
+            const Vec3 x = column.surface_reference(n);
             if (end * x.x() < 0.5 * kLength - 1e-9) continue;
             grip.point.push_back(static_cast<int>(n));
             grip.anchor.push_back(x - Vec3(end * 0.5 * kLength, 0, 0));

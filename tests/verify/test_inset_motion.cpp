@@ -97,7 +97,7 @@ TEST_CASE("a surface is as stiff as the material just beneath it") {
     const std::vector<double> modulus = surface_moduli(m, m.surface, rest);
     REQUIRE(modulus.size() == m.surface.size());
     for (std::size_t p = 0; p < modulus.size(); ++p) {
-        const double x = m.surface.reference_position[p].x();
+        const double x = m.surface_reference(p).x();
         if (std::abs(x - 2.1) > 0.01) CHECK(modulus[p] == (x < 2.1 ? 1.0 : 100.0));
     }
     CHECK(surface_modulus(m, rest) == Approx(1 + 99 * (1.9 + 0.0625) / (4 + 0.125)).epsilon(0.02));
