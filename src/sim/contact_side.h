@@ -28,7 +28,9 @@ class ContactSide {
     // The body's own; those of new surface come after them.
     std::size_t own_points() const { return touch_.own(); }
     bool meets(int point) const { return touch_.meets(point); }
-    Vec3 position(int point) const { return points().position(std::size_t(point), matter_->particle_position); }
+    Vec3 position(int point) const {
+        return points().position(std::size_t(point), matter_->particle_position);
+    }
     // Of all ways that this side is part of.
     ContactPatch& patch() { return patch_; }
     const ContactPatch& patch() const { return patch_; }

@@ -166,7 +166,7 @@ void drop_crumbs(const Aggregate& matter, const Pieces& pieces, const std::vecto
 }
 
 // Where cells touch at an edge or a corner only, their surfaces have vertices of their own at one
-// place. Each goes a little into its own cell, for what reads a mesh may join what lies at one
+// place. Each goes a little into its own voxel, for what reads a mesh may join what lies at one
 // place. Not along a cut, which is closed until it opens.
 void part_touching(const Aggregate& matter, const VoxelSurface& surface,
                    const std::vector<Owner>& owner, std::vector<Vec3>& reference) {
@@ -186,7 +186,10 @@ void part_touching(const Aggregate& matter, const VoxelSurface& surface,
         const int p = point[v];
         if (p < 0 || !shared[p] || cut[p]) continue;
         const CellBox box = cell_box(matter, owner[v].cell);
-        const Vec3 way = box.low + 0.5 * box.size - reference[v];
+        const int c = owner[v].corner;
+        const Vec3 half(c & 1, c >> 1 & 1, c >> 2);
+        const Vec3 middle = Vec3::Constant(0.25) + 0.5 * half;  // of the voxel, in the cell
+        const Vec3 way = box.low + middle.cwiseProduct(box.size) - reference[v];
         const double far = way.norm();
         if (far > 0) reference[v] += kApart * matter.lattice.spacing / far * way;
     }
@@ -195,8 +198,9 @@ void part_touching(const Aggregate& matter, const VoxelSurface& surface,
 }  // namespace
 
 TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
-    VoxelSurface surface = voxel_surface(matter);
-    const std::vector<Vec3> place = place_points(matter, surface);
+    const SurfaceSamples samples(matter);
+    VoxelSurface surface = voxel_surface(matter, samples);
+    const std::vector<Vec3> place = place_points(matter, samples, surface);
     const Pieces pieces = find_pieces(matter);
     drop_crumbs(matter, pieces, place, surface);
 

@@ -17,6 +17,9 @@ class SurfaceSamples {
     // `facing`: about outward, so that the far side of a thin part does not count. `normal` becomes
     // the mean normal there.
     bool project(const Vec3& facing, Vec3& place, Vec3& normal) const;
+    // How far a place near the surface lies outside it, by the planes of the samples around, in
+    // spacings; negative inside, and where there is no surface near.
+    double height(const Vec3& place, Vec3* normal = nullptr) const;
 
   private:
     struct Sample {

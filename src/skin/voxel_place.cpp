@@ -17,14 +17,14 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  // points
-constexpr int kRounds = 4, kCutRounds = 40, kUnfoldRounds = 12;
+constexpr int kEvenRounds = 4, kRounds = 6, kCutRounds = 40, kUnfoldRounds = 12;
 constexpr double kFarthest = 2;   // spacings that a point may go from where the voxels have it
 constexpr int kSlidingRings = 4;  // around a cut, of points that make room for its rim
 
 class Placer {
   public:
-    Placer(const Aggregate& matter, const VoxelSurface& surface)
-        : matter_(matter), surface_(surface), samples_(matter), a_(matter.lattice.spacing) {}
+    Placer(const Aggregate& matter, const SurfaceSamples& samples, const VoxelSurface& surface)
+        : matter_(matter), surface_(surface), samples_(samples), a_(matter.lattice.spacing) {}
 
     std::vector<Vec3> run() {
         start();
@@ -32,6 +32,7 @@ class Placer {
         target_ = cut_targets(matter_, surface_, place_);
         find_neighbors();
         open_rings();
+        even_out();
         for (int round = 0; round < kRounds; ++round) settle(round > 0, false);
         // The steps of a cut take longer to even out, for only then no triangle is folded.
         for (int round = 0; round < kCutRounds && any_cut(); ++round) settle(true, true);
@@ -92,9 +93,14 @@ class Placer {
         if (!any_dropped_) return false;
         for (int n = 0; n < 8; ++n) {
             std::array<int, 3> cell;
-            for (int d = 0; d < 3; ++d) cell[d] = (site[d] + (n >> d & 1 ? 0 : -1)) >> 1;
+            int corner = 0;
+            for (int d = 0; d < 3; ++d) {
+                const int voxel = site[d] + (n >> d & 1) - 1;
+                cell[d] = voxel >> 1;
+                corner |= (voxel & 1) << d;
+            }
             const CellId at = matter_.lattice.cell_at(cell[0], cell[1], cell[2]);
-            if (at >= 0 && !surface_.cell_kept[at]) return true;
+            if (at >= 0 && !(surface_.kept[at] >> corner & 1)) return true;
         }
         return false;
     }
@@ -176,6 +182,29 @@ class Placer {
         return std::any_of(slides_.begin(), slides_.end(), [](char slides) { return slides; });
     }
 
+    // Evens out the voxels' steps, which on a slope stand one over the other, and has the points
+    // face as the surface then does.
+    void even_out() {
+        const auto moves = [&](std::size_t s) { return outer_[s] && !exact_[s] && !on_cut_[s]; };
+        for (int round = 0; round < kEvenRounds; ++round) {
+            std::vector<Vec3> next = place_;
+            for_each_point([&](std::size_t s) {
+                if (moves(s)) next[s] += 0.5 * (mean_of_neighbors(s) - place_[s]);
+            });
+            place_ = std::move(next);
+        }
+        std::vector<Vec3> sum(count(), Vec3::Zero());
+        for (const VoxelFace& face : surface_.face) {
+            if (face.cut) continue;
+            const Vec3 own = (place_[face.point[2]] - place_[face.point[0]])
+                                 .cross(place_[face.point[3]] - place_[face.point[1]]);
+            for (int p : face.point) sum[p] += own;
+        }
+        for (std::size_t s = 0; s < count(); ++s) {
+            if (moves(s) && sum[s].norm() > 0) normal_[s] = facing_[s] = sum[s].normalized();
+        }
+    }
+
     void settle(bool relax, bool only_at_cuts) {
         std::vector<Vec3> next = place_;
         for_each_point([&](std::size_t s) {
@@ -209,7 +238,8 @@ class Placer {
     }
 
     // In parts hardly wider than a cell the nearest surface may be round the corner. Points of
-    // faces that look inwards are drawn in between their neighbours until none is left.
+    // faces that look inwards are drawn in between their neighbours, along the surface, until none
+    // is left; at last wherever that may be.
     void unfold() {
         for (int round = 0; round < kUnfoldRounds; ++round) {
             std::vector<char> folded(count(), 0);
@@ -232,6 +262,9 @@ class Placer {
             for (std::size_t s = 0; s < count(); ++s) {
                 if (!folded[s] || exact_[s] || target_[s]) continue;
                 next[s] += 0.7 * (mean_of_neighbors(s) - place_[s]);
+                Vec3 unused;
+                const bool last = round == kUnfoldRounds - 1;
+                if (outer_[s] && !last) samples_.project(normal_[s], next[s], unused);
             }
             place_ = std::move(next);
         }
@@ -276,12 +309,12 @@ class Placer {
 
     const Aggregate& matter_;
     const VoxelSurface& surface_;
-    const SurfaceSamples samples_;
+    const SurfaceSamples& samples_;
     const double a_;
-    const bool any_dropped_ = std::any_of(surface_.cell_kept.begin(), surface_.cell_kept.end(),
-                                          [](char kept) { return !kept; });
+    const bool any_dropped_ = std::any_of(surface_.kept.begin(), surface_.kept.end(),
+                                          [](CornerMask kept) { return kept != kAllCorners; });
     std::vector<Vec3> start_, place_, normal_;
-    std::vector<Vec3> facing_;  // normals of the voxels' faces, which tell edges from sides
+    std::vector<Vec3> facing_;  // what it does before it meets the true surface: tells edges from sides
     std::vector<char> outer_, on_cut_, exact_, fixed_axis_, slides_;
     std::vector<std::optional<CutTarget>> target_;
     std::vector<int> first_, neighbor_;
@@ -289,9 +322,10 @@ class Placer {
 
 }  // namespace
 
-std::vector<Vec3> place_points(const Aggregate& matter, const VoxelSurface& surface) {
+std::vector<Vec3> place_points(const Aggregate& matter, const SurfaceSamples& samples,
+                               const VoxelSurface& surface) {
     if (surface.face.empty()) return {};
-    return Placer(matter, surface).run();
+    return Placer(matter, samples, surface).run();
 }
 
 }  // namespace swage

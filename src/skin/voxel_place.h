@@ -11,6 +11,7 @@ namespace swage {
 
 // One place [m] for each site: on the body's true surface where that is known; on smooth cut faces
 // half-way between the particles that were severed. The enclosed volume is the matter's.
-std::vector<Vec3> place_points(const Aggregate& matter, const VoxelSurface& surface);
+std::vector<Vec3> place_points(const Aggregate& matter, const SurfaceSamples& samples,
+                               const VoxelSurface& surface);
 
 }  // namespace swage

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "geometry/disjoint_sets.h"
-#include "skin/cell_thinning.h"
+#include "skin/voxel_thinning.h"
 
 namespace swage {
 
@@ -21,8 +21,8 @@ struct Voxel {
 
 class Builder {
   public:
-    explicit Builder(const Aggregate& matter) : matter_(matter) {
-        surface_.cell_kept = cells_to_draw(matter);
+    Builder(const Aggregate& matter, const SurfaceSamples& samples) : matter_(matter) {
+        surface_.kept = voxels_to_draw(matter, samples);
     }
 
     VoxelSurface build() {
@@ -39,30 +39,29 @@ class Builder {
 
     void find_neighbors() {
         const Lattice& lattice = matter_.lattice;
-        next_.resize(surface_.cell_kept.size());
-        corner_.resize(surface_.cell_kept.size());
+        next_.resize(surface_.kept.size());
+        corner_.resize(surface_.kept.size());
         for (const CellRun& run : lattice.cell_run) {
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
                 const int i = run.i + n;
-                const auto kept = [&](CellId c) {
-                    return c >= 0 && surface_.cell_kept[c] ? c : -1;
-                };
-                next_[cell] = {kept(n + 1 < run.count ? cell + 1 : -1),
-                               kept(lattice.cell_at(i, run.j + 1, run.k)),
-                               kept(lattice.cell_at(i, run.j, run.k + 1)),
-                               kept(n > 0 ? cell - 1 : -1),
-                               kept(lattice.cell_at(i, run.j - 1, run.k)),
-                               kept(lattice.cell_at(i, run.j, run.k - 1))};
+                next_[cell] = {
+                    n + 1 < run.count ? cell + 1 : -1,    lattice.cell_at(i, run.j + 1, run.k),
+                    lattice.cell_at(i, run.j, run.k + 1), n > 0 ? cell - 1 : -1,
+                    lattice.cell_at(i, run.j - 1, run.k), lattice.cell_at(i, run.j, run.k - 1)};
                 for (int c = 0; c < 8; ++c) corner_[cell][c] = run.row[c >> 1] + n + (c & 1);
             }
         }
     }
 
+    bool is_kept(const Voxel& v) const {
+        return v.cell >= 0 && surface_.kept[v.cell] >> v.corner & 1;
+    }
     Voxel neighbor(const Voxel& v, int direction) const {
         const int bit = 1 << axis_of(direction);
         const bool leaves = (direction < 3) == ((v.corner & bit) != 0);
-        return {leaves ? next_[v.cell][direction] : v.cell, v.corner ^ bit};
+        const Voxel next{leaves ? next_[v.cell][direction] : v.cell, v.corner ^ bit};
+        return is_kept(next) ? next : Voxel{-1, 0};
     }
     // Both exist, and hang together: the same particle, or two with a connection.
     bool joined(const Voxel& v, int direction) const {
@@ -85,10 +84,10 @@ class Builder {
         for (const CellRun& run : matter_.lattice.cell_run) {
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
-                if (!surface_.cell_kept[cell]) continue;
                 const HalfSite low = {2 * (run.i + n), 2 * run.j, 2 * run.k};
                 for (int corner = 0; corner < 8; ++corner) {
                     const Voxel voxel{cell, corner};
+                    if (!is_kept(voxel)) continue;
                     for (int direction = 0; direction < 6; ++direction) {
                         if (joined(voxel, direction)) continue;
                         if (cell_block_[cell] < 0) {
@@ -179,7 +178,7 @@ class Builder {
 
     const Aggregate& matter_;
     VoxelSurface surface_;
-    std::vector<std::array<CellId, 6>> next_;  // kept neighbours of each cell, by direction
+    std::vector<std::array<CellId, 6>> next_;  // neighbours of each cell, by direction
     std::vector<std::array<ParticleId, 8>> corner_;
     std::vector<std::array<HalfSite, 4>> face_site_;
     std::vector<int> cell_block_;             // -1: no face
@@ -188,6 +187,8 @@ class Builder {
 
 }  // namespace
 
-VoxelSurface voxel_surface(const Aggregate& matter) { return Builder(matter).build(); }
+VoxelSurface voxel_surface(const Aggregate& matter, const SurfaceSamples& samples) {
+    return Builder(matter, samples).build();
+}
 
 }  // namespace swage

@@ -6,7 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "matter/aggregate.h"
+#include "skin/carrier.h"
+#include "skin/surface_samples.h"
 
 namespace swage {
 
@@ -26,9 +27,9 @@ struct VoxelSurface {
     std::vector<HalfSite> site;
     std::vector<VoxelFace> face;
     int vertex_count = 0;
-    std::vector<char> cell_kept;  // a cell each: 0 for the near-empty ones that were smoothed away
+    std::vector<CornerMask> kept;  // voxels of each cell that it is drawn around
 };
 
-VoxelSurface voxel_surface(const Aggregate& matter);
+VoxelSurface voxel_surface(const Aggregate& matter, const SurfaceSamples& samples);
 
 }  // namespace swage

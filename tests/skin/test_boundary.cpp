@@ -89,6 +89,35 @@ TEST_CASE("round shapes get round boundaries of their true volume") {
     CHECK(worst < 0.06 / across);
 }
 
+TEST_CASE("a box that lies askew in its lattice keeps its sides flat and its edges sharp") {
+    const double turn = GENERATE(.3, .5, .7), a = 1. / 7;
+    const Quat pose(Eigen::AngleAxisd(turn, Vec3(2, 1, 3).normalized()));
+    const Vec3 half(.9, .5, .6);
+    const Aggregate matter = test::make_shape(
+        [&](const Vec3& p) {
+            const Vec3 q = (pose.conjugate() * p).cwiseAbs() - half;
+            return q.maxCoeff() > 0 ? q.cwiseMax(0.).norm() : q.maxCoeff();
+        },
+        Vec3::Constant(-1.2), Vec3i::Constant(17), a);
+    const TriMesh mesh = boundary_skin(matter);
+    CHECK(fixtures::is_closed(mesh));
+    CHECK(euler_number(mesh) == 2);
+    double square = 0;
+    for (const Vec3& p : mesh.position) {
+        const Vec3 q = (pose.conjugate() * p).cwiseAbs() - half;
+        square += std::pow(q.maxCoeff() / a, 2);
+    }
+    CHECK(std::sqrt(square / double(mesh.position.size())) < 0.01);
+    double all = 0, askew = 0;
+    for (const Corners& c : mesh.triangle) {
+        const Vec3 p = mesh.position[c[0]];
+        const Vec3 area = (mesh.position[c[1]] - p).cross(mesh.position[c[2]] - p);
+        all += area.norm();
+        if ((pose.conjugate() * area).cwiseAbs().maxCoeff() < .9 * area.norm()) askew += area.norm();
+    }
+    CHECK(askew < 0.005 * all);
+}
+
 TEST_CASE("handles are kept") {
     const TriMesh mesh = boundary_skin(torus());
     CHECK(fixtures::is_closed(mesh));

@@ -6,9 +6,9 @@
 #include <random>
 
 #include "geometry/box_mesh.h"
-#include "skin/boundary.h"
 #include "skin/cut_mesh.h"
 #include "skin/diced_skin.h"
+#include "skin/new_look.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -88,8 +88,7 @@ Fixture ball() {
     const double a = 1.0 / 9;
     Aggregate matter = test::make_shape([](const Vec3& p) { return p.norm() - .5; },
                                         Vec3::Constant(-.5 - .07 * a), Vec3i::Constant(10), a);
-    TriMesh mesh = boundary_skin(matter);
-    return {std::move(matter), std::move(mesh)};
+    return {std::move(matter), fixtures::sphere_mesh(.5, 3)};
 }
 
 Fixture body(int number) { return number == 0 ? bar() : ball(); }
