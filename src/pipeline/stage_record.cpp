@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/stage_record.h"
+
+#include "base/hash.h"
+
+namespace swage {
+
+namespace {
+
+Json parameters_json(const Machine& machine) {
+    Json json = Json::object();
+    for (const ParameterSpec& spec : machine.spec.parameter) {
+        json[spec.name] = {{"value", machine.parameter.at(spec.name)},
+                           {"unit", si_unit(spec.quantity)}};
+    }
+    return json;
+}
+
+Json energies_json(const Books& last) {
+    return {{"machine_work", last.work},
+            {"load_work", last.load_work},
+            {"gravity_work", last.gravity_work},
+            {"kinetic", last.kinetic},
+            {"elastic", last.elastic},
+            {"contact", last.contact},
+            {"passed", last.passed},
+            {"plastic", last.plastic},
+            {"damped", last.damped},
+            {"friction", last.friction},
+            {"drag", last.drag},
+            {"severed", last.severed_energy},
+            {"fracture", last.fracture},
+            {"set_free", last.set_free},
+            {"remainder", last.remainder}};
+}
+
+}  // namespace
+
+std::size_t particle_count(const std::vector<WorkPiece>& bodies) {
+    std::size_t count = 0;
+    for (const WorkPiece& body : bodies) count += body.matter.particle_count();
+    return count;
+}
+
+std::size_t connection_count(const std::vector<WorkPiece>& bodies) {
+    std::size_t count = 0;
+    for (const WorkPiece& body : bodies) count += body.matter.connection_count();
+    return count;
+}
+
+int piece_count(const std::vector<WorkPiece>& bodies) {
+    int count = 0;
+    for (const WorkPiece& body : bodies) count += find_pieces(body.matter).count;
+    return count;
+}
+
+Json stage_record(const StageEnd& end, double overlap, const std::vector<std::string>& warnings) {
+    const StageTotals& totals = end.totals;
+    const FrameReport& last = end.last;
+    Json by_body = Json::array();
+    for (const Books& books : last.body) by_body.push_back(energies_json(books));
+    return {
+        {"name", end.stage.name},
+        {"machine", end.stage.machine.name},
+        {"parameters", parameters_json(end.machine)},
+        {"frames", {end.first_frame, end.last_frame}},
+        {"legs", end.legs},
+        {"duration_s", end.duration},
+        {"remolded", end.stage.remold},
+        {"particles", particle_count(end.bodies)},
+        {"connections_before", end.connections_before},
+        {"connections_after", connection_count(end.bodies)},
+        {"severed", totals.severed},
+        {"broken", totals.broken},
+        {"pieces", last.pieces},
+        {"iterations", totals.iterations},
+        {"increments", totals.increments},
+        {"halvings", totals.halvings},
+        {"solver", name_of(end.stage.sim.solver)},
+        {"steps", totals.steps},
+        {"steps_implicit_instead", totals.rescued},
+        {"steps_rejected", totals.rejected},
+        {"bodies_asleep", last.asleep},
+        {"shortest_step_s", totals.shortest_step},
+        {"largest_residual", totals.residual},
+        {"deepest_penetration_m", totals.penetration},
+        {"own_overlap_m", overlap},
+        {"energies_J", energies_json(last)},
+        {"energies_by_body_J", by_body},
+        {"notes", end.machine.notes},
+        {"warnings", warnings},
+        {"state_hash", hash_text(state_hash(end.bodies))},
+    };
+}
+
+}  // namespace swage

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a stage did, for run.json.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "machines/machine.h"
+#include "pipeline/json.h"
+#include "pipeline/work_piece.h"
+#include "scene/spec.h"
+#include "sim/advance.h"
+
+namespace swage {
+
+// Over all frames of a stage.
+struct StageTotals {
+    long iterations = 0, increments = 0, halvings = 0, steps = 0, rejected = 0, rescued = 0,
+         severed = 0, broken = 0;
+    double shortest_step = 0;  // [s]
+    double residual = 0, penetration = 0;
+    bool touched = false;  // by a tool
+
+    void add(const FrameReport& report, std::size_t tools) {
+        iterations += report.iterations;
+        increments += report.increments;
+        halvings += report.halvings;
+        steps += report.steps;
+        rejected += report.rejected;
+        rescued += report.rescued;
+        if (report.steps > 0) {
+            shortest_step = shortest_step > 0 ? std::min(shortest_step, report.shortest_step)
+                                              : report.shortest_step;
+        }
+        severed += report.severed;
+        broken += report.broken;
+        residual = std::max(residual, report.residual);
+        for (std::size_t n = 0; n < report.load.size(); ++n) {
+            penetration = std::max(penetration, report.load[n].penetration);
+            touched = touched || (n < tools && report.load[n].touched);
+        }
+    }
+};
+
+// Where it got to.
+struct StageEnd {
+    const StageSpec& stage;
+    const Machine& machine;
+    std::vector<WorkPiece>& bodies;
+    const StageTotals& totals;
+    const FrameReport& last;
+    int first_frame, last_frame;
+    std::size_t legs;
+    double duration;  // [s]
+    std::size_t connections_before;
+};
+
+std::size_t particle_count(const std::vector<WorkPiece>& bodies);
+std::size_t connection_count(const std::vector<WorkPiece>& bodies);
+int piece_count(const std::vector<WorkPiece>& bodies);
+
+// `overlap`: of the work-piece with itself [m].
+Json stage_record(const StageEnd& end, double overlap, const std::vector<std::string>& warnings);
+
+}  // namespace swage

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/stage_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "sim/motion_guard.h"
+#include "sim/own_overlap.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kOverlap = 0.5;  // spacings that a body may lie in itself untold
+
+// What strains of a billionth would hold [J]: less is round-off.
+double round_off(const std::vector<WorkPiece>& bodies) {
+    double sum = 0;
+    for (const WorkPiece& body : bodies) {
+        const Material& m = body.matter.material;
+        sum += 1e-18 * m.young_modulus * body.matter.mass() / m.density;
+    }
+    return sum;
+}
+
+// In motion, of what the books hold by now, the share that is missing or too much. Fracture takes
+// energy: what it gives is from nowhere.
+double unaccounted(const Books& b, double least) {
+    const double in = std::abs(b.work) + std::abs(b.load_work) + std::abs(b.gravity_work);
+    const double out = b.kinetic + b.elastic + b.contact + b.plastic + b.damped + b.friction +
+                       b.drag + std::abs(b.severed_energy) + std::max(0.0, b.fracture);
+    const double play = std::max(in, out);
+    return play > least ? (b.remainder + std::min(0.0, b.fracture)) / play : 0;
+}
+
+}  // namespace
+
+StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ended) {
+    const std::string& name = end.stage.name;
+    const SimSettings& sim = end.stage.sim;
+    const bool whole = ended == StageEnded::wholly;
+    StageVerdict verdict;
+    const auto warn = [&](const std::string& sentence) {
+        verdict.warning.push_back(name + ": " + sentence);
+    };
+    if (whole && !end.machine.apparatus.tool.empty() && !end.totals.touched) {
+        warn("its tools never touched the work-piece");
+    }
+    if (whole && end.totals.severed > 0 && piece_count(end.bodies) == pieces_before) {
+        warn(fmt::format(
+            "the blade has severed {} connections and parted nothing: it passed through a part of "
+            "the work-piece only, by its place, its width or its way",
+            end.totals.severed));
+    }
+    const bool keeps_energy =
+        sim.solver == Solver::explicit_steps || sim.solver == Solver::energy_stepped;
+    if (const double share = unaccounted(end.last, round_off(end.bodies));
+        keeps_energy && std::abs(share) > kMostGain) {
+        warn(fmt::format(
+            "the energy books do not close: {:.2g} % of the energy in play is {}; try a lower "
+            "step_safety, more cells, or, where bodies are pressed deep into each other, a larger "
+            "contact_stiffness",
+            100 * std::abs(share), share > 0 ? "lost" : "from nowhere"));
+    }
+    if (sim.solver == Solver::quasistatic && (end.last.pieces == 1 || sim.self_contact) &&
+        ended != StageEnded::interrupted) {
+        Aggregate& body = end.bodies.front().matter;
+        verdict.overlap = own_overlap(body);
+        if (verdict.overlap > kOverlap * body.lattice.spacing) {
+            warn(fmt::format("the work-piece has gone into itself, by {} at the end: {}",
+                             length_text(verdict.overlap),
+                             sim.self_contact
+                                 ? "it is pressed together harder than its contact_stiffness holds"
+                                 : "self_contact = true in this stage keeps it from that"));
+        }
+    }
+    return verdict;
+}
+
+}  // namespace swage
