@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "matter/aggregate.h"
 
-#include <numeric>
-
 #include "base/hash.h"
+#include "geometry/disjoint_sets.h"
 
 namespace swage {
 
@@ -146,29 +145,15 @@ bool cell_is_sound(const Aggregate& matter, CellId cell, const std::array<Partic
 }
 
 Pieces find_pieces(const Aggregate& matter) {
-    // Union-find whose root is always the lowest particle, so the numbering is canonical.
-    std::vector<int> parent(matter.particle_count());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int p) {
-        while (parent[p] != p) p = parent[p] = parent[parent[p]];
-        return p;
-    };
+    DisjointSets sets(matter.particle_count());
     for (const Span& span : matter.lattice.span) {
         const SparseArray<float>& weight = matter.connection[span.direction].weight;
         for (int n = 0; n < span.count; ++n) {
-            if (weight[span.lower + n] <= 0) continue;
-            const int a = root(span.lower + n), b = root(span.upper + n);
-            if (a < b) parent[b] = a;
-            if (b < a) parent[a] = b;
+            if (weight[span.lower + n] > 0) sets.unite(span.lower + n, span.upper + n);
         }
     }
     Pieces pieces;
-    pieces.particle_piece.resize(parent.size());
-    for (std::size_t p = 0; p < parent.size(); ++p) {
-        const int r = root(static_cast<int>(p));
-        pieces.particle_piece[p] =
-            r == static_cast<int>(p) ? pieces.count++ : pieces.particle_piece[r];
-    }
+    pieces.count = sets.number_sets(pieces.particle_piece);
     return pieces;
 }
 

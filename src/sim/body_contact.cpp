@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "geometry/box.h"
+#include "geometry/disjoint_sets.h"
 
 namespace swage {
 
@@ -131,16 +131,15 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
 }
 
 std::vector<std::size_t> BodyContact::groups() const {
-    std::vector<std::size_t> group(side_.size());
-    std::iota(group.begin(), group.end(), std::size_t{0});
-    const auto root = [&](std::size_t b) {
-        while (group[b] != b) b = group[b];
-        return b;
-    };
+    DisjointSets sets(side_.size());
     for (std::size_t w = 0; w < way_.size(); ++w) {
-        if (!way_[w].contacts().contact.empty()) group[root(pair_[w].from)] = root(pair_[w].onto);
+        if (way_[w].contacts().contact.empty()) continue;
+        sets.unite(static_cast<int>(pair_[w].from), static_cast<int>(pair_[w].onto));
     }
-    for (std::size_t b = 0; b < group.size(); ++b) group[b] = root(b);
+    std::vector<std::size_t> group;
+    for (int b = 0; b < static_cast<int>(side_.size()); ++b) {
+        group.push_back(static_cast<std::size_t>(sets.root(b)));
+    }
     return group;
 }
 
