@@ -11,8 +11,8 @@
 namespace swage {
 
 // Closed and oriented, in the world of now. Looks as `look` has it; without that it has two
-// materials, "boundary" and kCutMaterial, which faces have where matter was severed. Its volume at molding is the matter's. Pieces that hold next to no material
-// are left out.
+// materials, "boundary" and kCutMaterial, which faces have where matter was severed. Its volume at
+// molding is the matter's. Pieces that hold next to no material are left out.
 TriMesh boundary_skin(const Aggregate& matter, const NewLook* look = nullptr);
 
 }  // namespace swage

@@ -56,7 +56,7 @@ void SurfaceSamples::for_each_near(const Vec3& at, double reach, const F& f) con
 }
 
 // What two planes with a convex edge hold is inside both; else inside one of them.
-double SurfaceSamples::height(const Vec3& place, Vec3* normal) const {
+double SurfaceSamples::height(const Vec3& place) const {
     constexpr double kReach = 1.5, kBeside = 0.5;  // spacings
     const Vec3 at = (place - lattice_.origin) / lattice_.spacing;
     const Sample* nearest = nullptr;
@@ -65,15 +65,13 @@ double SurfaceSamples::height(const Vec3& place, Vec3* normal) const {
         if (d2 < least) least = d2, nearest = &sample;
     });
     if (nearest == nullptr) return -kReach;
-    const Sample* decides = nearest;
     double height = nearest->normal.dot(at - nearest->place);
     const auto consider = [&](const Sample& sample, const Vec3& way, double) {
         const double own = sample.normal.dot(way);
         const double convex = (sample.normal - nearest->normal).dot(sample.place - nearest->place);
-        if (convex > 0 ? own > height : convex < 0 && own < height) height = own, decides = &sample;
+        if (convex > 0 ? own > height : convex < 0 && own < height) height = own;
     };
     for_each_near(at, std::sqrt(least) + kBeside, consider);
-    if (normal != nullptr) *normal = decides->normal;
     return height;
 }
 

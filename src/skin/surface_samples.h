@@ -19,7 +19,7 @@ class SurfaceSamples {
     bool project(const Vec3& facing, Vec3& place, Vec3& normal) const;
     // How far a place near the surface lies outside it, by the planes of the samples around, in
     // spacings; negative inside, and where there is no surface near.
-    double height(const Vec3& place, Vec3* normal = nullptr) const;
+    double height(const Vec3& place) const;
 
   private:
     struct Sample {

@@ -314,7 +314,7 @@ class Placer {
     const bool any_dropped_ = std::any_of(surface_.kept.begin(), surface_.kept.end(),
                                           [](CornerMask kept) { return kept != kAllCorners; });
     std::vector<Vec3> start_, place_, normal_;
-    std::vector<Vec3> facing_;  // what it does before it meets the true surface: tells edges from sides
+    std::vector<Vec3> facing_;  // normals before it meets the true surface: tell edges from sides
     std::vector<char> outer_, on_cut_, exact_, fixed_axis_, slides_;
     std::vector<std::optional<CutTarget>> target_;
     std::vector<int> first_, neighbor_;
