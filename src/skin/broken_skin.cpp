@@ -145,12 +145,30 @@ class Breaker {
         return tree_->winding_number(place) > 0.5;
     }
 
+    // On a square's rim.
+    struct Event {
+        double at;
+        int vertex, balance;  // 1: edges of the surface begin here, -1: end
+    };
+    // `needed`: only those that follow one of their own kind.
+    static void order_pairs(std::vector<Event>& events, bool needed) {
+        for (std::size_t n = 0; n + 1 < events.size(); ++n) {
+            Event &one = events[n], &other = events[n + 1];
+            if (one.balance > 0 || other.balance < 0 || other.at - one.at >= kSamePlace) continue;
+            if (needed && events[n > 0 ? n - 1 : events.size() - 1].balance > 0) continue;
+            std::swap(one, other);
+            other.at = one.at;
+        }
+    }
+    static bool alternates(const std::vector<Event>& events) {
+        for (std::size_t n = 0; n < events.size(); ++n) {
+            if (events[n].balance == events[(n + 1) % events.size()].balance) return false;
+        }
+        return true;
+    }
+
     // The square's rim where it is inside the mesh; false where the surface does not close.
     bool go_round(const Face& face, std::vector<Segment>& segments) {
-        struct Event {
-            double at;
-            int vertex, balance;  // 1: edges of the surface begin here, -1: end
-        };
         std::map<int, int> balance;
         for (const Segment& s : segments) --balance[s[1]], ++balance[s[0]];
         std::vector<Event> events;
@@ -164,12 +182,13 @@ class Breaker {
             return std::pair(p.at, p.vertex) < std::pair(q.at, q.vertex);
         });
         // The two faces of a cut, or of a crack of old, meet the rim at nearly one place: there the
-        // stretch of the rim that ends comes before the one that begins.
-        for (std::size_t n = 0; n + 1 < events.size(); ++n) {
-            Event &one = events[n], &other = events[n + 1];
-            if (one.balance > 0 || other.balance < 0 || other.at - one.at >= kSamePlace) continue;
-            std::swap(one, other);
-            other.at = one.at;
+        // stretch of the rim that ends comes before the one that begins. NOTE: a stretch as short
+        // as that must stay, which shows by what is beside it.
+        const std::vector<Event> sorted = events;
+        order_pairs(events, false);
+        if (!alternates(events)) {
+            events = sorted;
+            order_pairs(events, true);
         }
         if (events.empty()) {
             const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
@@ -186,10 +205,10 @@ class Breaker {
             }
             return true;
         }
+        if (!alternates(events)) return false;
         for (std::size_t n = 0; n < events.size(); ++n) {
             const Event& here = events[n];
             const Event& next = events[(n + 1) % events.size()];
-            if (here.balance == next.balance) return false;
             if (here.balance > 0) continue;
             int from = here.vertex;
             const double end = next.at > here.at ? next.at : next.at + 4;

@@ -200,6 +200,25 @@ TEST_CASE(
     for (const Vec3& p : f.now().position) CHECK(p.allFinite());
 }
 
+TEST_CASE("rubble is closed too where the surface comes as near to a cut as its two faces are") {
+    const unsigned seed = GENERATE(89u, 113u, 137u);
+    Fixture f = ball();
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (Vec3& p : f.mesh.position) p += 2e-3 * Vec3(any(random), any(random), any(random));
+    f.mount = mount_mesh(f.mesh.position, f.matter, SkinKind::mount);
+    const Vec3 n = Vec3(1, .31, -.44).normalized(), point(.025, .025, -.025);
+    const Vec3 u = n.cross(Vec3::UnitZ()).normalized();
+    f.cut(point, u, n.cross(u), true);
+    test::sever_plane(f.matter, point, n);
+    std::mt19937 draw(5);
+    break_where(f.matter,
+                [&](const Vec3&, const Vec3&) { return draw() < .5 * std::mt19937::max(); });
+    f.break_it();
+    CHECK(f.broken.open_faces == 0);
+    CHECK(fixtures::is_closed(f.broken.mesh));
+}
+
 TEST_CASE("what a blade has cut and load breaks shows closed surfaces, all volume kept") {
     const int number = GENERATE(0, 1);
     Fixture f = body(number);
