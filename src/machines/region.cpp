@@ -48,9 +48,11 @@ bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
     const SurfacePoints& surface = matter.surface;
     if (points.size() == surface.size()) return true;
     const double a = matter.lattice.spacing;
+    std::vector<Vec3> place;
+    for (std::size_t p = 0; p < surface.size(); ++p) place.push_back(matter.surface_reference(p));
     using Bin = std::array<int, 3>;
     const auto bin_of = [&](std::size_t p) -> Bin {
-        const Vec3 at = (matter.surface_reference(p) - matter.lattice.origin) / a;
+        const Vec3 at = (place[p] - matter.lattice.origin) / a;
         return {int(std::floor(at.x())), int(std::floor(at.y())), int(std::floor(at.z()))};
     };
     std::map<Bin, std::vector<int>> chosen;
@@ -67,8 +69,7 @@ bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
                 chosen.find({home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1});
             if (at == chosen.end()) continue;
             for (int q : at->second) {
-                const double way =
-                    (matter.surface_reference(p) - matter.surface_reference(q)).norm();
+                const double way = (place[p] - place[q]).norm();
                 if (way < kNeighbour * a &&
                     surface.normal(p).dot(surface.normal(q)) > kLooksApart) {
                     return false;

@@ -2,6 +2,7 @@
 // What a stage did, for run.json.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 

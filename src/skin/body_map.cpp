@@ -82,7 +82,7 @@ std::optional<BodyPlace> BodyMap::place_at(const Vec3& world,
             const CellBox box = cell_box(matter_, cell);
             const Vec3 local = (place->reference - box.low).cwiseQuotient(box.size);
             double outside = (local - local.cwiseMax(0.0).cwiseMin(1.0)).norm();
-            const auto weight = corner_weights(local.cwiseMax(0.0).cwiseMin(1.0));
+            const auto weight = trilinear_weights(local.cwiseMax(0.0).cwiseMin(1.0));
             const auto heaviest = std::max_element(weight.begin(), weight.end()) - weight.begin();
             if (!(group >> heaviest & 1)) outside += 0.5;
             if (outside < least) least = outside, best = place;
@@ -110,7 +110,7 @@ int BodyMap::piece_of(const BodyPlace& place) const {
     const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);
     const CornerMask followed =
         followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
-    const auto weight = corner_weights(carrier.local);
+    const auto weight = trilinear_weights(carrier.local);
     int heaviest = -1;
     for (int c = 0; c < 8; ++c) {
         if (followed >> c & 1 && (heaviest < 0 || weight[c] > weight[heaviest])) heaviest = c;
@@ -122,7 +122,7 @@ CornerMask BodyMap::side_of_piece(CellId cell, const Vec3& reference, int piece)
     const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
     const CornerGroups groups = corner_groups(matter_, corner);
     if (groups[0] == kAllCorners) return kAllCorners;
-    const auto weight = corner_weights(carrier_in(cell_box(matter_, cell), reference).local);
+    const auto weight = trilinear_weights(carrier_in(cell_box(matter_, cell), reference).local);
     int heaviest = -1;
     for (int c = 0; c < 8; ++c) {
         if (pieces_.particle_piece[corner[c]] == piece &&

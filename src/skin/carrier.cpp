@@ -81,13 +81,6 @@ Carrier carrier_in(const CellBox& box, const Vec3& place) {
     return carrier;
 }
 
-std::array<double, 8> corner_weights(const Vec3& local) {
-    const double x1 = local[0], y1 = local[1], z1 = local[2];
-    const double x0 = 1 - x1, y0 = 1 - y1, z0 = 1 - z1;
-    const double a = y0 * z0, b = y1 * z0, c = y0 * z1, d = y1 * z1;
-    return {x0 * a, x1 * a, x0 * b, x1 * b, x0 * c, x1 * c, x0 * d, x1 * d};
-}
-
 bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
     float least = 1;
     for (const auto& [direction, low] : kCellConnection) {
@@ -132,7 +125,7 @@ CornerGroups corner_groups_of_cut(const Aggregate& matter,
 
 CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const Vec3& local) {
     if (groups[0] == kAllCorners) return kAllCorners;
-    const std::array<double, 8> weight = corner_weights(local);
+    const std::array<double, 8> weight = trilinear_weights(local);
     int heaviest = -1;
     for (int c = 0; c < 8; ++c) {
         if (side >> c & 1 && (heaviest < 0 || weight[c] > weight[heaviest])) heaviest = c;
@@ -182,7 +175,7 @@ void whole_displacements(const CellFrames& half, const Carrier* carrier, int cou
 }
 
 Vec3 part_displacement(const CellFrames& cell, const Carrier& carrier, CornerMask followed) {
-    const std::array<double, 8> weight = corner_weights(carrier.local);
+    const std::array<double, 8> weight = trilinear_weights(carrier.local);
     const Vec3 way = carrier.arm + 0.5 * carrier.local.cwiseProduct(cell.size);
     Vec3 sum = Vec3::Zero();
     double total = 0;

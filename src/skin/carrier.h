@@ -35,8 +35,6 @@ CellBox cell_box(const Aggregate& matter, CellId cell);
 CellId carrying_cell(const Aggregate& matter, const Vec3& place);
 Carrier carrier_in(const CellBox& box, const Vec3& place);
 
-std::array<double, 8> corner_weights(const Vec3& local);
-
 // For each corner the corners that hang together with it by connections within the cell. Every
 // entry is kAllCorners in a whole cell.
 using CornerGroups = std::array<CornerMask, 8>;

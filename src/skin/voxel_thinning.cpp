@@ -69,11 +69,6 @@ bool is_simple(const Around& body) {
     return count_parts(inner, true, 1) == 1 && count_parts(outside, false, 3) == 1;
 }
 
-struct Voxel {
-    CellId cell;  // -1: none
-    int corner;
-};
-
 class Thinning {
   public:
     Thinning(const Aggregate& matter, const SurfaceSamples& samples)
@@ -87,7 +82,7 @@ class Thinning {
             any = false;
             for (Candidate& candidate : candidate_) {
                 if (candidate.gone || !may_go(candidate)) continue;
-                kept_[candidate.at.cell] &= static_cast<CornerMask>(~(1 << candidate.at.corner));
+                kept_[candidate.cell] &= static_cast<CornerMask>(~(1 << candidate.corner));
                 candidate.gone = any = true;
             }
         }
@@ -97,9 +92,12 @@ class Thinning {
   private:
     struct Candidate {
         double height;  // of its middle above the surface, in spacings
-        Voxel at;
-        Vec3i site;  // of its cell
-        bool gone;
+        CellId cell;
+        int corner;
+        // That the voxels around it lie in, a bit for each axis along which they leave its own: -1
+        // where there is none.
+        std::array<CellId, 8> beside;
+        bool gone = false;
     };
 
     // The farthest out first.
@@ -125,17 +123,34 @@ class Thinning {
 
     void find_in_cell(const SurfaceSamples& samples, CellId cell, const Vec3i& site,
                       std::vector<Candidate>& found) const {
-        if (matter_.cell_fill[cell] >= kFull || !lies_by_full(site) ||
-            !is_whole(matter_, matter_.lattice.cell_corners(cell))) {
-            return;
-        }
+        if (matter_.cell_fill[cell] >= kFull || !lies_by_full(site)) return;
         for (int corner = 0; corner < 8; ++corner) {
-            const Vec3 half(corner & 1, corner >> 1 & 1, corner >> 2);
-            const Vec3 middle = site.cast<double>() + Vec3::Constant(0.25) + 0.5 * half;
+            const Vec3i half(corner & 1, corner >> 1 & 1, corner >> 2);
+            const Vec3 middle = (site.cast<double>() + 0.5 * half.cast<double>()).array() + 0.25;
             const double height =
                 samples.height(matter_.lattice.origin + matter_.lattice.spacing * middle);
-            if (height > kOutside) found.push_back({height, {cell, corner}, site, false});
+            if (height <= kOutside) continue;
+            const std::array<CellId, 8> beside = cells_beside(site, half);
+            if (!all_whole(beside)) continue;
+            found.push_back({height, cell, corner, beside});
         }
+    }
+
+    std::array<CellId, 8> cells_beside(const Vec3i& site, const Vec3i& half) const {
+        std::array<CellId, 8> beside;
+        for (int n = 0; n < 8; ++n) {
+            const Vec3i leaves(n & 1, n >> 1 & 1, n >> 2);
+            const Vec3i at = site + leaves.cwiseProduct(2 * half - Vec3i::Ones());
+            beside[n] = matter_.lattice.cell_at(at.x(), at.y(), at.z());
+        }
+        return beside;
+    }
+
+    // No cut runs near.
+    bool all_whole(const std::array<CellId, 8>& cells) const {
+        return std::all_of(cells.begin(), cells.end(), [&](CellId cell) {
+            return cell < 0 || cell_is_whole(matter_, matter_.lattice.cell_row(cell));
+        });
     }
 
     // NOTE: of parts thinner than cells nothing may be left to hold what is taken away.
@@ -149,53 +164,19 @@ class Thinning {
     }
 
     bool may_go(const Candidate& candidate) const {
-        std::array<Voxel, 27> around;
-        find_around(candidate, around);
-        if (has_cut(around)) return false;
         Around body;
-        for (int n = 0; n < 27; ++n) body[n] = around[n].cell >= 0;
-        return is_simple(body);
-    }
-
-    // Of neighbours along an axis, both there: whether they hang together.
-    bool joined(const Voxel& low, const Voxel& high, int axis) const {
-        if (low.cell != high.cell) return true;
-        const auto row = matter_.lattice.cell_row(low.cell);
-        return matter_.connection[axis].weight[row[low.corner >> 1] + (low.corner & 1)] > 0;
-    }
-
-    bool has_cut(const std::array<Voxel, 27>& around) const {
         for (int n = 0; n < 27; ++n) {
-            for (int axis = 0, step = 1; axis < 3; ++axis, step *= 3) {
-                if (n / step % 3 == 2) continue;
-                const Voxel &low = around[n], &high = around[n + step];
-                if (low.cell >= 0 && high.cell >= 0 && !joined(low, high, axis)) return true;
-            }
-        }
-        return false;
-    }
-
-    void find_around(const Candidate& candidate, std::array<Voxel, 27>& around) const {
-        const int corner = candidate.at.corner;
-        // The eight cells that they lie in: its own and those at its corner.
-        std::array<CellId, 8> cell;
-        for (int n = 0; n < 8; ++n) {
-            Vec3i site = candidate.site;
-            for (int d = 0; d < 3; ++d) {
-                if (n >> d & 1) site[d] += corner >> d & 1 ? 1 : -1;
-            }
-            cell[n] = matter_.lattice.cell_at(site.x(), site.y(), site.z());
-        }
-        for (int n = 0; n < 27; ++n) {
-            int which = 0, bits = 0;
+            int leaves = 0, bits = 0;
             for (int d = 0, rest = n; d < 3; ++d, rest /= 3) {
-                const int at = (corner >> d & 1) + rest % 3 - 1;  // -1 to 2; in the cell 0 or 1
-                which |= (at < 0 || at > 1) << d;
+                // -1 to 2; in the cell 0 or 1
+                const int at = (candidate.corner >> d & 1) + rest % 3 - 1;
+                leaves |= (at < 0 || at > 1) << d;
                 bits |= (at & 1) << d;
             }
-            const bool there = cell[which] >= 0 && kept_[cell[which]] >> bits & 1;
-            around[n] = {there ? cell[which] : -1, bits};
+            const CellId cell = candidate.beside[leaves];
+            body[n] = cell >= 0 && kept_[cell] >> bits & 1;
         }
+        return is_simple(body);
     }
 
     const Aggregate& matter_;

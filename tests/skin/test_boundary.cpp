@@ -108,6 +108,14 @@ TEST_CASE("a box that lies askew in its lattice keeps its sides flat and its edg
         square += std::pow(q.maxCoeff() / a, 2);
     }
     CHECK(std::sqrt(square / double(mesh.position.size())) < 0.01);
+    for (int c = 0; c < 8; ++c) {
+        const Vec3 sign(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1);
+        double nearest = 1e9;
+        for (const Vec3& p : mesh.position) {
+            nearest = std::min(nearest, (pose * sign.cwiseProduct(half) - p).norm());
+        }
+        CHECK(nearest < 0.25 * a);
+    }
     double all = 0, askew = 0;
     for (const Corners& c : mesh.triangle) {
         const Vec3 p = mesh.position[c[0]];

@@ -6,9 +6,9 @@
 #include <random>
 
 #include "geometry/box_mesh.h"
+#include "skin/boundary.h"
 #include "skin/cut_mesh.h"
 #include "skin/diced_skin.h"
-#include "skin/new_look.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -88,7 +88,8 @@ Fixture ball() {
     const double a = 1.0 / 9;
     Aggregate matter = test::make_shape([](const Vec3& p) { return p.norm() - .5; },
                                         Vec3::Constant(-.5 - .07 * a), Vec3i::Constant(10), a);
-    return {std::move(matter), fixtures::sphere_mesh(.5, 3)};
+    TriMesh mesh = boundary_skin(matter);
+    return {std::move(matter), std::move(mesh)};
 }
 
 Fixture body(int number) { return number == 0 ? bar() : ball(); }
@@ -202,7 +203,7 @@ TEST_CASE(
 
 TEST_CASE("rubble is closed too where the surface comes as near to a cut as its two faces are") {
     const unsigned seed = GENERATE(89u, 113u, 137u);
-    Fixture f = ball();
+    Fixture f(ball().matter, fixtures::sphere_mesh(.5, 3));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> any(-1, 1);
     for (Vec3& p : f.mesh.position) p += 2e-3 * Vec3(any(random), any(random), any(random));
