@@ -22,14 +22,15 @@ namespace fs = std::filesystem;
 namespace {
 
 // Measured on shipped scenes; good to a factor of two or so, relaxation to one of three.
-constexpr double kSmoothWork = 350;     // iterations that Newton's method is worth
-constexpr double kYieldingWork = 1500;  // likewise, where matter yields
-constexpr double kLeastIterations = 100, kSlenderIterations = 0.7;
+constexpr double kSmoothWork = 350;                // iterations that Newton's method is worth
+constexpr double kYieldingWork = 1500;             // likewise, where matter yields
+constexpr double kRelaxationWork = 220;            // under tools: 60 to 350
 constexpr double kEquilibriaPerFrame = 2;          // under tools, where they are not counted
 constexpr int kSampledFrames = 200;                // of the first stage, for how far its tools go
 constexpr double kThin = 0.3;                      // of the box's thinnest side
 constexpr double kSecondsPerParticleStep = 60e-9;  // one core
 constexpr double kDampedShare = 2, kYieldingShare = 1.4;  // of explicit steps that do
+constexpr double kIterationShare = 1.4;                   // and of a relaxation's iteration
 constexpr double kSecondsPerPixel = 1.8e-7;               // drawing and writing, two cores
 constexpr double kEnergyStepsPerStep = 100;               // while a body swings
 constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
@@ -108,16 +109,6 @@ double softest_give(const SceneSpec& scene) {
     return most;
 }
 
-// Iterations to an equilibrium: what bends slowly under tools takes the square of its slenderness.
-double iterations_to_rest(const StageSpec& stage, const SceneSpec& scene, const RunCost& cost) {
-    if (stage.machine.tool.empty() || stage.sim.solver == Solver::implicit_steps) {
-        const bool yields = std::isfinite(scene.work_piece().material.yield_stress);
-        return yields ? kYieldingWork : kSmoothWork;
-    }
-    const double length = cost.mold.cell_count.maxCoeff();
-    return kLeastIterations + kSlenderIterations * length * length / std::max(1.0, cost.thickness);
-}
-
 // `matter`: of each body, or empty. `equilibria`: of the first stage, 0: not known.
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
             const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
@@ -131,10 +122,13 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
         if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
             const bool relaxes = solver == Solver::quasistatic && !stage.machine.tool.empty();
             const bool counted = equilibria > 0 && &stage == &scene.stage.front();
-            const double steps = iterations_to_rest(stage, scene, cost) *
+            const bool yields = std::isfinite(scene.work_piece().material.yield_stress);
+            const double steps = (relaxes  ? kRelaxationWork
+                                  : yields ? kYieldingWork
+                                           : kSmoothWork) *
                                  (counted ? static_cast<double>(equilibria)
                                           : (relaxes ? kEquilibriaPerFrame : 1) * stage.frames);
-            cost.steps += steps, work += steps;
+            cost.steps += steps, work += (relaxes ? kIterationShare : 1) * steps;
             cost.relaxes = cost.relaxes || relaxes;
         } else {
             const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep

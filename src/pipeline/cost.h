@@ -22,7 +22,7 @@ struct RunCost {
     int frames = 0;                 // stills, the start included
     double steps = 0;               // relaxation iterations and explicit steps, about
     double seconds = 0;             // of simulation and drawing on this machine, about
-    bool relaxes = false;           // under tools: what is slender in it may take ten times that
+    bool relaxes = false;           // under tools: what snaps or slips may take ten times that
     double memory_bytes = 0;        // at the peak, about
     double disk_bytes = 0;          // of the run directory, about
     std::vector<std::string> note;  // of the first machine at the work-piece; of the skin

@@ -6,14 +6,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "base/error.h"
-#include "base/interrupt.h"
 #include "sim/cell_volume.h"
-#include "sim/crushed_cells.h"
-#include "sim/fire_schedule.h"
 #include "sim/relaxation_passes.h"
 #include "sim/vector_sums.h"
 
@@ -22,28 +18,13 @@ namespace swage {
 namespace {
 
 constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
-// Masses under which a step of one is stable. A quarter of the stiffness bound would do for plain
-// steps; the mixing of FIRE adds a kick along the force, and with 0.27 the stiffest modes restart
-// it for ever. Contact at 0.26 chatters with friction.
-constexpr double kLatticeMassShare = 0.5;
-constexpr double kContactMassShare = 0.6;
 constexpr double kSmallestCellVolume = 0.05;
 // Least push, over E a^2, that the residual is measured by: about a tenth of E I / L^2 of a bar 4
 // cells thick and 10 times as long (an estimate). At the first touch of a slender body the true
 // push is next to nothing.
 constexpr double kLeastPush = 1e-3;
-constexpr int kCheckInterval = 10;
-constexpr double kFastest = 0.1;  // spacings a step, on the whole
-constexpr double kLetGo =
-    0.1;  // share of the drag that stays when it is found to hold the body back
-// How much lighter a coarse mode may be: no one number suits all bodies, so they take turns.
-constexpr double kGain[] = {100, 10, 300, 1};
-constexpr int kRenewInterval = 200;
-// In which points that press on their own body meet it anew once all is at rest. NOTE: a point in
-// the crease between two planes meets now the one and now the other, so this need not end.
-constexpr int kMostRounds = 4;
-constexpr double kStaleStiffness =
-    0.5;  // spacings that a particle moves until the modes are found anew
+// Share of the drag that stays when it is found to hold the body back.
+constexpr double kLetGo = 0.1;
 double largest_extent(const Aggregate& matter) {
     return matter.lattice.spacing * matter.lattice.cell_count.maxCoeff();
 }
@@ -64,7 +45,6 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       apparatus_(apparatus),
       settings_(settings),
       lattice_(matter),
-      coarse_(matter),
       contacts_(matter, apparatus, settings, 0),
       pushes_(apparatus, settings, 0),
       self_(matter, settings),
@@ -94,7 +74,7 @@ void QuasistaticSolver::connections_renewed() {
 
 void QuasistaticSolver::find_bounds() {
     lattice_bound_ = lattice_.stiffness_bound(matter_);
-    probed_.resize(0);
+    if (coarse_) coarse_->forget();
     const std::vector<float>* cells = lattice_.cells_alone();
     newton_ = cells != nullptr ? std::make_unique<Newton>(matter_, *cells) : nullptr;
     const double a = matter_.lattice.spacing;
@@ -105,22 +85,6 @@ void QuasistaticSolver::find_bounds() {
         drag_[p] = kDrag * modulus * a * matter_.particle_mass[p] / full_mass;
     }
     previous_motion_.clear();
-}
-
-void QuasistaticSolver::find_masses() {
-    const std::size_t n = matter_.particle_count();
-    std::vector<double> contact(n, 0.0);
-    contacts_.add_stiffness(matter_, contact);
-    self_.add_stiffness(contact);
-    std::vector<double> guard(n, 0.0);
-    add_guard_stiffness(matter_, guard);
-    mass_.resize(n);
-    inverse_mass_.resize(n);
-    for (std::size_t p = 0; p < n; ++p) {
-        mass_[p] =
-            kLatticeMassShare * (lattice_bound_[p] + guard[p]) + kContactMassShare * contact[p];
-        inverse_mass_[p] = mass_[p] > 0 ? 1 / mass_[p] : 0;  // a loose particle stays where it is
-    }
 }
 
 void QuasistaticSolver::evaluate(const Drive& to, double moved) {
@@ -173,87 +137,6 @@ QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
     return {found.converged && mirrored_ == 0, found.steps, found.residual};
 }
 
-QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
-    const double a = matter_.lattice.spacing, longest = 0.2 * a;
-    Vec3Array& x = matter_.particle_position;
-    Vec3Array &v = velocity_, &f = force_;
-    for (auto* component : {&v.x, &v.y, &v.z}) std::fill(component->begin(), component->end(), 0.0);
-    double moved = 0;  // components, since the candidates were listed [m]
-    const auto list_candidates = [&] {
-        contacts_.find_candidates(matter_, to);
-        if (farthest_move(probed_, x) > kStaleStiffness * a) {
-            coarse_.find_stiffness(
-                matter_, [&](Vec3Array& force) { lattice_.find(matter_, Flow::none, force); });
-            probed_ = x;
-        }
-        find_masses();
-        coarse_.find_modes(matter_, mass_, contacts_.held_points(matter_, to));
-        listed_ = x;
-        moved = 0;
-    };
-    list_candidates();
-
-    FireSchedule schedule;
-    Relaxation result;
-    int renewed = 0, weighted_mirrors = 0, rounds = 0;
-    const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
-    Patience patience(settings_.iteration_limit, x);
-    const int turn = settings_.iteration_limit / int(std::size(kGain));
-    for (int iteration = 1; iteration <= patience.limit; ++iteration) {
-        throw_if_interrupted();
-        result.iterations = iteration;
-        if (iteration % turn == 1) coarse_.limit_gain(kGain[iteration / turn % std::size(kGain)]);
-        patience.watch(iteration, x, a, result.residual);
-        evaluate(to, moved);
-        if (mirrored_ > weighted_mirrors || self_.has_found_more()) {
-            find_masses();
-            weighted_mirrors = mirrored_;
-        }
-        if (iteration % kCheckInterval == 0) {
-            result.residual = residual_of(f, to);
-            if (!std::isfinite(result.residual)) return result;
-            if (result.residual <= accuracy_) {
-                result.converged = true;
-                if (rounds++ == kMostRounds || !self_.meet_anew()) return result;
-                evaluate(to, moved);
-                result.residual = residual_of(f, to);
-                if (result.residual <= accuracy_) return result;
-                result.converged = false;
-            }
-        }
-        const RelaxationSums sums = relaxation_sums(v, f, mass_, inverse_mass_);
-        double keep = 0, pull = 0;  // v = keep v + pull f / m
-        CoarseModes::Vector total;
-        const bool coarse = coarse_.gains() && mirrored_ == 0;
-        if (coarse) total = coarse_.restricted(f);
-        if (sums.power > 0) {
-            const double vv = sums.motion;
-            double ff = sums.push;
-            if (coarse) ff += coarse_.gain_size(total);
-            keep = 1 - schedule.mixing;
-            // A body that is let go must not run into the next tool at full tilt.
-            const double way = schedule.step * std::sqrt(vv / whole_mass);
-            if (way > kFastest * a) keep *= kFastest * a / way;
-            pull = ff > 0 ? schedule.mixing * std::sqrt(vv / ff) : 0;
-            schedule.downhill();
-        } else {
-            schedule.uphill();
-            // Other points touch or slip by now.
-            if (iteration >= renewed + kRenewInterval) {
-                coarse_.find_modes(matter_, mass_, contacts_.held_points(matter_, to));
-                if (coarse) total = coarse_.restricted(f);
-                renewed = iteration;
-            }
-        }
-        const double dt = schedule.step;
-        if (coarse) coarse_.add(coarse_.gain((pull + dt) * total), keep, v);
-        const double kept = coarse ? 1 : keep;  // else done just now
-        moved = move_on({kept, pull + dt, dt, longest}, f, inverse_mass_, listed_, v, x);
-        if (moved > 0.45 * a) list_candidates();
-    }
-    return result;
-}
-
 constexpr double kNudge = 0.02;  // spacings: the least that a body that buckles is moved
 constexpr int kMostTurns = 4;
 constexpr double kDriven = 0.03;  // of what drives a body that buckles may be left over
@@ -263,14 +146,16 @@ constexpr double kAstray = 0.01;  // of the way that the body has gone
 // How many rounds of letting go of the drag Newton's method goes ahead.
 constexpr double kSmoothHold = 1e-3;
 
-// The drag is let go until what it holds back is no more than the residual may be.
+// The drag is let go until what it holds back is no more than the residual may be, from where that
+// was so in the move before.
 QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = rest_;
     contacts_.find_candidates(matter_, to);
     self_.meet_anew();
     bool smooth = newton_ && !touches() && !floats_under_pressure(apparatus_);
-    for (hold_ = smooth ? kSmoothHold : 1;; hold_ *= kLetGo) {
+    const double first = std::exchange(enough_hold_, 1);
+    for (hold_ = smooth ? kSmoothHold : first;; hold_ *= kLetGo) {
         Relaxation round;
         if (smooth) {
             const Vec3Array before = matter_.particle_position;
@@ -280,7 +165,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             if (!round.converged || touches()) {
                 matter_.particle_position = before;
                 smooth = false;
-                hold_ = 1;
+                hold_ = first;
             }
         }
         if (!smooth) round = settle(to);
@@ -290,7 +175,10 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         const double dragged = hold_ * chunked_sum(x.size(), [&](std::size_t p) {
                                    return drag_[p] * (x.at(p) - held_.at(p)).norm();
                                });
-        if (dragged <= accuracy_ * push_limit(to)) return result;
+        if (dragged <= accuracy_ * push_limit(to)) {
+            if (!smooth) enough_hold_ = hold_;
+            return result;
+        }
         held_ = x;
     }
 }

@@ -4,9 +4,9 @@
 // values on every evaluation and committed once, after the move has converged, so that the
 // overshoots of the relaxation leave no trace.
 //
-// Relaxation: FIRE (Bitzek, Koskinen, Gaehler, Moseler, Gumbsch, Phys. Rev. Lett. 97, 170201, 2006)
-// with a mass for each particle under which a step of one is stable everywhere, and lighter ones
-// for the slow motions of the body as a whole (sim/coarse_modes.h).
+// Relaxation: downhill with momentum (sim/relaxation_schedule.h), with a mass for each particle
+// under which a step of one is stable everywhere, and by the stiffness for the slow motions of the
+// body as a whole (sim/coarse_space.h).
 //
 // NOTE: relaxation follows *some* path to a stable state; kinetic energy set free by a snap is
 // lost, and an unstable equilibrium that nothing disturbs is not left.
@@ -14,12 +14,13 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
-#include "sim/coarse_modes.h"
+#include "sim/coarse_space.h"
 #include "sim/contact_set.h"
 #include "sim/lattice_forces.h"
 #include "sim/load_set.h"
@@ -88,8 +89,7 @@ class QuasistaticSolver {
     SimSettings settings_;
     LatticeForces lattice_;
     std::unique_ptr<Newton> newton_;  // null: the matter is not smooth
-    CoarseModes coarse_;
-    Vec3Array probed_;  // positions at which its stiffness was found
+    std::optional<CoarseSpace> coarse_;  // from the first relaxation on
     ContactSet contacts_;
     LoadSet pushes_;
     SelfContact self_;
@@ -99,7 +99,8 @@ class QuasistaticSolver {
     double accuracy_ = 0;  // of the residual: the tolerance, or less
     int mirrored_ = 0;     // cells inside out
     Vec3Array force_, velocity_;
-    double hold_ = 1;        // share of the drag that acts
+    double hold_ = 1;         // share of the drag that acts
+    double enough_hold_ = 1;  // and that held nothing back in the last relaxation
     Vec3Array held_, rest_;  // positions that the drag pulls back to: now, at first
     // Of each particle: the grip, if any, that alone holds its piece. Empty: the matter is in one
     // piece.

@@ -54,20 +54,19 @@ void restrain(const double* x, const double* held, const double* drag, const dou
 
 SWAGE_VECTOR_CLONES
 RelaxationSums chunk_sums(const double* const (&v)[3], const double* const (&f)[3],
-                          const double* mass, const double* inverse_mass, std::size_t count) {
-    Lanes power{}, motion{}, push{};
+                          const double* mass, std::size_t count) {
+    Lanes power{}, motion{};
     for (std::size_t p = 0; p < count; p += kLanes) {
         const std::size_t left = count - p;
-        Lanes along{}, speed{}, size{};
+        Lanes along{}, speed{};
         for (int i = 0; i < 3; ++i) {
             const Lanes vi = some(v[i] + p, left), fi = some(f[i] + p, left);
-            along += vi * fi, speed += vi * vi, size += fi * fi;
+            along += vi * fi, speed += vi * vi;
         }
         power += along;
         motion += some(mass + p, left) * speed;
-        push += some(inverse_mass + p, left) * size;
     }
-    return {sum_of(power), sum_of(motion), sum_of(push)};
+    return {sum_of(power), sum_of(motion)};
 }
 
 SWAGE_VECTOR_CLONES
@@ -105,20 +104,18 @@ void add_restraint(const Vec3Array& position, const Restraint& restraint, Vec3Ar
 }
 
 RelaxationSums relaxation_sums(const Vec3Array& velocity, const Vec3Array& force,
-                               const std::vector<double>& mass,
-                               const std::vector<double>& inverse_mass) {
+                               const std::vector<double>& mass) {
     std::vector<RelaxationSums> part(vector_chunks(velocity.size()));
     for_each_chunk(velocity.size(), [&](std::size_t begin, std::size_t end) {
         const double* const v[3] = {velocity.x.data() + begin, velocity.y.data() + begin,
                                     velocity.z.data() + begin};
         const double* const f[3] = {force.x.data() + begin, force.y.data() + begin,
                                     force.z.data() + begin};
-        part[begin / kVectorChunk] =
-            chunk_sums(v, f, mass.data() + begin, inverse_mass.data() + begin, end - begin);
+        part[begin / kVectorChunk] = chunk_sums(v, f, mass.data() + begin, end - begin);
     });
     RelaxationSums all;
     for (const RelaxationSums& one : part) {
-        all.power += one.power, all.motion += one.motion, all.push += one.push;
+        all.power += one.power, all.motion += one.motion;
     }
     return all;
 }

@@ -22,11 +22,9 @@ void add_restraint(const Vec3Array& position, const Restraint& restraint, Vec3Ar
 struct RelaxationSums {
     double power = 0;   // v f
     double motion = 0;  // v m v
-    double push = 0;    // f f / m
 };
 RelaxationSums relaxation_sums(const Vec3Array& velocity, const Vec3Array& force,
-                               const std::vector<double>& mass,
-                               const std::vector<double>& inverse_mass);
+                               const std::vector<double>& mass);
 
 // v = keep v + kick f / m,  x += step v, no component by more than `longest`. Returns the farthest
 // that any component then is from `listed`.

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a relaxation goes on: the step and mixing of FIRE (Bitzek and others, Phys. Rev. Lett. 97,
-// 170201, 2006), and when to give up.
+// How a relaxation goes on: with the momentum of Nesterov (Soviet Math. Dokl. 27, 1983), which
+// begins anew where it goes against the forces (O'Donoghue and Candes, Found. Comput. Math. 15,
+// 2015), in steps that then are shorter for a while, as in FIRE (Bitzek and others, Phys. Rev.
+// Lett. 97, 170201, 2006); and when to give up.
 #pragma once
 
 #include "sim/vector_sums.h"
 
 namespace swage {
 
-struct FireSchedule {
-    double step = 1, mixing = 0.1;
-    int good = 0;
+struct Momentum {
+    double step = 1;
+    int since = 0;  // it began
 
-    void downhill() {
-        if (++good > 5) {
-            step = std::min(1.0, 1.1 * step);
-            mixing *= 0.99;
-        }
+    // The share of the speed that stays.
+    double downhill() {
+        if (++since > 5) step = std::min(1.0, 1.1 * step);
+        return since / (since + 3.0);
     }
     void uphill() {
-        good = 0;
-        mixing = 0.1;
+        since = 0;
         step = std::max(0.3, 0.5 * step);
     }
 };

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What makes slow motions come to rest: smooth motions, their stiffness and its factor.
+#include <Eigen/Geometry>
+#include <random>
+
+#include "base/parallel.h"
+#include "sim/advance.h"
+#include "sim/coarse_space.h"
+#include "sim/lattice_forces.h"
+#include "sim/vector_sums.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kSpacing = 0.1;
+
+// A box with a hole through it and a corner gone: rows in parts, nodes that no particle follows.
+Lattice pierced_lattice(const Vec3i& count) {
+    std::vector<Vec3i> cells;
+    for (int k = 0; k < count.z(); ++k) {
+        for (int j = 0; j < count.y(); ++j) {
+            for (int i = 0; i < count.x(); ++i) {
+                const bool hole = std::abs(i - 9) < 4 && std::abs(j - 6) < 3;
+                if (!hole && !(i > 15 && j > 8)) cells.emplace_back(i, j, k);
+            }
+        }
+    }
+    return make_lattice(Vec3::Zero(), 1, count, cells);
+}
+
+Eigen::VectorXd random_vector(Eigen::Index size, unsigned seed) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    Eigen::VectorXd v(size);
+    for (double& x : v) x = draw(engine);
+    return v;
+}
+
+}  // namespace
+
+TEST_CASE("a spline space holds what bends and shears, and goes back as it goes on") {
+    const Vec3i count(23, 14, 9);
+    const Lattice lattice = pierced_lattice(count);
+    std::size_t particles = 0;
+    for (const ParticleRun& run : lattice.particle_run) particles += run.count;
+    for (const Vec3i& elements : {Vec3i(1, 1, 1), Vec3i(5, 3, 2), Vec3i(23, 14, 9)}) {
+        const SplineSpace space(lattice, elements);
+        // x^2 has the coefficients c^2 - 1/4, c being a node's middle (by the splines' blossoms).
+        Eigen::VectorXd motion(3 * space.node_count());
+        for (int k = 0, n = 0; k < space.nodes().z(); ++k) {
+            for (int j = 0; j < space.nodes().y(); ++j) {
+                for (int i = 0; i < space.nodes().x(); ++i, ++n) {
+                    const Vec3 c = Vec3(i, j, k) - Vec3::Constant(0.5);
+                    motion.segment<3>(3 * n) =
+                        Vec3(1 + c.x() * c.y(), c.x() * c.x() - 0.25 + 2 * c.z(),
+                             (c.y() * c.y() - 0.25) * (c.z() * c.z() - 0.25) * c.x());
+                }
+            }
+        }
+        Vec3Array fine;
+        fine.x.assign(particles, 2.0), fine.y = fine.x, fine.z = fine.x;
+        space.add(motion, 0.5, fine);
+        double off = 0;
+        for (const ParticleRun& run : lattice.particle_run) {
+            for (int n = 0; n < run.count; ++n) {
+                const Vec3 at = Vec3(run.i + n, run.j, run.k)
+                                    .cwiseProduct(elements.cast<double>())
+                                    .cwiseQuotient(count.cast<double>());
+                const Vec3 asked(2 + at.x() * at.y(), 1 + at.x() * at.x() + 2 * at.z(),
+                                 1 + at.y() * at.y() * at.z() * at.z() * at.x());
+                off = std::max(off, (fine.at(run.first + n) - asked).norm() / asked.norm());
+            }
+        }
+        CHECK(off < 1e-13);
+
+        Vec3Array force;
+        const auto part = [&](unsigned seed) {
+            const Eigen::VectorXd v = random_vector(Eigen::Index(particles), seed);
+            return std::vector<double>(v.begin(), v.end());
+        };
+        force.x = part(1), force.y = part(2), force.z = part(3);
+        const Eigen::VectorXd way = random_vector(3 * space.node_count(), 4);
+        Vec3Array moved;
+        set_zero(particles, moved);
+        space.add(way, 1, moved);
+        CHECK(space.restricted(force).dot(way) == Approx(dot(force, moved)).epsilon(1e-11));
+    }
+}
+
+TEST_CASE("a factor in panels solves what its matrix asks, and tells what is not definite") {
+    constexpr int kNodes = 60;
+    std::vector<std::pair<int, int>> pair;
+    std::mt19937 engine(5);
+    std::uniform_int_distribution<int> draw(0, kNodes - 1);
+    Eigen::MatrixXi coupled = Eigen::MatrixXi::Zero(kNodes, kNodes);
+    const auto couple = [&](int a, int b) {
+        if (coupled(a, b)++ == 0) pair.emplace_back(a, b), coupled(b, a) = 1;
+    };
+    for (int n = 0; n < kNodes; ++n) couple(n, n), couple(n, (n + 1) % kNodes);
+    for (int n = 0; n < 40; ++n) couple(draw(engine), draw(engine));
+    PanelCholesky factor(kNodes, pair);
+    Eigen::SparseMatrix<double>& matrix = factor.matrix();
+    const Eigen::VectorXd value = random_vector(matrix.nonZeros(), 6);
+    for (double diagonal : {12.0, -1.0}) {
+        std::copy(value.begin(), value.end(), matrix.valuePtr());
+        for (int n = 0; n < 3 * kNodes; ++n) matrix.coeffRef(n, n) = diagonal;
+        REQUIRE(factor.factor() == (diagonal > 0));
+        if (diagonal < 0) continue;
+        const Eigen::VectorXd b = random_vector(3 * kNodes, 7), x = factor.solved(b);
+        Eigen::VectorXd by_place(3 * kNodes), asked(3 * kNodes);
+        for (int n = 0; n < kNodes; ++n) {
+            by_place.segment<3>(3 * n) = x.segment<3>(3 * factor.node_at(n));
+            asked.segment<3>(3 * n) = b.segment<3>(3 * factor.node_at(n));
+        }
+        CHECK((matrix.selfadjointView<Eigen::Lower>() * by_place - asked).norm() < 1e-13);
+    }
+}
+
+TEST_CASE("a force that a smooth motion asks for moves the body by half of that motion") {
+    Aggregate m = make_block(21, 6, 4, kSpacing, {.young_modulus = 1e6, .poisson_ratio = 0.4});
+    LatticeForces lattice(m);
+    const auto forces = [&](Vec3Array& f) { lattice.find(m, Flow::none, f); };
+    // Turned, and bent a little, so that stress turns with the matter.
+    const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p);
+        m.particle_position.set(p, turn * (x + Vec3(0, 0.02 * x.x() * x.x(), 0)));
+    }
+    // Held across one end.
+    std::vector<HeldPoint> held;
+    for (int point : points_where(m, [](const Vec3& x) { return x.x() < -1.04; })) {
+        held.push_back(
+            held_point(m.surface, point, 2e4 * Vec3(1, 0.5, 0.1).asDiagonal().toDenseMatrix()));
+    }
+    CoarseSpace coarse(m);
+    coarse.limit_gain(1e9);
+    CHECK(coarse.is_stale(m.particle_position));
+    coarse.find_stiffness(m, forces);
+    coarse.find_masses(std::vector<double>(m.particle_count(), 1e5));
+    coarse.hold(m, held);
+    REQUIRE(coarse.gains());
+
+    const double step = 1e-6 * kSpacing;
+    const Vec3Array before = m.particle_position;
+    Vec3Array here, way, force;
+    forces(here);
+    way.resize(before.size());
+    for (std::size_t p = 0; p < way.size(); ++p) {
+        const Vec3 x = m.particle_reference.at(p);
+        way.set(p, step * Vec3(1 + x.y() * x.x(), x.x() * x.x() - x.z(), 2 * x.x() * x.z()));
+    }
+    combine(1, 1, way, m.particle_position);
+    forces(force);
+    m.particle_position = before;
+    combine(-1, 1, here, force);  // K times the way
+    for (const HeldPoint& h : held) {
+        Vec3 moved = Vec3::Zero();
+        for (int c = 0; c < 8; ++c) moved += h.weight[c] * way.at(h.corner[c]);
+        for (int c = 0; c < 8; ++c) {
+            force.set(h.corner[c], force.at(h.corner[c]) + h.weight[c] * (h.stiffness * moved));
+        }
+    }
+    Vec3Array found;
+    set_zero(way.size(), found);
+    coarse.add(force, 2, 0, found);
+    combine(-1, 1, way, found);
+    CHECK(std::sqrt(dot(found, found) / dot(way, way)) < 1e-3);
+
+    // What only goes along and turns a little is known still; what has turned further is not.
+    const auto turned = [&](double angle) {
+        const Mat3 more = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+        Vec3Array x = before;
+        for (std::size_t p = 0; p < x.size(); ++p) x.set(p, more * x.at(p) + Vec3(3, 0, 0));
+        return x;
+    };
+    CHECK(!coarse.is_stale(turned(0.08)));
+    CHECK(coarse.is_stale(turned(0.15)));
+    coarse.forget();
+    CHECK(coarse.is_stale(before));
+}
+
+TEST_CASE("a bar under a tool comes to rest in a time that grows no faster than its length") {
+    const auto iterations = [](int cells) {
+        const double length = cells * kSpacing;
+        Aggregate m = make_block(cells, 2, 6, kSpacing, {.young_modulus = 1e7});
+        Apparatus apparatus;
+        Grip grip;
+        for (int point : points_where(m, [&](const Vec3& x) { return x.x() < -0.499 * length; })) {
+            grip.point.push_back(point);
+            grip.anchor.push_back(m.surface_reference(point));
+        }
+        apparatus.grip.push_back(grip);
+        apparatus.tool.push_back({"roller", CylinderShape{2 * kSpacing, 2}, 0.2});
+        Drive from, to;
+        from.world_from_grip = to.world_from_grip = {Pose{}};
+        const Vec3 above(0.4 * length, 3 * kSpacing, 0);
+        from.world_from_tool = {{Quat::Identity(), above}};
+        to.world_from_tool = {{Quat::Identity(), above - Vec3(0, 0.02 * length, 0)}};
+        to.time = 1;
+        Simulation simulation(m, apparatus, {});
+        const FrameReport report = simulation.advance(from, to);
+        return double(report.iterations) / report.increments;
+    };
+    // By masses alone it takes the square of the length, and more.
+    const double brief = iterations(12);
+    CHECK(iterations(48) < 6 * brief);
+    CHECK(iterations(96) < 10 * brief);
+    CHECK(iterations(96) < 1000);
+}
