@@ -213,14 +213,16 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
     }
 }
 
-std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Drive& now) const {
+std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Drive& now,
+                                               Slipping slipping) const {
     std::vector<HeldPoint> held;
     for_each_touch(
         matter, now,
         [&](std::size_t n, const Vec3&, const Distance& d, double k, const ContactForce& contact) {
             const Mat3 across = d.normal * d.normal.transpose();
+            const bool slips = contact.slips && slipping == Slipping::free;
             held.push_back(held_point(points(), pair_[n].point,
-                                      k * (contact.slips ? across : Mat3(Mat3::Identity()))));
+                                      k * (slips ? across : Mat3(Mat3::Identity()))));
         });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;

@@ -78,9 +78,11 @@ class ContactSet {
     // Adds to `stiffness` what the present candidates and grips can add to each particle [N/m].
     void add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const;
 
-    // What holds the body now: touching points, across the tool's surface only where they slip, and
-    // gripped ones.
-    std::vector<HeldPoint> held_points(const Aggregate& matter, const Drive& now) const;
+    // What holds the body now: touching points and gripped ones. Those that slip are free along the
+    // tool's surface, or held as if they stuck: turned back they would.
+    enum class Slipping { free, held };
+    std::vector<HeldPoint> held_points(const Aggregate& matter, const Drive& now,
+                                       Slipping slipping) const;
 
     // Adds all contact and grip forces. `moved`: the farthest that any component of a particle's
     // place is from where it was when candidates were found for this very drive [m].

@@ -74,7 +74,7 @@ class MovingBody {
     // What a solution by the tangent asks for.
     const std::vector<float>* cells_alone() const { return lattice_.cells_alone(); }
     std::vector<HeldPoint> held_points(const Drive& now) const {
-        return contacts_.held_points(matter_, now);
+        return contacts_.held_points(matter_, now, ContactSet::Slipping::free);
     }
     std::vector<double> stiffness_bound() const;  // of each particle [N/m]
     bool meets_tools() const { return touches_; }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -116,7 +115,7 @@ double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) c
     return sum / push_limit(to);
 }
 
-NewtonProblem QuasistaticSolver::problem_of(const Drive& to) {
+NewtonProblem QuasistaticSolver::problem_of(const Drive& to, ContactSet::Slipping slipping) {
     NewtonProblem problem;
     problem.forces = [&](Vec3Array& force) {
         evaluate(to);
@@ -124,7 +123,7 @@ NewtonProblem QuasistaticSolver::problem_of(const Drive& to) {
     };
     problem.residual = [&](const Vec3Array& force) { return residual_of(force, to); };
     problem.tolerance = accuracy_;
-    problem.held = contacts_.held_points(matter_, to);
+    problem.held = contacts_.held_points(matter_, to, slipping);
     problem.diagonal = lattice_bound_;
     contacts_.add_stiffness(matter_, problem.diagonal);
     problem.drag.resize(drag_.size());
@@ -133,7 +132,8 @@ NewtonProblem QuasistaticSolver::problem_of(const Drive& to) {
 }
 
 QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
-    const Newton::Result found = newton_->solve(matter_, problem_of(to));
+    const Newton::Result found =
+        newton_->solve(matter_, problem_of(to, ContactSet::Slipping::free));
     return {found.converged && mirrored_ == 0, found.steps, found.residual};
 }
 
@@ -197,13 +197,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     };
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(apparatus_) || self_.presses()) break;
-        NewtonProblem problem = problem_of(to);
+        // Whether the matter itself gives way is asked.
+        const NewtonProblem problem = problem_of(to, ContactSet::Slipping::held);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
-        // Whether the matter itself gives way is asked: what slides now would stick if turned back.
-        for (HeldPoint& h : problem.held) {
-            const Eigen::SelfAdjointEigenSolver<Mat3> across(h.stiffness, Eigen::EigenvaluesOnly);
-            h.stiffness = across.eigenvalues().maxCoeff() * Mat3::Identity();
-        }
         if (!newton_->buckles(matter_, problem)) {
             if (touches() || accuracy_ < kFinest * settings_.tolerance) break;
             const double hold = std::exchange(hold_, 0);  // the drag holds back what is left over

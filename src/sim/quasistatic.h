@@ -62,7 +62,7 @@ class QuasistaticSolver {
     Relaxation settle(const Drive& to);
     Relaxation relax_stably(const Drive& to, MoveOutcome& outcome);
     Relaxation solve_smooth(const Drive& to);
-    NewtonProblem problem_of(const Drive& to);
+    NewtonProblem problem_of(const Drive& to, ContactSet::Slipping slipping);
     double residual_of(const Vec3Array& force, const Drive& to) const;
     void connections_renewed();
     void find_bounds();

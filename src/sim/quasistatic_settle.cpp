@@ -22,7 +22,7 @@ constexpr int kCheckInterval = 10;
 constexpr double kFastest = 0.1;  // spacings a step, on the whole
 constexpr double kLongest = 0.2;  // of any particle
 // How much lighter a slow motion may be: no one number suits all bodies, so they take turns.
-constexpr double kGain[] = {300, 30, 3000, 1};
+constexpr double kGain[] = {1000, 100, 10, 1};
 constexpr int kRenewInterval = 50;
 // In which points that press on their own body meet it anew once all is at rest. NOTE: a point in
 // the crease between two planes meets now the one and now the other, so this need not end.
@@ -53,6 +53,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     for (auto* component : {&v.x, &v.y, &v.z}) std::fill(component->begin(), component->end(), 0.0);
     if (!coarse_) coarse_.emplace(matter_);
     coarse_->limit_gain(kGain[0]);
+    const auto hold = [&] {
+        coarse_->hold(matter_, contacts_.held_points(matter_, to, ContactSet::Slipping::held));
+    };
     double moved = 0;  // components, since the candidates were listed [m]
     const auto list_candidates = [&] {
         contacts_.find_candidates(matter_, to);
@@ -62,7 +65,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         }
         find_masses();
         coarse_->find_masses(mass_);
-        coarse_->hold(matter_, contacts_.held_points(matter_, to));
+        hold();
         listed_ = x;
         moved = 0;
     };
@@ -107,7 +110,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
             momentum.uphill();
             // Other points touch or slip by now.
             if (iteration >= renewed + kRenewInterval) {
-                coarse_->hold(matter_, contacts_.held_points(matter_, to));
+                hold();
                 renewed = iteration;
             }
         }
