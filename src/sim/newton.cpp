@@ -16,6 +16,9 @@ constexpr int kMostIterations = 400;  // of conjugate gradients
 constexpr int kKeptSteps = 3;         // that coarse matrices serve in one solution
 constexpr int kMostTries = 12;        // of the length of a step
 constexpr int kUnwatched = 3;         // increments without a look at the softest motion, at most
+constexpr struct {
+    double geometric, firmer;  // by a share of the diagonal
+} kPrepared[] = {{1, 0}, {0, 0}, {0, 0.01}, {0, 0.1}};
 constexpr double kStrains = 0.02;     // of what it falls by: less is a turn of the whole
 constexpr double kFalls = 0.01;       // of the matter's own stiffness: less is no instability
 constexpr double kDownhill = 2;       // spacings, where the curvature is negative
@@ -51,16 +54,19 @@ void Newton::product(const Aggregate& matter, const NewtonProblem& problem, Cell
     });
 }
 
-// The exact tangent where that is stable and wanted, else the part of it that is.
+// The exact tangent where that is stable and wanted, else the part of it that is, made firmer where
+// that is not: far strained matter may be soft by itself.
 bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact) {
     prepared_ = false;
-    for (double geometric : {1.0, 0.0}) {
+    for (const auto& [geometric, firmer] : kPrepared) {
         if (geometric == 1 && !exact) continue;
         kind_ = {Flow::trial, geometric};
         const auto times = [&](const Vec3Array& d, Vec3Array& r) {
             product(matter, problem, kind_, d, r);
         };
-        if (multigrid_.prepare(matter, tangent_, kind_, problem.held, problem.drag, times)) {
+        std::vector<double> drag = problem.drag;
+        for (std::size_t p = 0; p < drag.size(); ++p) drag[p] += firmer * problem.diagonal[p];
+        if (multigrid_.prepare(matter, tangent_, kind_, problem.held, drag, times)) {
             prepared_ = true;
             held_ = problem.held.size();
             prepared_at_ = matter.particle_position;

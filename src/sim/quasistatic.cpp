@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -145,6 +146,7 @@ constexpr double kAstray = 0.01;  // of the way that the body has gone
 
 // How many rounds of letting go of the drag Newton's method goes ahead.
 constexpr double kSmoothHold = 1e-3;
+constexpr int kLongestPause = 16;
 
 // The drag is let go until what it holds back is no more than the residual may be, from where that
 // was so in the move before.
@@ -153,7 +155,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     held_ = rest_;
     contacts_.find_candidates(matter_, to);
     self_.meet_anew();
-    bool smooth = newton_ && !touches() && !floats_under_pressure(apparatus_);
+    bool smooth =
+        newton_ && newton_rests_ == 0 && !touches() && !floats_under_pressure(apparatus_);
     const double first = std::exchange(enough_hold_, 1);
     for (hold_ = smooth ? kSmoothHold : first;; hold_ *= kLetGo) {
         Relaxation round;
@@ -162,6 +165,12 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             round = solve_smooth(to);
             contacts_.find_candidates(matter_, to);
             self_.meet_anew();  // not what steps that were not kept have met
+            if (!round.converged) {
+                newton_pause_ = std::clamp(2 * newton_pause_, 1, kLongestPause);
+                newton_rests_ = newton_pause_;
+            } else {
+                newton_pause_ = 0;
+            }
             if (!round.converged || touches()) {
                 matter_.particle_position = before;
                 smooth = false;
@@ -197,9 +206,13 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     };
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(apparatus_) || self_.presses()) break;
-        // Whether the matter itself gives way is asked.
-        const NewtonProblem problem = problem_of(to, ContactSet::Slipping::held);
+        NewtonProblem problem = problem_of(to, ContactSet::Slipping::held);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
+        // Whether the matter itself gives way is asked, and not whether it can slide in its grips.
+        for (HeldPoint& h : problem.held) {
+            const Eigen::SelfAdjointEigenSolver<Mat3> ways(h.stiffness, Eigen::EigenvaluesOnly);
+            h.stiffness = ways.eigenvalues().maxCoeff() * Mat3::Identity();
+        }
         if (!newton_->buckles(matter_, problem)) {
             if (touches() || accuracy_ < kFinest * settings_.tolerance) break;
             const double hold = std::exchange(hold_, 0);  // the drag holds back what is left over
@@ -247,6 +260,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
 bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome, Unsolved unsolved) {
     start_ = matter_.particle_position;
+    newton_rests_ = std::max(0, newton_rests_ - 1);
     contacts_.begin_move(matter_, from);
     self_.begin_move();
     std::vector<double> motion = motion_of(from, to);

@@ -89,6 +89,9 @@ class QuasistaticSolver {
     SimSettings settings_;
     LatticeForces lattice_;
     std::unique_ptr<Newton> newton_;  // null: the matter is not smooth
+    // Where it has not converged it is not tried for a while, twice as long each time in a row:
+    // moves to go, and the last such pause.
+    int newton_rests_ = 0, newton_pause_ = 0;
     std::optional<CoarseSpace> coarse_;  // from the first relaxation on
     ContactSet contacts_;
     LoadSet pushes_;

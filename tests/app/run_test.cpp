@@ -222,12 +222,15 @@ TEST_CASE("how often a run is looked at does not change what its machine does") 
             run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
-        const Json record = Json::parse(bytes_of(run / "run.json"));
-        return record.at("stages").at(0).at("energies_J").at("machine_work").get<double>();
+        return Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
     };
-    const double often = twisted(24);
-    CHECK(often > 1);
-    CHECK(twisted(2) == Approx(often).epsilon(0.03));
+    // It leaves the straight on the way, by as soft a motion as there is: however it comes there.
+    const Json often = twisted(24), seldom = twisted(2);
+    const double work = often.at("machine_work").get<double>();
+    CHECK(work > 1);
+    CHECK(seldom.at("machine_work").get<double>() == Approx(work).epsilon(0.03));
+    CHECK(seldom.at("elastic").get<double>() ==
+          Approx(often.at("elastic").get<double>()).epsilon(1e-4));
 }
 
 TEST_CASE("the option --set goes over what the scene says") {
