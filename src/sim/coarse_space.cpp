@@ -12,12 +12,13 @@ namespace {
 
 constexpr int kReach = 2;  // nodes along an axis that share particles
 constexpr int kSide = 2 * kReach + 1, kSelf = kSide * kSide * kSide / 2;
-constexpr double kFinest = 4;               // cells an element
-constexpr double kEntriesPerParticle = 10;  // of a banded factor, beside an iteration's own work
-constexpr double kMostWork = 4e8;           // multiplications that a banded factor may take
-constexpr double kStaleTurn = 0.1;          // of a cell's edge, over its length
-constexpr double kStep = 1e-6;              // of a cell, for differences
-constexpr double kLoosest = 1e-6;           // of the largest inertia, that every node has
+constexpr double kFinest = 4;  // cells an element
+// Of a banded factor: beside an iteration's own work, and what costs next to nothing.
+constexpr double kEntriesPerParticle = 10, kFewEntries = 2e4;
+constexpr double kMostWork = 4e8;   // multiplications that a banded factor may take
+constexpr double kStaleTurn = 0.1;  // of a cell's edge, over its length
+constexpr double kStep = 1e-6;      // of a cell, for differences
+constexpr double kLoosest = 1e-6;   // of the largest inertia, that every node has
 
 // The place of a neighbour among those near a node; kNear - 1 less it is the node's among its.
 int near_of(const Vec3i& way) { return kSelf + way.x() + kSide * (way.y() + kSide * way.z()); }
@@ -41,8 +42,8 @@ Vec3i elements_of(const Lattice& lattice, std::size_t particles) {
         }
         const Vec3i nodes = elements + Vec3i::Constant(2);
         const double rows = 3.0 * nodes.prod(), band = 2 * rows / nodes.maxCoeff();
-        const bool pays = rows * band <= kEntriesPerParticle * double(particles) &&
-                          rows * band * band <= kMostWork;
+        const double entries = std::max(kFewEntries, kEntriesPerParticle * double(particles));
+        const bool pays = rows * band <= entries && rows * band * band <= kMostWork;
         if (pays || elements == Vec3i::Ones()) return elements;
     }
 }
