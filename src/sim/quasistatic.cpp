@@ -149,7 +149,7 @@ constexpr double kSmoothHold = 1e-3;
 constexpr int kLongestPause = 16;
 
 // The drag is let go until what it holds back is no more than the residual may be, from where that
-// was so in the move before.
+// was so in the move before. NOTE: loose pieces would fly off with what little drag that was.
 QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     Relaxation result;
     held_ = rest_;
@@ -157,7 +157,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     self_.meet_anew();
     bool smooth =
         newton_ && newton_rests_ == 0 && !touches() && !floats_under_pressure(apparatus_);
-    const double first = std::exchange(enough_hold_, 1);
+    const double first = carrier_.empty() ? std::exchange(enough_hold_, 1) : 1;
     for (hold_ = smooth ? kSmoothHold : first;; hold_ *= kLetGo) {
         Relaxation round;
         if (smooth) {
