@@ -17,7 +17,7 @@ constexpr double kFinest = 4;  // cells an element
 constexpr double kEntriesPerParticle = 10, kFewEntries = 2e4;
 constexpr double kMostWork = 4e8;   // multiplications that a banded factor may take
 constexpr double kStaleTurn = 0.1;  // of a cell's edge, over its length
-constexpr double kStep = 1e-6;      // of a cell, for differences
+constexpr double kStep = 1e-8;      // of a cell, for differences
 constexpr double kLoosest = 1e-6;   // of the largest inertia, that every node has
 
 // The place of a neighbour among those near a node; kNear - 1 less it is the node's among its.

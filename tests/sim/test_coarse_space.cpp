@@ -124,11 +124,11 @@ TEST_CASE("a force that a smooth motion asks for moves the body by half of that 
     Aggregate m = make_block(21, 6, 4, kSpacing, {.young_modulus = 1e6, .poisson_ratio = 0.4});
     LatticeForces lattice(m);
     const auto forces = [&](Vec3Array& f) { lattice.find(m, Flow::none, f); };
-    // Turned, and bent a little, so that stress turns with the matter.
+    // Turned, and drawn a little, so that stress turns with the matter.
     const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         const Vec3 x = m.particle_reference.at(p);
-        m.particle_position.set(p, turn * (x + Vec3(0, 0.02 * x.x() * x.x(), 0)));
+        m.particle_position.set(p, turn * Vec3(1.02 * x.x(), x.y(), x.z()));
     }
     // Held across one end.
     std::vector<HeldPoint> held;
@@ -137,7 +137,7 @@ TEST_CASE("a force that a smooth motion asks for moves the body by half of that 
             held_point(m.surface, point, 2e4 * Vec3(1, 0.5, 0.1).asDiagonal().toDenseMatrix()));
     }
     CoarseSpace coarse(m);
-    coarse.limit_gain(1e9);
+    coarse.limit_gain(1e8);
     CHECK(coarse.is_stale(m.particle_position));
     coarse.find_stiffness(m, forces);
     coarse.find_masses(std::vector<double>(m.particle_count(), 1e5));
@@ -168,7 +168,8 @@ TEST_CASE("a force that a smooth motion asks for moves the body by half of that 
     set_zero(way.size(), found);
     coarse.add(force, 2, 0, found);
     combine(-1, 1, way, found);
-    CHECK(std::sqrt(dot(found, found) / dot(way, way)) < 1e-3);
+    // As well as differences tell the stiffness of what is softest.
+    CHECK(std::sqrt(dot(found, found) / dot(way, way)) < 5e-3);
 
     // What only goes along and turns a little is known still; what has turned further is not.
     const auto turned = [&](double angle) {
