@@ -24,6 +24,7 @@ constexpr double kTogether = 0.98;
 // Particles far from the material of their cell do not tell its strain.
 constexpr float kOffCentre = 0.15f;  // of the cell
 constexpr double kSpared = 1.5;      // times onset
+constexpr std::size_t kTracksAtOnce = 64;
 
 // Largest principal strain where the cell's material is, less what has flowed.
 double material_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
@@ -40,6 +41,12 @@ double material_strain(const Aggregate& matter, const CellRun& run, int n, doubl
         Eigen::SelfAdjointEigenSolver<Mat3>(c, Eigen::EigenvaluesOnly).eigenvalues()[2];
     return std::sqrt(largest) - 1;
 }
+
+struct Beyond {
+    const CellRun* run;
+    int n;
+    double strain;
+};
 
 struct Candidate {
     StrainedCell at;
@@ -98,6 +105,44 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
     return std::sqrt(largest) - 1;
 }
 
+// Sound cells beyond onset, in the order of the cells.
+std::vector<Beyond> all_beyond(const Aggregate& matter, const Fracture& law,
+                               const std::vector<const CellRun*>* only) {
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const std::size_t count = only ? only->size() : runs.size();
+    const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
+    const bool springs = matter.material.mechanics == Mechanics::springs;
+    const double far = strain_measure_at(law.onset);
+    std::vector<std::vector<Beyond>> part(chunks);
+    parallel_for(chunks, [&](std::size_t chunk) {
+        std::vector<double> measure;
+        const std::size_t end = std::min(count, (chunk + 1) * kRunsPerChunk);
+        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
+            const CellRun& run = only ? *(*only)[r] : runs[r];
+            if (!springs) strain_measures(matter, run, measure);
+            for (int n = 0; n < run.count; ++n) {
+                const CellId cell = run.first + n;
+                // Where a cell has flowed its connections do not tell its elastic strain.
+                const bool flowed =
+                    !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
+                if (!springs && !flowed && measure[n] < far) continue;
+                std::array<ParticleId, 4> row = run.row;
+                for (ParticleId& p : row) p += n;
+                double strain = springs ? 0 : material_strain(matter, run, n, law.onset);
+                if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
+                    strain = std::max(strain, largest_connection_strain(matter, row));
+                }
+                if (strain >= law.onset && cell_is_sound(matter, cell, row)) {
+                    part[chunk].push_back({&run, n, strain});
+                }
+            }
+        }
+    });
+    std::vector<Beyond> beyond;
+    for (const auto& p : part) beyond.insert(beyond.end(), p.begin(), p.end());
+    return beyond;
+}
+
 }  // namespace
 
 std::vector<const CellRun*> cells_beside(
@@ -125,50 +170,29 @@ std::vector<const CellRun*> cells_beside(
 
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
                                           const std::vector<const CellRun*>* only) {
-    const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    const std::size_t count = only ? only->size() : runs.size();
-    const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
-    const bool springs = matter.material.mechanics == Mechanics::springs;
-    const double far = strain_measure_at(law.onset);
-    std::vector<std::vector<Candidate>> part(chunks);
-    parallel_for(chunks, [&](std::size_t chunk) {
-        std::vector<double> measure;
-        const std::size_t end = std::min(count, (chunk + 1) * kRunsPerChunk);
-        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
-            const CellRun& run = only ? *(*only)[r] : runs[r];
-            if (!springs) strain_measures(matter, run, measure);
-            for (int n = 0; n < run.count; ++n) {
-                const CellId cell = run.first + n;
-                std::array<ParticleId, 4> row = run.row;
-                for (ParticleId& p : row) p += n;
-                // Where a cell has flowed its connections do not tell its elastic strain.
-                const bool flowed =
-                    !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
-                if (!springs && !flowed && measure[n] < far) continue;
-                if (!cell_is_sound(matter, cell, row)) continue;
-                double strain = springs ? 0 : material_strain(matter, run, n, law.onset);
-                if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
-                    strain = std::max(strain, largest_connection_strain(matter, row));
-                }
-                if (strain < law.onset) continue;
-                const StrainedCell at = strained_cell(matter, run, n);
-                if (strain < kSpared * law.onset && is_beside_crack(matter, at)) continue;
-                strain /= off_track_factor(matter, at);
-                if (strain >= law.onset) part[chunk].push_back({at, strain});
-            }
-        }
+    std::vector<Beyond> beyond = all_beyond(matter, law, only);
+    std::stable_sort(beyond.begin(), beyond.end(),
+                     [](const Beyond& a, const Beyond& b) { return a.strain > b.strain; });
+    // Being off the track only makes it less: those strained less than the largest by then are out.
+    double largest = law.onset;
+    std::vector<Candidate> all;
+    for (std::size_t begin = 0; begin < beyond.size(); begin += kTracksAtOnce) {
+        if (beyond[begin].strain < kTogether * largest) break;
+        const std::size_t count = std::min(kTracksAtOnce, beyond.size() - begin);
+        std::vector<Candidate> some(count);
+        parallel_for(count, [&](std::size_t n) {
+            const Beyond& b = beyond[begin + n];
+            const StrainedCell at = strained_cell(matter, *b.run, b.n);
+            const bool spared = b.strain < kSpared * law.onset && is_beside_crack(matter, at);
+            some[n] = {at, spared ? 0 : b.strain / off_track_factor(matter, at)};
+        });
+        for (const Candidate& c : some) largest = std::max(largest, c.strain);
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    std::erase_if(all, [&](const Candidate& c) {
+        return c.strain < law.onset || c.strain < kTogether * largest;
     });
-    double largest = 0;
-    for (const auto& p : part) {
-        for (const Candidate& c : p) largest = std::max(largest, c.strain);
-    }
-    std::vector<Candidate> next;
-    for (const auto& p : part) {
-        for (const Candidate& c : p) {
-            if (c.strain >= kTogether * largest) next.push_back(c);
-        }
-    }
-    return not_in_line(std::move(next));
+    return not_in_line(std::move(all));
 }
 
 }  // namespace swage
