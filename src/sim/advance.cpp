@@ -346,6 +346,14 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         report.warning.push_back(
             fmt::format("the work-piece slipped away from {} although no tool drew back", names));
     }
+    if (outcome.afloat > 0) {
+        const bool one = outcome.afloat == 1;
+        report.warning.push_back(fmt::format(
+            "{} would fall, for nothing holds {} against gravity and loads: equilibria have no "
+            "fall (solver = \"explicit\" has), so from here on these leave {} alone",
+            one ? "a piece" : fmt::format("{} pieces", outcome.afloat), one ? "it" : "them",
+            one ? "it" : "them"));
+    }
     if (outcome.drag_held) {
         report.warning.push_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "

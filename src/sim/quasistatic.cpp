@@ -54,6 +54,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       carries_(apparatus.tool.size(), false),
       pressing_motion_(6 * apparatus.tool.size(), 0.0) {
     velocity_.resize(matter.particle_count());
+    heavy_mass_ = matter.particle_mass;
     find_bounds();
     find_carriers();
 }
@@ -87,12 +88,19 @@ void QuasistaticSolver::find_bounds() {
     previous_motion_.clear();
 }
 
+void QuasistaticSolver::add_loads(const Drive& to, Vec3Array& force) const {
+    std::vector<Vec3> afloat;
+    for (ParticleId p : afloat_) afloat.push_back(force.at(p));
+    pushes_.add_forces(matter_, to, force);
+    for (std::size_t n = 0; n < afloat.size(); ++n) force.set(afloat_[n], afloat[n]);
+}
+
 void QuasistaticSolver::evaluate(const Drive& to, double moved) {
     mirrored_ = lattice_.find(matter_, Flow::trial, force_);
     contacts_.add_forces(matter_, to, force_, moved);
-    pushes_.add_forces(matter_, to, force_);
+    add_loads(to, force_);
     add_restraint(matter_.particle_position,
-                  {held_, drag_, hold_, matter_.particle_mass, pushes_.gravity(to)}, force_);
+                  {held_, drag_, hold_, heavy_mass_, pushes_.gravity(to)}, force_);
     self_.add_forces(force_);
 }
 
@@ -171,6 +179,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             } else {
                 newton_pause_ = 0;
             }
+            if (falls(to)) return {false, round.iterations, round.residual, true};
             if (!round.converged || touches()) {
                 matter_.particle_position = before;
                 smooth = false;
@@ -178,7 +187,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             }
         }
         if (!smooth) round = settle(to);
-        result = {round.converged, result.iterations + round.iterations, round.residual};
+        result = {round.converged, result.iterations + round.iterations, round.residual,
+                  round.falls};
         if (!round.converged) return result;
         const Vec3Array& x = matter_.particle_position;
         const double dragged = hold_ * chunked_sum(x.size(), [&](std::size_t p) {
@@ -202,7 +212,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     const auto again = [&](double accuracy) {
         accuracy_ = accuracy;
         const Relaxation next = relax(to);
-        result = {next.converged, result.iterations + next.iterations, next.residual};
+        result = {next.converged, result.iterations + next.iterations, next.residual, next.falls};
     };
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(apparatus_) || self_.presses()) break;
@@ -276,6 +286,8 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     outcome.residual = relaxed.residual;
     const bool whole = relaxed.converged && smallest_cell_volume(matter_) > kSmallestCellVolume;
     if (!whole) {
+        const bool falls = relaxed.falls || (!relaxed.converged && depth >= settings_.halving_limit &&
+                                             begins_to_fall(to));
         std::string hardest = contacts_.hardest_point(matter_, to);
         if (self_.presses()) {
             hardest += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
@@ -284,7 +296,17 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         matter_.particle_position = start_;
         self_.take_back();
         previous_motion_.clear();
+        const int floating = falls ? let_float() : 0;
+        outcome.afloat += floating;
+        if (floating > 0) return increment(from, to, depth, outcome, unsolved);
         if (unsolved == Unsolved::leave) return false;
+        if (falls) {
+            fail(ExitCode::stopped,
+                 "{}: the work-piece falls at {:.4g} s, for nothing holds it against gravity and "
+                 "loads, and equilibria have no fall: hold it, have it lie on something, or let it "
+                 "fall by solver = \"explicit\"",
+                 apparatus_.name, to.time);
+        }
         if (depth >= settings_.halving_limit) {
             fail(ExitCode::stopped,
                  "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings "

@@ -53,6 +53,7 @@ class QuasistaticSolver {
         bool converged = false;
         int iterations = 0;
         double residual = 0;
+        bool falls = false;  // it, or a piece of it
     };
     enum class Unsolved { stop, leave };
     // Whether there is an equilibrium at `to`; without one the matter stays as it was, or it stops.
@@ -68,6 +69,7 @@ class QuasistaticSolver {
     void find_bounds();
     void find_masses();
     // `moved`: as ContactSet::add_forces() takes it.
+    void add_loads(const Drive& to, Vec3Array& force) const;
     void evaluate(const Drive& to, double moved = std::numeric_limits<double>::infinity());
     bool touches() { return contacts_.tools_near() || self_.presses(); }
     double push_limit(const Drive& to) const;
@@ -82,6 +84,10 @@ class QuasistaticSolver {
     bool begin(const Drive& from, BodyOutcome& outcome);
     void let_go(const Drive& from, MoveOutcome& outcome);
     void stay(const Drive& to);
+    bool falls(const Drive& to);
+    bool begins_to_fall(const Drive& to);
+    std::vector<Vec3> keep_those_pushed(const Drive& to);
+    int let_float();
     bool commit(MoveOutcome& outcome);
 
     Aggregate& matter_;
@@ -105,9 +111,15 @@ class QuasistaticSolver {
     double hold_ = 1;         // share of the drag that acts
     double enough_hold_ = 1;  // and that held nothing back in the last relaxation
     Vec3Array held_, rest_;  // positions that the drag pulls back to: now, at first
+    Pieces pieces_;
     // Of each particle: the grip, if any, that alone holds its piece. Empty: the matter is in one
     // piece.
     std::vector<int> carrier_;
+    // Particles of pieces that nothing holds, which loads and gravity leave alone from then on, and
+    // the mass of all others [kg].
+    std::vector<int> fallen_;  // pieces, when it was last asked
+    std::vector<ParticleId> afloat_;
+    std::vector<double> heavy_mass_;
     Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
                                            // the candidates were found
     std::vector<double> previous_motion_;  // empty: nothing to extrapolate from

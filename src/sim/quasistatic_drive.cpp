@@ -42,9 +42,9 @@ std::vector<double> QuasistaticSolver::motion_of(const Drive& from, const Drive&
 void QuasistaticSolver::find_carriers() {
     constexpr int kNone = -1, kSeveral = -2;
     carrier_.clear();
-    const Pieces pieces = find_pieces(matter_);
-    if (pieces.count < 2) return;
-    std::vector<int> of_piece(static_cast<std::size_t>(pieces.count), kNone);
+    pieces_ = find_pieces(matter_);
+    if (pieces_.count < 2) return;
+    std::vector<int> of_piece(static_cast<std::size_t>(pieces_.count), kNone);
     for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
         const Grip& grip = apparatus_.grip[g];
         const int carries = grip.hold == Vec3::Ones() ? static_cast<int>(g) : kSeveral;
@@ -52,12 +52,12 @@ void QuasistaticSolver::find_carriers() {
             const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
             for (int c = 0; c < 8; ++c) {
                 if (by.weight[c] == 0) continue;
-                int& of = of_piece[pieces.particle_piece[by.corner[c]]];
+                int& of = of_piece[pieces_.particle_piece[by.corner[c]]];
                 of = of == kNone || of == carries ? carries : kSeveral;
             }
         }
     }
-    for (int piece : pieces.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
+    for (int piece : pieces_.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
 }
 
 // What a single grip holds goes where that goes, whole. NOTE: else the drag, which is let go only

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A body that nothing holds any more can be at rest anywhere. It stays where it was let go, as near
-// as tools leave it room.
+// as tools leave it room; a piece that would fall stays too.
 #include <Eigen/Geometry>
+#include <numeric>
+#include <utility>
 
 #include "sim/quasistatic.h"
 
@@ -10,6 +12,8 @@ namespace swage {
 namespace {
 
 constexpr int kHalvings = 8;
+constexpr double kUnbalanced = 0.05;  // of all loads and gravity on a piece
+constexpr double kUnborne = 0.5;      // of what they come to
 
 Eigen::Matrix3Xd columns(const Vec3Array& x) {
     Eigen::Matrix3Xd m(3, x.size());
@@ -17,7 +21,80 @@ Eigen::Matrix3Xd columns(const Vec3Array& x) {
     return m;
 }
 
+template <typename Value, typename Of>
+std::vector<Value> sums_of(const Pieces& pieces, const Value& none, const Of& of) {
+    std::vector<Value> sum(static_cast<std::size_t>(pieces.count), none);
+    for (std::size_t p = 0; p < pieces.particle_piece.size(); ++p) {
+        sum[static_cast<std::size_t>(pieces.particle_piece[p])] += of(p);
+    }
+    return sum;
+}
+
 }  // namespace
+
+// Tools and grips go no farther than a spacing in a move, and what springs back no farther than the
+// body is long.
+bool QuasistaticSolver::falls(const Drive& to) {
+    const Vec3Array& x = matter_.particle_position;
+    const auto count = sums_of(pieces_, 0.0, [](std::size_t) { return 1.0; });
+    const auto way = sums_of(pieces_, Vec3(Vec3::Zero()),
+                             [&](std::size_t p) -> Vec3 { return x.at(p) - start_.at(p); });
+    fallen_.clear();
+    for (std::size_t n = 0; n < way.size(); ++n) {
+        if (way[n].norm() > count[n] * body_size_) fallen_.push_back(static_cast<int>(n));
+    }
+    if (!fallen_.empty()) keep_those_pushed(to);
+    return !fallen_.empty();
+}
+
+// What is stiff and light beside its stiffness has not gone far by the time it is given up.
+bool QuasistaticSolver::begins_to_fall(const Drive& to) {
+    fallen_.resize(static_cast<std::size_t>(pieces_.count));
+    std::iota(fallen_.begin(), fallen_.end(), 0);
+    const std::vector<Vec3> pushed = keep_those_pushed(to);
+    const double hold = std::exchange(hold_, 0);
+    evaluate(to);
+    hold_ = hold;
+    const auto left =
+        sums_of(pieces_, Vec3(Vec3::Zero()), [&](std::size_t p) { return force_.at(p); });
+    std::erase_if(fallen_, [&](int n) {
+        return left[n].dot(pushed[n]) < kUnborne * pushed[n].squaredNorm();
+    });
+    return !fallen_.empty();
+}
+
+// Of the fallen pieces those which loads and gravity do not balance on. Returns what these come to
+// on each piece [N].
+std::vector<Vec3> QuasistaticSolver::keep_those_pushed(const Drive& to) {
+    Vec3Array push;
+    push.resize(matter_.particle_count());
+    add_loads(to, push);
+    const Vec3 gravity = pushes_.gravity(to);
+    for (std::size_t p = 0; p < push.size(); ++p) push.add(p, heavy_mass_[p] * gravity);
+    const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+    std::vector<Vec3> sum =
+        sums_of(pieces_, Vec3(Vec3::Zero()), [&](std::size_t p) { return push.at(p); });
+    std::erase_if(fallen_, [&](int n) { return sum[n].norm() <= kUnbalanced * size[n]; });
+    return sum;
+}
+
+int QuasistaticSolver::let_float() {
+    if (pieces_.count < 2) return 0;
+    std::vector<char> floats(matter_.particle_count(), 0);
+    for (ParticleId p : afloat_) floats[p] = 1;
+    std::vector<char> falls(static_cast<std::size_t>(pieces_.count), 0);
+    for (int piece : fallen_) falls[piece] = 1;
+    std::vector<char> counted(falls.size(), 0);
+    int count = 0;
+    for (std::size_t p = 0; p < floats.size(); ++p) {
+        const auto piece = static_cast<std::size_t>(pieces_.particle_piece[p]);
+        if (floats[p] || !falls[piece]) continue;
+        afloat_.push_back(static_cast<ParticleId>(p));
+        heavy_mass_[p] = 0;
+        count += !std::exchange(counted[piece], 1);
+    }
+    return count;
+}
 
 void QuasistaticSolver::stay(const Drive& to) {
     if (!apparatus_.grip.empty() || apparatus_.tool.empty() || pushes_.size(matter_, to) > 0) {

@@ -120,7 +120,11 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
             keep = 1;
         }
         moved = move_on({keep, step, step, kLongest * a}, f, inverse_mass_, listed_, v, x);
-        if (moved > 0.45 * a) list_candidates();
+        if (moved > 0.45 * a) {
+            list_candidates();
+            result.falls = falls(to);
+            if (result.falls) return result;
+        }
     }
     return result;
 }

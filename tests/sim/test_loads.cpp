@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/error.h"
 #include "sim/advance.h"
 #include "sim/load_set.h"
 #include "tests/catch.h"
@@ -223,5 +224,60 @@ TEST_CASE("a grip along one axis holds that one and leaves the others free") {
             length += std::abs(far);
         }
         CHECK(stretched / length == Approx(expected).epsilon(0.01));
+    }
+}
+
+TEST_CASE(
+    "a piece that nothing holds does not fall for ever: loads leave it alone, and it is told") {
+    for (double modulus : {1e6, 1e11}) {
+        Material material = kSoft;
+        material.young_modulus = modulus;
+        Aggregate whole = make_block(6, 3, 3, 0.05, material);
+        Aggregate matter = make_block(12, 3, 3, 0.05, material);
+        sever_plane(matter, Vec3::Zero(), Vec3::UnitX());
+        SimSettings settings;
+        settings.gravity = {0, -9.81, 0};
+        const auto hang = [&](Aggregate& body, double end) {
+            Apparatus apparatus;
+            apparatus.grip.push_back(
+                hold(body, points_where(body, [&](const Vec3& x) { return x.x() < end + 1e-6; })));
+            return put_on(body, apparatus, settings, 1);
+        };
+        hang(whole, -0.15);
+        double alone = 0;
+        const FrameReport report = hang(matter, -0.3);
+        REQUIRE(report.pieces == 2);
+        REQUIRE(report.warning.size() == 1);
+        CHECK(report.warning[0].find("a piece would fall") == 0);
+        const auto farthest = [](const Aggregate& body, bool right) {
+            double most = 0;
+            for (std::size_t p = 0; p < body.particle_count(); ++p) {
+                const Vec3 from = body.particle_reference.at(p);
+                if ((from.x() > 0.01) != right) continue;
+                most = std::max(most, (body.particle_position.at(p) - from).norm());
+            }
+            return most;
+        };
+        CHECK(farthest(matter, true) < 0.5 * 0.05);
+        // It weighs half a layer of cells more than alone.
+        for (std::size_t p = 0; p < whole.particle_count(); ++p) {
+            alone = std::max(
+                alone, (whole.particle_position.at(p) - whole.particle_reference.at(p)).norm());
+        }
+        CHECK(farthest(matter, false) == Approx(alone).epsilon(0.3));
+    }
+}
+
+TEST_CASE("a body that nothing holds falls, and that is said") {
+    Aggregate matter = make_block(4, 3, 3, 0.05, kSoft);
+    SimSettings settings;
+    settings.gravity = {0, -9.81, 0};
+    const Apparatus nothing;
+    try {
+        put_on(matter, nothing, settings, 1);
+        FAIL("it came to rest");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::stopped);
+        CHECK(std::string(error.what()).find("the work-piece falls") != std::string::npos);
     }
 }
