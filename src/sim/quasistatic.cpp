@@ -179,7 +179,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             } else {
                 newton_pause_ = 0;
             }
-            if (falls(to)) return {false, round.iterations, round.residual, true};
+            if (round.converged && falls(to)) {
+                return {false, round.iterations, round.residual, true};
+            }
             if (!round.converged || touches()) {
                 matter_.particle_position = before;
                 smooth = false;

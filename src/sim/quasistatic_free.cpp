@@ -2,6 +2,7 @@
 // A body that nothing holds any more can be at rest anywhere. It stays where it was let go, as near
 // as tools leave it room; a piece that would fall stays too.
 #include <Eigen/Geometry>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int kHalvings = 8;
 constexpr double kUnbalanced = 0.05;  // of all loads and gravity on a piece
-constexpr double kUnborne = 0.5;      // of what they come to
+constexpr double kBorne = 0.5;        // of what they come to
 
 Eigen::Matrix3Xd columns(const Vec3Array& x) {
     Eigen::Matrix3Xd m(3, x.size());
@@ -47,19 +48,17 @@ bool QuasistaticSolver::falls(const Drive& to) {
     return !fallen_.empty();
 }
 
-// What is stiff and light beside its stiffness has not gone far by the time it is given up.
+// What is stiff beside its weight has not gone far by the time it is given up.
 bool QuasistaticSolver::begins_to_fall(const Drive& to) {
     fallen_.resize(static_cast<std::size_t>(pieces_.count));
     std::iota(fallen_.begin(), fallen_.end(), 0);
     const std::vector<Vec3> pushed = keep_those_pushed(to);
-    const double hold = std::exchange(hold_, 0);
-    evaluate(to);
-    hold_ = hold;
-    const auto left =
-        sums_of(pieces_, Vec3(Vec3::Zero()), [&](std::size_t p) { return force_.at(p); });
-    std::erase_if(fallen_, [&](int n) {
-        return left[n].dot(pushed[n]) < kUnborne * pushed[n].squaredNorm();
-    });
+    Vec3Array contact;
+    contact.resize(matter_.particle_count());
+    contacts_.add_forces(matter_, to, contact, std::numeric_limits<double>::infinity());
+    self_.add_forces(contact);
+    const auto borne = sums_of(pieces_, 0.0, [&](std::size_t p) { return contact.at(p).norm(); });
+    std::erase_if(fallen_, [&](int n) { return borne[n] > kBorne * pushed[n].norm(); });
     return !fallen_.empty();
 }
 
