@@ -53,17 +53,8 @@ std::vector<std::string> cells_of(const std::string& line) {
     return cells;
 }
 
-}  // namespace
-
-TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
-    const Scratch scratch;
-    const fs::path run = scratch.path() / "run";
-    const Outcome outcome =
-        run_swage({"run", "assets/scenes/shelf.toml", "--out", run.string(), "--no-render", "--set",
-                   "stage.1.frames=10", "--set", "stage.1.friction=0", "--quiet"});
-    INFO(outcome.err);
-    REQUIRE(outcome.code == 0);
-    std::istringstream table(bytes_of(run / "curves/1-shelf.csv"));
+std::vector<std::map<std::string, double>> rows_of(const fs::path& curves) {
+    std::istringstream table(bytes_of(curves));
     std::string line;
     std::getline(table, line);
     const std::vector<std::string> head = cells_of(line);
@@ -74,6 +65,20 @@ TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
         REQUIRE(cells.size() == head.size());
         for (std::size_t n = 0; n < head.size(); ++n) row.back()[head[n]] = std::stod(cells[n]);
     }
+    return row;
+}
+
+}  // namespace
+
+TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
+    const Scratch scratch;
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome =
+        run_swage({"run", "assets/scenes/shelf.toml", "--out", run.string(), "--no-render", "--set",
+                   "stage.1.frames=10", "--set", "stage.1.friction=0", "--quiet"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const auto row = rows_of(run / "curves/1-shelf.csv");
     REQUIRE(row.size() == 11);
     const auto sunk = [&](int frame) {
         return row[0].at("books y [m]") - row[frame].at("books y [m]");
@@ -89,4 +94,24 @@ TEST_CASE("the shipped shelf sags as a beam does, and its books are closed") {
         energy.at("load_work").get<double>() + energy.at("gravity_work").get<double>();
     CHECK(energy.at("elastic").get<double>() == Approx(work).epsilon(0.05));
     CHECK(std::abs(energy.at("remainder").get<double>()) < 0.05 * work);
+}
+
+TEST_CASE("what next to nothing pushes comes down onto its rests, however few points it meets") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "calf.toml", run = scratch.path() / "run";
+    put_text(scene, "[mesh]\nfile = \"" SWAGE_SOURCE_DIR
+                    "/assets/meshes/calf.obj\"\nlength = \"20 cm\"\n"
+                    "[material]\nname = \"structural_steel\"\n[mold]\nacross = 4\n"
+                    "[[stage]]\nmachine = \"shelf\"\nframes = 10\n"
+                    "[[stage.load]]\nforce = [\"0 N\", \"-100 N\", \"0 N\"]\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--quiet"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const auto row = rows_of(run / "curves/1-shelf.csv");
+    REQUIRE(row.size() == 11);
+    for (std::size_t n = 1; n < row.size(); ++n) {
+        const double borne = row[n].at("left force y [N]") + row[n].at("right force y [N]");
+        CHECK(borne == Approx(-row[n].at("load_1 force y [N]")).epsilon(0.01));
+    }
 }
