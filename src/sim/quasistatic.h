@@ -86,7 +86,7 @@ class QuasistaticSolver {
     void stay(const Drive& to);
     bool falls(const Drive& to);
     bool begins_to_fall(const Drive& to);
-    std::vector<Vec3> keep_those_pushed(const Drive& to);
+    void keep_loose(const Drive& to, const std::vector<double>& borne);
     int let_float();
     bool commit(MoveOutcome& outcome);
 
@@ -112,6 +112,7 @@ class QuasistaticSolver {
     double enough_hold_ = 1;  // and that held nothing back in the last relaxation
     Vec3Array held_, rest_;  // positions that the drag pulls back to: now, at first
     Pieces pieces_;
+    std::vector<char> gripped_;  // of each piece
     // Of each particle: the grip, if any, that alone holds its piece. Empty: the matter is in one
     // piece.
     std::vector<int> carrier_;

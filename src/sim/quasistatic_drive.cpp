@@ -43,7 +43,6 @@ void QuasistaticSolver::find_carriers() {
     constexpr int kNone = -1, kSeveral = -2;
     carrier_.clear();
     pieces_ = find_pieces(matter_);
-    if (pieces_.count < 2) return;
     std::vector<int> of_piece(static_cast<std::size_t>(pieces_.count), kNone);
     for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
         const Grip& grip = apparatus_.grip[g];
@@ -57,6 +56,9 @@ void QuasistaticSolver::find_carriers() {
             }
         }
     }
+    gripped_.clear();
+    for (int by : of_piece) gripped_.push_back(by != kNone);
+    if (pieces_.count < 2) return;
     for (int piece : pieces_.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
 }
 

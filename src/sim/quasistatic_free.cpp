@@ -44,7 +44,7 @@ bool QuasistaticSolver::falls(const Drive& to) {
     for (std::size_t n = 0; n < way.size(); ++n) {
         if (way[n].norm() > count[n] * body_size_) fallen_.push_back(static_cast<int>(n));
     }
-    if (!fallen_.empty()) keep_those_pushed(to);
+    keep_loose(to, std::vector<double>(way.size(), 0.0));
     return !fallen_.empty();
 }
 
@@ -52,29 +52,31 @@ bool QuasistaticSolver::falls(const Drive& to) {
 bool QuasistaticSolver::begins_to_fall(const Drive& to) {
     fallen_.resize(static_cast<std::size_t>(pieces_.count));
     std::iota(fallen_.begin(), fallen_.end(), 0);
-    const std::vector<Vec3> pushed = keep_those_pushed(to);
     Vec3Array contact;
     contact.resize(matter_.particle_count());
     contacts_.add_forces(matter_, to, contact, std::numeric_limits<double>::infinity());
     self_.add_forces(contact);
     const auto borne = sums_of(pieces_, 0.0, [&](std::size_t p) { return contact.at(p).norm(); });
-    std::erase_if(fallen_, [&](int n) { return borne[n] > kBorne * pushed[n].norm(); });
+    keep_loose(to, borne);
     return !fallen_.empty();
 }
 
-// Of the fallen pieces those which loads and gravity do not balance on. Returns what these come to
-// on each piece [N].
-std::vector<Vec3> QuasistaticSolver::keep_those_pushed(const Drive& to) {
+// Of the fallen pieces those in no grip which loads and gravity drive somewhere, by more than is
+// borne [N].
+void QuasistaticSolver::keep_loose(const Drive& to, const std::vector<double>& borne) {
+    if (fallen_.empty()) return;
     Vec3Array push;
     push.resize(matter_.particle_count());
     add_loads(to, push);
     const Vec3 gravity = pushes_.gravity(to);
     for (std::size_t p = 0; p < push.size(); ++p) push.add(p, heavy_mass_[p] * gravity);
-    const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
-    std::vector<Vec3> sum =
+    const auto pushed =
         sums_of(pieces_, Vec3(Vec3::Zero()), [&](std::size_t p) { return push.at(p); });
-    std::erase_if(fallen_, [&](int n) { return sum[n].norm() <= kUnbalanced * size[n]; });
-    return sum;
+    const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+    std::erase_if(fallen_, [&](int n) {
+        const double net = pushed[n].norm();
+        return gripped_[n] || net <= kUnbalanced * size[n] || borne[n] > kBorne * net;
+    });
 }
 
 int QuasistaticSolver::let_float() {
