@@ -23,7 +23,7 @@ constexpr double kFastest = 0.1;  // spacings a step, on the whole
 constexpr double kLongest = 0.2;  // of any particle
 // How much lighter a slow motion may be: no one number suits all bodies, so they take turns. The
 // second is for what next to nothing pushes onto its rests.
-constexpr double kGain[] = {300, 1e5, 30, 3, 1};
+constexpr double kGain[] = {300, 1e4, 300, 30, 1};
 constexpr int kRenewInterval = 50;
 // In which points that press on their own body meet it anew once all is at rest. NOTE: a point in
 // the crease between two planes meets now the one and now the other, so this need not end.
