@@ -116,9 +116,9 @@ class QuasistaticSolver {
     // Of each particle: the grip, if any, that alone holds its piece. Empty: the matter is in one
     // piece.
     std::vector<int> carrier_;
+    std::vector<int> fallen_;  // pieces that did when it was last asked
     // Particles of pieces that nothing holds, which loads and gravity leave alone from then on, and
     // the mass of all others [kg].
-    std::vector<int> fallen_;  // pieces, when it was last asked
     std::vector<ParticleId> afloat_;
     std::vector<double> heavy_mass_;
     Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when

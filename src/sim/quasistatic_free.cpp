@@ -36,11 +36,12 @@ std::vector<Value> sums_of(const Pieces& pieces, const Value& none, const Of& of
 // Tools and grips go no farther than a spacing in a move, and what springs back no farther than the
 // body is long.
 bool QuasistaticSolver::falls(const Drive& to) {
+    fallen_.clear();
+    if (pushes_.count() == 0) return false;
     const Vec3Array& x = matter_.particle_position;
     const auto count = sums_of(pieces_, 0.0, [](std::size_t) { return 1.0; });
     const auto way = sums_of(pieces_, Vec3(Vec3::Zero()),
                              [&](std::size_t p) -> Vec3 { return x.at(p) - start_.at(p); });
-    fallen_.clear();
     for (std::size_t n = 0; n < way.size(); ++n) {
         if (way[n].norm() > count[n] * body_size_) fallen_.push_back(static_cast<int>(n));
     }
