@@ -180,7 +180,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
                 newton_pause_ = 0;
             }
             if (round.converged && falls(to)) {
-                return {false, round.iterations, round.residual, true};
+                return {false, result.iterations + round.iterations, round.residual, true};
             }
             if (!round.converged || touches()) {
                 matter_.particle_position = before;

@@ -68,8 +68,8 @@ class QuasistaticSolver {
     void connections_renewed();
     void find_bounds();
     void find_masses();
-    // `moved`: as ContactSet::add_forces() takes it.
     void add_loads(const Drive& to, Vec3Array& force) const;
+    // `moved`: as ContactSet::add_forces() takes it.
     void evaluate(const Drive& to, double moved = std::numeric_limits<double>::infinity());
     bool touches() { return contacts_.tools_near() || self_.presses(); }
     double push_limit(const Drive& to) const;
