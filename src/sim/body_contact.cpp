@@ -180,6 +180,12 @@ void BodyContact::add_stiffness(std::vector<double>& stiffness) const {
     for (const ContactWay& way : way_) way.add_stiffness(stiffness);
 }
 
+std::vector<PressedPlaces> BodyContact::pressed() const {
+    std::vector<PressedPlaces> all;
+    for (const ContactWay& way : way_) way.add_pressed(all);
+    return all;
+}
+
 void BodyContact::meet_anew() {
     for (ContactWay& way : way_) way.meet_anew();
 }

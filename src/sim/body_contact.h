@@ -71,9 +71,10 @@ class BodyContact {
     std::size_t candidates() const;
 
     // For equilibria, of one body: see sim/contact_way.h; adds to each particle what its contacts
-    // can add to its stiffness [N/m].
+    // can add to its stiffness [N/m]; what pressed when forces were last found.
     void meet_anew();
     void add_stiffness(std::vector<double>& stiffness) const;
+    std::vector<PressedPlaces> pressed() const;
 
   private:
     struct Pair {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "sim/vector_sums.h"
 
@@ -11,7 +13,7 @@ namespace swage {
 namespace {
 
 constexpr int kReach = 2;  // nodes along an axis that share particles
-constexpr int kSide = 2 * kReach + 1, kSelf = kSide * kSide * kSide / 2;
+constexpr int kSide = 2 * kReach + 1, kNear = kSide * kSide * kSide;
 constexpr double kFinest = 4;  // cells an element
 // Of a banded factor: beside an iteration's own work, and what costs next to nothing.
 constexpr double kEntriesPerParticle = 10, kFewEntries = 2e4;
@@ -20,18 +22,8 @@ constexpr double kStaleTurn = 0.1;  // of a cell's edge, over its length
 constexpr double kStep = 1e-8;      // of a cell, for differences
 constexpr double kLoosest = 1e-6;   // of the largest inertia, that every node has
 
-// The place of a neighbour among those near a node; kNear - 1 less it is the node's among its.
-int near_of(const Vec3i& way) { return kSelf + way.x() + kSide * (way.y() + kSide * way.z()); }
-
-// Calls act(i, j, k) for each place from low to high in steps.
-template <typename Act>
-void for_each_place(const Vec3i& low, const Vec3i& high, int step, const Act& act) {
-    for (int k = low.z(); k <= high.z(); k += step) {
-        for (int j = low.y(); j <= high.y(); j += step) {
-            for (int i = low.x(); i <= high.x(); i += step) act(Vec3i(i, j, k));
-        }
-    }
-}
+// The number of a way from a node's place to another.
+int near_of(const Vec3i& way) { return kNear / 2 + way.x() + kSide * (way.y() + kSide * way.z()); }
 
 // About cubes, as small as pays.
 Vec3i elements_of(const Lattice& lattice, std::size_t particles) {
@@ -51,17 +43,17 @@ Vec3i elements_of(const Lattice& lattice, std::size_t particles) {
 }  // namespace
 
 CoarseSpace::CoarseSpace(const Aggregate& matter)
-    : lattice_(matter.lattice), space_(lattice_, elements_of(lattice_, matter.particle_count())) {
-    const auto blocks = static_cast<std::size_t>(space_.node_count()) * kNear;
-    stiffness_.assign(blocks, Mat3::Zero());
-    held_.assign(blocks, Mat3::Zero());
-    find_masses(std::vector<double>(matter.particle_count(), 1.0));
+    : lattice_(matter.lattice),
+      space_(lattice_, matter.connection, elements_of(lattice_, matter.particle_count())) {
     find_pattern();
+    find_ways();
+    stiffness_.assign(neighbor_.size(), Mat3::Zero());
+    held_.assign(neighbor_.size(), Mat3::Zero());
     choose_samples();
 }
 
 void CoarseSpace::choose_samples() {
-    const Vec3i elements = space_.nodes() - Vec3i::Constant(2);
+    const Vec3i elements = space_.grid() - Vec3i::Constant(2);
     std::vector<double> nearest(static_cast<std::size_t>(elements.prod()), 1e300);
     std::vector<CellId> cell(nearest.size(), -1);
     for (const CellRun& run : lattice_.cell_run) {
@@ -98,150 +90,181 @@ bool CoarseSpace::is_stale(const Vec3Array& position) const {
     return probed_.empty();
 }
 
-// Not over gaps in the body.
 void CoarseSpace::find_pattern() {
-    const int nodes = space_.node_count();
-    const auto neighbor = [&](int n, int near) {
-        return n + space_.node_at(near % kSide - kReach, near / kSide % kSide - kReach,
-                                  near / kSide / kSide - kReach);
-    };
-    const auto shares = [&](int n, int near) {
-        return near == kSelf || inertia_[n * std::size_t(kNear) + near] != 0;
-    };
+    const SplineParts& parts = space_.parts();
+    std::vector<std::vector<int>> near(static_cast<std::size_t>(space_.node_count()));
+    const auto way_to = [&](int n, int m) { return near_of(parts.place[m] - parts.place[n]); };
+    for (std::size_t n = 0; n < near.size(); ++n) near[n].push_back(static_cast<int>(n));
+    for (const SplineParts::Nodes& nodes : parts.node) {
+        for (int n : nodes) near[n].insert(near[n].end(), nodes.begin(), nodes.end());
+    }
     std::vector<std::pair<int, int>> pair;
-    for (int n = 0; n < nodes; ++n) {
-        for (int near = kSelf; near < kNear; ++near) {
-            if (shares(n, near)) pair.emplace_back(n, neighbor(n, near));
+    for (int n = 0; n < space_.node_count(); ++n) {
+        std::sort(near[n].begin(), near[n].end(), [&](int a, int b) {
+            return std::pair(way_to(n, a), a) < std::pair(way_to(n, b), b);
+        });
+        near[n].erase(std::unique(near[n].begin(), near[n].end()), near[n].end());
+        auto next = near[n].begin();
+        for (int way = 0; way < kNear; ++way) {
+            first_.push_back(static_cast<int>(neighbor_.size()));
+            for (; next != near[n].end() && way_to(n, *next) == way; ++next) {
+                neighbor_.push_back({*next, 0});
+                if (*next >= n) pair.emplace_back(n, *next);
+            }
         }
     }
-    factor_ = std::make_unique<PanelCholesky>(nodes, pair);
-    neighbor_.resize(nodes);
-    for (int n = 0; n < nodes; ++n) {
-        for (int near = 0; near < kNear; ++near) {
-            if (!shares(n, near)) continue;
-            const int m = neighbor(n, near);
-            if (factor_->place_of(m) < factor_->place_of(n)) continue;
-            neighbor_[n].push_back(
-                {m, n * std::size_t(kNear) + near, m * std::size_t(kNear) + kNear - 1 - near});
+    first_.push_back(static_cast<int>(neighbor_.size()));
+
+    factor_ = std::make_unique<PanelCholesky>(space_.node_count(), pair);
+    from_here_.resize(near.size());
+    for (int n = 0; n < space_.node_count(); ++n) {
+        for (int at = first_[n * kNear]; at < first_[(n + 1) * kNear]; ++at) {
+            Neighbor& to = neighbor_[at];
+            to.mirror = neighbor_at(to.node, n);
+            if (factor_->place_of(to.node) >= factor_->place_of(n)) from_here_[n].push_back(at);
         }
-        std::sort(neighbor_[n].begin(), neighbor_[n].end(), [&](const auto& a, const auto& b) {
-            return factor_->place_of(a.node) < factor_->place_of(b.node);
+        std::sort(from_here_[n].begin(), from_here_[n].end(), [&](int a, int b) {
+            return factor_->place_of(neighbor_[a].node) < factor_->place_of(neighbor_[b].node);
         });
     }
 }
 
-// Nodes five apart share no particles with the same nodes, so they are moved together.
+int CoarseSpace::neighbor_at(int node, int other) const {
+    const std::vector<Vec3i>& place = space_.parts().place;
+    const Vec3i way = place[other] - place[node];
+    if (way.cwiseAbs().maxCoeff() > kReach) return -1;
+    const int number = node * kNear + near_of(way);
+    for (int at = first_[number]; at < first_[number + 1]; ++at) {
+        if (neighbor_[at].node == other) return at;
+    }
+    return -1;
+}
+
+// Nodes five places apart move nothing that the same node moves. Of those at one place some may.
+void CoarseSpace::find_ways() {
+    const std::vector<Vec3i>& place = space_.parts().place;
+    std::map<std::array<int, 4>, std::size_t> number;  // by place modulo five, and turn
+    std::vector<int> turn(place.size(), 0);
+    std::map<std::array<int, 3>, std::vector<int>> beside;
+    for (int n = 0; n < space_.node_count(); ++n) {
+        std::vector<int>& others = beside[{place[n].x(), place[n].y(), place[n].z()}];
+        const auto meets = [&](int other) {
+            if (turn[other] != turn[n]) return false;
+            for (int at = first_[n * kNear]; at < first_[(n + 1) * kNear]; ++at) {
+                if (neighbor_at(neighbor_[at].node, other) >= 0) return true;
+            }
+            return false;
+        };
+        while (std::any_of(others.begin(), others.end(), meets)) ++turn[n];
+        others.push_back(n);
+        const Vec3i in_turn = place[n].unaryExpr([](int i) { return i % kSide; });
+        const auto [at, is_new] =
+            number.try_emplace({in_turn.z(), in_turn.y(), in_turn.x(), turn[n]}, together_.size());
+        if (is_new) together_.emplace_back();
+        together_[at->second].push_back(n);
+    }
+}
+
 void CoarseSpace::find_stiffness(Aggregate& matter, const Forces& forces) {
-    const Vec3i last = space_.nodes() - Vec3i::Ones();
     const double step = kStep * lattice_.spacing;
     const Vec3Array position = matter.particle_position;
     Vec3Array here, there;
     forces(here);
-    for_each_place(Vec3i::Zero(), last.cwiseMin(kSide - 1), 1, [&](const Vec3i& first) {
+    for (const std::vector<int>& nodes : together_) {
         for (int axis = 0; axis < 3; ++axis) {
             Vector motion = Vector::Zero(3 * space_.node_count());
-            for_each_place(first, last, kSide, [&](const Vec3i& at) {
-                motion[3 * space_.node_at(at.x(), at.y(), at.z()) + axis] = step;
-            });
+            for (int n : nodes) motion[3 * n + axis] = step;
             space_.add(motion, 1, matter.particle_position);
             forces(there);
             matter.particle_position = position;
             combine(1, -1, here, there);
             const Vector response = space_.restricted(there) / -step;
-            for_each_place(first, last, kSide, [&](const Vec3i& at) {
-                const Vec3i low = (at - Vec3i::Constant(kReach)).cwiseMax(0),
-                            high = (at + Vec3i::Constant(kReach)).cwiseMin(last);
-                for_each_place(low, high, 1, [&](const Vec3i& other) {
-                    const int m = space_.node_at(other.x(), other.y(), other.z());
-                    stiffness_[m * std::size_t(kNear) + near_of(at - other)].col(axis) =
-                        response.segment<3>(3 * m);
-                });
-            });
+            for (int n : nodes) {
+                for (int at = first_[n * kNear]; at < first_[(n + 1) * kNear]; ++at) {
+                    const auto& [m, mirror] = neighbor_[at];
+                    stiffness_[mirror].col(axis) = response.segment<3>(3 * m);
+                }
+            }
         }
-    });
+    }
     probed_.clear();
     for (CellId cell : sample_) probed_.push_back(edges(cell, position));
 }
 
 void CoarseSpace::find_masses(const std::vector<double>& mass) {
-    inertia_.assign(space_.node_count() * std::size_t(kNear), 0.0);
-    const int width = space_.nodes().x();
-    std::vector<double> line(static_cast<std::size_t>(width) * kSide);  // of a row along x
-    for (const ParticleRun& run : lattice_.particle_run) {
-        std::fill(line.begin(), line.end(), 0.0);
-        for (int n = 0; n < run.count; ++n) {
-            const SplineSpace::Place& at = space_.place(0, run.i + n);
-            for (int a = 0; a < 3; ++a) {
-                for (int b = 0; b < 3; ++b) {
-                    line[(at.node + a) * kSide + b - a + kReach] +=
-                        mass[run.first + n] * at.weight[a] * at.weight[b];
-                }
-            }
-        }
-        const SplineSpace::Place &y = space_.place(1, run.j), &z = space_.place(2, run.k);
-        for (int a = 0; a < 9; ++a) {
-            for (int b = 0; b < 9; ++b) {
-                const double weight =
-                    y.weight[a % 3] * z.weight[a / 3] * y.weight[b % 3] * z.weight[b / 3];
-                const int near = near_of({-kReach, b % 3 - a % 3, b / 3 - a / 3});
-                const int node = space_.node_at(0, y.node + a % 3, z.node + a / 3);
-                for (int i = 0; i < width; ++i) {
-                    double* sum = &inertia_[(node + i) * std::size_t(kNear) + near];
-                    for (int s = 0; s < kSide; ++s) sum[s] += weight * line[i * kSide + s];
-                }
+    inertia_.assign(neighbor_.size(), 0.0);
+    const std::vector<SplineSpace::PartMasses> sums = space_.masses(mass);
+    for (std::size_t part = 0; part < sums.size(); ++part) {
+        const SplineParts::Nodes& node = space_.parts().node[part];
+        for (int a = 0; a < SplineParts::kNodes; ++a) {
+            for (int b = 0; b < SplineParts::kNodes; ++b) {
+                inertia_[neighbor_at(node[a], node[b])] +=
+                    sums[part][SplineSpace::pair_of(a % 3, b % 3) +
+                               6 * SplineSpace::pair_of(a / 3 % 3, b / 3 % 3) +
+                               36 * SplineSpace::pair_of(a / 9, b / 9)];
             }
         }
     }
     // Nodes that hardly any particle follows must not stand out by themselves.
     double largest = 0;
-    for (std::size_t n = kSelf; n < inertia_.size(); n += kNear) {
-        largest = std::max(largest, inertia_[n]);
+    for (int n = 0; n < space_.node_count(); ++n) {
+        largest = std::max(largest, inertia_[neighbor_at(n, n)]);
     }
-    for (std::size_t n = kSelf; n < inertia_.size(); n += kNear) inertia_[n] += kLoosest * largest;
+    for (int n = 0; n < space_.node_count(); ++n) {
+        inertia_[neighbor_at(n, n)] += kLoosest * largest;
+    }
 }
 
-// A point follows the nodes as the weighted mean of its carriers does.
-void CoarseSpace::hold(const Aggregate& matter, const std::vector<HeldPoint>& held) {
+// A point follows the nodes as the weighted mean of its carriers does. Nodes of matter that is not
+// joined near them have no block between them: what would stand there is added to their own, which
+// is more than either sign of it.
+void CoarseSpace::hold(const Aggregate& matter, const std::vector<HeldPoint>& held,
+                       const std::vector<PressedPlaces>& pressed) {
     std::fill(held_.begin(), held_.end(), Mat3::Zero());
-    for (const HeldPoint& h : held) {
-        struct Share {
-            Vec3i at;
-            double weight;
+    const SplineParts& parts = space_.parts();
+    std::vector<double> weight(parts.place.size(), 0.0);
+    std::vector<char> follows(weight.size(), 0);
+    std::vector<int> nodes;
+    const auto follow = [&](ParticleId p, double share) {
+        const Vec3 site = (matter.particle_reference.at(p) - lattice_.origin) / lattice_.spacing;
+        const auto along = [&](int d) {
+            return space_.place(d, static_cast<int>(std::lround(site[d]))).weight;
         };
-        // Over all nodes that the corners of one cell follow: up to four along each axis.
-        std::array<double, 64> sum{};
-        Vec3i low = Vec3i::Constant(1 << 30);
-        std::array<std::array<const SplineSpace::Place*, 3>, 8> place;
+        const std::array<double, 3> x = along(0), y = along(1), z = along(2);
+        const SplineParts::Nodes& node = parts.node[parts.of_particle[p]];
+        for (int q = 0; q < SplineParts::kNodes; ++q) {
+            const double by = share * x[q % 3] * y[q / 3 % 3] * z[q / 9];
+            if (by == 0) continue;
+            if (!std::exchange(follows[node[q]], 1)) nodes.push_back(node[q]);
+            weight[node[q]] += by;
+        }
+    };
+    const auto add = [&](const Mat3& stiffness) {
+        for (int a : nodes) {
+            for (int b : nodes) {
+                const double product = weight[a] * weight[b];
+                const int at = neighbor_at(a, b);
+                if (at >= 0) {
+                    held_[at] += product * stiffness;
+                } else {
+                    held_[neighbor_at(a, a)] += std::abs(product) * stiffness;
+                }
+            }
+        }
+        for (int n : nodes) weight[n] = 0, follows[n] = 0;
+        nodes.clear();
+    };
+    for (const HeldPoint& h : held) {
         for (int c = 0; c < 8; ++c) {
-            const Vec3 site =
-                (matter.particle_reference.at(h.corner[c]) - lattice_.origin) / lattice_.spacing;
-            for (int d = 0; d < 3; ++d) {
-                place[c][d] = &space_.place(d, static_cast<int>(std::lround(site[d])));
-                low[d] = std::min(low[d], place[c][d]->node);
-            }
+            if (h.weight[c] != 0) follow(h.corner[c], h.weight[c]);
         }
-        for (int c = 0; c < 8; ++c) {
-            const auto& [x, y, z] = place[c];
-            for (int q = 0; q < 27; ++q) {
-                const int i = x->node - low.x() + q % 3, j = y->node - low.y() + q / 3 % 3,
-                          k = z->node - low.z() + q / 9;
-                sum[i + 4 * j + 16 * k] +=
-                    h.weight[c] * x->weight[q % 3] * y->weight[q / 3 % 3] * z->weight[q / 9];
-            }
+        add(h.stiffness);
+    }
+    for (const PressedPlaces& both : pressed) {
+        for (int c = 0; c < 16; ++c) {
+            if (both.weight[c] != 0) follow(both.particle[c], both.weight[c]);
         }
-        std::vector<Share> share;
-        for (int q = 0; q < 64; ++q) {
-            if (sum[q] != 0) share.push_back({low + Vec3i(q % 4, q / 4 % 4, q / 16), sum[q]});
-        }
-        for (std::size_t a = 0; a < share.size(); ++a) {
-            const int n = space_.node_at(share[a].at.x(), share[a].at.y(), share[a].at.z());
-            for (std::size_t b = 0; b < share.size(); ++b) {
-                const Vec3i way = share[b].at - share[a].at;
-                if (way.cwiseAbs().maxCoeff() > kReach) continue;
-                held_[n * std::size_t(kNear) + near_of(way)] +=
-                    share[a].weight * share[b].weight * h.stiffness;
-            }
-        }
+        add(both.stiffness * Mat3::Identity());
     }
     factor();
 }
@@ -260,10 +283,11 @@ void CoarseSpace::factor() {
         for (int place = 0; place < space_.node_count(); ++place) {
             const int n = factor_->node_at(place);
             for (int b = 0; b < 3; ++b) {
-                for (const auto& [m, block, mirror] : neighbor_[n]) {
+                for (int at : from_here_[n]) {
+                    const auto& [m, mirror] = neighbor_[at];
                     for (int a = m == n ? b : 0; a < 3; ++a) {
-                        *value++ = stiffness_[block](b, a) + stiffness_[mirror](a, b) +
-                                   2 * held_[block](a, b) + (a == b ? inertia_[block] / gain : 0);
+                        *value++ = stiffness_[at](b, a) + stiffness_[mirror](a, b) +
+                                   2 * held_[at](a, b) + (a == b ? inertia_[at] / gain : 0);
                     }
                 }
             }

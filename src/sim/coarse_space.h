@@ -36,8 +36,9 @@ class CoarseSpace {
     // Finds the lattice's stiffness; the positions are moved a little and put back.
     void find_stiffness(Aggregate& matter, const Forces& forces);
     void find_masses(const std::vector<double>& mass);
-    // With what now holds the body.
-    void hold(const Aggregate& matter, const std::vector<HeldPoint>& held);
+    // With what now holds the body, and where it presses on itself.
+    void hold(const Aggregate& matter, const std::vector<HeldPoint>& held,
+              const std::vector<PressedPlaces>& pressed = {});
     void limit_gain(double most);  // g
 
     // Whether there is a C.
@@ -46,26 +47,33 @@ class CoarseSpace {
     void add(const Vec3Array& force, double step, double keep, Vec3Array& velocity) const;
 
   private:
-    static constexpr int kNear = 125;  // nodes that a node can share particles with
+    // Nodes that move the same matter as a node does, itself among them.
     struct Neighbor {
         int node;
-        std::size_t block, mirror;  // of the two, and the same seen from the other
+        int mirror;  // where that one has this one
     };
     using Edges = std::array<Vec3, 3>;
     Edges edges(CellId cell, const Vec3Array& position) const;
     void choose_samples();
     void find_pattern();
+    void find_ways();
+    int neighbor_at(int node, int other) const;  // -1: it is none
     void factor();
 
     const Lattice& lattice_;
     SplineSpace space_;
     std::vector<CellId> sample_;  // a cell in each element
     std::vector<Edges> probed_;   // of each, when the stiffness was found; empty: it was not
-    // Of each node: those that share particles with it, from its own place in the factor on.
-    std::vector<std::vector<Neighbor>> neighbor_;
-    // Between a node and those near it.
-    std::vector<Mat3> stiffness_, held_;
-    std::vector<double> inertia_;
+    // Of all nodes one after the other, in the order of the places that they stand at.
+    std::vector<Neighbor> neighbor_;
+    // By node and way: the first neighbor that stands there or beyond; one more at the end.
+    std::vector<int> first_;
+    // Of each node those from its own place in the factor on, in the factor's order.
+    std::vector<std::vector<int>> from_here_;
+    std::vector<std::vector<int>>
+        together_;                        // nodes none of which moves what another one's pull on
+    std::vector<Mat3> stiffness_, held_;  // of each neighbor
+    std::vector<double> inertia_;         // likewise
     double most_gain_ = 1;
     std::unique_ptr<PanelCholesky> factor_;
     bool gains_ = false;

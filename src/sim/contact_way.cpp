@@ -206,6 +206,22 @@ void ContactWay::add_stiffness(std::vector<double>& stiffness) const {
     }
 }
 
+void ContactWay::add_pressed(std::vector<PressedPlaces>& pressed) const {
+    for (std::size_t n = 0; is_found_ && n < next_.size(); ++n) {
+        if (!next_[n].history.touches) continue;
+        const Contact& contact = list_.contact[n];
+        PressedPlaces& both = pressed.emplace_back();
+        both.stiffness = next_[n].stiffness;
+        const auto by = from_->points().carriers(static_cast<std::size_t>(contact.point));
+        const auto corner = onto_->matter().lattice.cell_corners(contact.cell);
+        const std::array<double, 8> weight = trilinear_weights(contact.place);
+        for (std::size_t c = 0; c < 8; ++c) {
+            both.particle[c] = by.corner[c], both.weight[c] = by.weight[c];
+            both.particle[8 + c] = corner[c], both.weight[8 + c] = -weight[c];
+        }
+    }
+}
+
 void ContactWay::commit() {
     if (is_found_) std::swap(list_.memory, next_);
     is_found_ = has_changed_ = begins_ = false;

@@ -25,6 +25,7 @@
 #include <algorithm>
 
 #include "sim/contact_list.h"
+#include "sim/held_point.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -55,6 +56,8 @@ class ContactWay {
     void respond(double step, bool again);
     // Adds what its contacts can add to the stiffness of its one body's particles [N/m], about.
     void add_stiffness(std::vector<double>& stiffness) const;
+    // Of its one body, what pressed when forces were last found, and still stands in the list.
+    void add_pressed(std::vector<PressedPlaces>& pressed) const;
     // For equilibria: from here on each point that comes to press presses against the plane that it
     // has met, until the next time. NOTE: surfaces are bent from cell to cell, and a point that
     // rests in a crease of them has a force to either side and none between, which no relaxation

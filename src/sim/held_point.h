@@ -14,6 +14,13 @@ struct HeldPoint {
     Mat3 stiffness;  // [N/m]
 };
 
+// Two places of a body that press on each other: what moves them apart, by weights whose sum is 0.
+struct PressedPlaces {
+    std::array<ParticleId, 16> particle;
+    std::array<double, 16> weight;
+    double stiffness;  // in every direction [N/m]
+};
+
 inline HeldPoint held_point(const SurfacePoints& points, int point, const Mat3& stiffness) {
     const SurfacePoints::Carriers by = points.carriers(static_cast<std::size_t>(point));
     return {by.corner, by.weight, stiffness};

@@ -75,7 +75,7 @@ void QuasistaticSolver::connections_renewed() {
 
 void QuasistaticSolver::find_bounds() {
     lattice_bound_ = lattice_.stiffness_bound(matter_);
-    if (coarse_) coarse_->forget();
+    coarse_.reset();
     const std::vector<float>* cells = lattice_.cells_alone();
     newton_ = cells != nullptr ? std::make_unique<Newton>(matter_, *cells) : nullptr;
     const double a = matter_.lattice.spacing;

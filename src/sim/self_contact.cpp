@@ -68,4 +68,8 @@ void SelfContact::add_stiffness(std::vector<double>& stiffness) {
     weighed_ = contact_->candidates();
 }
 
+std::vector<PressedPlaces> SelfContact::pressed() const {
+    return contact_ != nullptr ? contact_->pressed() : std::vector<PressedPlaces>{};
+}
+
 }  // namespace swage

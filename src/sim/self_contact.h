@@ -40,6 +40,8 @@ class SelfContact {
     bool has_found_more() const { return is_near() && contact_->candidates() > weighed_; }
     // Adds what they can add to each particle's stiffness [N/m].
     void add_stiffness(std::vector<double>& stiffness);
+    // What pressed when forces were last found.
+    std::vector<PressedPlaces> pressed() const;
 
   private:
     void find();

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kSpacing = 0.1;
 
-// A box with a hole through it and a corner gone: rows in parts, nodes that no particle follows.
+// A box with a hole through it and a corner gone: rows in parts, nodes that no particle follows, and
+// beside the hole two where splines as coarse as it stand once.
 Lattice pierced_lattice(const Vec3i& count) {
     std::vector<Vec3i> cells;
     for (int k = 0; k < count.z(); ++k) {
@@ -30,6 +31,12 @@ Lattice pierced_lattice(const Vec3i& count) {
         }
     }
     return make_lattice(Vec3::Zero(), 1, count, cells);
+}
+
+std::array<ConnectionArrays, kForwardCount> whole_connections(std::size_t particles) {
+    std::array<ConnectionArrays, kForwardCount> connection;
+    for (ConnectionArrays& one : connection) one.weight = SparseArray<float>(particles, 1.0f);
+    return connection;
 }
 
 Eigen::VectorXd random_vector(Eigen::Index size, unsigned seed) {
@@ -48,18 +55,14 @@ TEST_CASE("a spline space holds what bends and shears, and goes back as it goes 
     std::size_t particles = 0;
     for (const ParticleRun& run : lattice.particle_run) particles += run.count;
     for (const Vec3i& elements : {Vec3i(1, 1, 1), Vec3i(5, 3, 2), Vec3i(23, 14, 9)}) {
-        const SplineSpace space(lattice, elements);
+        const SplineSpace space(lattice, whole_connections(particles), elements);
         // x^2 has the coefficients c^2 - 1/4, c being a node's middle (by the splines' blossoms).
         Eigen::VectorXd motion(3 * space.node_count());
-        for (int k = 0, n = 0; k < space.nodes().z(); ++k) {
-            for (int j = 0; j < space.nodes().y(); ++j) {
-                for (int i = 0; i < space.nodes().x(); ++i, ++n) {
-                    const Vec3 c = Vec3(i, j, k) - Vec3::Constant(0.5);
-                    motion.segment<3>(3 * n) =
-                        Vec3(1 + c.x() * c.y(), c.x() * c.x() - 0.25 + 2 * c.z(),
-                             (c.y() * c.y() - 0.25) * (c.z() * c.z() - 0.25) * c.x());
-                }
-            }
+        for (int n = 0; n < space.node_count(); ++n) {
+            const Vec3 c = space.parts().place[n].cast<double>() - Vec3::Constant(0.5);
+            motion.segment<3>(3 * n) =
+                Vec3(1 + c.x() * c.y(), c.x() * c.x() - 0.25 + 2 * c.z(),
+                     (c.y() * c.y() - 0.25) * (c.z() * c.z() - 0.25) * c.x());
         }
         Vec3Array fine;
         fine.x.assign(particles, 2.0), fine.y = fine.x, fine.z = fine.x;
@@ -89,6 +92,106 @@ TEST_CASE("a spline space holds what bends and shears, and goes back as it goes 
         space.add(way, 1, moved);
         CHECK(space.restricted(force).dot(way) == Approx(dot(force, moved)).epsilon(1e-11));
     }
+}
+
+TEST_CASE("a spline space reaches over no cut, and round the end of one") {
+    constexpr int kLong = 40, kCut = 17;
+    Aggregate m = make_block(kLong, 8, 3, kSpacing, {});
+    // Severed between the sites kCut and kCut + 1 along x, from y = 0 to `deep`.
+    const auto cut = [&](int deep) {
+        for (const Span& span : m.lattice.span) {
+            for (int n = 0; n < span.count; ++n) {
+                const ParticleId low = span.lower + n, high = span.upper + n;
+                const auto site = [&](ParticleId p) {
+                    return Vec3((m.particle_reference.at(p) - m.lattice.origin) / kSpacing);
+                };
+                const double side = (site(low).x() - kCut - 0.5) * (site(high).x() - kCut - 0.5);
+                if (side > 0 || std::min(site(low).y(), site(high).y()) > deep + 0.5) continue;
+                m.connection[span.direction].weight.set(low, 0);
+            }
+        }
+    };
+    const auto is_left = [&](std::size_t p) {
+        return m.particle_reference.at(p).x() < m.lattice.origin.x() + (kCut + 0.5) * kSpacing;
+    };
+    const Vec3i elements(10, 2, 1);
+    const int whole = SplineSpace(m.lattice, m.connection, elements).node_count();
+    CHECK(whole == 12 * 4 * 3);
+
+    cut(4);
+    const SplineSpace slit(m.lattice, m.connection, elements);
+    // Of those across the slit only the ones that do not reach its end stand twice.
+    CHECK(slit.node_count() == whole + 3 * 1 * 3);
+    for (int n = whole; n < slit.node_count(); ++n) CHECK(slit.parts().place[n].y() == 0);
+
+    cut(8);
+    const SplineSpace space(m.lattice, m.connection, elements);
+    CHECK(space.node_count() == whole + 3 * 4 * 3);
+    Vec3Array left, moved;
+    set_zero(m.particle_count(), left);
+    set_zero(m.particle_count(), moved);
+    for (std::size_t p = 0; p < left.size(); ++p) {
+        if (is_left(p)) left.set(p, Vec3(1, std::sin(double(p)), 2));
+    }
+    const Eigen::VectorXd motion = space.restricted(left);
+    space.add(motion, 1, moved);
+    CHECK(motion.squaredNorm() == Approx(dot(left, moved)).epsilon(1e-12));
+    double over = 0, own = 0;
+    for (std::size_t p = 0; p < left.size(); ++p) {
+        double& most = is_left(p) ? own : over;
+        most = std::max(most, moved.at(p).norm());
+    }
+    CHECK(own > 1);
+    CHECK(over == 0);
+
+    // Nor does what these motions ask of the matter.
+    LatticeForces lattice(m);
+    CoarseSpace coarse(m);
+    coarse.limit_gain(1e4);
+    coarse.find_stiffness(m, [&](Vec3Array& f) { lattice.find(m, Flow::none, f); });
+    coarse.find_masses(std::vector<double>(m.particle_count(), 1e5));
+    coarse.hold(m, {});
+    REQUIRE(coarse.gains());
+    set_zero(m.particle_count(), moved);
+    coarse.add(left, 1, 0, moved);
+    own = over = 0;
+    for (std::size_t p = 0; p < left.size(); ++p) {
+        double& most = is_left(p) ? own : over;
+        most = std::max(most, moved.at(p).norm());
+    }
+    CHECK(own > 0);
+    CHECK(over < 1e-12 * own);
+}
+
+TEST_CASE("sums of masses by part are those of the motions that its nodes make") {
+    const Vec3i count(23, 14, 9), elements(5, 3, 2);
+    const Lattice lattice = pierced_lattice(count);
+    std::size_t particles = 0;
+    for (const ParticleRun& run : lattice.particle_run) particles += run.count;
+    const SplineSpace space(lattice, whole_connections(particles), elements);
+    Eigen::VectorXd mass = random_vector(Eigen::Index(particles), 8);
+    mass.array() += 2;
+    const auto sums = space.masses({mass.begin(), mass.end()});
+    const Eigen::VectorXd motion = random_vector(3 * space.node_count(), 9);
+    Vec3Array moved;
+    set_zero(particles, moved);
+    space.add(motion, 1, moved);
+    double asked = 0, found = 0;
+    for (std::size_t p = 0; p < particles; ++p) {
+        asked += mass[Eigen::Index(p)] * moved.at(p).squaredNorm();
+    }
+    for (std::size_t part = 0; part < sums.size(); ++part) {
+        const SplineParts::Nodes& node = space.parts().node[part];
+        for (int a = 0; a < SplineParts::kNodes; ++a) {
+            for (int b = 0; b < SplineParts::kNodes; ++b) {
+                found += sums[part][SplineSpace::pair_of(a % 3, b % 3) +
+                                    6 * SplineSpace::pair_of(a / 3 % 3, b / 3 % 3) +
+                                    36 * SplineSpace::pair_of(a / 9, b / 9)] *
+                         motion.segment<3>(3 * node[a]).dot(motion.segment<3>(3 * node[b]));
+            }
+        }
+    }
+    CHECK(found == Approx(asked).epsilon(1e-12));
 }
 
 TEST_CASE("a factor in panels solves what its matrix asks, and tells what is not definite") {
