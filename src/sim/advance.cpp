@@ -354,6 +354,14 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
             one ? "a piece" : fmt::format("{} pieces", outcome.afloat), one ? "it" : "them",
             one ? "it" : "them"));
     }
+    if (outcome.hanging > 0) {
+        const bool one = outcome.hanging == 1;
+        report.warning.push_back(fmt::format(
+            "{} by less than a whole cell, which cannot bear {} against gravity and loads: from "
+            "here on these leave {} alone",
+            one ? "a piece hangs" : fmt::format("{} pieces hang", outcome.hanging),
+            one ? "it" : "them", one ? "it" : "them"));
+    }
     if (outcome.drag_held) {
         report.warning.push_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "

@@ -70,7 +70,7 @@ struct MoveOutcome {
     bool drag_held = false;         // was more than a step can follow; in motion only
     int asleep = 0;                 // bodies at rest at the end; in motion only
     int inside_out = 0;             // cells at once that shorter steps did not keep from it
-    int afloat = 0;                 // pieces that would fall, from now on
+    int afloat = 0, hanging = 0;    // pieces that would fall, or swing about a hinge, from now on
     bool buckled = false;           // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };

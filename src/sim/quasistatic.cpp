@@ -288,8 +288,8 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     outcome.residual = relaxed.residual;
     const bool whole = relaxed.converged && smallest_cell_volume(matter_) > kSmallestCellVolume;
     if (!whole) {
-        const bool falls = relaxed.falls || (!relaxed.converged && depth >= settings_.halving_limit &&
-                                             begins_to_fall(to));
+        const bool given_up = !relaxed.converged && depth >= settings_.halving_limit;
+        const bool falls = relaxed.falls || (given_up && begins_to_fall(to));
         std::string hardest = contacts_.hardest_point(matter_, to);
         if (self_.presses()) {
             hardest += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
@@ -298,9 +298,12 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         matter_.particle_position = start_;
         self_.take_back();
         previous_motion_.clear();
-        const int floating = falls ? let_float() : 0;
-        outcome.afloat += floating;
-        if (floating > 0) return increment(from, to, depth, outcome, unsolved);
+        const int afloat = falls ? let_float(pieces_, fallen_) : 0;
+        const bool tried = given_up || (!relaxed.converged && depth > 0);
+        const int hanging = tried && !falls ? let_hang(to) : 0;
+        outcome.afloat += afloat;
+        outcome.hanging += hanging;
+        if (afloat + hanging > 0) return increment(from, to, depth, outcome, unsolved);
         if (unsolved == Unsolved::leave) return false;
         if (falls) {
             fail(ExitCode::stopped,

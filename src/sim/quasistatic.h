@@ -86,8 +86,10 @@ class QuasistaticSolver {
     void stay(const Drive& to);
     bool falls(const Drive& to);
     bool begins_to_fall(const Drive& to);
+    Vec3Array pushes_on(const Drive& to) const;
     void keep_loose(const Drive& to, const std::vector<double>& borne);
-    int let_float();
+    int let_float(const Pieces& pieces, const std::vector<int>& some);
+    int let_hang(const Drive& to);
     bool commit(MoveOutcome& outcome);
 
     Aggregate& matter_;

@@ -2,10 +2,12 @@
 // A body that nothing holds any more can be at rest anywhere. It stays where it was let go, as near
 // as tools leave it room; a piece that would fall stays too.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "sim/hanging.h"
 #include "sim/quasistatic.h"
 
 namespace swage {
@@ -62,15 +64,21 @@ bool QuasistaticSolver::begins_to_fall(const Drive& to) {
     return !fallen_.empty();
 }
 
-// Of the fallen pieces those in no grip which loads and gravity drive somewhere, by more than is
-// borne [N].
-void QuasistaticSolver::keep_loose(const Drive& to, const std::vector<double>& borne) {
-    if (fallen_.empty()) return;
+// Loads and gravity on each particle.
+Vec3Array QuasistaticSolver::pushes_on(const Drive& to) const {
     Vec3Array push;
     push.resize(matter_.particle_count());
     add_loads(to, push);
     const Vec3 gravity = pushes_.gravity(to);
     for (std::size_t p = 0; p < push.size(); ++p) push.add(p, heavy_mass_[p] * gravity);
+    return push;
+}
+
+// Of the fallen pieces those in no grip which loads and gravity drive somewhere, by more than is
+// borne [N].
+void QuasistaticSolver::keep_loose(const Drive& to, const std::vector<double>& borne) {
+    if (fallen_.empty()) return;
+    const Vec3Array push = pushes_on(to);
     const auto pushed =
         sums_of(pieces_, Vec3(Vec3::Zero()), [&](std::size_t p) { return push.at(p); });
     const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
@@ -80,22 +88,45 @@ void QuasistaticSolver::keep_loose(const Drive& to, const std::vector<double>& b
     });
 }
 
-int QuasistaticSolver::let_float() {
-    if (pieces_.count < 2) return 0;
+// How many of some pieces loads and gravity leave alone from now on and did not before. Not what is
+// all there is.
+int QuasistaticSolver::let_float(const Pieces& pieces, const std::vector<int>& some) {
+    if (pieces.count < 2) return 0;
     std::vector<char> floats(matter_.particle_count(), 0);
     for (ParticleId p : afloat_) floats[p] = 1;
-    std::vector<char> falls(static_cast<std::size_t>(pieces_.count), 0);
-    for (int piece : fallen_) falls[piece] = 1;
-    std::vector<char> counted(falls.size(), 0);
+    std::vector<char> to_come(static_cast<std::size_t>(pieces.count), 0);
+    for (int piece : some) to_come[piece] = 1;
+    std::vector<char> counted(to_come.size(), 0);
     int count = 0;
     for (std::size_t p = 0; p < floats.size(); ++p) {
-        const auto piece = static_cast<std::size_t>(pieces_.particle_piece[p]);
-        if (floats[p] || !falls[piece]) continue;
+        const auto piece = static_cast<std::size_t>(pieces.particle_piece[p]);
+        if (floats[p] || !to_come[piece]) continue;
         afloat_.push_back(static_cast<ParticleId>(p));
         heavy_mass_[p] = 0;
         count += !std::exchange(counted[piece], 1);
     }
     return count;
+}
+
+// The same of what hangs by hinges, and does not lie on anything either.
+int QuasistaticSolver::let_hang(const Drive& to) {
+    std::vector<HeldPoint> held = contacts_.held_points(matter_, to, ContactSet::Slipping::free);
+    if (self_.presses()) {
+        for (const PressedPlaces& both : self_.pressed()) {
+            for (int side : {0, 8}) {
+                HeldPoint& h = held.emplace_back();
+                std::copy_n(both.particle.begin() + side, 8, h.corner.begin());
+                std::copy_n(both.weight.begin() + side, 8, h.weight.begin());
+                h.stiffness = both.stiffness * Mat3::Identity();
+            }
+        }
+    }
+    const Pieces firm = find_firm_pieces(matter_, held);
+    std::vector<int> hanging = find_hanging(matter_, pieces_, firm, held);
+    const Vec3Array push = pushes_on(to);
+    const auto size = sums_of(firm, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+    std::erase_if(hanging, [&](int n) { return size[n] == 0; });
+    return let_float(firm, hanging);
 }
 
 void QuasistaticSolver::stay(const Drive& to) {

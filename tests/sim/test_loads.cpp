@@ -268,6 +268,37 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("what hangs by a hinge alone is left alone by loads, and told") {
+    // A bar cut through but for the particles of one edge, or of its lowest layer of cells.
+    for (int left : {0, 1}) {
+        Material material = kSoft;
+        material.young_modulus = 1e11;
+        Aggregate matter = make_block(13, 4, 4, 0.05, material);
+        sever_plane(matter, Vec3::Zero(), Vec3::UnitX(), [&](const Vec3& at) {
+            return at.y() > -0.1 + 0.05 * left + 1e-6;
+        });
+        Apparatus apparatus;
+        apparatus.grip.push_back(
+            hold(matter, points_where(matter, [](const Vec3& x) { return x.x() < -0.324; })));
+        const auto end = points_where(matter, [](const Vec3& x) { return x.x() > 0.324; });
+        apparatus.load.push_back(force_on(matter, end, {0, -100, 0}));
+        const FrameReport report = put_on(matter, apparatus, {}, 1);
+        CHECK(report.pieces == 1);
+        REQUIRE(report.warning.size() == (left == 0));
+        double farthest = 0;
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            farthest = std::max(
+                farthest, (matter.particle_position.at(p) - matter.particle_reference.at(p)).norm());
+        }
+        CHECK(farthest < 0.01 * 0.05);
+        if (left == 1) {
+            CHECK(farthest > 1e-7 * 0.05);
+            continue;
+        }
+        CHECK(report.warning[0].find("a piece hangs by less than a whole cell") == 0);
+    }
+}
+
 TEST_CASE("a body that nothing holds falls, and that is said") {
     Aggregate matter = make_block(4, 3, 3, 0.05, kSoft);
     SimSettings settings;
