@@ -217,7 +217,8 @@ void CoarseSpace::find_masses(const std::vector<double>& mass) {
 
 // A point follows the nodes as the weighted mean of its carriers does. Nodes of matter that is not
 // joined near them have no block between them: what would stand there is added to their own, which
-// is more than either sign of it.
+// is more than either sign of it. Of two blocks that mirror each other the one is found that the
+// factor asks for.
 void CoarseSpace::hold(const Aggregate& matter, const std::vector<HeldPoint>& held,
                        const std::vector<PressedPlaces>& pressed) {
     std::fill(held_.begin(), held_.end(), Mat3::Zero());
@@ -239,16 +240,20 @@ void CoarseSpace::hold(const Aggregate& matter, const std::vector<HeldPoint>& he
             weight[node[q]] += by;
         }
     };
+    const auto comes_first = [&](int a, int b) {
+        return factor_->place_of(a) < factor_->place_of(b);
+    };
     const auto add = [&](const Mat3& stiffness) {
-        for (int a : nodes) {
-            for (int b : nodes) {
-                const double product = weight[a] * weight[b];
-                const int at = neighbor_at(a, b);
+        std::sort(nodes.begin(), nodes.end(), comes_first);
+        for (auto a = nodes.begin(); a != nodes.end(); ++a) {
+            for (auto b = a; b != nodes.end(); ++b) {
+                const double product = weight[*a] * weight[*b];
+                const int at = neighbor_at(*a, *b);
                 if (at >= 0) {
                     held_[at] += product * stiffness;
-                } else {
-                    held_[neighbor_at(a, a)] += std::abs(product) * stiffness;
+                    continue;
                 }
+                for (int n : {*a, *b}) held_[neighbor_at(n, n)] += std::abs(product) * stiffness;
             }
         }
         for (int n : nodes) weight[n] = 0, follows[n] = 0;
