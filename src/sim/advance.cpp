@@ -362,6 +362,12 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
             one ? "a piece hangs" : fmt::format("{} pieces hang", outcome.hanging),
             one ? "it" : "them", one ? "it" : "them"));
     }
+    if (outcome.let_be > 0) {
+        report.warning.push_back(fmt::format(
+            "no equilibrium is found with {} point{} of the work-piece's surface that lie deeper "
+            "than a fifth of a cell in it: from here on these go through it",
+            outcome.let_be, outcome.let_be == 1 ? "" : "s"));
+    }
     if (outcome.drag_held) {
         report.warning.push_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "

@@ -186,6 +186,12 @@ std::vector<PressedPlaces> BodyContact::pressed() const {
     return all;
 }
 
+int BodyContact::let_be(double deeper) {
+    int count = 0;
+    for (ContactWay& way : way_) count += way.let_be(deeper);
+    return count;
+}
+
 void BodyContact::meet_anew() {
     for (ContactWay& way : way_) way.meet_anew();
 }

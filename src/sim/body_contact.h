@@ -75,6 +75,7 @@ class BodyContact {
     void meet_anew();
     void add_stiffness(std::vector<double>& stiffness) const;
     std::vector<PressedPlaces> pressed() const;
+    int let_be(double deeper);  // see sim/contact_way.h
 
   private:
     struct Pair {

@@ -64,14 +64,33 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& 
     set_stiffness(0);
 }
 
+void ContactWay::keep_contacts(const std::function<bool(int point)>& meets) {
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < list_.size(); ++n) {
+        if (!meets(list_.contact[n].point)) continue;
+        list_.contact[kept] = list_.contact[n];
+        list_.memory[kept++] = list_.memory[n];
+    }
+    list_.contact.resize(kept);
+    list_.memory.resize(kept);
+}
+
+void ContactWay::leave_out_let_be() {
+    if (is_let_be_.empty()) return;
+    is_let_be_.resize(from_->points().size(), 0);
+    keep_contacts([&](int point) { return !is_let_be_[point]; });
+}
+
 void ContactWay::set_contacts(const ContactList& contacts) {
     list_ = contacts;
+    leave_out_let_be();
     is_found_ = false;
     if (is_static()) meet_anew();
 }
 
 void ContactWay::search(double margin) {
     list_ = find_contacts(*from_, *onto_, margin, list_);
+    leave_out_let_be();
     is_found_ = false;
     if (is_static()) meet_anew();
     // An equilibrium is sought by any way, and a stage begins with bodies that may press each
@@ -117,14 +136,7 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
     for (ContactMemory& memory : list_.memory) memory.is_new = true;
     is_found_ = false;
     if (!points_too) return;
-    std::size_t kept = 0;
-    for (std::size_t n = 0; n < list_.size(); ++n) {
-        if (!from_->meets(list_.contact[n].point)) continue;
-        list_.contact[kept] = list_.contact[n];
-        list_.memory[kept++] = list_.memory[n];
-    }
-    list_.contact.resize(kept);
-    list_.memory.resize(kept);
+    keep_contacts([&](int point) { return from_->meets(point); });
     if (is_static()) meet_anew();
     set_stiffness(step);
 }
@@ -220,6 +232,16 @@ void ContactWay::add_pressed(std::vector<PressedPlaces>& pressed) const {
             both.particle[8 + c] = corner[c], both.weight[8 + c] = -weight[c];
         }
     }
+}
+
+int ContactWay::let_be(double deeper) {
+    int count = 0;
+    for (std::size_t n = 0; is_found_ && n < next_.size(); ++n) {
+        if (!next_[n].history.touches || next_[n].pressed <= deeper) continue;
+        is_let_be_.resize(from_->points().size(), 0);
+        count += !std::exchange(is_let_be_[list_.contact[n].point], 1);
+    }
+    return count;
 }
 
 void ContactWay::commit() {

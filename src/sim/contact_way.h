@@ -23,6 +23,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 
 #include "sim/contact_list.h"
 #include "sim/held_point.h"
@@ -58,6 +59,9 @@ class ContactWay {
     void add_stiffness(std::vector<double>& stiffness) const;
     // Of its one body, what pressed when forces were last found, and still stands in the list.
     void add_pressed(std::vector<PressedPlaces>& pressed) const;
+    // Of its one body, points that were deeper than this [m] when forces were last found meet it no
+    // more; how many did until now.
+    int let_be(double deeper);
     // For equilibria: from here on each point that comes to press presses against the plane that it
     // has met, until the next time. NOTE: surfaces are bent from cell to cell, and a point that
     // rests in a crease of them has a force to either side and none between, which no relaxation
@@ -118,6 +122,8 @@ class ContactWay {
         double distance;
     };
     struct Kernel;
+    void keep_contacts(const std::function<bool(int point)>& meets);
+    void leave_out_let_be();
     // Where a chunk of contacts begins: a point's own stay together where several may end in one
     // cell.
     std::size_t begin_of(std::size_t chunk) const;
@@ -134,6 +140,7 @@ class ContactWay {
     bool begins_ = true;                                     // nothing committed yet
     ImpactLaw law_{};                                        // stiffness and hold: of each point
     std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
+    std::vector<char> is_let_be_;                            // likewise; empty: none is
     double share_ = 0.5;                                     // of what this way would do alone
     ContactList list_;
     std::vector<Meeting> meeting_{};     // of each contact

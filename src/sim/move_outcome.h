@@ -71,6 +71,7 @@ struct MoveOutcome {
     int asleep = 0;                 // bodies at rest at the end; in motion only
     int inside_out = 0;             // cells at once that shorter steps did not keep from it
     int afloat = 0, hanging = 0;    // pieces that would fall, or swing about a hinge, from now on
+    int let_be = 0;                 // points of it that meet the work-piece no more, from now on
     bool buckled = false;           // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };

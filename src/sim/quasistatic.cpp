@@ -19,6 +19,8 @@ namespace {
 
 constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
 constexpr double kSmallestCellVolume = 0.05;
+// Spacings that a point of the work-piece may be in it where no equilibrium is found.
+constexpr double kDeepest = 0.2;
 // Least push, over E a^2, that the residual is measured by: about a tenth of E I / L^2 of a bar 4
 // cells thick and 10 times as long (an estimate). At the first touch of a slender body the true
 // push is next to nothing.
@@ -291,7 +293,9 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         const bool given_up = !relaxed.converged && depth >= settings_.halving_limit;
         const bool falls = relaxed.falls || (given_up && begins_to_fall(to));
         std::string hardest = contacts_.hardest_point(matter_, to);
+        int let_be = 0;
         if (self_.presses()) {
+            if (given_up && !falls) let_be = self_.let_be(kDeepest * matter_.lattice.spacing);
             hardest += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
                                    self_.sums().penetration / matter_.lattice.spacing);
         }
@@ -303,7 +307,8 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         const int hanging = tried && !falls ? let_hang(to) : 0;
         outcome.afloat += afloat;
         outcome.hanging += hanging;
-        if (afloat + hanging > 0) return increment(from, to, depth, outcome, unsolved);
+        outcome.let_be += let_be;
+        if (afloat + hanging + let_be > 0) return increment(from, to, depth, outcome, unsolved);
         if (unsolved == Unsolved::leave) return false;
         if (falls) {
             fail(ExitCode::stopped,

@@ -72,4 +72,8 @@ std::vector<PressedPlaces> SelfContact::pressed() const {
     return contact_ != nullptr ? contact_->pressed() : std::vector<PressedPlaces>{};
 }
 
+int SelfContact::let_be(double deeper) {
+    return contact_ != nullptr ? contact_->let_be(deeper) : 0;
+}
+
 }  // namespace swage

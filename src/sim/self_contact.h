@@ -43,6 +43,10 @@ class SelfContact {
     // What pressed when forces were last found.
     std::vector<PressedPlaces> pressed() const;
 
+    // Points that were deeper in the body than this [m] when forces were last found meet it no
+    // more, whatever is taken back; how many did until now.
+    int let_be(double deeper);
+
   private:
     void find();
 

@@ -161,6 +161,28 @@ TEST_CASE("a spline space reaches over no cut, and round the end of one") {
     }
     CHECK(own > 0);
     CHECK(over < 1e-12 * own);
+
+    // Where both sides press on each other they move less for it, still each by itself.
+    PressedPlaces both{};
+    const auto end_of = [&](bool of_left) {
+        for (std::size_t p = 0; p < left.size(); ++p) {
+            const double x = m.particle_reference.at(p).x() - m.lattice.origin.x();
+            if (is_left(p) == of_left && std::abs(x - (kCut + 0.5) * kSpacing) < kSpacing) return p;
+        }
+        return left.size();
+    };
+    both.particle[0] = ParticleId(end_of(true)), both.particle[8] = ParticleId(end_of(false));
+    both.weight[0] = 1, both.weight[8] = -1;
+    both.stiffness = 1e12;
+    coarse.hold(m, {}, {both});
+    REQUIRE(coarse.gains());
+    Vec3Array held;
+    set_zero(m.particle_count(), held);
+    coarse.add(left, 1, 0, held);
+    CHECK(held.at(end_of(true)).norm() < 0.01 * moved.at(end_of(true)).norm());
+    for (std::size_t p = 0; p < left.size(); ++p) {
+        if (!is_left(p)) CHECK(held.at(p).norm() < 1e-12 * own);
+    }
 }
 
 TEST_CASE("sums of masses by part are those of the motions that its nodes make") {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A body that comes to rest against itself.
+#include <numeric>
+
 #include "base/parallel.h"
 #include "sim/advance.h"
 #include "sim/own_overlap.h"
@@ -181,6 +183,47 @@ TEST_CASE("forces of a body on itself are the slope of their energy, and in bala
         }
     }
     CHECK(pressed > 10);
+}
+
+TEST_CASE("points that are let be meet their body no more, whatever is taken back") {
+    Aggregate c = make_c(soft());
+    SelfContact self(c, settings_of(true));
+    const auto shut = [&](double by) {  // each arm, at its end
+        for (std::size_t p = 0; p < c.particle_count(); ++p) {
+            const Vec3 x = c.particle_reference.at(p);
+            const double out = std::max(0.0, x.x() + 0.1) / 0.4;
+            c.particle_position.set(p, x - Vec3(0, (x.y() > 0 ? 1 : -1) * by * out, 0));
+        }
+    };
+    self.begin_move();
+    shut(0.05 + 0.3 * kSpacing);
+    REQUIRE(self.presses());
+    const int all = static_cast<int>(self.pressed().size());
+    const double deepest = self.sums().penetration;
+    REQUIRE(all > 20);
+    for (const PressedPlaces& both : self.pressed()) {
+        double apart = 0;  // along y
+        for (int n = 0; n < 16; ++n) {
+            apart += both.weight[n] * c.particle_position.at(both.particle[n]).y();
+        }
+        CHECK(std::accumulate(both.weight.begin(), both.weight.end(), 0.0) ==
+              Approx(0).margin(1e-6));
+        CHECK(std::abs(apart) < 1e-6);  // the same place
+        CHECK(both.stiffness > 0);
+    }
+    CHECK(self.let_be(2 * deepest) == 0);
+    const int deep = self.let_be(0.5 * deepest);
+    CHECK(deep > 0);
+    CHECK(deep < all);
+    CHECK(self.let_be(0.5 * deepest) == 0);
+    self.take_back();
+    REQUIRE(self.presses());
+    CHECK(self.pressed().size() == std::size_t(all - deep));
+    CHECK(self.sums().penetration < 0.7 * deepest);
+    // Others go on meeting it.
+    shut(0.05 + 0.5 * kSpacing);
+    REQUIRE(self.presses());
+    CHECK(self.sums().penetration > 0.8 * deepest);
 }
 
 TEST_CASE("what presses in a fold goes on without a jump as its sides slide along each other") {
