@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
 constexpr double kSmallestCellVolume = 0.05;
+constexpr double kForeseen = 0.5;  // spacings that anything is taken to go on
 // Spacings that a point of the work-piece may be in it where no equilibrium is found.
 constexpr double kDeepest = 0.2;
 // Least push, over E a^2, that the residual is measured by: about a tenth of E I / L^2 of a bar 4
@@ -51,14 +52,11 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       pushes_(apparatus, settings, 0),
       self_(matter, settings),
       body_size_(largest_extent(matter)),
-      load_(apparatus.tool.size() + apparatus.grip.size()),
-      most_load_(load_.size(), 0.0),
-      carries_(apparatus.tool.size(), false),
-      pressing_motion_(6 * apparatus.tool.size(), 0.0) {
+      free_(matter, apparatus),
+      slips_(apparatus),
+      load_(apparatus.tool.size() + apparatus.grip.size()) {
     velocity_.resize(matter.particle_count());
-    heavy_mass_ = matter.particle_mass;
     find_bounds();
-    find_carriers();
 }
 
 void QuasistaticSolver::connections_changed(std::size_t) {
@@ -71,8 +69,8 @@ void QuasistaticSolver::connections_renewed() {
     lattice_.connections_changed(matter_);
     contacts_.connections_changed(matter_);
     self_.connections_changed();
+    free_.connections_changed();
     find_bounds();
-    find_carriers();
 }
 
 void QuasistaticSolver::find_bounds() {
@@ -87,22 +85,15 @@ void QuasistaticSolver::find_bounds() {
     for (std::size_t p = 0; p < drag_.size(); ++p) {
         drag_[p] = kDrag * modulus * a * matter_.particle_mass[p] / full_mass;
     }
-    previous_motion_.clear();
-}
-
-void QuasistaticSolver::add_loads(const Drive& to, Vec3Array& force) const {
-    std::vector<Vec3> afloat;
-    for (ParticleId p : afloat_) afloat.push_back(force.at(p));
-    pushes_.add_forces(matter_, to, force);
-    for (std::size_t n = 0; n < afloat.size(); ++n) force.set(afloat_[n], afloat[n]);
+    foresight_.forget();
 }
 
 void QuasistaticSolver::evaluate(const Drive& to, double moved) {
     mirrored_ = lattice_.find(matter_, Flow::trial, force_);
     contacts_.add_forces(matter_, to, force_, moved);
-    add_loads(to, force_);
+    free_.add_loads(pushes_, to, force_);
     add_restraint(matter_.particle_position,
-                  {held_, drag_, hold_, heavy_mass_, pushes_.gravity(to)}, force_);
+                  {held_, drag_, hold_, free_.heavy_mass(), pushes_.gravity(to)}, force_);
     self_.add_forces(force_);
 }
 
@@ -165,9 +156,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
     held_ = rest_;
     contacts_.find_candidates(matter_, to);
     self_.meet_anew();
-    bool smooth =
-        newton_ && newton_rests_ == 0 && !touches() && !floats_under_pressure(apparatus_);
-    const double first = carrier_.empty() ? std::exchange(enough_hold_, 1) : 1;
+    bool smooth = newton_ && newton_rests_ == 0 && !touches() && !floats_under_pressure(apparatus_);
+    const double first = free_.are_several() ? 1 : std::exchange(enough_hold_, 1);
     for (hold_ = smooth ? kSmoothHold : first;; hold_ *= kLetGo) {
         Relaxation round;
         if (smooth) {
@@ -181,7 +171,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
             } else {
                 newton_pause_ = 0;
             }
-            if (round.converged && falls(to)) {
+            if (round.converged && free_.has_fallen(pushes_, to, start_, body_size_)) {
                 return {false, result.iterations + round.iterations, round.residual, true};
             }
             if (!round.converged || touches()) {
@@ -271,62 +261,85 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     return result;
 }
 
+// What a try that has come to nothing met, at the positions that it came to.
+std::string QuasistaticSolver::met(const Drive& to) {
+    std::string text = contacts_.hardest_point(matter_, to);
+    if (self_.presses()) {
+        text += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
+                            self_.sums().penetration / matter_.lattice.spacing);
+    }
+    return text;
+}
+
+// Takes the try back. Whether another may come to more, for something that would not come to rest
+// is left alone from now on.
+bool QuasistaticSolver::take_back(Relaxation& tried, const Drive& to, int depth,
+                                  MoveOutcome& outcome) {
+    const bool given_up = !tried.converged && depth >= settings_.halving_limit;
+    tried.falls = tried.falls || (given_up && begins_to_fall(to));
+    int let_be = 0;
+    if (given_up && !tried.falls && self_.presses()) {
+        let_be = self_.let_be(kDeepest * matter_.lattice.spacing);
+    }
+    matter_.particle_position = start_;
+    self_.take_back();
+    foresight_.forget();
+    const bool may_hang = !tried.converged && !tried.falls && (given_up || depth > 0);
+    const int afloat = tried.falls ? free_.let_fall() : 0, hanging = may_hang ? let_hang(to) : 0;
+    outcome.afloat += afloat;
+    outcome.hanging += hanging;
+    outcome.let_be += let_be;
+    return afloat + hanging + let_be > 0;
+}
+
+void QuasistaticSolver::stop(const Relaxation& tried, const Drive& to, int depth,
+                             const std::string& met) const {
+    if (tried.falls) {
+        fail(ExitCode::stopped,
+             "{}: the work-piece falls at {:.4g} s, for nothing holds it against gravity and "
+             "loads, and equilibria have no fall: hold it, have it lie on something, or let it "
+             "fall by solver = \"explicit\"",
+             apparatus_.name, to.time);
+    }
+    const char* advice = "raise frames or tolerance of the stage";
+    if (tried.converged) {
+        advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
+    } else if (pushes_.count() > 0 && !matter_.cell_hardening.empty()) {
+        advice =
+            "the matter flows: where it cannot bear its loads they must be lower; else raise "
+            "frames or tolerance of the stage";
+    }
+    fail(ExitCode::stopped,
+         "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings (residual "
+         "{:.2g} of the largest push, wanted {:.2g}; {}); {}",
+         apparatus_.name, to.time, tried.iterations, depth, tried.residual, settings_.tolerance,
+         met, advice);
+}
+
 bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome, Unsolved unsolved) {
     start_ = matter_.particle_position;
     newton_rests_ = std::max(0, newton_rests_ - 1);
     contacts_.begin_move(matter_, from);
     self_.begin_move();
-    std::vector<double> motion = motion_of(from, to);
-    const bool released = draws_back(from, to, motion);
-    predict(motion);
-    carry_pieces(from, to);
+    const DriveMotion motion = motion_between(apparatus_, from, to, body_size_);
+    const bool released = pushes_.eases(from, to) || slips_.draws_back(motion);
+    foresight_.go_on(motion, kForeseen * matter_.lattice.spacing, matter_.particle_position);
+    free_.carry(from, to, start_, rest_, matter_.particle_position);
 
     const bool had_buckled = std::exchange(outcome.buckled, false);
-    const Relaxation relaxed = relax_stably(to, outcome);
+    Relaxation found = relax_stably(to, outcome);
     const bool buckled = outcome.buckled;
     outcome.buckled = buckled || had_buckled;
-    outcome.iterations += relaxed.iterations;
-    outcome.residual = relaxed.residual;
-    const bool whole = relaxed.converged && smallest_cell_volume(matter_) > kSmallestCellVolume;
-    if (!whole) {
-        const bool given_up = !relaxed.converged && depth >= settings_.halving_limit;
-        const bool falls = relaxed.falls || (given_up && begins_to_fall(to));
-        std::string hardest = contacts_.hardest_point(matter_, to);
-        int let_be = 0;
-        if (self_.presses()) {
-            if (given_up && !falls) let_be = self_.let_be(kDeepest * matter_.lattice.spacing);
-            hardest += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
-                                   self_.sums().penetration / matter_.lattice.spacing);
+    outcome.iterations += found.iterations;
+    outcome.residual = found.residual;
+    if (!found.converged || smallest_cell_volume(matter_) <= kSmallestCellVolume) {
+        const std::string met = this->met(to);
+        if (take_back(found, to, depth, outcome)) {
+            return increment(from, to, depth, outcome, unsolved);
         }
-        matter_.particle_position = start_;
-        self_.take_back();
-        previous_motion_.clear();
-        const int afloat = falls ? let_float(pieces_, fallen_) : 0;
-        const bool tried = given_up || (!relaxed.converged && depth > 0);
-        const int hanging = tried && !falls ? let_hang(to) : 0;
-        outcome.afloat += afloat;
-        outcome.hanging += hanging;
-        outcome.let_be += let_be;
-        if (afloat + hanging + let_be > 0) return increment(from, to, depth, outcome, unsolved);
         if (unsolved == Unsolved::leave) return false;
-        if (falls) {
-            fail(ExitCode::stopped,
-                 "{}: the work-piece falls at {:.4g} s, for nothing holds it against gravity and "
-                 "loads, and equilibria have no fall: hold it, have it lie on something, or let it "
-                 "fall by solver = \"explicit\"",
-                 apparatus_.name, to.time);
-        }
-        if (depth >= settings_.halving_limit) {
-            fail(ExitCode::stopped,
-                 "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings "
-                 "(residual {:.2g} of the largest push, wanted {:.2g}; {}); {}",
-                 apparatus_.name, to.time, relaxed.iterations, depth, relaxed.residual,
-                 settings_.tolerance, hardest,
-                 relaxed.converged
-                     ? "a cell is crushed flat: raise [mold] across, or bend and twist less"
-                     : "raise frames or tolerance of the stage");
-        }
+        if (found.falls || depth >= settings_.halving_limit) stop(found, to, depth, met);
         ++outcome.halvings;
         const Drive middle = drive_between(from, to, 0.5);
         increment(from, middle, depth + 1, outcome);
@@ -341,29 +354,18 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     outcome.body[0].friction_work += stroke.friction;
     contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);
-    for (std::size_t n = 0; n < load.size(); ++n) {
-        largest_push_ = std::max(largest_push_, load[n].size);
-        most_load_[n] = std::max(most_load_[n], load[n].size);
-    }
-    if (released || breaks) {
-        std::fill(carries_.begin(), carries_.end(), false);
-    } else {
-        check_slip(load, outcome);
-    }
     std::vector<double> work(load_.size(), 0.0);
     add_work(from, to, load_, load, work);
     for (std::size_t n = 0; n < work.size(); ++n) {
         work[n] -= stroke.idle[n];
         outcome.body[0].work[n] += work[n];
-        if (n < carries_.size() && carries_[n] && work[n] > 0) {
-            std::copy_n(motion.begin() + 6 * n, 6, pressing_motion_.begin() + 6 * n);
-        }
+        largest_push_ = std::max(largest_push_, load[n].size);
     }
+    slips_.keep(load, work, motion, released || breaks, outcome.lost);
     load_ = std::move(load);
-    previous_ = start_;
-    previous_motion_ = std::move(motion);
     pushes_.commit(matter_, to, outcome.body[0].push_work);
-    if (buckled || breaks) previous_motion_.clear();  // neither goes on as it did
+    foresight_.keep(start_, motion);
+    if (buckled || breaks) foresight_.forget();  // neither goes on as it did
     ++outcome.increments;
     return true;
 }

@@ -22,6 +22,8 @@
 #include "matter/drive.h"
 #include "sim/coarse_space.h"
 #include "sim/contact_set.h"
+#include "sim/drive_motion.h"
+#include "sim/free_pieces.h"
 #include "sim/lattice_forces.h"
 #include "sim/load_set.h"
 #include "sim/move_outcome.h"
@@ -30,10 +32,6 @@
 #include "sim/settings.h"
 
 namespace swage {
-
-// The moves in which a drive's way is solved: none takes a tool or grip farther than one spacing.
-int increments_between(const ContactSet& contacts, const Aggregate& matter, const Drive& from,
-                       const Drive& to);
 
 class QuasistaticSolver {
   public:
@@ -59,6 +57,10 @@ class QuasistaticSolver {
     // Whether there is an equilibrium at `to`; without one the matter stays as it was, or it stops.
     bool increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome,
                    Unsolved unsolved = Unsolved::stop);
+    std::string met(const Drive& to);
+    bool take_back(Relaxation& tried, const Drive& to, int depth, MoveOutcome& outcome);
+    [[noreturn]] void stop(const Relaxation& tried, const Drive& to, int depth,
+                           const std::string& met) const;
     Relaxation relax(const Drive& to);
     Relaxation settle(const Drive& to);
     Relaxation relax_stably(const Drive& to, MoveOutcome& outcome);
@@ -68,27 +70,16 @@ class QuasistaticSolver {
     void connections_renewed();
     void find_bounds();
     void find_masses();
-    void add_loads(const Drive& to, Vec3Array& force) const;
     // `moved`: as ContactSet::add_forces() takes it.
     void evaluate(const Drive& to, double moved = std::numeric_limits<double>::infinity());
     bool touches() { return contacts_.tools_near() || self_.presses(); }
     double push_limit(const Drive& to) const;
-    std::vector<double> motion_of(const Drive& from, const Drive& to) const;
-    void predict(const std::vector<double>& motion);
-    void find_carriers();
-    void carry_pieces(const Drive& from, const Drive& to);
-    bool draws_back(const Drive& from, const Drive& to, const std::vector<double>& motion) const;
-    void check_slip(const std::vector<LoadSum>& after, MoveOutcome& outcome);
     void let_crack(const Drive& to, MoveOutcome& outcome);
     double booked(const Drive& now, const BodyOutcome& outcome);
     bool begin(const Drive& from, BodyOutcome& outcome);
     void let_go(const Drive& from, MoveOutcome& outcome);
     void stay(const Drive& to);
-    bool falls(const Drive& to);
     bool begins_to_fall(const Drive& to);
-    Vec3Array pushes_on(const Drive& to) const;
-    void keep_loose(const Drive& to, const std::vector<double>& borne);
-    int let_float(const Pieces& pieces, const std::vector<int>& some);
     int let_hang(const Drive& to);
     bool commit(MoveOutcome& outcome);
 
@@ -112,29 +103,16 @@ class QuasistaticSolver {
     Vec3Array force_, velocity_;
     double hold_ = 1;         // share of the drag that acts
     double enough_hold_ = 1;  // and that held nothing back in the last relaxation
-    Vec3Array held_, rest_;  // positions that the drag pulls back to: now, at first
-    Pieces pieces_;
-    std::vector<char> gripped_;  // of each piece
-    // Of each particle: the grip, if any, that alone holds its piece. Empty: the matter is in one
-    // piece.
-    std::vector<int> carrier_;
-    std::vector<int> fallen_;  // pieces that did when it was last asked
-    // Particles of pieces that nothing holds, which loads and gravity leave alone from then on, and
-    // the mass of all others [kg].
-    std::vector<ParticleId> afloat_;
-    std::vector<double> heavy_mass_;
-    Vec3Array start_, previous_, listed_;  // positions: before the move, before the last one, when
-                                           // the candidates were found
-    std::vector<double> previous_motion_;  // empty: nothing to extrapolate from
-    bool moved_ = false;                   // any tool or grip, ever
+    Vec3Array held_, rest_;   // positions that the drag pulls back to: now, at first
+    FreePieces free_;
+    Vec3Array start_, listed_;  // positions: before the move, when the candidates were found
+    Foresight foresight_;
+    SlipWatch slips_;
+    bool moved_ = false;  // any tool or grip, ever
     bool begun_ = false;
-    bool severed_ = false;                 // by a blade, since the last equilibrium
-    double largest_push_ = 0;              // of any tool so far [N]
-    std::vector<LoadSum> load_;            // at the end of the last increment, by tool, then grip
-    std::vector<double> most_load_;        // that each has carried so far [N]
-    std::vector<bool> carries_;            // tools that are loaded and have not drawn back since
-    std::vector<double> pressing_motion_;  // six numbers a tool, of when it last pressed: loaded,
-                                           // and working on the matter
+    bool severed_ = false;       // by a blade, since the last equilibrium
+    double largest_push_ = 0;    // of any tool so far [N]
+    std::vector<LoadSum> load_;  // at the end of the last increment, by tool, then grip
 };
 
 }  // namespace swage

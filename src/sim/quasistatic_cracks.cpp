@@ -44,7 +44,7 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
         if (cracked.cells == 0 && lattice_.may_snap(matter_)) snapped = lattice_.snap(matter_);
         if (cracked.cells == 0 && snapped.broken == 0) return;
         connections_renewed();
-        std::fill(carries_.begin(), carries_.end(), false);
+        slips_.forget();
         outcome.body[0].fracture_work += cracked.lost + snapped.fracture;
         outcome.body[0].broken += snapped.broken;
         increment(to, to, settings_.halving_limit, outcome);
@@ -71,7 +71,7 @@ bool QuasistaticSolver::begin(const Drive& from, BodyOutcome& outcome) {
 // What was cut, or lost its grips, comes to rest before anything moves, so that what it lets go of
 // is not taken for an error. NOTE: where there is no rest the move goes on without; then it is.
 void QuasistaticSolver::let_go(const Drive& from, MoveOutcome& outcome) {
-    std::fill(carries_.begin(), carries_.end(), false);
+    slips_.forget();
     const double before = booked(from, outcome.body[0]);
     if (!increment(from, from, settings_.halving_limit, outcome, Unsolved::leave)) return;
     outcome.body[0].set_free += before - booked(from, outcome.body[0]);

@@ -124,7 +124,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         moved = move_on({keep, step, step, kLongest * a}, f, inverse_mass_, listed_, v, x);
         if (moved > 0.45 * a) {
             list_candidates();
-            result.falls = falls(to);
+            result.falls = free_.has_fallen(pushes_, to, start_, body_size_);
             if (result.falls) return result;
         }
     }

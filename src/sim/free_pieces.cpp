@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/free_pieces.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "sim/hanging.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kUnbalanced = 0.05;  // of all loads and gravity on a piece
+constexpr double kBorne = 0.5;        // of what they come to
+
+template <typename Value, typename Of>
+std::vector<Value> sums_of(const Pieces& pieces, const Value& none, const Of& of) {
+    std::vector<Value> sum(static_cast<std::size_t>(pieces.count), none);
+    for (std::size_t p = 0; p < pieces.particle_piece.size(); ++p) {
+        sum[static_cast<std::size_t>(pieces.particle_piece[p])] += of(p);
+    }
+    return sum;
+}
+
+}  // namespace
+
+FreePieces::FreePieces(const Aggregate& matter, const Apparatus& apparatus)
+    : matter_(matter), apparatus_(apparatus), heavy_mass_(matter.particle_mass) {
+    connections_changed();
+}
+
+void FreePieces::connections_changed() {
+    constexpr int kNone = -1, kSeveral = -2;
+    carrier_.clear();
+    pieces_ = find_pieces(matter_);
+    std::vector<int> of_piece(static_cast<std::size_t>(pieces_.count), kNone);
+    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
+        const Grip& grip = apparatus_.grip[g];
+        const int carries = grip.hold == Vec3::Ones() ? static_cast<int>(g) : kSeveral;
+        for (int point : grip.point) {
+            const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
+            for (int c = 0; c < 8; ++c) {
+                if (by.weight[c] == 0) continue;
+                int& of = of_piece[pieces_.particle_piece[by.corner[c]]];
+                of = of == kNone || of == carries ? carries : kSeveral;
+            }
+        }
+    }
+    gripped_.clear();
+    for (int by : of_piece) gripped_.push_back(by != kNone);
+    if (pieces_.count < 2) return;
+    for (int piece : pieces_.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
+}
+
+void FreePieces::carry(const Drive& from, const Drive& to, const Vec3Array& start, Vec3Array& rest,
+                       Vec3Array& position) const {
+    rest = start;
+    if (carrier_.empty()) return;
+    std::vector<Pose> change;
+    for (std::size_t g = 0; g < to.world_from_grip.size(); ++g) {
+        change.push_back(to.world_from_grip[g] * from.world_from_grip[g].inverse());
+    }
+    for (std::size_t p = 0; p < carrier_.size(); ++p) {
+        if (carrier_[p] < 0) continue;
+        rest.set(p, change[static_cast<std::size_t>(carrier_[p])] * start.at(p));
+        position.set(p, rest.at(p));
+    }
+}
+
+void FreePieces::add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {
+    std::vector<Vec3> afloat;
+    for (ParticleId p : afloat_) afloat.push_back(force.at(p));
+    pushes.add_forces(matter_, to, force);
+    for (std::size_t n = 0; n < afloat.size(); ++n) force.set(afloat_[n], afloat[n]);
+}
+
+bool FreePieces::has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Array& start,
+                            double far) {
+    fallen_.clear();
+    if (pushes.count() == 0) return false;
+    const Vec3Array& x = matter_.particle_position;
+    const auto count = sums_of(pieces_, 0.0, [](std::size_t) { return 1.0; });
+    const auto way = sums_of(pieces_, Vec3(Vec3::Zero()),
+                             [&](std::size_t p) -> Vec3 { return x.at(p) - start.at(p); });
+    for (std::size_t n = 0; n < way.size(); ++n) {
+        if (way[n].norm() > count[n] * far) fallen_.push_back(static_cast<int>(n));
+    }
+    if (fallen_.empty()) return false;
+    keep_loose(pushes_on(pushes, to), std::vector<double>(way.size(), 0.0));
+    return !fallen_.empty();
+}
+
+bool FreePieces::begins_to_fall(const LoadSet& pushes, const Drive& to, const Vec3Array& contact) {
+    fallen_.resize(static_cast<std::size_t>(pieces_.count));
+    std::iota(fallen_.begin(), fallen_.end(), 0);
+    keep_loose(pushes_on(pushes, to),
+               sums_of(pieces_, 0.0, [&](std::size_t p) { return contact.at(p).norm(); }));
+    return !fallen_.empty();
+}
+
+// Loads and gravity on each particle.
+Vec3Array FreePieces::pushes_on(const LoadSet& pushes, const Drive& to) const {
+    Vec3Array push;
+    push.resize(matter_.particle_count());
+    add_loads(pushes, to, push);
+    const Vec3 gravity = pushes.gravity(to);
+    for (std::size_t p = 0; p < push.size(); ++p) push.add(p, heavy_mass_[p] * gravity);
+    return push;
+}
+
+// Of the fallen pieces those in no grip which loads and gravity drive somewhere, by more than is
+// borne [N].
+void FreePieces::keep_loose(const Vec3Array& push, const std::vector<double>& borne) {
+    const auto pushed =
+        sums_of(pieces_, Vec3(Vec3::Zero()), [&](std::size_t p) { return push.at(p); });
+    const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+    std::erase_if(fallen_, [&](int n) {
+        const double net = pushed[n].norm();
+        return gripped_[n] || net <= kUnbalanced * size[n] || borne[n] > kBorne * net;
+    });
+}
+
+int FreePieces::let_float(const Pieces& pieces, const std::vector<int>& some) {
+    if (pieces.count < 2) return 0;
+    std::vector<char> floats(matter_.particle_count(), 0);
+    for (ParticleId p : afloat_) floats[p] = 1;
+    std::vector<char> to_come(static_cast<std::size_t>(pieces.count), 0);
+    for (int piece : some) to_come[piece] = 1;
+    std::vector<char> counted(to_come.size(), 0);
+    int count = 0;
+    for (std::size_t p = 0; p < floats.size(); ++p) {
+        const auto piece = static_cast<std::size_t>(pieces.particle_piece[p]);
+        if (floats[p] || !to_come[piece]) continue;
+        afloat_.push_back(static_cast<ParticleId>(p));
+        heavy_mass_[p] = 0;
+        count += !std::exchange(counted[piece], 1);
+    }
+    return count;
+}
+
+int FreePieces::let_hang(const LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
+                         const Vec3Array& own) {
+    const Pieces firm = find_firm_pieces(matter_, held);
+    std::vector<int> hanging = find_hanging(matter_, pieces_, firm, held);
+    const Vec3Array push = pushes_on(pushes, to);
+    const Vec3 none = Vec3::Zero();
+    const auto size = sums_of(firm, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+    const auto pushed = sums_of(firm, none, [&](std::size_t p) { return push.at(p); });
+    const auto borne = sums_of(firm, none, [&](std::size_t p) { return own.at(p); });
+    std::erase_if(hanging, [&](int n) {
+        return size[n] == 0 || -borne[n].dot(pushed[n]) > kBorne * pushed[n].squaredNorm();
+    });
+    return let_float(firm, hanging);
+}
+
+}  // namespace swage

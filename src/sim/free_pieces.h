@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pieces of a body at rest, and which of them loads and gravity would carry off: equilibria have no
+// fall, so these leave such a piece alone from then on.
+#pragma once
+
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+#include "sim/held_point.h"
+#include "sim/load_set.h"
+
+namespace swage {
+
+class FreePieces {
+  public:
+    // Both must outlive it.
+    FreePieces(const Aggregate& matter, const Apparatus& apparatus);
+
+    // A blade or a crack has parted what was whole.
+    void connections_changed();
+
+    bool are_several() const { return pieces_.count > 1; }
+
+    // What a single grip holds goes where that goes, whole. NOTE: else the drag, which is let go
+    // only until it holds back no more than the residual may be, pulls at pieces that are drawn
+    // away.
+    void carry(const Drive& from, const Drive& to, const Vec3Array& start, Vec3Array& rest,
+               Vec3Array& position) const;
+
+    // Loads on what they do not leave alone; the mass of each particle that gravity acts on [kg].
+    void add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& force) const;
+    const std::vector<double>& heavy_mass() const { return heavy_mass_; }
+
+    // Whether any piece has gone farther than `far` [m] from where it was: tools and grips go no
+    // farther than a spacing in a move, and what springs back no farther than the body is long.
+    bool has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Array& start, double far);
+    // What is stiff beside its weight has not gone far by the time it is given up: whether any
+    // piece is pushed somewhere by more than `contact`, forces of tools, grips and the body itself,
+    // can bear.
+    bool begins_to_fall(const LoadSet& pushes, const Drive& to, const Vec3Array& contact);
+    // How many of them loads and gravity leave alone from now on and did not before. Not what is
+    // all there is.
+    int let_fall() { return let_float(pieces_, fallen_); }
+    // The same of what hangs by hinges (sim/hanging.h) where these points are held, and does not
+    // lie on its own body, which has these forces on it.
+    int let_hang(const LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
+                 const Vec3Array& own);
+
+  private:
+    Vec3Array pushes_on(const LoadSet& pushes, const Drive& to) const;
+    void keep_loose(const Vec3Array& push, const std::vector<double>& borne);
+    int let_float(const Pieces& pieces, const std::vector<int>& some);
+
+    const Aggregate& matter_;
+    const Apparatus& apparatus_;
+    Pieces pieces_;
+    std::vector<char> gripped_;  // of each piece
+    // Of each particle: the grip, if any, that alone holds its piece. Empty: one piece.
+    std::vector<int> carrier_;
+    std::vector<int> fallen_;         // pieces that did when it was last asked
+    std::vector<ParticleId> afloat_;  // particles that loads and gravity leave alone
+    std::vector<double> heavy_mass_;
+};
+
+}  // namespace swage
