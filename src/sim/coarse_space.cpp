@@ -46,7 +46,7 @@ CoarseSpace::CoarseSpace(const Aggregate& matter)
     : lattice_(matter.lattice),
       space_(lattice_, matter.connection, elements_of(lattice_, matter.particle_count())) {
     find_pattern();
-    find_ways();
+    choose_turns();
     stiffness_.assign(neighbor_.size(), Mat3::Zero());
     held_.assign(neighbor_.size(), Mat3::Zero());
     choose_samples();
@@ -140,28 +140,28 @@ int CoarseSpace::neighbor_at(int node, int other) const {
     return -1;
 }
 
-// Nodes five places apart move nothing that the same node moves. Of those at one place some may.
-void CoarseSpace::find_ways() {
+// Nodes five places apart pull on no node both. Of those at one place some may.
+void CoarseSpace::choose_turns() {
     const std::vector<Vec3i>& place = space_.parts().place;
-    std::map<std::array<int, 4>, std::size_t> number;  // by place modulo five, and turn
-    std::vector<int> turn(place.size(), 0);
-    std::map<std::array<int, 3>, std::vector<int>> beside;
+    std::map<std::array<int, 3>, std::vector<int>> at_place;
+    std::vector<int> round(place.size(), 0);
+    std::map<std::array<int, 4>, std::size_t> number;  // by place modulo five, and round
     for (int n = 0; n < space_.node_count(); ++n) {
-        std::vector<int>& others = beside[{place[n].x(), place[n].y(), place[n].z()}];
+        std::vector<int>& others = at_place[{place[n].x(), place[n].y(), place[n].z()}];
         const auto meets = [&](int other) {
-            if (turn[other] != turn[n]) return false;
+            if (round[other] != round[n]) return false;
             for (int at = first_[n * kNear]; at < first_[(n + 1) * kNear]; ++at) {
                 if (neighbor_at(neighbor_[at].node, other) >= 0) return true;
             }
             return false;
         };
-        while (std::any_of(others.begin(), others.end(), meets)) ++turn[n];
+        while (std::any_of(others.begin(), others.end(), meets)) ++round[n];
         others.push_back(n);
-        const Vec3i in_turn = place[n].unaryExpr([](int i) { return i % kSide; });
+        const Vec3i to = place[n].unaryExpr([](int i) { return i % kSide; });
         const auto [at, is_new] =
-            number.try_emplace({in_turn.z(), in_turn.y(), in_turn.x(), turn[n]}, together_.size());
-        if (is_new) together_.emplace_back();
-        together_[at->second].push_back(n);
+            number.try_emplace({to.z(), to.y(), to.x(), round[n]}, turn_.size());
+        if (is_new) turn_.emplace_back();
+        turn_[at->second].push_back(n);
     }
 }
 
@@ -170,7 +170,7 @@ void CoarseSpace::find_stiffness(Aggregate& matter, const Forces& forces) {
     const Vec3Array position = matter.particle_position;
     Vec3Array here, there;
     forces(here);
-    for (const std::vector<int>& nodes : together_) {
+    for (const std::vector<int>& nodes : turn_) {
         for (int axis = 0; axis < 3; ++axis) {
             Vector motion = Vector::Zero(3 * space_.node_count());
             for (int n : nodes) motion[3 * n + axis] = step;

@@ -7,7 +7,8 @@
 //     B = M^-1 + P C P^T,   C = (2 P^T K P + P^T M P / g)^-1
 //
 // M are masses under which steps of M^-1 f are stable; no motion is made lighter than by a factor
-// g. K is the lattice's elastic stiffness, by differences of its forces, and the held points'.
+// g. K is the lattice's elastic stiffness, by differences of its forces, and that of what holds
+// points and of places that press on each other.
 #pragma once
 
 #include <array>
@@ -32,7 +33,6 @@ class CoarseSpace {
 
     // Whether the stiffness is not known, or the body has turned or strained too far since then.
     bool is_stale(const Vec3Array& position) const;
-    void forget() { probed_.clear(); }
     // Finds the lattice's stiffness; the positions are moved a little and put back.
     void find_stiffness(Aggregate& matter, const Forces& forces);
     void find_masses(const std::vector<double>& mass);
@@ -56,7 +56,7 @@ class CoarseSpace {
     Edges edges(CellId cell, const Vec3Array& position) const;
     void choose_samples();
     void find_pattern();
-    void find_ways();
+    void choose_turns();
     int neighbor_at(int node, int other) const;  // -1: it is none
     void factor();
 
@@ -70,8 +70,8 @@ class CoarseSpace {
     std::vector<int> first_;
     // Of each node those from its own place in the factor on, in the factor's order.
     std::vector<std::vector<int>> from_here_;
-    std::vector<std::vector<int>>
-        together_;                        // nodes none of which moves what another one's pull on
+    // Nodes that are moved together, turn by turn: no two of them pull on the same node.
+    std::vector<std::vector<int>> turn_;
     std::vector<Mat3> stiffness_, held_;  // of each neighbor
     std::vector<double> inertia_;         // likewise
     double most_gain_ = 1;
