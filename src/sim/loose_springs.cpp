@@ -9,6 +9,7 @@
 #include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
 #include "sim/rest_lengths.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
@@ -178,7 +179,7 @@ std::vector<char> LooseSprings::ends(const Aggregate& matter) const {
 void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest) {
     const Vec3Array& x = matter.particle_position;
     now_.resize(spring_.size());
-    for (std::size_t n = 0; n < spring_.size(); ++n) {
+    const auto find = [&](std::size_t n) {
         const Spring& s = spring_[n];
         Stretch& now = now_[n];
         now.reach = x.at(s.upper) - x.at(s.lower);
@@ -191,7 +192,10 @@ void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest
             now.length = reference_[d] * (1 + strain);
         }
         now.strain = now.distance / now.length - 1;
-    }
+    };
+    for_each_chunk(spring_.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) find(n);
+    });
 }
 
 double LooseSprings::now_worst(std::size_t n) const {
@@ -216,12 +220,12 @@ double LooseSprings::loss_of(std::size_t n) const {
 void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest,
                               Vec3Array& force) {
     find_strains(matter, rest);
-    for (std::size_t n = 0; n < spring_.size(); ++n) {
+    const auto pull_of = [&](std::size_t n) -> Vec3 {
         const Spring& s = spring_[n];
         const Stretch& now = now_[n];
         double tension =
             spring_tension(SpringDamper{s.stiffness, 0, now.length}, now.distance, 0.0);
-        if (s.kind == Kind::closing && tension > 0) continue;
+        if (s.kind == Kind::closing && tension > 0) return Vec3::Zero();
         if (s.kind == Kind::softening) {
             const double sound = tension;
             if (tension > 0 || s.direction >= kEdgeCount) {
@@ -229,9 +233,15 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
             }
             if (beside_sweep_) tension -= sound;
         }
-        const Vec3 pull = tension / (now.distance + 1e-300) * now.reach;
-        force.add(s.lower, pull);
-        force.add(s.upper, -pull);
+        return tension / (now.distance + 1e-300) * now.reach;
+    };
+    pull_.resize(spring_.size());
+    for_each_chunk(spring_.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) pull_[n] = pull_of(n);
+    });
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        force.add(spring_[n].lower, pull_[n]);
+        force.add(spring_[n].upper, -pull_[n]);
     }
 }
 

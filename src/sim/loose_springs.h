@@ -102,6 +102,7 @@ class LooseSprings {
         double distance, length, strain;  // length: at rest [m]
     };
     std::vector<Stretch> now_;  // of each spring, when last looked at
+    std::vector<Vec3> pull_;    // likewise, on its lower end [N]
 };
 
 }  // namespace swage
