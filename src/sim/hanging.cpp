@@ -238,15 +238,12 @@ std::vector<int> find_hanging(const Aggregate& matter, const Pieces& pieces, con
     for (int n : firm.particle_piece) ++size[n];
     std::vector<std::vector<int>> of_piece(static_cast<std::size_t>(pieces.count));
     std::vector<int> number(size.size(), -1), hanging;
-    std::vector<char> joined(matter.particle_count(), 0);
-    for_each_connection(matter,
-                        [&](std::size_t a, std::size_t b, double) { joined[a] = joined[b] = 1; });
     for (std::size_t p = 0; p < matter.particle_count(); ++p) {
         const int f = firm.particle_piece[p];
         std::vector<int>& of = of_piece[pieces.particle_piece[p]];
         if (number[f] >= 0) continue;
         if (size[f] == 1) {
-            if (joined[p]) hanging.push_back(f);
+            hanging.push_back(f);
             continue;
         }
         number[f] = static_cast<int>(of.size());

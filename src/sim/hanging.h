@@ -15,10 +15,10 @@ namespace swage {
 // to, unless its connections and what holds points leave it free to move some way: it is by itself.
 Pieces find_firm_pieces(const Aggregate& matter, const std::vector<HeldPoint>& held);
 
-// Of these, such particles that a connection joins to anything; and what moves where others of the
-// same piece do not, or otherwise, and all connections between them and what holds points let it:
-// at the present positions, each of them rigid. Never what is held itself. Of a piece of very many
-// it is not asked.
+// Of these, such particles: a grip holds the mean of several, and not each. And what moves where
+// others of the same piece do not, or otherwise, and all connections between them and what holds
+// points let it: at the present positions, each of them rigid; never what is held itself. Of a
+// piece of very many it is not asked.
 std::vector<int> find_hanging(const Aggregate& matter, const Pieces& pieces, const Pieces& firm,
                               const std::vector<HeldPoint>& held);
 
