@@ -304,10 +304,10 @@ void QuasistaticSolver::stop(const Relaxation& tried, const Drive& to, int depth
     const char* advice = "raise frames or tolerance of the stage";
     if (tried.converged) {
         advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
-    } else if (pushes_.count() > 0 && !matter_.cell_hardening.empty()) {
+    } else if (pushes_.count() > 0 && std::isfinite(matter_.material.yield_stress)) {
         advice =
-            "the matter flows: where it cannot bear its loads they must be lower; else raise "
-            "frames or tolerance of the stage";
+            "if the matter flows under loads that it cannot bear, lower them; else raise frames or "
+            "tolerance of the stage";
     }
     fail(ExitCode::stopped,
          "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings (residual "

@@ -312,3 +312,25 @@ TEST_CASE("a body that nothing holds falls, and that is said") {
         CHECK(std::string(error.what()).find("the work-piece falls") != std::string::npos);
     }
 }
+
+TEST_CASE("beyond a limit load there is no rest, and the message says what to do") {
+    Material material = kSoft;
+    material.yield_stress = 1e3;
+    Aggregate matter = make_block(8, 2, 2, 0.05, material);
+    Apparatus apparatus;
+    apparatus.grip.push_back(
+        hold(matter, points_where(matter, [](const Vec3& x) { return x.x() < -0.199; })));
+    const auto end = points_where(matter, [](const Vec3& x) { return x.x() > 0.199; });
+    // A hinge forms at yield_stress b h^2 / 4 over the arm: 0.6 N.
+    apparatus.load.push_back(force_on(matter, end, {0, -3, 0}));
+    SimSettings settings;
+    settings.iteration_limit = 500;
+    settings.halving_limit = 1;
+    try {
+        put_on(matter, apparatus, settings, 10);
+        FAIL("it came to rest");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::stopped);
+        CHECK(std::string(error.what()).find("loads that it cannot bear") != std::string::npos);
+    }
+}
