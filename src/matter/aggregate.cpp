@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "geometry/disjoint_sets.h"
+#include "matter/connections.h"
 
 namespace swage {
 
@@ -146,12 +147,8 @@ bool cell_is_sound(const Aggregate& matter, CellId cell, const std::array<Partic
 
 Pieces find_pieces(const Aggregate& matter) {
     DisjointSets sets(matter.particle_count());
-    for (const Span& span : matter.lattice.span) {
-        const SparseArray<float>& weight = matter.connection[span.direction].weight;
-        for (int n = 0; n < span.count; ++n) {
-            if (weight[span.lower + n] > 0) sets.unite(span.lower + n, span.upper + n);
-        }
-    }
+    for_each_connection(matter.lattice, matter.connection,
+                        [&](ParticleId a, ParticleId b, float) { sets.unite(a, b); });
     Pieces pieces;
     pieces.count = sets.number_sets(pieces.particle_piece);
     return pieces;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/disjoint_sets.h"
+#include "matter/connections.h"
 
 namespace swage {
 
@@ -20,17 +21,6 @@ constexpr double kTakesPart = 1e-3;  // share of a piece in the free motions
 constexpr double kTogether = 1e-6;   // what is less apart than this is not, squared
 constexpr double kNoMotion = 1e-9;   // that a turn is of the points of a piece, squared
 
-template <typename Act>
-void for_each_connection(const Aggregate& matter, const Act& act) {
-    for (const Span& span : matter.lattice.span) {
-        const SparseArray<float>& weight = matter.connection[span.direction].weight;
-        for (int n = 0; n < span.count; ++n) {
-            const float share = weight[span.lower + n];
-            if (share > 0) act(span.lower + n, span.upper + n, share);
-        }
-    }
-}
-
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 using Motion = Eigen::Matrix<double, 6, 1>;  // along, and a turn about the piece's centre
@@ -39,19 +29,21 @@ using Motion = Eigen::Matrix<double, 6, 1>;  // along, and a turn about the piec
 // one (root of the mean square). Lengths are in spacings.
 class FirmMotions {
   public:
-    // `of`: the number of each particle's firm piece, from 0; less than 0: not of this piece.
-    FirmMotions(const Aggregate& matter, std::vector<int> of, std::size_t count)
-        : matter_(matter), of_(std::move(of)), center_(count, Vec3::Zero()), members_(count, 0.0) {
-        each_particle([&](std::size_t p, std::size_t n) {
-            center_[n] += place(p);
-            ++members_[n];
-        });
-        for (std::size_t n = 0; n < count; ++n) center_[n] /= members_[n];
+    // `particle`: of these firm pieces; `number`: of each particle's firm piece among them.
+    FirmMotions(const Aggregate& matter, const std::vector<ParticleId>& particle,
+                const std::vector<int>& number, std::size_t count)
+        : matter_(matter), number_(number), center_(count, Vec3::Zero()) {
+        std::vector<double> members(count, 0.0);
+        for (ParticleId p : particle) {
+            center_[firm_piece(p)] += place(p);
+            ++members[firm_piece(p)];
+        }
+        for (std::size_t n = 0; n < count; ++n) center_[n] /= members[n];
         square_.assign(count, Mat6::Zero());
-        each_particle([&](std::size_t p, std::size_t n) {
+        for (ParticleId p : particle) {
             const Moves moves = moves_of(p);
-            square_[n] += moves.transpose() * moves / members_[n];
-        });
+            square_[firm_piece(p)] += moves.transpose() * moves / members[firm_piece(p)];
+        }
         for (const Mat6& s : square_) {
             const Eigen::SelfAdjointEigenSolver<Mat6> ways(s);
             Own own(6, 0);
@@ -68,9 +60,8 @@ class FirmMotions {
 
     Eigen::Index count() const { return first_.back(); }
     std::size_t pieces() const { return own_.size(); }
-    bool has(std::size_t p) const { return of_[p] >= 0; }
-    std::size_t firm_piece(std::size_t p) const { return std::size_t(of_[p]); }
-    Vec3 place(std::size_t p) const {
+    std::size_t firm_piece(ParticleId p) const { return std::size_t(number_[p]); }
+    Vec3 place(ParticleId p) const {
         return matter_.particle_position.at(p) / matter_.lattice.spacing;
     }
     // Of each firm piece, how much of `motion`, a unit vector, is its.
@@ -94,7 +85,7 @@ class FirmMotions {
         return all;
     }
     // What moves a mean of particles by these shares is held by `stiffness`: adds it.
-    void add(const std::vector<std::pair<std::size_t, double>>& share, const Mat3& stiffness,
+    void add(const std::vector<std::pair<ParticleId, double>>& share, const Mat3& stiffness,
              Matrix& sum) const {
         for (const auto& [p, w] : share) {
             for (const auto& [q, v] : share) {
@@ -111,13 +102,7 @@ class FirmMotions {
     using Moves = Eigen::Matrix<double, 3, 6>;
     using Own = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-    template <typename Act>
-    void each_particle(const Act& act) const {
-        for (std::size_t p = 0; p < of_.size(); ++p) {
-            if (has(p)) act(p, firm_piece(p));
-        }
-    }
-    Moves moves_of(std::size_t p) const {
+    Moves moves_of(ParticleId p) const {
         const Vec3 arm = place(p) - center_[firm_piece(p)];
         Moves moves;
         moves << 1, 0, 0, 0, arm.z(), -arm.y(),  //
@@ -127,9 +112,8 @@ class FirmMotions {
     }
 
     const Aggregate& matter_;
-    std::vector<int> of_;
+    const std::vector<int>& number_;
     std::vector<Vec3> center_;
-    std::vector<double> members_;
     std::vector<Mat6> square_;               // of the points' motions, the mean
     std::vector<Eigen::Index> first_ = {0};  // of each one's motions; one more at the end
     std::vector<Own> own_;
@@ -151,30 +135,44 @@ Matrix free_motions(const FirmMotions& motions, const Matrix& stiffness) {
     return free * kinds.eigenvectors().rightCols(kept);
 }
 
-std::vector<int> hanging_of_piece(const Aggregate& matter, const FirmMotions& motions,
-                                  const std::vector<HeldPoint>& held) {
+// A connection between firm pieces.
+struct Link {
+    ParticleId lower, upper;
+    double share;
+};
+
+// A piece of two firm ones or more.
+struct LinkedPiece {
+    std::vector<int> firm;  // by their numbers in the piece
+    std::vector<ParticleId> particle;
+    std::vector<Link> link;
+};
+
+// By their numbers in the piece. `own`: of each particle, whether it is of this piece.
+template <typename Own>
+std::vector<int> hanging_of(const Aggregate& matter, const LinkedPiece& piece,
+                            const std::vector<int>& number, const std::vector<HeldPoint>& held,
+                            const Own& own) {
+    const FirmMotions motions(matter, piece.particle, number, piece.firm.size());
     Matrix stiffness = Matrix::Zero(motions.count(), motions.count());
-    for_each_connection(matter, [&](std::size_t a, std::size_t b, double share) {
-        if (!motions.has(a) || !motions.has(b) || motions.firm_piece(a) == motions.firm_piece(b))
-            return;
-        const Vec3 along = (motions.place(b) - motions.place(a)).normalized();
-        motions.add({{a, -1}, {b, 1}}, share * along * along.transpose(), stiffness);
-    });
-    std::vector<char> is_held(motions.pieces(), 0);
+    for (const Link& l : piece.link) {
+        const Vec3 along = (motions.place(l.upper) - motions.place(l.lower)).normalized();
+        motions.add({{l.lower, -1}, {l.upper, 1}}, l.share * along * along.transpose(), stiffness);
+    }
+    std::vector<char> is_held(piece.firm.size(), 0);
     const double unit = matter.mean_modulus() * matter.lattice.spacing;
     for (const HeldPoint& h : held) {
-        std::vector<std::pair<std::size_t, double>> share;
+        std::vector<std::pair<ParticleId, double>> share;
         for (int c = 0; c < 8; ++c) {
-            if (h.weight[c] != 0 && motions.has(h.corner[c])) {
-                share.emplace_back(h.corner[c], h.weight[c]);
-                is_held[motions.firm_piece(h.corner[c])] = 1;
-            }
+            if (h.weight[c] == 0 || !own(h.corner[c])) continue;
+            share.emplace_back(h.corner[c], h.weight[c]);
+            is_held[motions.firm_piece(h.corner[c])] = 1;
         }
         motions.add(share, h.stiffness / unit, stiffness);
     }
     const Matrix free = free_motions(motions, stiffness);
     std::vector<int> hanging;
-    for (std::size_t n = 0; n < motions.pieces(); ++n) {
+    for (std::size_t n = 0; n < piece.firm.size(); ++n) {
         double part = 0;
         for (const auto& motion : free.colwise()) part += motions.part(n, motion);
         if (part > kTakesPart && !is_held[n]) hanging.push_back(static_cast<int>(n));
@@ -201,31 +199,39 @@ Pieces find_firm_pieces(const Aggregate& matter, const std::vector<HeldPoint>& h
     }
     // Of the others, each by itself: what stiffness it has where all else stands still.
     std::vector<Mat3> stiffness(joined.size(), Mat3::Zero());
-    for_each_connection(matter, [&](std::size_t a, std::size_t b, double share) {
-        if (joined[a] && joined[b]) return;
-        const Vec3Array& x = matter.particle_position;
-        const Vec3 along = (x.at(b) - x.at(a)).normalized();
-        stiffness[a] += share * along * along.transpose();
-        stiffness[b] += share * along * along.transpose();
-    });
+    const Vec3Array& x = matter.particle_position;
+    for_each_connection(matter.lattice, matter.connection,
+                        [&](ParticleId a, ParticleId b, double share) {
+                            if (joined[a] && joined[b]) return;
+                            const Vec3 along = (x.at(b) - x.at(a)).normalized();
+                            stiffness[a] += share * along * along.transpose();
+                            stiffness[b] += share * along * along.transpose();
+                        });
     const double unit = matter.mean_modulus() * matter.lattice.spacing;
     for (const HeldPoint& h : held) {
         for (int c = 0; c < 8; ++c) {
             stiffness[h.corner[c]] += h.weight[c] * h.weight[c] / unit * h.stiffness;
         }
     }
-    const auto is_firm = [&](std::size_t p) {
+    std::vector<char> is_firm = joined;
+    for (std::size_t p = 0; p < is_firm.size(); ++p) {
+        if (joined[p]) continue;
         const Eigen::SelfAdjointEigenSolver<Mat3> ways(stiffness[p], Eigen::EigenvaluesOnly);
-        return joined[p] || ways.eigenvalues()[0] > kFree;
-    };
-    bool goes_on = true;
-    while (std::exchange(goes_on, false)) {
-        for_each_connection(matter, [&](std::size_t a, std::size_t b, double) {
-            if (joined[a] == joined[b] || !is_firm(joined[a] ? b : a)) return;
-            sets.unite(static_cast<int>(a), static_cast<int>(b));
-            joined[a] = joined[b] = 1;
-            goes_on = true;
-        });
+        is_firm[p] = ways.eigenvalues()[0] > kFree;
+    }
+    // From whole cells on, then from what has none near it.
+    for (bool anew : {false, true}) {
+        bool goes_on = true;
+        while (std::exchange(goes_on, false)) {
+            for_each_connection(
+                matter.lattice, matter.connection, [&](ParticleId a, ParticleId b, float) {
+                    if (joined[a] && joined[b]) return;
+                    if (!is_firm[a] || !is_firm[b] || !(anew || joined[a] || joined[b])) return;
+                    sets.unite(a, b);
+                    joined[a] = joined[b] = 1;
+                    goes_on = true;
+                });
+        }
     }
     Pieces firm;
     firm.count = sets.number_sets(firm.particle_piece);
@@ -236,27 +242,36 @@ std::vector<int> find_hanging(const Aggregate& matter, const Pieces& pieces, con
                               const std::vector<HeldPoint>& held) {
     std::vector<int> size(static_cast<std::size_t>(firm.count), 0);
     for (int n : firm.particle_piece) ++size[n];
-    std::vector<std::vector<int>> of_piece(static_cast<std::size_t>(pieces.count));
-    std::vector<int> number(size.size(), -1), hanging;
-    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+    std::vector<LinkedPiece> linked(static_cast<std::size_t>(pieces.count));
+    std::vector<int> number_of(size.size(), -1), number(firm.particle_piece.size(), -1), hanging;
+    for (std::size_t p = 0; p < number.size(); ++p) {
         const int f = firm.particle_piece[p];
-        std::vector<int>& of = of_piece[pieces.particle_piece[p]];
-        if (number[f] >= 0) continue;
         if (size[f] == 1) {
             hanging.push_back(f);
             continue;
         }
-        number[f] = static_cast<int>(of.size());
-        of.push_back(f);
-    }
-    for (std::size_t n = 0; n < of_piece.size(); ++n) {
-        if (of_piece[n].size() < 2 || of_piece[n].size() > kMostFirmPieces) continue;
-        std::vector<int> of(matter.particle_count(), -1);
-        for (std::size_t p = 0; p < of.size(); ++p) {
-            if (pieces.particle_piece[p] == int(n)) of[p] = number[firm.particle_piece[p]];
+        LinkedPiece& piece = linked[pieces.particle_piece[p]];
+        if (number_of[f] < 0) {
+            number_of[f] = static_cast<int>(piece.firm.size());
+            piece.firm.push_back(f);
         }
-        const FirmMotions motions(matter, std::move(of), of_piece[n].size());
-        for (int h : hanging_of_piece(matter, motions, held)) hanging.push_back(of_piece[n][h]);
+        number[p] = number_of[f];
+        piece.particle.push_back(static_cast<ParticleId>(p));
+    }
+    for_each_connection(matter.lattice, matter.connection,
+                        [&](ParticleId a, ParticleId b, double share) {
+                            if (number[a] < 0 || number[b] < 0 || number[a] == number[b]) return;
+                            linked[pieces.particle_piece[a]].link.push_back({a, b, share});
+                        });
+    for (std::size_t n = 0; n < linked.size(); ++n) {
+        const LinkedPiece& piece = linked[n];
+        if (piece.firm.size() < 2 || piece.firm.size() > kMostFirmPieces) continue;
+        const auto own = [&](ParticleId p) {
+            return number[p] >= 0 && pieces.particle_piece[p] == static_cast<int>(n);
+        };
+        for (int h : hanging_of(matter, piece, number, held, own)) {
+            hanging.push_back(piece.firm[h]);
+        }
     }
     return hanging;
 }

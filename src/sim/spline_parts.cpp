@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/disjoint_sets.h"
+#include "matter/connections.h"
 
 namespace swage {
 
@@ -19,16 +20,6 @@ constexpr double kCrumbShare = 0.05;
 constexpr int kManyNodes = 1000, kMostCopies = 3;
 
 using Connections = std::array<ConnectionArrays, kForwardCount>;
-
-template <typename Act>
-void for_each_connection(const Lattice& lattice, const Connections& connection, const Act& act) {
-    for (const Span& span : lattice.span) {
-        const SparseArray<float>& weight = connection[span.direction].weight;
-        for (int n = 0; n < span.count; ++n) {
-            if (weight[span.lower + n] > 0) act(span.lower + n, span.upper + n);
-        }
-    }
-}
 
 std::vector<int> numbers_counted(const std::vector<int>& number, int count) {
     std::vector<int> times(static_cast<std::size_t>(count), 0);
@@ -63,7 +54,7 @@ Parts::Parts(const Lattice& lattice, const Connections& connection,
         }
     }
     DisjointSets pieces(at.size()), parts(at.size());
-    for_each_connection(lattice, connection, [&](ParticleId a, ParticleId b) {
+    for_each_connection(lattice, connection, [&](ParticleId a, ParticleId b, float) {
         pieces.unite(a, b);
         if (number[a] == number[b]) parts.unite(a, b);
     });
@@ -90,7 +81,7 @@ Parts::Parts(const Lattice& lattice, const Connections& connection,
     for (std::size_t n = 0; n < size.size(); ++n) {
         in_element[number_at(element[n], elements)].push_back(static_cast<int>(n));
     }
-    for_each_connection(lattice, connection, [&](ParticleId p, ParticleId q) {
+    for_each_connection(lattice, connection, [&](ParticleId p, ParticleId q, float) {
         const int a = of_particle[p], b = of_particle[q];
         if (a != b && (joined[a].empty() || joined[a].back() != b)) joined[a].push_back(b);
     });

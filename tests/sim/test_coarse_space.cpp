@@ -185,6 +185,21 @@ TEST_CASE("a spline space reaches over no cut, and round the end of one") {
     }
 }
 
+TEST_CASE("of very many pieces none is told from what is beside it") {
+    Aggregate m = make_block(12, 12, 12, kSpacing, {});
+    for (ConnectionArrays& c : m.connection) {
+        c.weight = SparseArray<float>(m.particle_count(), 0.0f);
+    }
+    const SplineSpace space(m.lattice, m.connection, Vec3i::Constant(12));
+    CHECK(space.node_count() == 14 * 14 * 14);
+    Vec3Array moved;
+    set_zero(m.particle_count(), moved);
+    space.add(Eigen::VectorXd::Ones(3 * space.node_count()), 1, moved);
+    for (std::size_t p = 0; p < moved.size(); ++p) {
+        REQUIRE((moved.at(p) - Vec3::Ones()).norm() < 1e-14);
+    }
+}
+
 TEST_CASE("sums of masses by part are those of the motions that its nodes make") {
     const Vec3i count(23, 14, 9), elements(5, 3, 2);
     const Lattice lattice = pierced_lattice(count);

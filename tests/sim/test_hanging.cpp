@@ -125,3 +125,11 @@ TEST_CASE("a particle of no whole cell hangs by less than three ways, or not at 
         if (count > 0) CHECK(middle == Approx(0.6));
     }
 }
+
+TEST_CASE("what has no whole cell is firm where it is joined in every direction") {
+    Aggregate m = bar();
+    // Of every cell one connection is gone, of the way 3 across.
+    m.connection[3].weight = SparseArray<float>(m.particle_count(), 0.0f);
+    CHECK(find_firm_pieces(m, {}).count < 20);
+    CHECK(hanging(m, held_beyond(m, -0.59, 1)).first == 0);
+}
