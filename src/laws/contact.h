@@ -38,6 +38,27 @@ inline ContactForce contact_force(double gap, const Vec3& normal, const Vec3& po
     return result;
 }
 
+// -dF/dx on a flat tool [N/m]. Of a point that slips, with u = (I - n n^T)(anchor - x) and
+// t = u / |u|:
+//
+//     k_n n n^T + mu k_n t n^T + mu N / |u| (I - n n^T - t t^T)
+//
+// Friction grows with the pressure, so it is not symmetric.
+inline Mat3 contact_stiffness(double gap, const Vec3& normal, const Vec3& point, const Vec3& anchor,
+                              double normal_stiffness, double tangential_stiffness,
+                              double friction) {
+    if (gap >= 0) return Mat3::Zero();
+    const Mat3 across = normal * normal.transpose(), along = Mat3::Identity() - across;
+    const Vec3 reach = along * (anchor - point);
+    const double limit = -friction * normal_stiffness * gap, length = reach.norm();
+    if (tangential_stiffness * length <= limit) {
+        return normal_stiffness * across + tangential_stiffness * along;
+    }
+    const Vec3 way = reach / length;
+    return normal_stiffness * (across + friction * way * normal.transpose()) +
+           limit / length * (along - way * way.transpose());
+}
+
 // The anchor to commit: where the spring of the tangential force would begin now.
 inline Vec3 dragged_anchor(const ContactForce& contact, const Vec3& normal, const Vec3& point,
                            double tangential_stiffness) {

@@ -216,14 +216,21 @@ void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& sti
 std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Drive& now,
                                                Slipping slipping) const {
     std::vector<HeldPoint> held;
-    for_each_touch(
-        matter, now,
-        [&](std::size_t n, const Vec3&, const Distance& d, double k, const ContactForce& contact) {
-            const Mat3 across = d.normal * d.normal.transpose();
-            const bool slips = contact.slips && slipping == Slipping::free;
-            held.push_back(held_point(points(), pair_[n].point,
-                                      k * (slips ? across : Mat3(Mat3::Identity()))));
-        });
+    for_each_touch(matter, now,
+                   [&](std::size_t n, const Vec3& x, const Distance& d, double k,
+                       const ContactForce& contact) {
+                       const Pair& pair = pair_[n];
+                       Mat3 stiffness = k * Mat3::Identity();
+                       if (contact.slips && slipping == Slipping::free) {
+                           stiffness = k * d.normal * d.normal.transpose();
+                       } else if (contact.slips && slipping == Slipping::lawful) {
+                           const Vec3 anchor = now.world_from_tool[pair.tool] * anchor_of(pair);
+                           stiffness =
+                               contact_stiffness(d.value, d.normal, x, anchor, k, k,
+                                                 apparatus_->tool[pair.tool].friction_on(body_));
+                       }
+                       held.push_back(held_point(points(), pair.point, stiffness));
+                   });
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
         const Grip& grip = apparatus_->grip[g];

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kUnbalanced = 0.05;  // of all loads and gravity on a piece
 constexpr double kBorne = 0.5;        // of what they come to
+constexpr double kCrumb = 0.02;       // of all particles
 
 template <typename Value, typename Of>
 std::vector<Value> sums_of(const Pieces& pieces, const Value& none, const Of& of) {
@@ -66,6 +67,19 @@ void FreePieces::carry(const Drive& from, const Drive& to, const Vec3Array& star
         rest.set(p, change[static_cast<std::size_t>(carrier_[p])] * start.at(p));
         position.set(p, rest.at(p));
     }
+}
+
+std::vector<std::vector<ParticleId>> FreePieces::loose_pieces() const {
+    const std::size_t count = pieces_.particle_piece.size();
+    std::vector<std::vector<ParticleId>> loose(static_cast<std::size_t>(pieces_.count));
+    for (std::size_t p = 0; p < count; ++p) {
+        const int piece = pieces_.particle_piece[p];
+        if (!gripped_[piece]) loose[piece].push_back(static_cast<ParticleId>(p));
+    }
+    std::erase_if(loose, [&](const auto& piece) {
+        return piece.empty() || double(piece.size()) < kCrumb * double(count);
+    });
+    return loose;
 }
 
 void FreePieces::add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {

@@ -28,6 +28,9 @@ class FreePieces {
     void carry(const Drive& from, const Drive& to, const Vec3Array& start, Vec3Array& rest,
                Vec3Array& position) const;
 
+    // The particles of each piece in no grip that is more than a crumb, or of all.
+    std::vector<std::vector<ParticleId>> loose_pieces() const;
+
     // Loads on what they do not leave alone; the mass of each particle that gravity acts on [kg].
     void add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& force) const;
     const std::vector<double>& heavy_mass() const { return heavy_mass_; }

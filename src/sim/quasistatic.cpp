@@ -20,6 +20,8 @@ namespace {
 constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
 constexpr double kSmallestCellVolume = 0.05;
 constexpr double kForeseen = 0.5;  // spacings that anything is taken to go on
+constexpr double kFarAway = 2;     // spacings that a body without rest has gone
+constexpr double kSeated = 0.01;   // spacings that a rigid piece goes in the course of things
 // Spacings that a point of the work-piece may be in it where no equilibrium is found.
 constexpr double kDeepest = 0.2;
 // Least push, over E a^2, that the residual is measured by: about a tenth of E I / L^2 of a bar 4
@@ -264,9 +266,15 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
 // What a try that has come to nothing met, at the positions that it came to.
 std::string QuasistaticSolver::met(const Drive& to) {
     std::string text = contacts_.hardest_point(matter_, to);
+    const double a = matter_.lattice.spacing;
     if (self_.presses()) {
         text += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
-                            self_.sums().penetration / matter_.lattice.spacing);
+                            self_.sums().penetration / a);
+    }
+    const double way = farthest_move(matter_.particle_position, start_);
+    if (pushes_.count() > 0 && way > kFarAway * a) {
+        text += fmt::format("; the work-piece was on its way, {:.2g} spacings from where it lay",
+                            way / a);
     }
     return text;
 }
@@ -326,6 +334,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     const bool released = pushes_.eases(from, to) || slips_.draws_back(motion);
     foresight_.go_on(motion, kForeseen * matter_.lattice.spacing, matter_.particle_position);
     free_.carry(from, to, start_, rest_, matter_.particle_position);
+    const double seated = seat_pieces(from, to);
 
     const bool had_buckled = std::exchange(outcome.buckled, false);
     Relaxation found = relax_stably(to, outcome);
@@ -365,7 +374,8 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     load_ = std::move(load);
     pushes_.commit(matter_, to, outcome.body[0].push_work);
     foresight_.keep(start_, motion);
-    if (buckled || breaks) foresight_.forget();  // neither goes on as it did
+    // None of these goes on as it did.
+    if (buckled || breaks || seated > kSeated * matter_.lattice.spacing) foresight_.forget();
     ++outcome.increments;
     return true;
 }
@@ -374,6 +384,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     MoveOutcome outcome;
     outcome.body.emplace_back(apparatus_, pushes_.count());
     pushes_.start(matter_, from);
+    seats_ = true;
     const bool let_go_of = begin(from, outcome.body[0]) || std::exchange(severed_, false);
     moved_ = moved_ || contacts_.travel(matter_, from, to) > 0;
     const int count = increments_between(contacts_, matter_, from, to);

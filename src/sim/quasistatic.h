@@ -78,6 +78,7 @@ class QuasistaticSolver {
     double booked(const Drive& now, const BodyOutcome& outcome);
     bool begin(const Drive& from, BodyOutcome& outcome);
     void let_go(const Drive& from, MoveOutcome& outcome);
+    double seat_pieces(const Drive& from, const Drive& to);
     void stay(const Drive& to);
     bool begins_to_fall(const Drive& to);
     int let_hang(const Drive& to);
@@ -108,6 +109,7 @@ class QuasistaticSolver {
     Vec3Array start_, listed_;  // positions: before the move, when the candidates were found
     Foresight foresight_;
     SlipWatch slips_;
+    bool seats_ = true;   // until a piece finds no seat, in this advance
     bool moved_ = false;  // any tool or grip, ever
     bool begun_ = false;
     bool severed_ = false;       // by a blade, since the last equilibrium

@@ -5,12 +5,20 @@
 #include <limits>
 
 #include "sim/quasistatic.h"
+#include "sim/relaxation_passes.h"
+#include "sim/seating.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
 namespace {
 
 constexpr int kHalvings = 8;
+constexpr double kStill = 1e-9;        // spacings
+constexpr double kMoreThanLoads = 10;  // of them: what tools bear is not theirs
+constexpr double kSeatDrag = 3e-10;    // of E a
+constexpr double kSeatHeavy = 1e-4;    // of E a^2
+constexpr double kSeatAccuracy = 0.1;  // of the tolerance
 
 Eigen::Matrix3Xd columns(const Vec3Array& x) {
     Eigen::Matrix3Xd m(3, x.size());
@@ -34,6 +42,36 @@ int QuasistaticSolver::let_hang(const Drive& to) {
     self_.add_forces(own);
     return free_.let_hang(pushes_, to,
                           contacts_.held_points(matter_, to, ContactSet::Slipping::free), own);
+}
+
+// What loads press onto tools that stand still goes to where it is in balance, as a rigid body.
+// Returns how far any of it went [m].
+double QuasistaticSolver::seat_pieces(const Drive& from, const Drive& to) {
+    const double pushed = pushes_.size(matter_, to), a = matter_.lattice.spacing;
+    if (!seats_ || apparatus_.tool.empty() || pushed == 0) return 0;
+    if (settings_.self_contact && free_.are_several()) return 0;  // they may lie on each other
+    if (largest_push_ > kMoreThanLoads * pushed) return 0;
+    if (contacts_.travel(matter_, from, to) > kStill * a) return 0;
+    Vec3Array& x = matter_.particle_position;
+    const Vec3Array before = x;
+    SeatProblem problem;
+    problem.add_contacts = [&](Vec3Array& force) { contacts_.add_forces(matter_, to, force); };
+    problem.add_loads = [&](Vec3Array& force) {
+        free_.add_loads(pushes_, to, force);
+        add_restraint(x, {x, drag_, 0, free_.heavy_mass(), pushes_.gravity(to)}, force);
+    };
+    problem.held = [&] { return contacts_.held_points(matter_, to, ContactSet::Slipping::lawful); };
+    problem.look_around = [&] { contacts_.find_candidates(matter_, to); };
+    problem.look_around();
+    problem.drag = kSeatDrag * matter_.mean_modulus() * a;
+    problem.heavy = std::max(1.0, kSeatHeavy * matter_.mean_modulus() * a * a / pushed);
+    problem.enough = kSeatAccuracy * settings_.tolerance * pushed;
+    problem.reach = body_size_;
+    for (const std::vector<ParticleId>& piece : free_.loose_pieces()) {
+        if (!seat(matter_, piece, problem)) seats_ = false;
+    }
+    for (std::size_t p = 0; p < x.size(); ++p) rest_.add(p, x.at(p) - before.at(p));
+    return farthest_move(x, before);
 }
 
 void QuasistaticSolver::stay(const Drive& to) {

@@ -87,6 +87,25 @@ TEST_CASE("contact pushes only inside, along the normal when nothing slides") {
     CHECK_FALSE(c.slips);
 }
 
+TEST_CASE("the stiffness of a contact is that of its forces, where it sticks and where it slips") {
+    const Vec3 n = Vec3(1, 2, 2).normalized(), x(0.3, -0.1, 0.2);
+    const double step = 1e-6, gap = -0.02, mu = 0.4;
+    for (const Vec3& reach : {Vec3(0.003, 0, -0.001), Vec3(0.2, -0.1, 0.03)}) {
+        const Vec3 anchor = x + reach;
+        const auto force = [&](const Vec3& way) {
+            return contact_force(gap + n.dot(way), n, x + way, anchor, 70, 50, mu).force;
+        };
+        const Mat3 stiffness = contact_stiffness(gap, n, x, anchor, 70, 50, mu);
+        CHECK(contact_force(gap, n, x, anchor, 70, 50, mu).slips == (reach.norm() > 0.1));
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 way = step * Vec3::Unit(axis);
+            const Vec3 slope = (force(way) - force(-way)) / (2 * step);
+            CHECK((slope + stiffness.col(axis)).norm() < 1e-7 * 70);
+        }
+    }
+    CHECK(contact_stiffness(0.001, n, x, x, 70, 50, mu) == Mat3(Mat3::Zero()));
+}
+
 TEST_CASE("friction never exceeds its cone, and a slipping point drags its anchor along") {
     const Vec3 n = Vec3(1, 2, 2).normalized(), x(0, 0, 0);
     const Vec3 away = Vec3(2, -1, 0).normalized();
