@@ -368,6 +368,12 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
             "than a fifth of a cell in it: from here on these go through it",
             outcome.let_be, outcome.let_be == 1 ? "" : "s"));
     }
+    if (outcome.left_over > 0) {
+        report.warning.push_back(
+            fmt::format("what was cut or let go of does not come to rest as exactly as the loads "
+                        "ask: from here on {:.2g} N of forces may be out of balance",
+                        outcome.left_over));
+    }
     if (outcome.drag_held) {
         report.warning.push_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "

@@ -62,17 +62,18 @@ struct MoveOutcome {
     int iterations = 0;
     int increments = 0;
     int halvings = 0;
-    long steps = 0;                 // kept; in motion only
-    long rejected = 0;              // steps taken back; in motion only
-    long rescued = 0;               // implicit steps where explicit ones went wrong
-    double shortest_step = 0;       // [s]; in motion only
-    double residual = 0;            // of the last increment, over its reference force
-    bool drag_held = false;         // was more than a step can follow; in motion only
-    int asleep = 0;                 // bodies at rest at the end; in motion only
-    int inside_out = 0;             // cells at once that shorter steps did not keep from it
-    int afloat = 0, hanging = 0;    // pieces that would fall, or swing about a hinge, from now on
-    int let_be = 0;                 // points of it that meet the work-piece no more, from now on
-    bool buckled = false;           // an equilibrium on the way was unstable, and left
+    long steps = 0;               // kept; in motion only
+    long rejected = 0;            // steps taken back; in motion only
+    long rescued = 0;             // implicit steps where explicit ones went wrong
+    double shortest_step = 0;     // [s]; in motion only
+    double residual = 0;          // of the last increment, over its reference force
+    bool drag_held = false;       // was more than a step can follow; in motion only
+    int asleep = 0;               // bodies at rest at the end; in motion only
+    int inside_out = 0;           // cells at once that shorter steps did not keep from it
+    int afloat = 0, hanging = 0;  // pieces that would fall, or swing about a hinge, from now on
+    int let_be = 0;               // points of it that meet the work-piece no more, from now on
+    double left_over = 0;  // of forces, at any rest from now on, where it is more than before [N]
+    bool buckled = false;  // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
 };
 

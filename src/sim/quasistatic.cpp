@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
 constexpr double kSmallestCellVolume = 0.05;
+constexpr double kEased = 2;       // times what was left over may be left over again
 constexpr double kForeseen = 0.5;  // spacings that anything is taken to go on
 constexpr double kFarAway = 2;     // spacings that a body without rest has gone
 constexpr double kSeated = 0.01;   // spacings that a rigid piece goes in the course of things
@@ -104,9 +105,9 @@ void QuasistaticSolver::evaluate(const Drive& to, double moved) {
 // body it is what they ask for: a slender body's grips carry far more, against each other.
 double QuasistaticSolver::push_limit(const Drive& to) const {
     const double asked = pushes_.size(matter_, to);
-    if (!moved_ && asked > 0) return asked;
-    const double a = matter_.lattice.spacing;
-    double push = std::max(largest_push_, kLeastPush * matter_.mean_modulus() * a * a);
+    if (!moved_ && asked > 0) return std::max(asked, least_measure_);
+    const double a = matter_.lattice.spacing, least = kLeastPush * matter_.mean_modulus() * a * a;
+    double push = std::max({largest_push_, least, least_measure_});
     for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
     return std::max(push, asked);
 }
@@ -289,6 +290,14 @@ bool QuasistaticSolver::take_back(Relaxation& tried, const Drive& to, int depth,
     if (given_up && !tried.falls && self_.presses()) {
         let_be = self_.let_be(kDeepest * matter_.lattice.spacing);
     }
+    // What light crumbs of it are short of rest may be nothing beside what was let go of, and much
+    // beside the loads.
+    const double measure = kEased * tried.residual * push_limit(to) / settings_.tolerance;
+    const bool eased = given_up && !tried.falls && !tried.converged && measure <= let_go_;
+    if (eased) {
+        least_measure_ = measure;
+        outcome.left_over = settings_.tolerance * measure;
+    }
     matter_.particle_position = start_;
     self_.take_back();
     foresight_.forget();
@@ -297,7 +306,7 @@ bool QuasistaticSolver::take_back(Relaxation& tried, const Drive& to, int depth,
     outcome.afloat += afloat;
     outcome.hanging += hanging;
     outcome.let_be += let_be;
-    return afloat + hanging + let_be > 0;
+    return eased || afloat + hanging + let_be > 0;
 }
 
 void QuasistaticSolver::stop(const Relaxation& tried, const Drive& to, int depth,

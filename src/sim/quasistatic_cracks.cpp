@@ -73,6 +73,9 @@ bool QuasistaticSolver::begin(const Drive& from, BodyOutcome& outcome) {
 void QuasistaticSolver::let_go(const Drive& from, MoveOutcome& outcome) {
     slips_.forget();
     const double before = booked(from, outcome.body[0]);
+    held_ = matter_.particle_position;
+    evaluate(from);
+    let_go_ = std::max(let_go_, residual_of(force_, from) * push_limit(from));
     if (!increment(from, from, settings_.halving_limit, outcome, Unsolved::leave)) return;
     outcome.body[0].set_free += before - booked(from, outcome.body[0]);
 }
