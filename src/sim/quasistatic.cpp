@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/error.h"
@@ -19,7 +20,10 @@ namespace {
 
 constexpr double kDrag = 3e-7;  // settles free modes, of E a; let go where it holds anything back
 constexpr double kSmallestCellVolume = 0.05;
-constexpr double kEased = 2;       // times what was left over may be left over again
+constexpr double kEased = 2;  // times what was left over may be left over again
+// Of the load that a move ends with, what one that begins anew has at first; what such a move would
+// have stored without yield, over its work; and the least part of it that is made a move.
+constexpr double kLittleLoad = 0.5, kFarBeyond = 4, kLeastShare = 1.0 / 64;
 constexpr double kForeseen = 0.5;  // spacings that anything is taken to go on
 constexpr double kFarAway = 2;     // spacings that a body without rest has gone
 constexpr double kSeated = 0.01;   // spacings that a rigid piece goes in the course of things
@@ -59,6 +63,9 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       slips_(apparatus),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
     velocity_.resize(matter.particle_count());
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        yields_ = yields_ || std::isfinite(matter.material_at(m).yield_stress);
+    }
     find_bounds();
 }
 
@@ -264,6 +271,26 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     return result;
 }
 
+// Where a move that began with next to no load has gone far beyond yield: the share of it that ends
+// not far behind that; else 1. NOTE: what tools do is found from their loads at both ends, and a
+// load that is soon reached and stays does up to twice as much. `held` [J]: by the matter at first.
+double QuasistaticSolver::share_to_yield(const Drive& from, const Drive& to, double held) {
+    if (!yields_) return 1;
+    const std::vector<LoadSum> load = contacts_.loads(matter_, to);
+    double before = 0, after = 0;
+    for (std::size_t n = 0; n < load.size(); ++n) {
+        before += load_[n].size;
+        after += load[n].size;
+    }
+    if (before > kLittleLoad * after) return 1;
+    std::vector<double> work(load.size(), 0.0);
+    add_work(from, to, load_, load, work);
+    const double done = std::accumulate(work.begin(), work.end(), 0.0);
+    const double unyielding = elastic_energy() - held;  // what flows has not flowed on the books
+    if (!(done > 0) || unyielding < kFarBeyond * done) return 1;
+    return std::max(kLeastShare, 0.5 * kFarBeyond * done / unyielding);
+}
+
 // What a try that has come to nothing met, at the positions that it came to.
 std::string QuasistaticSolver::met(const Drive& to) {
     std::string text = contacts_.hardest_point(matter_, to);
@@ -321,7 +348,7 @@ void QuasistaticSolver::stop(const Relaxation& tried, const Drive& to, int depth
     const char* advice = "raise frames or tolerance of the stage";
     if (tried.converged) {
         advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
-    } else if (pushes_.count() > 0 && std::isfinite(matter_.material.yield_stress)) {
+    } else if (pushes_.count() > 0 && yields_) {
         advice =
             "if the matter flows under loads that it cannot bear, lower them; else raise frames or "
             "tolerance of the stage";
@@ -336,6 +363,7 @@ void QuasistaticSolver::stop(const Relaxation& tried, const Drive& to, int depth
 bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome, Unsolved unsolved) {
     start_ = matter_.particle_position;
+    const double held = yields_ ? elastic_energy() : 0;
     newton_rests_ = std::max(0, newton_rests_ - 1);
     contacts_.begin_move(matter_, from);
     self_.begin_move();
@@ -362,6 +390,16 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         const Drive middle = drive_between(from, to, 0.5);
         increment(from, middle, depth + 1, outcome);
         increment(middle, to, depth + 1, outcome);
+        return true;
+    }
+
+    if (const double share = share_to_yield(from, to, held); share < 1) {
+        matter_.particle_position = start_;
+        self_.take_back();
+        foresight_.forget();
+        const Drive middle = drive_between(from, to, share);
+        increment(from, middle, depth, outcome);
+        increment(middle, to, depth, outcome);
         return true;
     }
 

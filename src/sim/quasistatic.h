@@ -57,6 +57,7 @@ class QuasistaticSolver {
     // Whether there is an equilibrium at `to`; without one the matter stays as it was, or it stops.
     bool increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome,
                    Unsolved unsolved = Unsolved::stop);
+    double share_to_yield(const Drive& from, const Drive& to, double held);
     std::string met(const Drive& to);
     bool take_back(Relaxation& tried, const Drive& to, int depth, MoveOutcome& outcome);
     [[noreturn]] void stop(const Relaxation& tried, const Drive& to, int depth,
@@ -97,6 +98,7 @@ class QuasistaticSolver {
     LoadSet pushes_;
     SelfContact self_;
     double body_size_;  // [m]
+    bool yields_ = false;
     std::vector<double> lattice_bound_;
     std::vector<double> mass_, inverse_mass_, drag_;
     double accuracy_ = 0;  // of the residual: the tolerance, or less
@@ -112,10 +114,10 @@ class QuasistaticSolver {
     bool seats_ = true;   // until a piece finds no seat, in this advance
     bool moved_ = false;  // any tool or grip, ever
     bool begun_ = false;
-    bool severed_ = false;     // by a blade, since the last equilibrium
-    double largest_push_ = 0;  // of any tool so far [N]
-    double let_go_ = 0;        // largest push that cuts and lost grips left unbalanced [N]
-    double least_measure_ = 0;  // of the residual, for what was let go of [N]
+    bool severed_ = false;       // by a blade, since the last equilibrium
+    double largest_push_ = 0;    // of any tool so far [N]
+    double let_go_ = 0;          // largest push that cuts and lost grips left unbalanced [N]
+    double least_measure_ = 0;   // of the residual, for what was let go of [N]
     std::vector<LoadSum> load_;  // at the end of the last increment, by tool, then grip
 };
 

@@ -138,6 +138,26 @@ TEST_CASE("twisting a square bar takes the torque of Saint-Venant, from above as
     }
 }
 
+// Ten times as far as it yields at: half its load times its way would be half the work.
+TEST_CASE("the books of a bar that yields in a single move close") {
+    const Material hard{.young_modulus = 1e8, .yield_stress = 1e5, .hardening = 2e5};
+    for (const Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
+        Material material = hard;
+        material.mechanics = mechanics;
+        Aggregate bar = make_block(10, 3, 3, kHeight / 3, material);
+        const Twister twister(bar, kHeight * 10 / 6, kHeight / 2);
+        SimSettings settings;
+        settings.tolerance = 1e-3;
+        Simulation simulation(bar, twister.apparatus, settings);
+        Drive to = twister.drive_at(1, 0);
+        to.world_from_grip[1].translation.x() += 0.01 * kHeight * 10 / 3;
+        const FrameReport r = simulation.advance(twister.drive_at(0, 0), to);
+        REQUIRE(r.plastic > 0.5 * r.work);
+        CHECK(std::abs(r.remainder) < 0.05 * r.work);
+        CHECK(r.increments <= 3);
+    }
+}
+
 TEST_CASE("half a turn of a soft bar converges and comes back") {
     Aggregate bar = make_block(40, 4, 4, kHeight / 4, kElastic);
     const Twister twister(bar, 0.5, 0.1);
