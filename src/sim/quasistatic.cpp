@@ -24,6 +24,7 @@ constexpr double kEased = 2;  // times what was left over may be left over again
 // Of the load that a move ends with, what one that begins anew has at first; what such a move would
 // have stored without yield, over its work; and the least part of it that is made a move.
 constexpr double kLittleLoad = 0.5, kFarBeyond = 4, kLeastShare = 1.0 / 64;
+constexpr int kMostSplits = 3;
 constexpr double kForeseen = 0.5;  // spacings that anything is taken to go on
 constexpr double kFarAway = 2;     // spacings that a body without rest has gone
 constexpr double kSeated = 0.01;   // spacings that a rigid piece goes in the course of things
@@ -275,7 +276,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
 // not far behind that; else 1. NOTE: what tools do is found from their loads at both ends, and a
 // load that is soon reached and stays does up to twice as much. `held` [J]: by the matter at first.
 double QuasistaticSolver::share_to_yield(const Drive& from, const Drive& to, double held) {
-    if (!yields_) return 1;
+    if (!yields_ || splits_ == kMostSplits) return 1;
     const std::vector<LoadSum> load = contacts_.loads(matter_, to);
     double before = 0, after = 0;
     for (std::size_t n = 0; n < load.size(); ++n) {
@@ -397,6 +398,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         matter_.particle_position = start_;
         self_.take_back();
         foresight_.forget();
+        ++splits_;
         const Drive middle = drive_between(from, to, share);
         increment(from, middle, depth, outcome);
         increment(middle, to, depth, outcome);
@@ -439,6 +441,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     Drive before = from;
     for (int n = 1; n <= count; ++n) {
         const Drive after = n == count ? to : drive_between(from, to, double(n) / count);
+        splits_ = 0;
         increment(before, after, 0, outcome);
         let_crack(after, outcome);
         before = after;

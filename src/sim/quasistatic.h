@@ -111,6 +111,7 @@ class QuasistaticSolver {
     Vec3Array start_, listed_;  // positions: before the move, when the candidates were found
     Foresight foresight_;
     SlipWatch slips_;
+    int splits_ = 0;      // of the present move, for yield
     bool seats_ = true;   // until a piece finds no seat, in this advance
     bool moved_ = false;  // any tool or grip, ever
     bool begun_ = false;

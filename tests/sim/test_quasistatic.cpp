@@ -158,6 +158,22 @@ TEST_CASE("the books of a bar that yields in a single move close") {
     }
 }
 
+// Its load grows with it, so that each part of the move seems to begin with next to none.
+TEST_CASE("a move that yields is parted a few times and no more") {
+    Material thin = kPlastic;
+    thin.young_modulus = 1e8;
+    Aggregate sheet = make_block(20, 2, 20, kHeight / 8, thin);
+    const Press press{kHeight / 4};
+    const SimSettings settings;
+    Apparatus apparatus = press.apparatus();
+    for (Tool& tool : apparatus.tool) tool.shape = BoxShape{Vec3(1, press.side, 1), 0};
+    Simulation simulation(sheet, apparatus, settings);
+    const FrameReport r = simulation.advance(press.drive_at(0, 0), press.drive_at(1, 0.3));
+    CHECK(r.plastic > 0);
+    CHECK(r.increments > 1);
+    CHECK(r.increments <= 4);
+}
+
 TEST_CASE("half a turn of a soft bar converges and comes back") {
     Aggregate bar = make_block(40, 4, 4, kHeight / 4, kElastic);
     const Twister twister(bar, 0.5, 0.1);
