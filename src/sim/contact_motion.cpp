@@ -84,25 +84,6 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
     return all;
 }
 
-void ContactSet::hold_by_grips(const Aggregate& matter, const Drive& now, Vec3Array& force) {
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
-        LoadSum& sum = motion_load_[apparatus_->tool.size() + g];
-        for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const Vec3 f = grip_force(matter, now, g, n);
-            const Vec3 x = matter.surface_position(grip.point[n]);
-            const double k = grip_stiffness(matter, grip.point[n]);
-            spread(matter.surface, grip.point[n], f, force);
-            sum.force += f;
-            sum.torque += (x - now.world_from_grip[g].translation).cross(f);
-            sum.size += f.norm();
-            ++sum.contacts;
-            motion_energy_ += 0.5 * f.squaredNorm() / k;
-        }
-    }
-}
-
 void ContactSet::add_motion_forces(const Aggregate& matter, const Drive& now, double step,
                                    const Vec3& gravity, Vec3Array& force) {
     if (step > 0) {
@@ -112,8 +93,7 @@ void ContactSet::add_motion_forces(const Aggregate& matter, const Drive& now, do
         }
     }
     motion_load_.assign(motion_load_.size(), {});
-    motion_energy_ = 0;
-    hold_by_grips(matter, now, force);
+    motion_energy_ = grips_.add_all(matter, now, force, tool_way_.size(), motion_load_);
     if (!pair_.empty()) meet(matter, now, step == 0, gravity, force);
 }
 
@@ -185,11 +165,8 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
         next.anchor = pose.inverse() * (m.place + f.reach);
         motion_energy_ += f.stored;
         LoadSum& sum = motion_load_[pair.tool];
-        sum.force += f.force;
-        sum.torque += (m.place - pose.translation).cross(f.force);
-        sum.size += f.force.norm();
+        sum.add(m.place - pose.translation, f.force);
         sum.penetration = std::max(sum.penetration, m.depth);
-        ++sum.contacts;
         sum.sliding += f.history.slides;
     }
 }

@@ -21,9 +21,8 @@ constexpr std::size_t kPointsPerChunk = 4096;
 // Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
 // grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
-// What points that touch, and that are gripped, may add to the square of a swing by which steps go
-// in turns, 4.
-constexpr double kTouchShare = 0.5, kGripShare = 1;
+// What points that touch may add to the square of a swing by which steps go in turns, 4.
+constexpr double kTouchShare = 0.5;
 
 // The farthest that any corner of the tool's bounds moves.
 double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
@@ -53,11 +52,11 @@ ImpactLaw law_on_tools(const Material& material) {
 ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
                        const SimSettings& settings, int body)
     : apparatus_(&apparatus),
+      grips_(matter, apparatus, settings, body),
       body_(body),
       settings_(settings),
       spacing_(matter.lattice.spacing),
       pressed_modulus_(pressed_modulus(matter.material, settings.solver)),
-      grip_modulus_(surface_moduli(matter, matter.surface, settings.solver)),
       law_(law_on_tools(matter.material)),
       holding_(matter.material.holding_friction()),
       ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
@@ -79,22 +78,11 @@ double ContactSet::pair_stiffness(const Pair& pair) const {
     return stiffness_limit_.empty() ? k : std::min(k, stiffness_limit_[pair.point]);
 }
 
-double ContactSet::grip_stiffness(const Aggregate& matter, int point) const {
-    const double modulus = grip_modulus_.empty() ? pressed_modulus_ : grip_modulus_[point];
-    const double k = settings_.grip_stiffness * modulus * matter.surface.area(point) / spacing_;
-    return grip_limit_.empty() ? k : std::min(k, grip_limit_[point]);
-}
-
 void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
     limit_step_ = last_step_ = step;
-    std::vector<double> stiffness;
-    grip_limit_.clear();
-    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        stiffness.push_back(grip_stiffness(matter, int(p)));
-    }
-    grip_limit_ = stiffest_of_points(matter, matter.surface, stiffness, kGripShare / (step * step));
+    grips_.limit_stiffness(matter, step);
     if (touch_ == nullptr) return;
-    stiffness.clear();
+    std::vector<double> stiffness;
     for (std::size_t p = 0; p < points().size(); ++p) stiffness.push_back(point_stiffness(p, 0));
     stiffness_limit_ = stiffest_of_points(matter, points(), stiffness, kTouchShare / (step * step));
 }
@@ -198,19 +186,11 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
 }
 
 void ContactSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
-    const auto add = [&](const SurfacePoints& surface, int point, double k) {
-        const SurfacePoints::Carriers by = surface.carriers(static_cast<std::size_t>(point));
-        for (int c = 0; c < 8; ++c) stiffness[by.corner[c]] += std::abs(by.weight[c]) * k;
-    };
     // Normal and tangential stiffness are equal, so each point pulls with k in every direction.
-    for (const Pair& pair : pair_) add(points(), pair.point, pair_stiffness(pair));
-
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        for (int point : apparatus_->grip[g].point) {
-            add(matter.surface, point, grip_stiffness(matter, point));
-        }
+    for (const Pair& pair : pair_) {
+        spread_stiffness(points(), pair.point, pair_stiffness(pair), stiffness);
     }
+    grips_.add_stiffness(matter, stiffness);
 }
 
 std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Drive& now,
@@ -231,26 +211,8 @@ std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Dr
                        }
                        held.push_back(held_point(points(), pair.point, stiffness));
                    });
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
-        const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
-        const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
-        for (int point : grip.point) {
-            held.push_back(held_point(matter.surface, point, grip_stiffness(matter, point) * hold));
-        }
-    }
+    grips_.add_held_points(matter, now, held);
     return held;
-}
-
-Vec3 ContactSet::grip_force(const Aggregate& matter, const Drive& now, std::size_t g,
-                            std::size_t n) const {
-    const Grip& grip = apparatus_->grip[g];
-    const Pose& pose = now.world_from_grip[g];
-    const double k = grip_stiffness(matter, grip.point[n]);
-    const Vec3 x = matter.surface_position(grip.point[n]);
-    if (grip.hold == Vec3::Ones()) return k * (pose * grip.anchor[n] - x);
-    return pose.turn(k * grip.hold.cwiseProduct(grip.anchor[n] - pose.inverse() * x));
 }
 
 Vec3 ContactSet::anchor_of(const Pair& pair) const {
@@ -288,13 +250,7 @@ void ContactSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array
             spread(points(), pair_[n].point, contact.force, force);
         },
         moved);
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
-        for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            spread(matter.surface, grip.point[n], grip_force(matter, now, g, n), force);
-        }
-    }
+    grips_.add_forces(matter, now, force);
 }
 
 std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now) const {
@@ -304,26 +260,11 @@ std::vector<LoadSum> ContactSet::loads(const Aggregate& matter, const Drive& now
         [&](std::size_t n, const Vec3& x, const Distance& d, double, const ContactForce& contact) {
             LoadSum& sum = sums[pair_[n].tool];
             const Vec3 arm = x - now.world_from_tool[pair_[n].tool].translation;
-            sum.force += contact.force;
-            sum.torque += arm.cross(contact.force);
-            sum.size += contact.force.norm();
+            sum.add(arm, contact.force);
             sum.penetration = std::max(sum.penetration, -d.value);
-            ++sum.contacts;
             sum.sliding += contact.slips;
         });
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
-        LoadSum& sum = sums[apparatus_->tool.size() + g];
-        for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const Vec3 x = matter.surface_position(grip.point[n]);
-            const Vec3 f = grip_force(matter, now, g, n);
-            sum.force += f;
-            sum.torque += (x - now.world_from_grip[g].translation).cross(f);
-            sum.size += f.norm();
-            ++sum.contacts;
-        }
-    }
+    grips_.add_loads(matter, now, apparatus_->tool.size(), sums);
     return sums;
 }
 
@@ -335,15 +276,7 @@ double ContactSet::stored_energy(const Aggregate& matter, const Drive& now) cons
             // Both springs have the stiffness k: |F|^2 = N^2 + T^2.
             sum += 0.5 * contact.force.squaredNorm() / k;
         });
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        const Grip& grip = apparatus_->grip[g];
-        for (std::size_t n = 0; n < grip.point.size(); ++n) {
-            const double k = grip_stiffness(matter, grip.point[n]);
-            sum += 0.5 * grip_force(matter, now, g, n).squaredNorm() / k;
-        }
-    }
-    return sum;
+    return sum + grips_.stored_energy(matter, now);
 }
 
 double ContactSet::commit(const Aggregate& matter, const Drive& now) {
@@ -414,15 +347,7 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
             farthest = std::max(farthest, (to.world_from_tool[t] * local - x).norm());
         }
     }
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        for (const Vec3& anchor : apparatus_->grip[g].anchor) {
-            farthest = std::max(
-                farthest,
-                (to.world_from_grip[g] * anchor - from.world_from_grip[g] * anchor).norm());
-        }
-    }
-    return farthest;
+    return std::max(farthest, grips_.travel(from, to));
 }
 
 bool ContactSet::is_stirred(const Drive& since, const Drive& now) const {
@@ -437,14 +362,7 @@ bool ContactSet::is_stirred(const Drive& since, const Drive& now) const {
             return true;
         }
     }
-    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
-        if (!holds(g)) continue;
-        for (const Vec3& anchor : apparatus_->grip[g].anchor) {
-            const Vec3 way = now.world_from_grip[g] * anchor - since.world_from_grip[g] * anchor;
-            if (way.norm() > least) return true;
-        }
-    }
-    return false;
+    return grips_.travel(since, now) > least;
 }
 
 std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {

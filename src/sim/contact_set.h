@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of the body's true surface against tools (matter/touch_points.h) and in grips. Forces act
-// on the particles that carry a point, with the point's own weights, so that force and moment are
-// kept exactly.
+// Points of the body's true surface against tools (matter/touch_points.h), and in grips
+// (sim/grip_set.h). Forces act on the particles that carry a point, with the point's own weights,
+// so that force and moment are kept exactly.
 //
 // Equilibria, and the implicit step, which has no use for rates, take the law of laws/contact.h.
 // Explicit steps take that of laws/impact.h, the tool rigid and as heavy as can be: a step first
@@ -29,20 +29,12 @@
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "matter/touch_points.h"
+#include "sim/grip_set.h"
 #include "sim/held_point.h"
+#include "sim/load_sum.h"
 #include "sim/settings.h"
 
 namespace swage {
-
-// Sums over one tool or grip; forces are those it exerts on the matter.
-struct LoadSum {
-    Vec3 force = Vec3::Zero();   // [N]
-    Vec3 torque = Vec3::Zero();  // about the origin of its pose [N m]
-    double size = 0;             // sum of the points' force magnitudes [N]
-    double penetration = 0;      // deepest [m]
-    int contacts = 0;
-    int sliding = 0;
-};
 
 // What contact with tools took in a step [J].
 struct ToolLosses {
@@ -161,31 +153,26 @@ class ContactSet {
     std::vector<Meeting> find_meetings(const Aggregate& matter, const Drive& now, bool anew);
     void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
               Vec3Array& force);
-    double grip_stiffness(const Aggregate& matter, int point) const;  // [N/m]
     double point_stiffness(std::size_t point, double tool_says) const;
     double pair_stiffness(const Pair& pair) const;
     const SurfacePoints& points() const { return touch_->points(); }
-    // That grip g exerts on its point n [N].
-    Vec3 grip_force(const Aggregate& matter, const Drive& now, std::size_t g, std::size_t n) const;
     Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame
     // Calls act(pair, position, distance, stiffness, contact) for each point inside a tool.
     template <typename Act>
     void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act,
                         double moved = kAnywhere) const;
 
-    bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
     void come_out(Pair& pair, const Vec3& local) const;
     void forget_gone();
-    void hold_by_grips(const Aggregate& matter, const Drive& now, Vec3Array& force);
 
     const Apparatus* apparatus_;
+    GripSet grips_;
     int body_;
     SimSettings settings_;
     double spacing_, pressed_modulus_;
     std::shared_ptr<TouchPoints> touch_;  // null where there is no tool; copied on change
-    // Of bodies of several materials [Pa], and limits [N/m]: of each of those points, and of each
-    // of the surface's, which grips hold; empty: none.
-    std::vector<double> point_modulus_, grip_modulus_, stiffness_limit_, grip_limit_;
+    // Of bodies of several materials [Pa], and limits [N/m], of each of those points; empty: none.
+    std::vector<double> point_modulus_, stiffness_limit_;
     double limit_step_ = 0;             // [s]
     std::vector<Pair> pair_;            // sorted by tool, then point
     std::vector<double> clearance_;     // by pair: it cannot touch while particles move by less

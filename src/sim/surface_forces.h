@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "laws/pressure.h"
@@ -39,6 +40,13 @@ inline double lightest_carrier(const Aggregate& matter, std::size_t point) {
 // D^-1/2 G D^-1/2 has none above one, D being the sums of G's rows.
 std::vector<double> stiffest_of_points(const Aggregate& matter, const SurfacePoints& points,
                                        const std::vector<double>& stiffness, double most);
+
+// Adds to each particle that carries the point what its stiffness is there, at most [N/m].
+inline void spread_stiffness(const SurfacePoints& surface, int point, double k,
+                             std::vector<double>& stiffness) {
+    const SurfacePoints::Carriers by = surface.carriers(static_cast<std::size_t>(point));
+    for (int c = 0; c < 8; ++c) stiffness[by.corner[c]] += std::abs(by.weight[c]) * k;
+}
 
 // Adds a force on the point to the particles that carry it; force and moment are kept exactly.
 inline void spread(const SurfacePoints& surface, int point, const Vec3& f, Vec3Array& force) {

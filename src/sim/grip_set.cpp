@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/grip_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/surface_forces.h"
+#include "sim/surface_modulus.h"
+
+namespace swage {
+
+namespace {
+
+// What points that are gripped may add to the square of a swing by which steps go in turns, 4.
+constexpr double kGripShare = 1;
+
+}  // namespace
+
+GripSet::GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
+                 int body)
+    : apparatus_(&apparatus),
+      body_(body),
+      of_modulus_(settings.grip_stiffness),
+      spacing_(matter.lattice.spacing),
+      pressed_modulus_(pressed_modulus(matter.material, settings.solver)),
+      modulus_(surface_moduli(matter, matter.surface, settings.solver)) {}
+
+double GripSet::stiffness(const Aggregate& matter, int point) const {
+    const double modulus = modulus_.empty() ? pressed_modulus_ : modulus_[point];
+    const double k = of_modulus_ * modulus * matter.surface.area(point) / spacing_;
+    return limit_.empty() ? k : std::min(k, limit_[point]);
+}
+
+void GripSet::limit_stiffness(const Aggregate& matter, double step) {
+    limit_.clear();
+    std::vector<double> all;
+    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+        all.push_back(stiffness(matter, int(p)));
+    }
+    limit_ = stiffest_of_points(matter, matter.surface, all, kGripShare / (step * step));
+}
+
+template <typename Act>
+void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Act& act) const {
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        const Grip& grip = apparatus_->grip[g];
+        const Pose& pose = now.world_from_grip[g];
+        const bool wholly = grip.hold == Vec3::Ones();
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const int point = grip.point[n];
+            const double k = stiffness(matter, point);
+            const Vec3 x = matter.surface_position(point);
+            Vec3 force;
+            if (wholly) {
+                force = k * (pose * grip.anchor[n] - x);
+            } else {
+                const Vec3 reach = grip.anchor[n] - pose.inverse() * x;
+                force = pose.turn(k * grip.hold.cwiseProduct(reach));
+            }
+            act(g, point, x, force, k);
+        }
+    }
+}
+
+void GripSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        for (int point : apparatus_->grip[g].point) {
+            spread_stiffness(matter.surface, point, this->stiffness(matter, point), stiffness);
+        }
+    }
+}
+
+void GripSet::add_held_points(const Aggregate& matter, const Drive& now,
+                              std::vector<HeldPoint>& held) const {
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        const Grip& grip = apparatus_->grip[g];
+        const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
+        const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
+        for (int point : grip.point) {
+            held.push_back(held_point(matter.surface, point, stiffness(matter, point) * hold));
+        }
+    }
+}
+
+void GripSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
+    for_each_point(matter, now, [&](std::size_t, int point, const Vec3&, const Vec3& f, double) {
+        spread(matter.surface, point, f, force);
+    });
+}
+
+void GripSet::add_loads(const Aggregate& matter, const Drive& now, std::size_t first,
+                        std::vector<LoadSum>& sums) const {
+    for_each_point(matter, now, [&](std::size_t g, int, const Vec3& x, const Vec3& f, double) {
+        sums[first + g].add(x - now.world_from_grip[g].translation, f);
+    });
+}
+
+double GripSet::stored_energy(const Aggregate& matter, const Drive& now) const {
+    double sum = 0;
+    for_each_point(matter, now, [&](std::size_t, int, const Vec3&, const Vec3& f, double k) {
+        sum += 0.5 * f.squaredNorm() / k;
+    });
+    return sum;
+}
+
+double GripSet::add_all(const Aggregate& matter, const Drive& now, Vec3Array& force,
+                        std::size_t first, std::vector<LoadSum>& sums) const {
+    double stored = 0;
+    for_each_point(matter, now,
+                   [&](std::size_t g, int point, const Vec3& x, const Vec3& f, double k) {
+                       spread(matter.surface, point, f, force);
+                       sums[first + g].add(x - now.world_from_grip[g].translation, f);
+                       stored += 0.5 * f.squaredNorm() / k;
+                   });
+    return stored;
+}
+
+double GripSet::travel(const Drive& from, const Drive& to) const {
+    double farthest = 0;
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        for (const Vec3& anchor : apparatus_->grip[g].anchor) {
+            const Vec3 way = to.world_from_grip[g] * anchor - from.world_from_grip[g] * anchor;
+            farthest = std::max(farthest, way.norm());
+        }
+    }
+    return farthest;
+}
+
+}  // namespace swage

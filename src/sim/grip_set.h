@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grips: points of a body's true surface, each held by a spring to its place in a frame that moves.
+// Forces act on the particles that carry a point, with the point's own weights, so that force and
+// moment are kept exactly.
+#pragma once
+
+#include <vector>
+
+#include "matter/aggregate.h"
+#include "matter/drive.h"
+#include "sim/held_point.h"
+#include "sim/load_sum.h"
+#include "sim/settings.h"
+
+namespace swage {
+
+class GripSet {
+  public:
+    // `body`: the matter's number among the bodies, by which grips name it. The apparatus must
+    // outlive it.
+    GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
+            int body);
+
+    // Explicit steps of this length [s] must stay stable, so there is a stiffness that no point
+    // exceeds (stiffest_of_points()).
+    void limit_stiffness(const Aggregate& matter, double step);
+
+    // Adds to `stiffness` what grips add to each particle [N/m].
+    void add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const;
+
+    void add_held_points(const Aggregate& matter, const Drive& now,
+                         std::vector<HeldPoint>& held) const;
+
+    void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;
+    // Sums by grip, for grip g at sums[first + g].
+    void add_loads(const Aggregate& matter, const Drive& now, std::size_t first,
+                   std::vector<LoadSum>& sums) const;
+
+    // In the springs [J].
+    double stored_energy(const Aggregate& matter, const Drive& now) const;
+
+    // All three; returns the energy.
+    double add_all(const Aggregate& matter, const Drive& now, Vec3Array& force, std::size_t first,
+                   std::vector<LoadSum>& sums) const;
+
+    // The farthest that any point's place moves [m].
+    double travel(const Drive& from, const Drive& to) const;
+
+  private:
+    // Calls act(g, point, position, force, stiffness) for each point in a grip.
+    template <typename Act>
+    void for_each_point(const Aggregate& matter, const Drive& now, const Act& act) const;
+
+    bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
+    double stiffness(const Aggregate& matter, int point) const;  // [N/m]
+
+    const Apparatus* apparatus_;
+    int body_;
+    double of_modulus_;  // stiffness of a layer of cells, in a grip
+    double spacing_, pressed_modulus_;
+    // Of bodies of several materials [Pa], and limits [N/m], by point of the surface; empty: none.
+    std::vector<double> modulus_, limit_;
+};
+
+}  // namespace swage
