@@ -370,8 +370,8 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     }
     if (outcome.left_over > 0) {
         report.warning.push_back(
-            fmt::format("what was cut or let go of does not come to rest as exactly as the loads "
-                        "ask: from here on {:.2g} N of forces may be out of balance",
+            fmt::format("what was cut, broken or let go of does not come to rest as exactly as the "
+                        "loads ask: from here on {:.2g} N of forces may be out of balance",
                         outcome.left_over));
     }
     if (outcome.drag_held) {

@@ -318,10 +318,11 @@ bool QuasistaticSolver::take_back(Relaxation& tried, const Drive& to, int depth,
     if (given_up && !tried.falls && self_.presses()) {
         let_be = self_.let_be(kDeepest * matter_.lattice.spacing);
     }
-    // What light crumbs of it are short of rest may be nothing beside what was let go of, and much
-    // beside the loads.
+    // What light crumbs are short of rest may be nothing beside what was let go of, or no more than
+    // the last stage left over, and much beside the loads.
     const double measure = kEased * tried.residual * push_limit(to) / settings_.tolerance;
-    const bool eased = given_up && !tried.falls && !tried.converged && measure <= let_go_;
+    const bool eased =
+        given_up && !tried.falls && !tried.converged && measure <= kEased * most_measure_;
     if (eased) {
         least_measure_ = measure;
         outcome.left_over = settings_.tolerance * measure;

@@ -115,10 +115,11 @@ class QuasistaticSolver {
     bool seats_ = true;   // until a piece finds no seat, in this advance
     bool moved_ = false;  // any tool or grip, ever
     bool begun_ = false;
-    bool severed_ = false;       // by a blade, since the last equilibrium
-    double largest_push_ = 0;    // of any tool so far [N]
-    double let_go_ = 0;          // largest push that cuts and lost grips left unbalanced [N]
-    double least_measure_ = 0;   // of the residual, for what was let go of [N]
+    bool severed_ = false;     // by a blade, since the last equilibrium
+    double largest_push_ = 0;  // of any tool so far [N]
+    // Of the residual [N]: what it may be eased to, where there is no better rest; and since it
+    // was.
+    double most_measure_ = 0, least_measure_ = 0;
     std::vector<LoadSum> load_;  // at the end of the last increment, by tool, then grip
 };
 

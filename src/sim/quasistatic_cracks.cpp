@@ -65,7 +65,9 @@ bool QuasistaticSolver::begin(const Drive& from, BodyOutcome& outcome) {
     if (outcome.before.sum() < kRoundOff * matter_.mean_modulus() * a * a * a) return false;
     held_ = matter_.particle_position;
     evaluate(from);
-    return residual_of(force_, from) > settings_.tolerance;
+    const double left = residual_of(force_, from) / settings_.tolerance;
+    most_measure_ = left * push_limit(from);
+    return left > 1;
 }
 
 // What was cut, or lost its grips, comes to rest before anything moves, so that what it lets go of
@@ -75,7 +77,7 @@ void QuasistaticSolver::let_go(const Drive& from, MoveOutcome& outcome) {
     const double before = booked(from, outcome.body[0]);
     held_ = matter_.particle_position;
     evaluate(from);
-    let_go_ = std::max(let_go_, residual_of(force_, from) * push_limit(from));
+    most_measure_ = std::max(most_measure_, residual_of(force_, from) * push_limit(from));
     if (!increment(from, from, settings_.halving_limit, outcome, Unsolved::leave)) return;
     outcome.body[0].set_free += before - booked(from, outcome.body[0]);
 }
