@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,6 +19,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 4096;
+constexpr std::size_t kPairsPerChunk = 1024, kChunksAtOnce = 8;
 // Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
 // grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
@@ -220,25 +222,52 @@ Vec3 ContactSet::anchor_of(const Pair& pair) const {
                       : tool_from_world_at_start_[pair.tool] * start_position_[pair.point];
 }
 
-template <typename Act>
-void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const Act& act,
-                                double moved) const {
-    std::vector<Pose> tool_from_world;
-    for (const Pose& pose : now.world_from_tool) tool_from_world.push_back(pose.inverse());
-    for (std::size_t n = 0; n < pair_.size(); ++n) {
+// Of pairs from `begin` on those that touch, in their order.
+void ContactSet::find_touches(const Aggregate& matter, const std::vector<ToolFrame>& frame,
+                              double moved, std::size_t begin, std::size_t end,
+                              std::vector<TouchNow>& found) const {
+    found.clear();
+    for (std::size_t n = begin; n < end; ++n) {
         const Pair& pair = pair_[n];
         if (clearance_[n] > moved || pair.gone) continue;
         const Tool& tool = apparatus_->tool[pair.tool];
-        const Pose& pose = now.world_from_tool[pair.tool];
+        const auto& [turn, at] = frame[pair.tool];
         const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
-        Distance d = distance_to(tool.shape, tool_from_world[pair.tool] * x);
+        Distance d = distance_to(tool.shape, turn.transpose() * (x - at));
         d.value += pair.deep;
         if (d.value >= 0) continue;
-        d.normal = pose.turn(d.normal);
+        d.normal = turn * d.normal;
         const double k = pair_stiffness(pair);
-        act(n, x, d, k,
-            contact_force(d.value, d.normal, x, pose * anchor_of(pair), k, k,
-                          tool.friction_on(body_)));
+        const Vec3 anchor = turn * anchor_of(pair) + at;
+        found.push_back(
+            {n, x, d, k,
+             contact_force(d.value, d.normal, x, anchor, k, k, tool.friction_on(body_))});
+    }
+}
+
+// Found on all threads, some at a time, which stay in the cache.
+template <typename Act>
+void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const Act& act,
+                                double moved) const {
+    std::vector<ToolFrame> frame;
+    for (const Pose& pose : now.world_from_tool) {
+        frame.push_back({pose.rotation.toRotationMatrix(), pose.translation});
+    }
+    std::array<std::vector<TouchNow>, kChunksAtOnce> found;
+    constexpr std::size_t kAtOnce = kChunksAtOnce * kPairsPerChunk;
+    for (std::size_t first = 0; first < pair_.size(); first += kAtOnce) {
+        const std::size_t last = std::min(pair_.size(), first + kAtOnce);
+        const std::size_t chunks = (last - first + kPairsPerChunk - 1) / kPairsPerChunk;
+        parallel_for(chunks, [&](std::size_t chunk) {
+            const std::size_t begin = first + chunk * kPairsPerChunk;
+            find_touches(matter, frame, moved, begin, std::min(last, begin + kPairsPerChunk),
+                         found[chunk]);
+        });
+        for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+            for (const TouchNow& t : found[chunk]) {
+                act(t.pair, t.place, t.distance, t.stiffness, t.contact);
+            }
+        }
     }
 }
 

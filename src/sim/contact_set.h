@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+#include "laws/contact.h"
 #include "laws/impact.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
@@ -157,6 +158,20 @@ class ContactSet {
     double pair_stiffness(const Pair& pair) const;
     const SurfacePoints& points() const { return touch_->points(); }
     Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame
+    // A pair that touches.
+    struct TouchNow {
+        std::size_t pair;
+        Vec3 place;
+        Distance distance;
+        double stiffness;  // [N/m]
+        ContactForce contact;
+    };
+    struct ToolFrame {
+        Mat3 turn;  // world from tool
+        Vec3 at;
+    };
+    void find_touches(const Aggregate& matter, const std::vector<ToolFrame>& frame, double moved,
+                      std::size_t begin, std::size_t end, std::vector<TouchNow>& found) const;
     // Calls act(pair, position, distance, stiffness, contact) for each point inside a tool.
     template <typename Act>
     void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act,

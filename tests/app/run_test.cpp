@@ -16,7 +16,7 @@ namespace {
 // The end of assets/scenes/bar-springback.toml at 3 cells across and 6 frames. To be changed, and
 // the reason said in the commit, only when the scene, its mesh, material or machine, the mold or
 // the laws and solver are meant to give other numbers.
-constexpr const char* kShippedBarHash = "5a886a517e23e89f";
+constexpr const char* kShippedBarHash = "55ffb863970aa782";
 
 // Name and bytes of every file below a folder.
 std::map<std::string, std::string> files_below(const fs::path& folder) {
