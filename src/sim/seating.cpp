@@ -26,6 +26,7 @@ constexpr int kMostReturns = 6;
 constexpr double kFirstWay = 0.01, kLongestWay = 0.2;  // spacings
 constexpr double kListed = 0.45;                       // that candidates are good for
 constexpr double kMoreDrag = 4;
+constexpr int kMostDrags = 100;
 // Of the stiffness of what is touched: makes what that leaves free stay in returns.
 constexpr double kStay = 1e-3;
 constexpr double kLighter = 10;  // from one heaviness of the loads to the next
@@ -167,9 +168,13 @@ bool RigidPiece::settle(double heavy, Place& now) {
         const Stiffness touched = stiffness_at(now.pose);
         Motion whole;
         double drag = least_drag;
-        for (;; drag *= kMoreDrag) {
+        const auto leads_down = [&] {
             whole = solve(touched, drag, now.push);
-            if (longest(whole) <= trust && now.push.dot(whole) > 0) break;
+            return longest(whole) <= trust && now.push.dot(whole) > 0;
+        };
+        int tries = 0;
+        for (; !leads_down(); drag *= kMoreDrag) {
+            if (++tries == kMostDrags) return false;  // no way is short enough, or no number
         }
         Place next;
         Motion way;

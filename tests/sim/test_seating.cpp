@@ -2,6 +2,8 @@
 // Stiff bodies that loads push onto their rests.
 #include "sim/seating.h"
 
+#include <limits>
+
 #include "sim/advance.h"
 #include "sim/contact_set.h"
 #include "tests/catch.h"
@@ -138,6 +140,17 @@ TEST_CASE("what has no seat is put back as it was") {
         CHECK(lying.block.particle_position.y == before.y);
         CHECK(lying.block.particle_position.z == before.z);
     }
+}
+
+TEST_CASE("forces that are no numbers end the search, and nothing is moved") {
+    Lying lying;
+    lying.add_tool(kTable, kUnder, 0.3);
+    lying.put(kCrooked);
+    lying.weight.y() = std::numeric_limits<double>::quiet_NaN();
+    const Vec3Array before = lying.block.particle_position;
+    const bool found = lying.seat().first;
+    CHECK_FALSE(found);
+    CHECK(lying.block.particle_position.y == before.y);
 }
 
 // The load is nothing beside the stiffness: it drives the block over thousands of times what
