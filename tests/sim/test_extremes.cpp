@@ -116,13 +116,13 @@ TEST_CASE("extremes: half of a body is a million times heavier") {
 
 TEST_CASE("extremes: two particles at one place come apart") {
     for (const Solver solver : kAll) {
-        Aggregate m = block();
+        // NOTE: damped by 0.3 it creeps back, and takes ten times as long.
+        Aggregate m = block(0.1);
         m.particle_position.set(22, m.particle_position.at(21));
         const Survivor s = survive({&m}, motion_settings(solver), 60 * crossing(), 30);
         INFO(name_of(solver) << " kinetic " << s.last.kinetic << " elastic " << s.last.elastic
                              << " volume " << smallest_cell_volume(m));
-        // NOTE: by the others a connection beside them stays 16 % off, in balance.
-        check_shape(m, solver == Solver::implicit_steps ? 0.03 : 0.2);
+        check_shape(m);
     }
 }
 
