@@ -79,9 +79,11 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
                          "{:.3g} cells thick",
                          cost.tool_give, 100 * cost.tool_give / cost.thickness, cost.thickness));
     }
-    const std::string strength =
-        strength_warning(material, cost.mold.spacing, cost.mold.cell_count.minCoeff());
-    if (!strength.empty()) line("strength", strength);
+    for (const Material* of : scene.work_piece().materials()) {
+        const std::string strength =
+            strength_warning(*of, cost.mold.spacing, cost.mold.cell_count.minCoeff());
+        if (!strength.empty()) line("strength", strength);
+    }
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));
     line("steps", "about " + count_text(cost.steps));
@@ -117,11 +119,13 @@ int check(const CheckArguments& given) {
                                 {"torsion", accuracy.torsion},
                                 {"across_for_percent", across_for_percent(cost)}};
         }
-        const Resolved strength =
-            resolved_strength(material, cost.mold.spacing, cost.mold.cell_count.minCoeff());
-        if (!strength.whole()) {
-            json["strength"] = {{"resolved_Pa", strength.strength},
-                                {"across_for_whole", strength.cells_for_whole}};
+        for (const Material* of : reading.scene->work_piece().materials()) {
+            const Resolved strength =
+                resolved_strength(*of, cost.mold.spacing, cost.mold.cell_count.minCoeff());
+            if (strength.whole()) continue;
+            json["strength"].push_back({{"material", of->name},
+                                        {"resolved_Pa", strength.strength},
+                                        {"across_for_whole", strength.cells_for_whole}});
         }
         if (!given.json) put_out(cost_text(*reading.scene, input, cost));
         refuse_excess(cost, options);

@@ -21,6 +21,11 @@ double Aggregate::volume() const {
     return cells * lattice.spacing * lattice.spacing * lattice.spacing;
 }
 
+bool Aggregate::breaks() const {
+    return material.breaks() || std::any_of(inset.begin(), inset.end(),
+                                            [](const Material& m) { return m.breaks(); });
+}
+
 double Aggregate::mean_modulus() const {
     if (inset.empty()) return material.young_modulus;
     double sum = 0, cells = 0;

@@ -92,6 +92,7 @@ struct Aggregate {
     const Material& material_of(CellId cell) const {
         return cell_material.empty() ? material : material_at(cell_material[cell]);
     }
+    bool breaks() const;                   // any of its materials
     double mean_modulus() const;           // Young's, by volume [Pa]
     std::size_t connection_count() const;  // unsevered ones
     double volume() const;                 // of the material at molding [m3]

@@ -44,10 +44,9 @@ constexpr double kCountedCells = 300'000;  // molded for real by count_cost
 
 // The stable step of a full lattice: neither slivers nor damping.
 double lattice_steps_per_second(const BodySpec& body, double spacing, const SimSettings& sim) {
-    double wave_speed = std::sqrt(body.material.young_modulus / body.material.density);
-    for (const InsetSpec& inset : body.inset) {
-        const Material& m = inset.material;
-        wave_speed = std::max(wave_speed, std::sqrt(m.young_modulus / m.density));
+    double wave_speed = 0;
+    for (const Material* m : body.materials()) {
+        wave_speed = std::max(wave_speed, std::sqrt(m->young_modulus / m->density));
     }
     return 2.5 * wave_speed / spacing / sim.step_safety;
 }
@@ -55,10 +54,7 @@ double lattice_steps_per_second(const BodySpec& body, double spacing, const SimS
 double least_damping(const SceneSpec& scene) {
     double least = 1;
     for (const BodySpec& body : scene.body) {
-        least = std::min(least, body.material.damping_ratio);
-        for (const InsetSpec& inset : body.inset) {
-            least = std::min(least, inset.material.damping_ratio);
-        }
+        for (const Material* m : body.materials()) least = std::min(least, m->damping_ratio);
     }
     return least;
 }
@@ -67,12 +63,10 @@ double least_damping(const SceneSpec& scene) {
 double law_share(const SceneSpec& scene) {
     bool damps = false, yields = false;
     for (const BodySpec& body : scene.body) {
-        const auto look_at = [&](const Material& material) {
-            damps = damps || material.damping_ratio > 0;
-            yields = yields || std::isfinite(material.yield_stress);
-        };
-        look_at(body.material);
-        for (const InsetSpec& inset : body.inset) look_at(inset.material);
+        for (const Material* m : body.materials()) {
+            damps = damps || m->damping_ratio > 0;
+            yields = yields || std::isfinite(m->yield_stress);
+        }
     }
     return (damps ? kDampedShare : 1) * (yields ? kYieldingShare : 1);
 }

@@ -72,11 +72,13 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
                  1e3 * matter.lattice.spacing, matter.particle_count(), matter.connection_count(),
                  matter.mass());
         warnings.insert(warnings.end(), input[b].finding.begin(), input[b].finding.end());
-        const std::string strength = strength_warning(
-            scene.body[b].material, matter.lattice.spacing, matter.lattice.cell_count.minCoeff());
-        if (strength.empty()) continue;
-        log_warning("{}", strength);
-        warnings.push_back(strength);
+        for (const Material* material : scene.body[b].materials()) {
+            const std::string strength = strength_warning(*material, matter.lattice.spacing,
+                                                          matter.lattice.cell_count.minCoeff());
+            if (strength.empty()) continue;
+            log_warning("{}", strength);
+            warnings.push_back(strength);
+        }
     }
 
     std::vector<NamedMatter> named;

@@ -64,13 +64,6 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
     if (body.material.mechanics == Mechanics::springs) {
         root.mistake("inset", "springs know one material: use mechanics = \"cells\" in [material]");
     }
-    bool breaks = body.material.breaks();
-    for (const InsetSpec& inset : body.inset) breaks = breaks || inset.material.breaks();
-    if (breaks) {
-        root.mistake("inset",
-                     "bodies of two materials do not break yet: leave strength and toughness out "
-                     "(strength = \"inf\" over a named material's)");
-    }
     for (const StageSpec& stage : scene.stage) {
         if (stage.remold) {
             root.mistake("inset", fmt::format("stage \"{}\" molds the work-piece anew, which "

@@ -12,10 +12,11 @@ namespace {
 // What a solver cannot do with the scene's matter, and what to do instead.
 void refuse(TableReader& table, const BodySpec& body, Solver solver) {
     const Material& material = body.material;
-    const bool is_damped =
-        material.damping_ratio > 0 &&
-        std::all_of(body.inset.begin(), body.inset.end(),
-                    [](const InsetSpec& inset) { return inset.material.damping_ratio > 0; });
+    bool is_damped = true, breaks = false;
+    for (const Material* m : body.materials()) {
+        is_damped = is_damped && m->damping_ratio > 0;
+        breaks = breaks || m->breaks();
+    }
     if (solver == Solver::euler && !is_damped) {
         table.mistake(
             "solver",
@@ -24,17 +25,12 @@ void refuse(TableReader& table, const BodySpec& body, Solver solver) {
                         material.damping_ratio > 0 ? "each [[inset]]" : "[material]"));
     }
     if (solver != Solver::implicit_steps) return;
-    if (material.damping_ratio > 0) {
-        table.warn("solver",
-                   "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "
-                   "themselves");
-    }
     if (material.mechanics == Mechanics::springs) {
         table.mistake("solver",
                       "solver = \"implicit\" needs mechanics = \"cells\" in [material], or use "
                       "solver = \"explicit\"");
     }
-    if (material.breaks()) {
+    if (breaks) {
         table.mistake("solver",
                       "solver = \"implicit\" does not follow cracks: leave strength and toughness "
                       "out (strength = \"inf\" over a named material's), or use solver = "
@@ -73,6 +69,14 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     for (const BodySpec& body : scene.body) refuse(table, body, sim.solver);
     if (sim.solver == Solver::implicit_steps && several) {
         table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
+    }
+    const bool damps = std::any_of(scene.body.begin(), scene.body.end(), [](const BodySpec& body) {
+        return body.material.damping_ratio > 0;
+    });
+    if (sim.solver == Solver::implicit_steps && damps) {
+        table.warn("solver",
+                   "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "
+                   "themselves");
     }
     const bool relaxes = sim.solver == Solver::quasistatic;
     const bool is_implicit = sim.solver == Solver::implicit_steps;

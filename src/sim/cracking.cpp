@@ -45,18 +45,18 @@ double material_strain(const Aggregate& matter, const CellRun& run, int n, doubl
 struct Beyond {
     const CellRun* run;
     int n;
-    double strain;
+    double share;  // of its onset that it is strained by
 };
 
 struct Candidate {
     StrainedCell at;
-    double strain;  // less for being off the track
+    double share;  // less for being off the track
 };
 
 // Of cells in line with each other the most strained is left, in the order of the cells.
 std::vector<CellId> not_in_line(std::vector<Candidate> cells) {
     std::stable_sort(cells.begin(), cells.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.strain > b.strain; });
+                     [](const Candidate& a, const Candidate& b) { return a.share > b.share; });
     std::vector<StrainedCell> taken;
     for (const Candidate& c : cells) {
         const bool spared = std::any_of(taken.begin(), taken.end(), [&](const StrainedCell& t) {
@@ -106,13 +106,13 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
 }
 
 // Sound cells beyond onset, in the order of the cells.
-std::vector<Beyond> all_beyond(const Aggregate& matter, const Fracture& law,
+std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws,
                                const std::vector<const CellRun*>* only) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const std::size_t count = only ? only->size() : runs.size();
     const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
     const bool springs = matter.material.mechanics == Mechanics::springs;
-    const double far = strain_measure_at(law.onset);
+    const double far = strain_measure_at(laws.least_onset());
     std::vector<std::vector<Beyond>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
         std::vector<double> measure;
@@ -126,14 +126,16 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const Fracture& law,
                 const bool flowed =
                     !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
                 if (!springs && !flowed && measure[n] < far) continue;
+                const double onset = laws.of_cell(matter, cell).onset;
+                if (!(onset > 0)) continue;
                 std::array<ParticleId, 4> row = run.row;
                 for (ParticleId& p : row) p += n;
-                double strain = springs ? 0 : material_strain(matter, run, n, law.onset);
+                double strain = springs ? 0 : material_strain(matter, run, n, onset);
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
-                if (strain >= law.onset && cell_is_sound(matter, cell, row)) {
-                    part[chunk].push_back({&run, n, strain});
+                if (strain >= onset && cell_is_sound(matter, cell, row)) {
+                    part[chunk].push_back({&run, n, strain / onset});
                 }
             }
         }
@@ -168,30 +170,29 @@ std::vector<const CellRun*> cells_beside(
     return runs;
 }
 
-std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
+std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const FractureLaws& laws,
                                           const std::vector<const CellRun*>* only) {
-    std::vector<Beyond> beyond = all_beyond(matter, law, only);
+    std::vector<Beyond> beyond = all_beyond(matter, laws, only);
     std::stable_sort(beyond.begin(), beyond.end(),
-                     [](const Beyond& a, const Beyond& b) { return a.strain > b.strain; });
+                     [](const Beyond& a, const Beyond& b) { return a.share > b.share; });
     // Being off the track only makes it less: those strained less than the largest by then are out.
-    double largest = law.onset;
+    double largest = 1;
     std::vector<Candidate> all;
     for (std::size_t begin = 0; begin < beyond.size(); begin += kTracksAtOnce) {
-        if (beyond[begin].strain < kTogether * largest) break;
+        if (beyond[begin].share < kTogether * largest) break;
         const std::size_t count = std::min(kTracksAtOnce, beyond.size() - begin);
         std::vector<Candidate> some(count);
         parallel_for(count, [&](std::size_t n) {
             const Beyond& b = beyond[begin + n];
             const StrainedCell at = strained_cell(matter, *b.run, b.n);
-            const bool spared = b.strain < kSpared * law.onset && is_beside_crack(matter, at);
-            some[n] = {at, spared ? 0 : b.strain / off_track_factor(matter, at)};
+            const bool spared = b.share < kSpared && is_beside_crack(matter, at);
+            some[n] = {at, spared ? 0 : b.share / off_track_factor(matter, at)};
         });
-        for (const Candidate& c : some) largest = std::max(largest, c.strain);
+        for (const Candidate& c : some) largest = std::max(largest, c.share);
         all.insert(all.end(), some.begin(), some.end());
     }
-    std::erase_if(all, [&](const Candidate& c) {
-        return c.strain < law.onset || c.strain < kTogether * largest;
-    });
+    std::erase_if(all,
+                  [&](const Candidate& c) { return c.share < 1 || c.share < kTogether * largest; });
     return not_in_line(std::move(all));
 }
 

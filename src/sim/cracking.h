@@ -4,18 +4,18 @@
 
 #include <vector>
 
-#include "laws/fracture.h"
 #include "matter/aggregate.h"
 #include "sim/force_slabs.h"
+#include "sim/fracture_laws.h"
 
 namespace swage {
 
 // Sound cells whose largest elastic strain, of their material or of one of their connections, is
-// beyond onset and near the largest of all: those that are next, in the order of the cells. What is
+// beyond onset and, over that, near the largest of all: those that are next, in the order of the cells. What is
 // committed counts; the state should have converged. `only`: runs of cells that are looked at.
 // Cells beside a crack are spared up to half as much again, and those off its track up to twice as
 // much (sim/crack_path.h).
-std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fracture& law,
+std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const FractureLaws& laws,
                                           const std::vector<const CellRun*>* only = nullptr);
 
 // Runs of cells with connections of these particles, in their order.

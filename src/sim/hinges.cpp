@@ -44,7 +44,7 @@ std::vector<Connection> connections_of(const Aggregate& matter, const std::vecto
 }  // namespace
 
 std::vector<Hinge> find_hinges(const Aggregate& matter, const std::vector<char>& loose,
-                               double most) {
+                               const std::function<double(const Hinge& connection)>& most) {
     const std::vector<Connection> all = connections_of(matter, loose);
     std::vector<Mat3> turn(loose.size());
     for (std::size_t p = 0; p < loose.size(); ++p) {
@@ -59,9 +59,9 @@ std::vector<Hinge> find_hinges(const Aggregate& matter, const std::vector<char>&
         if (loose[p]) turn[p] = nearest_rotation(turn[p]);
     }
     const auto turned = [&](const Connection& c, ParticleId at) {
-        return (c.now - turn[at] * c.rest).norm() / c.rest.norm();
+        return (c.now - turn[at] * c.rest).norm() / c.rest.norm() / most({c.direction, c.lower});
     };
-    std::vector<double> worst(loose.size(), most);
+    std::vector<double> worst(loose.size(), 1);
     const auto for_each_that_may = [&](const auto& act) {
         for (const Connection& c : all) {
             if (loose[c.lower] && loose[c.upper] && !c.is_pressed()) act(c);
@@ -74,7 +74,7 @@ std::vector<Hinge> find_hinges(const Aggregate& matter, const std::vector<char>&
     for_each_that_may([&](const Connection& c) {
         const auto is_worst = [&](ParticleId p) {
             const double t = turned(c, p);
-            return t > most && t >= worst[p];
+            return t > 1 && t >= worst[p];
         };
         if (is_worst(c.lower) || is_worst(c.upper)) hinges.push_back({c.direction, c.lower});
     });

@@ -9,6 +9,7 @@
 // In a layer one spacing thick that bends, t is the strain of the outer fibre.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -20,9 +21,10 @@ struct Hinge {
     ParticleId lower;
 };
 
-// Connections between particles of `loose` (a flag each) that have turned by more than `most` and
-// most of all at one of their ends, in the order of the lattice; no edges that are pressed.
+// Connections between particles of `loose` (a flag each) that have turned by more than `most` of
+// theirs and, over that, most of all at one of their ends, in the order of the lattice; no edges
+// that are pressed.
 std::vector<Hinge> find_hinges(const Aggregate& matter, const std::vector<char>& loose,
-                               double most);
+                               const std::function<double(const Hinge& connection)>& most);
 
 }  // namespace swage

@@ -19,9 +19,7 @@ const char* ImplicitStep::cannot(const Aggregate& matter) {
     if (matter.material.mechanics == Mechanics::springs) {
         return "mechanics = \"springs\" has no exact tangent";
     }
-    for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        if (matter.material_at(m).breaks()) return "matter that breaks has no exact tangent";
-    }
+    if (matter.breaks()) return "matter that breaks has no exact tangent";
     return nullptr;
 }
 

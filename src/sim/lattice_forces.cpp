@@ -28,12 +28,12 @@ LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
     if (springs && std::isfinite(matter.material.yield_stress)) {
         spring_flow_ = std::make_unique<CellFlow>(matter);
     }
-    if (cells_) cells_->watch_strain(loose_.law().onset);
+    if (cells_) cells_->watch_strain(loose_.laws().least_onset());
     take_in(matter);
 }
 
 void LatticeForces::connections_changed(Aggregate& matter) {
-    const bool lays_down = cells_ && in_motion_ && matter.material.breaks();
+    const bool lays_down = cells_ && in_motion_ && matter.breaks();
     std::vector<HeldCell> turned;
     if (cells_) cells_->cells_changed(matter, lays_down ? &turned : nullptr);
     if (lays_down) loose_.take_over(matter, turned);
@@ -92,7 +92,8 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
     const bool flows = spring_flow_ && flow == Flow::trial;
     const RestStrains* rest = flows ? &spring_flow_->rest_strains(matter) : nullptr;
     if (flows && !spring_flow_->flows() && matter.connection[0].plastic.empty()) rest = nullptr;
-    const double limit = loose_.law().onset > 0 ? kNearOnset * loose_.law().onset : 1e100;
+    const FractureLaws& laws = loose_.laws();
+    const double limit = laws.break_any() ? kNearOnset * laws.least_onset() : 1e100;
     const bool apart = spring_sweep_->branches_soften() || !branch_sweep_.empty();
     double work =
         spring_sweep_->forces(matter, spring_law_, rest, force,
@@ -137,7 +138,7 @@ Committed LatticeForces::commit(Aggregate& matter, bool in_motion, SlabGrowths* 
 }
 
 Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
-    if (!matter.material.breaks()) return {};
+    if (!matter.breaks()) return {};
     std::vector<const CellRun*> runs;
     if (in_motion && cells_) {
         for (const auto& part : cells_->strained_runs()) {
@@ -148,7 +149,7 @@ Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
     }
     if (in_motion && runs.empty()) return {};
     const std::vector<CellId> cells =
-        cells_beyond_strength(matter, loose_.law(), in_motion ? &runs : nullptr);
+        cells_beyond_strength(matter, loose_.laws(), in_motion ? &runs : nullptr);
     if (cells.empty()) return {};
     const double before = elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);
@@ -162,13 +163,19 @@ double LatticeForces::energy_of_change(Aggregate& matter, double before) {
 }
 
 bool LatticeForces::may_snap(const Aggregate& matter) const {
-    return loose_.law().onset > 0 && !loose_.empty() &&
-           !std::isfinite(matter.material.yield_stress);
+    bool may = false;
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        const Material& of = matter.material_at(m);
+        may = may || (of.breaks() && !std::isfinite(of.yield_stress));
+    }
+    return may && !loose_.empty();
 }
 
 Committed LatticeForces::snap(Aggregate& matter) {
     const std::vector<Hinge> hinges =
-        find_hinges(matter, loose_.ends(matter), kMostBent * loose_.law().broken);
+        find_hinges(matter, loose_.ends(matter), [&](const Hinge& connection) {
+            return kMostBent * loose_.laws().snaps_at(connection.direction, connection.lower);
+        });
     if (hinges.empty()) return {};
     const double before = elastic_energy(matter);
     for (ConnectionArrays& all : matter.connection) all.damage.resize(all.weight.size(), 0.0f);

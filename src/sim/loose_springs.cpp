@@ -45,19 +45,15 @@ constexpr std::array<int, kCellConnectionCount> kPartner = [] {
 }  // namespace
 
 LooseSprings::LooseSprings(const Aggregate& matter)
-    : beside_sweep_(matter.material.mechanics == Mechanics::springs),
+    : laws_(matter),
+      beside_sweep_(matter.material.mechanics == Mechanics::springs),
       stiffness_(lattice_law(matter).stiffness) {
-    const Material& m = matter.material;
-    if (m.breaks()) {
-        law_ = fracture_law(m.young_modulus, m.strength, m.toughness, matter.lattice.spacing);
-    }
     for (int d = 0; d < kForwardCount; ++d) reference_[d] = reference_length(matter.lattice, d);
 }
 
 void LooseSprings::connections_changed(const Aggregate& matter) {
     spring_.clear();
-    const bool breaks = law_.onset > 0;
-    if (beside_sweep_ && !breaks) return;
+    if (beside_sweep_ && !laws_.break_any()) return;
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             std::array<ParticleId, 4> row = run.row;
@@ -68,9 +64,8 @@ void LooseSprings::connections_changed(const Aggregate& matter) {
 }
 
 // A cell that is not sound gives its share of what its connections have left, as stiff as the
-// materials in it.
+// materials in it; beside what breaks of it, what holds on has springs of its own.
 void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int n) {
-    const bool breaks = law_.onset > 0;
     const CellId cell = run.first + n;
     const MixedCell* two = matter.mixed_at(cell);
     // Mechanics of springs have theirs in the sweep.
@@ -88,18 +83,29 @@ void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int 
         if (!holds && (damage < 1 || c.direction >= kEdgeCount)) continue;
         const int high = upper_corner(c);
         const ParticleId upper = run.row[high >> 1] + n + (high & 1);
-        const double share = cell_share(c.direction) * stiffness_in(matter, cell, two, c.direction);
-        const Kind kind = !holds ? Kind::closing : breaks ? Kind::softening : Kind::elastic;
-        number[slot] = static_cast<int>(spring_.size());
-        spring_.push_back({.lower = lower,
-                           .upper = upper,
-                           .direction = static_cast<char>(c.direction),
-                           .slot = static_cast<char>(slot),
-                           .kind = kind,
-                           .stiffness = stiffness_ * share * (holds ? 1 : kClosedStiffness),
-                           .rest_length = rest[slot] * (1 + (set ? double(set->strain[slot]) : 0)),
-                           .worst = breaks ? worst_strain(law_, damage) : 0.0,
-                           .partner = number[slot]});
+        const auto add = [&](const Fracture& law, const MaterialMask& counts) {
+            const double share = stiffness_in(matter, cell, two, c.direction, counts);
+            if (!(share > 0)) return;
+            const bool breaks = law.onset > 0;
+            const int own = static_cast<int>(spring_.size());
+            spring_.push_back(
+                {.lower = lower,
+                 .upper = upper,
+                 .direction = static_cast<char>(c.direction),
+                 .slot = static_cast<char>(slot),
+                 .kind = !holds   ? Kind::closing
+                         : breaks ? Kind::softening
+                                  : Kind::elastic,
+                 .stiffness = stiffness_ * (cell_share(c.direction) * share) *
+                              (holds ? 1 : kClosedStiffness),
+                 .rest_length = rest[slot] * (1 + (set ? double(set->strain[slot]) : 0)),
+                 .worst = breaks ? worst_strain(law, damage) : 0.0,
+                 .law = law,
+                 .partner = own});
+            if (breaks) number[slot] = own;
+        };
+        add(laws_.of_connection(c.direction, lower), laws_.breaking());
+        if (!laws_.holding().empty()) add({}, laws_.holding());
     }
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {
         const int other = kPartner[slot];
@@ -111,7 +117,8 @@ void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int 
 void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const {
     const double a = matter.lattice.spacing;
     // Less than this is rounding [J].
-    const double least = 1e-9 * stiffness_ * a * a * law_.onset * law_.onset;
+    const double onset = laws_.least_onset();
+    const double least = 1e-9 * stiffness_ * a * a * onset * onset;
     LooseSprings own(matter);
     for (const HeldCell& held : turned) {
         own.spring_.clear();
@@ -152,6 +159,8 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
         CellSet set{held.id(), {}};
         if (const CellSet* had = matter.set_of(held.id())) set = *had;
         for (std::size_t n = 0; n < now.size(); ++n) {
+            // Not twice where what breaks and what holds on have one each.
+            if (n > 0 && own.spring_[n].slot == own.spring_[n - 1].slot) continue;
             float& kept = set.strain[own.spring_[n].slot];
             const double by = (1 + now[n].strain) / (1 + strain(n, bent, all));
             kept = static_cast<float>((1 + double(kept)) * by - 1);
@@ -214,7 +223,7 @@ double LooseSprings::loss_of(std::size_t n) const {
     if (!(worst > s.worst)) return 0;
     const double share = now_[n].strain / worst;
     return s.stiffness * now_[n].length * now_[n].length * share * share *
-           (fracture_loss(law_, worst) - fracture_loss(law_, s.worst));
+           (fracture_loss(s.law, worst) - fracture_loss(s.law, s.worst));
 }
 
 void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest,
@@ -229,7 +238,7 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
         if (s.kind == Kind::softening) {
             const double sound = tension;
             if (tension > 0 || s.direction >= kEdgeCount) {
-                tension *= kept_share(law_, flow == Flow::trial ? now_worst(n) : s.worst);
+                tension *= kept_share(s.law, flow == Flow::trial ? now_worst(n) : s.worst);
             }
             if (beside_sweep_) tension -= sound;
         }
@@ -247,7 +256,7 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
 
 Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
     Broken result;
-    if (law_.onset <= 0) return result;
+    if (!laws_.break_any()) return result;
     find_strains(matter, rest);
     for (std::size_t n = 0; n < spring_.size(); ++n) {
         Spring& s = spring_[n];
@@ -257,10 +266,10 @@ Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
         if (all.damage.empty()) {
             for (auto& c : matter.connection) c.damage.assign(c.weight.size(), 0.0f);
         }
-        const float damage = static_cast<float>(1 - kept_share(law_, worst));
+        const float damage = static_cast<float>(1 - kept_share(s.law, worst));
         result.lost += loss_of(n);
         all.damage[s.lower] = std::max(all.damage[s.lower], damage);
-        if (damage >= 1 && all.weight[s.lower] > 0) {
+        if (damage >= 1 && all.weight[s.lower] > 0 && laws_.breaks_wholly(s.direction, s.lower)) {
             all.weight.set(s.lower, 0);
             ++result.count;
         }
@@ -269,8 +278,8 @@ Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
     for (std::size_t n = 0; n < spring_.size(); ++n) {
         Spring& s = spring_[n];
         const auto& damage = matter.connection[static_cast<std::size_t>(s.direction)].damage;
-        if (damage.empty()) continue;
-        const double worst = worst_strain(law_, damage[s.lower]);
+        if (damage.empty() || s.law.onset <= 0) continue;
+        const double worst = worst_strain(s.law, damage[s.lower]);
         if (!(worst > s.worst)) continue;
         const double stored = stored_in(n);
         s.worst = worst;
@@ -285,7 +294,7 @@ double LooseSprings::stored_in(std::size_t n) const {
     if (s.kind == Kind::closing && now.strain > 0) return 0;
     double share = 1;
     if (s.kind == Kind::softening) {
-        if (now.strain > 0 || s.direction >= kEdgeCount) share = kept_share(law_, now_worst(n));
+        if (now.strain > 0 || s.direction >= kEdgeCount) share = kept_share(s.law, now_worst(n));
         if (beside_sweep_) share -= 1;
     }
     return share * spring_energy(SpringDamper{s.stiffness, 0, now.length}, now.distance);

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "laws/fracture.h"
 #include "matter/aggregate.h"
+#include "sim/fracture_laws.h"
 #include "sim/lattice_sweep.h"
 
 namespace swage {
@@ -41,7 +41,7 @@ class LooseSprings {
     // its tools pay for.
     void take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const;
 
-    const Fracture& law() const { return law_; }
+    const FractureLaws& laws() const { return laws_; }
     bool empty() const { return spring_.empty(); }
 
     // Connections were severed or broken, or cells cracked.
@@ -82,6 +82,7 @@ class LooseSprings {
         double stiffness;    // [N/m]
         double rest_length;  // [m]; mechanics of cells only
         double worst;        // largest strain so far, committed; of a diagonal: of its face
+        Fracture law;        // onset 0: does not break
         int partner;         // the other diagonal, or itself
     };
     void add_springs(const Aggregate& matter, const CellRun& run, int n);
@@ -92,7 +93,7 @@ class LooseSprings {
     double stored_in(std::size_t n) const;
     double sum_of(double (LooseSprings::*part)(std::size_t) const) const;
 
-    Fracture law_;
+    FractureLaws laws_;
     bool beside_sweep_;
     double stiffness_;
     std::array<double, kForwardCount> reference_;  // [m]

@@ -29,13 +29,6 @@ double stable_step(const Aggregate& matter, double safety, const LatticeForces& 
            (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
-bool breaks(const Aggregate& matter) {
-    for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        if (matter.material_at(m).breaks()) return true;
-    }
-    return false;
-}
-
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCalm = 0.5;     // of the speed that crushed matter deforms by, in a stable step
 constexpr double kTurned = 0.05;  // spacings that particles go between looks at what is bent
@@ -96,7 +89,7 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
 
 double explicit_step(const Aggregate& matter, const SimSettings& settings) {
     const LatticeForces lattice(matter);
-    const SwingBound swings(matter, breaks(matter));
+    const SwingBound swings(matter, matter.breaks());
     return stable_step(matter, settings.step_safety, lattice, swings,
                        InternalDamping(matter, std::sqrt(swings.squared(matter, lattice))));
 }
@@ -105,7 +98,7 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
                        const SimSettings& settings)
     : matter_(matter),
       lattice_(matter, true),
-      breaks_(breaks(matter)),
+      breaks_(matter.breaks()),
       swings_(matter, breaks_ || !apparatus.blade.empty()),
       damping_(matter, std::sqrt(swings_.squared(matter, lattice_))),
       contacts_(matter, apparatus, settings, number),

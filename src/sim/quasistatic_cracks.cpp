@@ -36,7 +36,7 @@ double QuasistaticSolver::booked(const Drive& now, const BodyOutcome& outcome) {
 // most strained beyond their strength turn into springs, or where there are none what was bent too
 // far breaks, and all come to rest again.
 void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
-    if (!matter_.material.breaks()) return;
+    if (!matter_.breaks()) return;
     for (;;) {
         const double before = booked(to, outcome.body[0]);
         const Cracked cracked = lattice_.crack(matter_);

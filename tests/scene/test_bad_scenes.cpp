@@ -404,7 +404,6 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
         {"of its own friction",
          inset("name = \"lead\"\nfriction = 0.3\n" + box),
          {"14:12: friction is the whole body's: say it in [material]"}},
-        {"breaking", inset("name = \"ice\"\n" + box), {"bodies of two materials do not break yet"}},
         {"in springs", springs, {"springs know one material"}},
         {"undamped",
          undamped,

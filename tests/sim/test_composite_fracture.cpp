@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies of two materials that break, each by its own law.
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "base/parallel.h"
+#include "sim/advance.h"
+#include "sim/cell_volume.h"
+#include "sim/fracture_laws.h"
+#include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/sim/motion.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+constexpr double kModulus = 1e9, kStrength = 1e6, kToughness = 20;  // l_c = 2 cm
+constexpr double kSide = 0.008, kLength = 0.024;
+
+Material brittle(double modulus, double strength, double toughness) {
+    return {.young_modulus = modulus,
+            .poisson_ratio = 0.2,
+            .density = 2000,
+            .strength = strength,
+            .toughness = toughness,
+            .damping_ratio = 0.02};
+}
+
+const Material kWeak = brittle(kModulus, kStrength, kToughness);
+const Material kStrong = brittle(2 * kModulus, 4 * kStrength, 8 * kToughness);
+const Material kTough{
+    .young_modulus = 20 * kModulus, .poisson_ratio = 0.2, .density = 8000, .damping_ratio = 0.02};
+
+// A bar along x between two grips; of the second material where `is_inset` says.
+struct Bar {
+    Aggregate matter;
+    Apparatus apparatus;
+    SimSettings settings;
+    std::unique_ptr<Simulation> simulation;
+    Drive drive;
+
+    Bar(const Material& own, const Material& other, int across,
+        const std::function<bool(const Vec3i& site, const Vec3i& count)>& is_inset,
+        Solver solver = Solver::quasistatic)
+        : matter(make_block(int(std::lround(kLength / kSide * across)), across, across,
+                            kSide / across, own)) {
+        matter.inset.push_back(other);
+        matter.cell_material.assign(matter.cell_fill.size(), 0);
+        for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+            matter.cell_material[c] =
+                is_inset(matter.lattice.cell_site(CellId(c)), matter.lattice.cell_count);
+        }
+        apparatus.name = "pull";
+        for (int side : {-1, 1}) {
+            Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
+            grip.point = points_where(
+                matter, [&](const Vec3& x) { return side * x.x() > 0.4999 * kLength; });
+            for (int p : grip.point) grip.anchor.push_back(matter.surface_position(p));
+            apparatus.grip.push_back(grip);
+        }
+        drive.world_from_grip = {Pose{}, Pose{}};
+        settings.solver = solver;
+        settings.tolerance = 1e-3;
+        settings.grip_stiffness = 100;
+        simulation = std::make_unique<Simulation>(matter, apparatus, settings);
+    }
+    FrameReport pull_to(double way, double duration = 1) {
+        Drive to = drive;
+        to.time += duration;
+        to.world_from_grip[1].translation.x() = way;
+        const FrameReport r = simulation->advance(drive, to);
+        drive = to;
+        return r;
+    }
+    // Connections that loads have broken, in cells of the second material and in others.
+    std::array<int, 2> broken() const {
+        std::array<int, 2> count{};
+        if (matter.connection[0].damage.empty()) return count;
+        for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+            const auto row = matter.lattice.cell_row(CellId(c));
+            for (const CellConnection& slot : kCellConnection) {
+                const ParticleId lower = row[slot.corner >> 1] + (slot.corner & 1);
+                count[matter.cell_material[c]] +=
+                    matter.connection[slot.direction].damage[lower] >= 1;
+            }
+        }
+        return count;
+    }
+};
+
+double pull(const FrameReport& r) { return r.load[1].force.x(); }
+
+bool is_right(const Vec3i& site, const Vec3i& count) { return 2 * site.x() >= count.x(); }
+bool is_core(const Vec3i& site, const Vec3i& count) {
+    return 4 * site.y() >= count.y() && 4 * site.y() < 3 * count.y() && 4 * site.z() >= count.z() &&
+           4 * site.z() < 3 * count.z();
+}
+
+}  // namespace
+
+TEST_CASE("of two materials in series the weaker parts, at its strength and by its toughness") {
+    for (const bool swapped : {false, true}) {
+        Bar bar(swapped ? kStrong : kWeak, swapped ? kWeak : kStrong, 4, is_right);
+        constexpr int kFrames = 30;
+        const double opening = 2.3 * kToughness / kStrength;
+        double largest = 0;
+        FrameReport r;
+        for (int n = 1; n <= kFrames; ++n) {
+            r = bar.pull_to(opening * n / kFrames);
+            largest = std::max(largest, pull(r));
+        }
+        INFO("swapped: " << swapped);
+        CHECK(largest / (kSide * kSide) == Approx(kStrength).epsilon(0.1));
+        CHECK(r.pieces == 2);
+        CHECK(r.work / (kSide * kSide) == Approx(kToughness).epsilon(0.1));
+        CHECK(bar.broken()[swapped] > 0);
+        CHECK(bar.broken()[!swapped] == 0);
+    }
+}
+
+// The shell cracks across at one strain of both; beyond, the core carries by itself between what
+// is still bonded to it.
+TEST_CASE("a core that does not break carries on through the cracks of its shell") {
+    Bar bar(kWeak, kTough, 8, is_core);
+    const double core = kSide * kSide / 4, shell = 3 * core;
+    const double onset = kStrength / kModulus;
+    double first = 0;
+    FrameReport r;
+    for (const double strain : {0.8, 0.9, 1.0, 1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 5.0, 8.0}) {
+        r = bar.pull_to(strain * onset * kLength);
+        if (first == 0 && r.fracture > 0) first = strain;
+        const double alone = strain * onset * kTough.young_modulus * core;
+        INFO("strain over onset " << strain);
+        CHECK(pull(r) > 0.93 * alone);
+        CHECK(pull(r) < 1.01 * (alone + std::min(strain, 1.1) * kStrength * shell));
+    }
+    CHECK(first >= 0.8);
+    CHECK(first <= 1.2);
+    CHECK(r.pieces == 1);
+    CHECK(bar.broken()[0] > 0);
+    CHECK(bar.broken()[1] == 0);
+    CHECK(cells_below(bar.matter, 0.5).empty());
+}
+
+// Nothing of the shell's own stiffness may stay with the core.
+TEST_CASE("a soft core of a stiff shell carries by its own stiffness once that has parted") {
+    Material soft = kTough;
+    soft.young_modulus = 0.1 * kModulus;
+    for (const bool askew : {false, true}) {
+        Bar bar(kWeak, soft, 8, is_core);
+        Aggregate& m = bar.matter;
+        if (askew) {  // cells around the core are half its matter
+            for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+                const Vec3i site = m.lattice.cell_site(CellId(c));
+                const bool above = site.y() == 6 && site.z() >= 2 && site.z() < 6;
+                if (!above) continue;
+                m.mixed_cell.push_back(
+                    {.cell = CellId(c),
+                     .material = {0, 1},
+                     .fill = {0.5f, 0.5f},
+                     .centroid = {Eigen::Vector3f(0, 0.25f, 0), Eigen::Vector3f(0, -0.25f, 0)},
+                     .normal = Eigen::Vector3f::UnitY()});
+            }
+            bar.simulation = std::make_unique<Simulation>(m, bar.apparatus, bar.settings);
+        }
+        const double core = (askew ? 4.5 / 16 : 0.25) * kSide * kSide;
+        FrameReport r;
+        for (const double strain : {0.01, 0.02, 0.04, 0.07, 0.1}) r = bar.pull_to(strain * kLength);
+        const double stretch = 1.1, alone = soft.young_modulus * std::log(stretch) * core *
+                                            std::pow(stretch, -2 * soft.poisson_ratio);
+        INFO("askew " << askew);
+        CHECK(r.fracture > kToughness * (kSide * kSide - core));
+        // What is left of a cell of both is plain springs, too stiff across its face.
+        CHECK(pull(r) == Approx(alone).epsilon(askew ? 0.09 : 0.06));
+        CHECK(bar.broken()[0] > 0);
+    }
+}
+
+TEST_CASE("of what belongs to two materials each has its part") {
+    Bar bar(kWeak, kStrong, 4, is_right);
+    Aggregate& m = bar.matter;
+    m.mixed_cell.push_back({.cell = 0,
+                            .material = {0, 1},
+                            .fill = {0.5f, 0.5f},
+                            .centroid = {},
+                            .normal = Eigen::Vector3f::UnitX()});
+    const double a = m.lattice.spacing;
+    const Fracture weak = fracture_law(kModulus, kStrength, kToughness, a),
+                   strong = fracture_law(2 * kModulus, 4 * kStrength, 8 * kToughness, a);
+    REQUIRE(strong.broken > weak.broken);
+    const int middle = m.lattice.cell_count.x() / 2;
+    const ParticleId on = m.lattice.cell_row(m.lattice.cell_at(middle, 1, 1))[0];
+    const FractureLaws laws(m);
+    CHECK(laws.least_onset() == weak.onset);
+    CHECK(laws.of_cell(m, 0).onset == strong.onset);
+    CHECK(laws.of_cell(m, 1).onset == weak.onset);
+    CHECK(laws.of_connection(0, on).onset == strong.onset);    // along the bar, beyond
+    CHECK(laws.of_connection(0, on - 1).onset == weak.onset);  // before
+    CHECK(laws.of_connection(1, on).onset == strong.onset);    // in the boundary
+    CHECK(laws.breaks_wholly(1, on));
+    CHECK(laws.breaking().empty());
+    // Of one that does not break only that of the other softens.
+    m.inset[0].strength = m.inset[0].toughness = std::numeric_limits<double>::infinity();
+    const FractureLaws held(m);
+    CHECK(held.of_cell(m, 0).onset == weak.onset);
+    CHECK(held.of_connection(1, on).onset == weak.onset);
+    CHECK(held.of_connection(1, on + 1).onset == 0);
+    CHECK_FALSE(held.breaks_wholly(1, on));
+    CHECK(held.breaks_wholly(1, on - 1));
+    CHECK(held.breaking() == MaterialMask{1, 0});
+    CHECK(held.holding() == MaterialMask{0, 1});
+    CHECK(std::isinf(held.snaps_at(1, on)));
+    CHECK(held.snaps_at(1, on - 1) == weak.broken);
+}
+
+TEST_CASE("a composite that breaks in motion keeps its books, and the same bytes") {
+    std::vector<std::uint64_t> hash;
+    for (int threads : {1, 2}) {
+        set_thread_count(threads);
+        Bar bar(kWeak, kTough, 4, is_core, Solver::explicit_steps);
+        FrameReport r;
+        for (int n = 1; n <= 20; ++n) {
+            r = bar.pull_to(5 * kStrength / kModulus * kLength * n / 20, 1e-4);
+        }
+        CHECK(r.fracture > 0);
+        CHECK(r.pieces == 1);
+        CHECK(bar.broken()[1] == 0);
+        CHECK(r.kinetic + r.elastic + r.contact + r.damped + r.fracture ==
+              Approx(r.work).epsilon(0.005));
+        hash.push_back(state_hash(bar.matter));
+    }
+    set_thread_count(0);
+    CHECK(hash[0] == hash[1]);
+}
