@@ -34,6 +34,15 @@ double unaccounted(const Books& b, double least) {
     return play > least ? (b.remainder + std::min(0.0, b.fracture)) / play : 0;
 }
 
+const char* how_to_close(Solver solver) {
+    if (solver == Solver::implicit_steps) {
+        return "implicit steps damp by themselves: try more frames, which shorten them, or solver "
+               "= \"explicit\"";
+    }
+    return "try a lower step_safety, more cells, or, where bodies are pressed deep into each "
+           "other, a larger contact_stiffness";
+}
+
 }  // namespace
 
 StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ended) {
@@ -53,15 +62,11 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             "the work-piece only, by its place, its width or its way",
             end.totals.severed));
     }
-    const bool keeps_energy =
-        sim.solver == Solver::explicit_steps || sim.solver == Solver::energy_stepped;
     if (const double share = unaccounted(end.last, round_off(end.bodies));
-        keeps_energy && std::abs(share) > kMostGain) {
-        warn(fmt::format(
-            "the energy books do not close: {:.2g} % of the energy in play is {}; try a lower "
-            "step_safety, more cells, or, where bodies are pressed deep into each other, a larger "
-            "contact_stiffness",
-            100 * std::abs(share), share > 0 ? "lost" : "from nowhere"));
+        sim.solver != Solver::quasistatic && std::abs(share) > kMostGain) {
+        warn(fmt::format("the energy books do not close: {:.2g} % of the energy in play is {}; {}",
+                         100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
+                         how_to_close(sim.solver)));
     }
     if (sim.solver == Solver::quasistatic && (end.last.pieces == 1 || sim.self_contact) &&
         ended != StageEnded::interrupted) {

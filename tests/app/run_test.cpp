@@ -342,3 +342,25 @@ TEST_CASE("a later machine that cannot be set up leaves what was done, and is to
     CHECK(record["state"] == "stopped");
     CHECK(record["frames"] == 3);
 }
+
+TEST_CASE("a stage whose steps have damped what they move by themselves says so") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "spin.toml";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    const auto told = [&](const std::string& solver) {
+        put_text(scene,
+                 "[mesh]\nfile = \"bar.obj\"\nspin = [0, 0, \"60 rad/s\"]\n"
+                 "[material]\nname = \"silicone\"\n[mold]\nacross = 2\n"
+                 "[[stage]]\nmachine = \"floor\"\ndrop = \"20 cm\"\nframes = 3\n"
+                 "duration = \"0.1 s\"\nsolver = \"" +
+                     solver + "\"\n");
+        const fs::path run = scratch.path() / solver;
+        const Outcome outcome =
+            run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return outcome.err.find("implicit steps damp by themselves") != std::string::npos;
+    };
+    CHECK(told("implicit"));
+    CHECK_FALSE(told("explicit"));
+}
