@@ -257,6 +257,57 @@ void layers_yield(bool brief, Values& values) {
     }
 }
 
+// A core that does not break in a shell that does, pulled by both ends: they carry together until
+// the shell has cracked across and let go of the core, which carries alone from then on, stiffer or
+// softer than the shell was.
+void layers_crack(bool brief, Values& values) {
+    constexpr double kLength = 3, kOnset = 1e-3, kHalf = 0.25, kFar = 0.05;
+    const double core_section = 4 * kHalf * kHalf;
+    for (int across : brief ? std::vector{4} : std::vector{4, 8}) {
+        for (double modulus : {10.0, 0.1}) {
+            Material shell = unit_material(0), core = shell;
+            shell.strength = kOnset;
+            shell.toughness = 8.0 / across * kOnset * kOnset;  // its softening reaches eight cells
+            core.young_modulus = modulus;
+            MoldSettings settings;
+            settings.spacing = 1.0 / across;
+            const Vec3 half(0.5 * kLength, 0.5, 0.5), inner(0.5 * kLength, kHalf, kHalf);
+            Stand stand(
+                mold(box_mesh(-half, half), shell, settings, {{box_mesh(-inner, inner), core}}),
+                1e-4);
+            for (double side : {-1.0, 1.0}) {
+                stand.grip(end_face(stand.matter, side * Vec3::UnitX()));
+            }
+            const Drive start = stand.drive;
+            const auto pull_at = [&](double strain) {
+                Drive to = start;
+                to.time = stand.drive.time + 1;
+                to.world_from_grip[1].translation.x() += strain * kLength;
+                return stand.move(to).load[1].force.x();
+            };
+            // Between the ends as they are: grips give way a little. Hencky's law, nu = 0.
+            const auto bears = [&](double both) {
+                const auto x = [&](double side) {
+                    return mean_position(stand.matter, end_face(stand.matter, side * Vec3::UnitX()))
+                        .x();
+                };
+                const double stretch = (x(1) - x(-1)) / kLength;
+                return both * std::log(stretch) / stretch;
+            };
+            const std::string what = modulus > 1 ? "stiff core" : "soft core";
+            const double whole = pull_at(0.5 * kOnset);
+            values.add(relative(what + ": both", across,
+                                bears(1 - core_section + modulus * core_section), whole, 1e-4));
+            double alone = 0;
+            for (double strain : {1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 40.0, kFar / kOnset}) {
+                alone = pull_at(strain * kOnset);
+            }
+            values.add(relative(what + ": alone", across, bears(modulus * core_section), alone,
+                                across == 4 ? 0.002 : 0.001));
+        }
+    }
+}
+
 // The lowest swing along a free bar of two materials end to end, of lengths l and wave speeds c:
 // E_1 k_1 tan(k_1 l_1) + E_2 k_2 tan(k_2 l_2) = 0, k = w / c; the shape has cos(k x) from each end.
 struct SeriesSwing {
@@ -348,6 +399,8 @@ void add_two_material_cases(std::vector<Case>& cases) {
                      true, layers_across});
     cases.push_back({"layers-yield", "two materials, 1 : 100, sheared past yield and let go",
                      "linear hardening", 0, true, layers_yield});
+    cases.push_back({"layers-crack", "a shell that cracks around a core that does not, pulled",
+                     "Hooke", 0, true, layers_crack});
     cases.push_back({"layers-swing", "two materials, 1 : 100, in series: a free bar swings",
                      "wave equation", 0, true, layers_swing});
 }
