@@ -79,10 +79,11 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
                          "{:.3g} cells thick",
                          cost.tool_give, 100 * cost.tool_give / cost.thickness, cost.thickness));
     }
+    std::string told;
     for (const Material* of : scene.work_piece().materials()) {
         const std::string strength =
             strength_warning(*of, cost.mold.spacing, cost.mold.cell_count.minCoeff());
-        if (!strength.empty()) line("strength", strength);
+        if (!strength.empty() && strength != told) line("strength", told = strength);
     }
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));

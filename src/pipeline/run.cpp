@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run.h"
 
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -75,7 +77,11 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
         for (const Material* material : scene.body[b].materials()) {
             const std::string strength = strength_warning(*material, matter.lattice.spacing,
                                                           matter.lattice.cell_count.minCoeff());
-            if (strength.empty()) continue;
+            // Bodies and insets may be of one material.
+            if (strength.empty() ||
+                std::find(warnings.begin(), warnings.end(), strength) != warnings.end()) {
+                continue;
+            }
             log_warning("{}", strength);
             warnings.push_back(strength);
         }

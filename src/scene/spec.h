@@ -47,12 +47,13 @@ struct BodySpec {
     bool metal = false;         // that colour is
     Material material;
     std::vector<InsetSpec> inset;
+    MoldSettings mold;
+
     std::vector<const Material*> materials() const {  // its own first
         std::vector<const Material*> all{&material};
         for (const InsetSpec& one : inset) all.push_back(&one.material);
         return all;
     }
-    MoldSettings mold;
 };
 
 struct StageSpec {
