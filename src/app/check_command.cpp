@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "app/command.h"
@@ -79,11 +80,15 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
                          "{:.3g} cells thick",
                          cost.tool_give, 100 * cost.tool_give / cost.thickness, cost.thickness));
     }
-    std::string told;
+    std::vector<std::string> told;  // insets may be of one material
     for (const Material* of : scene.work_piece().materials()) {
         const std::string strength =
             strength_warning(*of, cost.mold.spacing, cost.mold.cell_count.minCoeff());
-        if (!strength.empty() && strength != told) line("strength", told = strength);
+        if (strength.empty() || std::find(told.begin(), told.end(), strength) != told.end()) {
+            continue;
+        }
+        line("strength", strength);
+        told.push_back(strength);
     }
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));
@@ -124,9 +129,11 @@ int check(const CheckArguments& given) {
             const Resolved strength =
                 resolved_strength(*of, cost.mold.spacing, cost.mold.cell_count.minCoeff());
             if (strength.whole()) continue;
-            json["strength"].push_back({{"material", of->name},
-                                        {"resolved_Pa", strength.strength},
-                                        {"across_for_whole", strength.cells_for_whole}});
+            const Json one = {{"material", of->name},
+                              {"resolved_Pa", strength.strength},
+                              {"across_for_whole", strength.cells_for_whole}};
+            Json& told = json["strength"];
+            if (std::find(told.begin(), told.end(), one) == told.end()) told.push_back(one);
         }
         if (!given.json) put_out(cost_text(*reading.scene, input, cost));
         refuse_excess(cost, options);

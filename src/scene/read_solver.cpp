@@ -70,9 +70,10 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     if (sim.solver == Solver::implicit_steps && several) {
         table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
     }
-    const bool damps = std::any_of(scene.body.begin(), scene.body.end(), [](const BodySpec& body) {
-        return body.material.damping_ratio > 0;
-    });
+    bool damps = false;
+    for (const BodySpec& body : scene.body) {
+        for (const Material* m : body.materials()) damps = damps || m->damping_ratio > 0;
+    }
     if (sim.solver == Solver::implicit_steps && damps) {
         table.warn("solver",
                    "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "

@@ -70,6 +70,10 @@ const Fracture& FractureLaws::of_cell(const Aggregate& matter, CellId cell) cons
     return law_[matter.inset.empty() ? 0 : part_in(matter, cell).law];
 }
 
+bool FractureLaws::snap_any() const {
+    return std::any_of(snaps_at_.begin(), snaps_at_.end(), [](double s) { return s < kNever; });
+}
+
 double FractureLaws::snaps_at(int direction, ParticleId lower) const {
     const Part part = part_of(direction, lower);
     return part.holds ? kNever : snaps_at_[part.law];

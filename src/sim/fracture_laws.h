@@ -37,6 +37,8 @@ class FractureLaws {
     bool breaks_wholly(int direction, ParticleId lower) const {
         return !part_of(direction, lower).holds;
     }
+    // Whether what hangs by any connection can snap.
+    bool snap_any() const;
     // The strain at which what hangs by the connection snaps; infinite where it holds on, or
     // yields: what flows bends.
     double snaps_at(int direction, ParticleId lower) const;

@@ -162,14 +162,7 @@ double LatticeForces::energy_of_change(Aggregate& matter, double before) {
     return before - elastic_energy(matter) - loose_.trial_loss(matter);
 }
 
-bool LatticeForces::may_snap(const Aggregate& matter) const {
-    bool may = false;
-    for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        const Material& of = matter.material_at(m);
-        may = may || (of.breaks() && !std::isfinite(of.yield_stress));
-    }
-    return may && !loose_.empty();
-}
+bool LatticeForces::may_snap() const { return loose_.laws().snap_any() && !loose_.empty(); }
 
 Committed LatticeForces::snap(Aggregate& matter) {
     const std::vector<Hinge> hinges =

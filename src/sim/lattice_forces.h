@@ -65,7 +65,7 @@ class LatticeForces {
 
     // Whether snap() can find anything: cracked matter that breaks and does not flow. What flows
     // bends, and has no lengths at rest by which to tell.
-    bool may_snap(const Aggregate& matter) const;
+    bool may_snap() const;
     // Breaks connections that have been bent by more than what they could be stretched
     // (sim/hinges.h), as far as the committed state shows. What they held counts as fracture.
     Committed snap(Aggregate& matter);

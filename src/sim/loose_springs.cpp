@@ -114,23 +114,22 @@ void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int 
     }
 }
 
-void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const {
+void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& turned) {
     const double a = matter.lattice.spacing;
     // Less than this is rounding [J].
     const double onset = laws_.least_onset();
     const double least = 1e-9 * stiffness_ * a * a * onset * onset;
-    LooseSprings own(matter);
     for (const HeldCell& held : turned) {
-        own.spring_.clear();
-        own.add_springs(matter, *held.run, held.n);
-        own.find_strains(matter, nullptr);
-        const std::vector<Stretch> now = own.now_;
+        spring_.clear();
+        add_springs(matter, *held.run, held.n);
+        find_strains(matter, nullptr);
+        const std::vector<Stretch> now = now_;
         const Mat3 gradient = material_gradient(matter, *held.run, held.n);
         const Symmetric<double> metric =
             flowed_metric(committed_history(matter, held.id()).stretch);
         std::vector<double> mean(now.size());  // strain that the material's is along each
         for (std::size_t n = 0; n < now.size(); ++n) {
-            const auto& way = kForward[own.spring_[n].direction];
+            const auto& way = kForward[spring_[n].direction];
             const Vec3 along(way[0], way[1], way[2]);
             const Triple<double> t = {along.x(), along.y(), along.z()};
             mean[n] = (gradient * along).norm() / std::sqrt(dot(t, metric * t)) - 1;
@@ -140,11 +139,10 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
         };
         const auto excess = [&](double bent, double all) {
             for (std::size_t n = 0; n < now.size(); ++n) {
-                own.now_[n].strain = strain(n, bent, all);
-                own.now_[n].length = now[n].distance / (1 + own.now_[n].strain);
+                now_[n].strain = strain(n, bent, all);
+                now_[n].length = now[n].distance / (1 + now_[n].strain);
             }
-            return own.sum_of(&LooseSprings::stored_in) + own.sum_of(&LooseSprings::loss_of) -
-                   held.energy;
+            return sum_of(&LooseSprings::stored_in) + sum_of(&LooseSprings::loss_of) - held.energy;
         };
         if (excess(1, 1) <= least) continue;
         double bent = 0, all = 1;
@@ -160,8 +158,8 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
         if (const CellSet* had = matter.set_of(held.id())) set = *had;
         for (std::size_t n = 0; n < now.size(); ++n) {
             // Not twice where what breaks and what holds on have one each.
-            if (n > 0 && own.spring_[n].slot == own.spring_[n - 1].slot) continue;
-            float& kept = set.strain[own.spring_[n].slot];
+            if (n > 0 && spring_[n].slot == spring_[n - 1].slot) continue;
+            float& kept = set.strain[spring_[n].slot];
             const double by = (1 + now[n].strain) / (1 + strain(n, bent, all));
             kept = static_cast<float>((1 + double(kept)) * by - 1);
         }

@@ -38,8 +38,8 @@ class LooseSprings {
     // they hold no more than the cells did. A cell that is partly filled resists being bent by its
     // filling cubed, and springs by the filling itself: their excess of that is taken away first,
     // and what their stretch holds too much then. For matter that breaks: what a blade severs,
-    // its tools pay for.
-    void take_over(Aggregate& matter, const std::vector<HeldCell>& turned) const;
+    // its tools pay for. connections_changed() must follow.
+    void take_over(Aggregate& matter, const std::vector<HeldCell>& turned);
 
     const FractureLaws& laws() const { return laws_; }
     bool empty() const { return spring_.empty(); }

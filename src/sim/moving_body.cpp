@@ -230,7 +230,7 @@ bool MovingBody::remember(double step, BodyOutcome& outcome) {
     book(lattice_.commit(matter_, true, damped ? damping_.growths() : nullptr));
     const Cracked cracked = lattice_.crack(matter_, true);
     outcome.fracture_work += cracked.lost;
-    if (lattice_.may_snap(matter_)) {
+    if (lattice_.may_snap()) {
         turned_ += step * top_speed();
         if (turned_ > kTurned * matter_.lattice.spacing) {
             turned_ = 0;

@@ -41,7 +41,7 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
         const double before = booked(to, outcome.body[0]);
         const Cracked cracked = lattice_.crack(matter_);
         Committed snapped;
-        if (cracked.cells == 0 && lattice_.may_snap(matter_)) snapped = lattice_.snap(matter_);
+        if (cracked.cells == 0 && lattice_.may_snap()) snapped = lattice_.snap(matter_);
         if (cracked.cells == 0 && snapped.broken == 0) return;
         connections_renewed();
         slips_.forget();

@@ -3,15 +3,13 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
 
 #include "base/parallel.h"
-#include "sim/advance.h"
 #include "sim/cell_volume.h"
 #include "sim/fracture_laws.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
-#include "tests/sim/motion.h"
+#include "tests/sim/pulled_bar.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -35,46 +33,26 @@ const Material kStrong = brittle(2 * kModulus, 4 * kStrength, 8 * kToughness);
 const Material kTough{
     .young_modulus = 20 * kModulus, .poisson_ratio = 0.2, .density = 8000, .damping_ratio = 0.02};
 
-// A bar along x between two grips; of the second material where `is_inset` says.
-struct Bar {
-    Aggregate matter;
-    Apparatus apparatus;
-    SimSettings settings;
-    std::unique_ptr<Simulation> simulation;
-    Drive drive;
+// Of the second material where `is_inset` says.
+struct Bar : PulledBar {
+    using IsInset = std::function<bool(const Vec3i& site, const Vec3i& count)>;
 
-    Bar(const Material& own, const Material& other, int across,
-        const std::function<bool(const Vec3i& site, const Vec3i& count)>& is_inset,
+    Bar(const Material& own, const Material& other, int across, const IsInset& is_inset,
         Solver solver = Solver::quasistatic)
-        : matter(make_block(int(std::lround(kLength / kSide * across)), across, across,
-                            kSide / across, own)) {
-        matter.inset.push_back(other);
-        matter.cell_material.assign(matter.cell_fill.size(), 0);
-        for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
-            matter.cell_material[c] =
-                is_inset(matter.lattice.cell_site(CellId(c)), matter.lattice.cell_count);
-        }
-        apparatus.name = "pull";
-        for (int side : {-1, 1}) {
-            Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
-            grip.point = points_where(
-                matter, [&](const Vec3& x) { return side * x.x() > 0.4999 * kLength; });
-            for (int p : grip.point) grip.anchor.push_back(matter.surface_position(p));
-            apparatus.grip.push_back(grip);
-        }
-        drive.world_from_grip = {Pose{}, Pose{}};
+        : PulledBar(body(own, other, across, is_inset), kLength, 1e-3) {
         settings.solver = solver;
-        settings.tolerance = 1e-3;
-        settings.grip_stiffness = 100;
-        simulation = std::make_unique<Simulation>(matter, apparatus, settings);
+        start();
     }
-    FrameReport pull_to(double way, double duration = 1) {
-        Drive to = drive;
-        to.time += duration;
-        to.world_from_grip[1].translation.x() = way;
-        const FrameReport r = simulation->advance(drive, to);
-        drive = to;
-        return r;
+    static Aggregate body(const Material& own, const Material& other, int across,
+                          const IsInset& is_inset) {
+        Aggregate m = make_block(int(std::lround(kLength / kSide * across)), across, across,
+                                 kSide / across, own);
+        m.inset.push_back(other);
+        for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+            m.cell_material.push_back(
+                is_inset(m.lattice.cell_site(CellId(c)), m.lattice.cell_count));
+        }
+        return m;
     }
     // Connections that loads have broken, in cells of the second material and in others.
     std::array<int, 2> broken() const {
@@ -91,8 +69,6 @@ struct Bar {
         return count;
     }
 };
-
-double pull(const FrameReport& r) { return r.load[1].force.x(); }
 
 bool is_right(const Vec3i& site, const Vec3i& count) { return 2 * site.x() >= count.x(); }
 bool is_core(const Vec3i& site, const Vec3i& count) {
@@ -165,7 +141,7 @@ TEST_CASE("a soft core of a stiff shell carries by its own stiffness once that h
                      .centroid = {Eigen::Vector3f(0, 0.25f, 0), Eigen::Vector3f(0, -0.25f, 0)},
                      .normal = Eigen::Vector3f::UnitY()});
             }
-            bar.simulation = std::make_unique<Simulation>(m, bar.apparatus, bar.settings);
+            bar.start();
         }
         const double core = (askew ? 4.5 / 16 : 0.25) * kSide * kSide;
         FrameReport r;

@@ -7,7 +7,7 @@
 #include "sim/lattice_forces.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
-#include "tests/sim/motion.h"
+#include "tests/sim/pulled_bar.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -32,55 +32,30 @@ Material brittle(Mechanics mechanics) {
             .toughness = kToughness};
 }
 
-// A bar along x between two grips, thinner by a tenth in the cells beyond its middle.
-struct Bar {
-    Aggregate matter;
-    Apparatus apparatus;
-    SimSettings settings;
-    double section;  // of the thin cells
-    std::unique_ptr<Simulation> simulation;
-    Drive drive;
+// Thinner by a tenth in the cells beyond its middle.
+struct Bar : PulledBar {
+    double section = 0.9 * kSide * kSide;  // of the thin cells
 
     Bar(const Material& material, int across, double tolerance = 1e-4)
-        : matter(make_block(int(std::lround(kLength / kSide * across)), across, across,
-                            kSide / across, material)),
-          section(0.9 * kSide * kSide) {
-        for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
-            if (matter.lattice.cell_site(int(c)).x() == matter.lattice.cell_count.x() / 2) {
-                matter.cell_fill[c] = 0.9f;
-                const auto corner = matter.lattice.cell_corners(int(c));
-                for (const CellConnection& slot : kCellConnection) {
-                    const bool edge = slot.direction < kEdgeCount;
-                    SparseArray<float>& weight = matter.connection[slot.direction].weight;
-                    const ParticleId lower = corner[slot.corner];
-                    weight.set(lower, weight[lower] - (edge ? 0.025f : 0.05f));
-                }
+        : PulledBar(body(material, across), kLength, tolerance) {}
+    static Aggregate body(const Material& material, int across) {
+        Aggregate m = make_block(int(std::lround(kLength / kSide * across)), across, across,
+                                 kSide / across, material);
+        for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+            if (m.lattice.cell_site(int(c)).x() != m.lattice.cell_count.x() / 2) continue;
+            m.cell_fill[c] = 0.9f;
+            const auto corner = m.lattice.cell_corners(int(c));
+            for (const CellConnection& slot : kCellConnection) {
+                const bool edge = slot.direction < kEdgeCount;
+                SparseArray<float>& weight = m.connection[slot.direction].weight;
+                const ParticleId lower = corner[slot.corner];
+                weight.set(lower, weight[lower] - (edge ? 0.025f : 0.05f));
             }
         }
-        apparatus.name = "pull";
-        for (int side : {-1, 1}) {
-            Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
-            grip.point = points_where(
-                matter, [&](const Vec3& x) { return side * x.x() > 0.4999 * kLength; });
-            for (int p : grip.point) grip.anchor.push_back(matter.surface_position(p));
-            apparatus.grip.push_back(grip);
-        }
-        drive.world_from_grip = {Pose{}, Pose{}};
-        settings.tolerance = tolerance;
-        settings.grip_stiffness = 100;
-        simulation = std::make_unique<Simulation>(matter, apparatus, settings);
-    }
-    FrameReport pull_to(double way) {
-        Drive to = drive;
-        to.time += 1;
-        to.world_from_grip[1].translation.x() = way;
-        const FrameReport r = simulation->advance(drive, to);
-        drive = to;
-        return r;
+        return m;
     }
 };
 
-double pull(const FrameReport& r) { return r.load[1].force.x(); }
 constexpr double kOpening = 2.3 * kToughness / kStrength;  // by which the bar has parted
 
 }  // namespace
@@ -177,7 +152,7 @@ TEST_CASE("explicit steps break a bar too, and keep the books") {
     material.damping_ratio = 0.02;
     Bar bar(material, 2);
     bar.settings.solver = Solver::explicit_steps;
-    bar.simulation = std::make_unique<Simulation>(bar.matter, bar.apparatus, bar.settings);
+    bar.start();
     double largest = 0;
     FrameReport r;
     for (int n = 1; n <= 50; ++n) {
@@ -279,7 +254,7 @@ TEST_CASE("a thread of brittle matter snaps when it is bent by more than it can 
     Material ductile = material;
     ductile.yield_stress = 1e9;
     Thread hangs(ductile, 1);
-    CHECK_FALSE(LatticeForces(hangs.matter).may_snap(hangs.matter));
+    CHECK_FALSE(LatticeForces(hangs.matter).may_snap());
     Thread turned(material, 0);
     place(turned.matter, {Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())), Vec3(1, 0, 0)});
     LatticeForces forces(turned.matter);
@@ -293,7 +268,7 @@ TEST_CASE("damping that is slow to yield does not hold a crack together") {
             material.damping_ratio = damping;
             Bar bar(material, 2);
             bar.settings.solver = Solver::explicit_steps;
-            bar.simulation = std::make_unique<Simulation>(bar.matter, bar.apparatus, bar.settings);
+            bar.start();
             FrameReport r;
             for (int n = 1; n <= 80 && (n < 2 || r.pieces < 2); ++n) {
                 Drive to = bar.drive;

@@ -5,6 +5,7 @@
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/pulled_bar.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -76,12 +77,7 @@ TEST_CASE("pieces part freely: a severed half follows its grip and feels no forc
     Aggregate m = make_block(8, 2, 2, 0.1, Material{});
     Apparatus apparatus;
     apparatus.name = "cut";
-    for (int side : {-1, 1}) {
-        Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
-        grip.point = points_where(m, [&](const Vec3& x) { return side * x.x() > 0.3; });
-        for (int p : grip.point) grip.anchor.push_back(m.surface_position(p));
-        apparatus.grip.push_back(grip);
-    }
+    apparatus.grip = end_grips(m, 0.3);
     apparatus.blade.push_back({"blade", {Vec3(0.02, 0, -1), Vec3(0.02, 0, 1)}, {}});
     const auto drive = [](double y, double pull) {
         Drive d;
