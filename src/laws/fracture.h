@@ -12,9 +12,14 @@
 //
 // Unloading goes to the origin. An edge that is pressed has all its stiffness, broken or not: a
 // closed crack carries pressure without friction. Broken diagonals are gone: they would glue it.
-// The two diagonals of a face go together, by s^2 = m^2 + kSlant d^2 with m the mean of their
-// strains, d half the difference:
-// alone, the one that softens more would let the other carry all, and the sides slide apart.
+// The two diagonals of a face go together, for alone the one that softens more would let the other
+// carry all, and the sides slide apart. With m the mean of their strains, d half the difference,
+//
+//     s^2 = m+^2 + kSlide (d - m-)^2 + (kSlant - kSlide) min(m+, d)^2
+//
+// m+ what they are pulled on the whole, m- pressed, d - m- at least 0. A face that opens aslant
+// has m = d, one that slides m = 0: kSlide gives sliding along a (100) plane the toughness that
+// opening it has. Pressed, it softens by what one of the two is still pulled.
 //
 //     s_0 = sigma / E      sigma = min(sigma_f, sqrt(E G_c / (kLeastReach a)))
 //     s_1 = s_0 / 2        s_f = G_c / (1.8 a E s_1)
@@ -51,6 +56,7 @@ struct Fracture {
 
 inline constexpr double kLeastReach = 4;
 inline constexpr double kSlant = 5;
+inline constexpr double kSlide = 4.0 / 9;
 
 // l_c [m]; a spacing of l_c / kLeastReach and below gives the material its whole strength.
 inline double fracture_reach(double young_modulus, double strength, double toughness) {
@@ -68,12 +74,12 @@ inline Fracture fracture_law(double young_modulus, double strength, double tough
     return {onset, 0.5 * onset, toughness / (1.8 * spacing * young_modulus * 0.5 * onset)};
 }
 
-// The strain by which the two diagonals of a face soften. Pressed on the whole, only what one of
-// them is pulled counts.
+// The strain by which the two diagonals of a face soften.
 inline double face_strain(double one, double other) {
-    const double mean = 0.5 * (one + other), half = 0.5 * (one - other);
-    const double pressed = mean < 0 ? mean * mean : 0, pulled = mean > 0 ? mean * mean : 0;
-    return std::sqrt(pulled + kSlant * std::max(0.0, half * half - pressed));
+    const double mean = 0.5 * (one + other), half = 0.5 * std::abs(one - other);
+    const double pulled = std::max(0.0, mean), both = std::min(pulled, half);
+    const double slid = mean < 0 ? std::max(0.0, half + mean) : half;
+    return std::sqrt(pulled * pulled + kSlide * slid * slid + (kSlant - kSlide) * both * both);
 }
 
 // 1 - D after the largest strain w.

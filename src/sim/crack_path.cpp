@@ -89,7 +89,8 @@ bool are_in_line(const StrainedCell& one, const StrainedCell& other) {
     return is_in_line(other.site - one.site, one.pull);
 }
 
-double off_track_factor(const Aggregate& matter, const StrainedCell& cell) {
+double off_track_factor(const Aggregate& matter, const FractureLaws& laws,
+                        const StrainedCell& cell) {
     Vec3 way_to_broken = Vec3::Zero();
     int broken = 0;
     for_cells_near(matter.lattice, cell.site, kTrackReach,
@@ -99,6 +100,7 @@ double off_track_factor(const Aggregate& matter, const StrainedCell& cell) {
                        ++broken;
                    });
     if (broken == 0) return 1;
+    way_to_broken /= broken;
     Mat3 pull = Mat3::Zero();
     for_cells_near(matter.lattice, cell.site, kPullReach,
                    [&](const CellRun& run, int n, const Vec3i&) {
@@ -109,9 +111,23 @@ double off_track_factor(const Aggregate& matter, const StrainedCell& cell) {
                        const Vec3 along = c.eigenvectors().col(2);
                        pull += most * most * most * most * along * along.transpose();
                    });
-    const double off = std::abs(way_to_broken.dot(largest_direction(pull))) / broken;
-    const double beyond = std::max(0.0, off - kOnTrack);
-    return std::min(kMostSpared, 1 + kOffTrack * beyond * beyond);
+    const Vec3 across = largest_direction(pull);
+    const auto off_track = [&](const Vec3& way) -> double {
+        return std::max(0.0, std::abs((way_to_broken - way).dot(across)) - kOnTrack);
+    };
+    const double beyond = off_track(Vec3::Zero());
+    const double factor = std::min(kMostSpared, 1 + kOffTrack * beyond * beyond);
+    if (matter.inset.empty() || factor == 1) return factor;
+    const double own = laws.of_cell(matter, cell.cell).onset;
+    bool is_blocked = false, is_open = false;
+    for_cells_near(matter.lattice, cell.site, kPullReach,
+                   [&](const CellRun& run, int n, const Vec3i& way) {
+                       if (!is_sound(matter, run, n) || off_track(way.cast<double>()) > 0) return;
+                       const double onset = laws.of_cell(matter, run.first + n).onset;
+                       const bool holds = !(onset > 0) || onset > factor * own;
+                       (holds ? is_blocked : is_open) = true;
+                   });
+    return is_blocked && !is_open ? 1 : factor;
 }
 
 }  // namespace swage

@@ -186,7 +186,7 @@ std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const Fractur
             const Beyond& b = beyond[begin + n];
             const StrainedCell at = strained_cell(matter, *b.run, b.n);
             const bool spared = b.share < kSpared && is_beside_crack(matter, at);
-            some[n] = {at, spared ? 0 : b.share / off_track_factor(matter, at)};
+            some[n] = {at, spared ? 0 : b.share / off_track_factor(matter, laws, at)};
         });
         for (const Candidate& c : some) largest = std::max(largest, c.share);
         all.insert(all.end(), some.begin(), some.end());

@@ -61,6 +61,8 @@ void LooseSprings::connections_changed(const Aggregate& matter) {
             if (!cell_is_sound(matter, run.first + n, row)) add_springs(matter, run, n);
         }
     }
+    find_strains(matter, nullptr);
+    commit_strains();
 }
 
 // A cell that is not sound gives its share of what its connections have left, as stiff as the
@@ -142,6 +144,7 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
                 now_[n].strain = strain(n, bent, all);
                 now_[n].length = now[n].distance / (1 + now_[n].strain);
             }
+            commit_strains();
             return sum_of(&LooseSprings::stored_in) + sum_of(&LooseSprings::loss_of) - held.energy;
         };
         if (excess(1, 1) <= least) continue;
@@ -205,23 +208,35 @@ void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest
     });
 }
 
-double LooseSprings::now_worst(std::size_t n) const {
-    const Spring& s = spring_[n];
-    const bool single = s.partner == static_cast<int>(n);
-    return std::max(s.worst,
-                    single ? now_[n].strain : face_strain(now_[n].strain, now_[s.partner].strain));
+double LooseSprings::softens_by(std::size_t n) const {
+    const int partner = spring_[n].partner;
+    return partner == static_cast<int>(n) ? now_[n].strain
+                                          : face_strain(now_[n].strain, now_[partner].strain);
+}
+
+void LooseSprings::commit_strains() {
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        spring_[n].strain = now_[n].strain;
+        spring_[n].softens_by = softens_by(n);
+    }
 }
 
 // What softening on from the committed history takes. A diagonal softens by the strain of its face
-// and loses by its own.
+// and loses by its own: both go evenly from what they were, the losses' share between.
 double LooseSprings::loss_of(std::size_t n) const {
     const Spring& s = spring_[n];
     if (s.kind != Kind::softening) return 0;
-    const double worst = now_worst(n);
-    if (!(worst > s.worst)) return 0;
-    const double share = now_[n].strain / worst;
-    return s.stiffness * now_[n].length * now_[n].length * share * share *
-           (fracture_loss(s.law, worst) - fracture_loss(s.law, s.worst));
+    const double by = softens_by(n), strain = now_[n].strain;
+    if (!(by > s.worst)) return 0;
+    const auto own_share = [&](double worst) -> double {
+        if (worst <= s.softens_by) return s.strain / s.softens_by;
+        const double way = (worst - s.softens_by) / (by - s.softens_by);
+        return (s.strain + way * (strain - s.strain)) / worst;
+    };
+    const double first = own_share(s.worst), last = own_share(std::min(by, s.law.broken));
+    return s.stiffness * now_[n].length * now_[n].length *
+           ((first * first + first * last + last * last) / 3) *
+           (fracture_loss(s.law, by) - fracture_loss(s.law, s.worst));
 }
 
 void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest,
@@ -283,6 +298,7 @@ Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
         s.worst = worst;
         result.lost += stored - stored_in(n);
     }
+    commit_strains();
     return result;
 }
 

@@ -84,11 +84,15 @@ class LooseSprings {
         double worst;        // largest strain so far, committed; of a diagonal: of its face
         Fracture law;        // onset 0: does not break
         int partner;         // the other diagonal, or itself
+        double strain = 0;   // its own and what it softens by, committed
+        double softens_by = 0;
     };
     void add_springs(const Aggregate& matter, const CellRun& run, int n);
     void find_strains(const Aggregate& matter, const RestStrains* rest);
     // At the strains found last.
-    double now_worst(std::size_t n) const;
+    double softens_by(std::size_t n) const;
+    double now_worst(std::size_t n) const { return std::max(spring_[n].worst, softens_by(n)); }
+    void commit_strains();
     double loss_of(std::size_t n) const;
     double stored_in(std::size_t n) const;
     double sum_of(double (LooseSprings::*part)(std::size_t) const) const;

@@ -24,6 +24,9 @@ constexpr double kLongest = 0.2;  // of any particle
 // How much lighter a slow motion may be: no one number suits all bodies, so they take turns. The
 // second is for what next to nothing pushes onto its rests.
 constexpr double kGain[] = {300, 1e4, 300, 30, 1};
+// Forces beyond so many times the largest push, and beyond those at first, have thrown something:
+// what cracks leave loose flies farther than it is held by, the lighter its motion is taken to be.
+constexpr double kThrown = 100;
 constexpr int kRenewInterval = 50;
 // In which points that press on their own body meet it anew once all is at rest. NOTE: a point in
 // the crease between two planes meets now the one and now the other, so this need not end.
@@ -51,7 +54,10 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     const double a = matter_.lattice.spacing;
     Vec3Array& x = matter_.particle_position;
     Vec3Array &v = velocity_, &f = force_;
-    for (auto* component : {&v.x, &v.y, &v.z}) std::fill(component->begin(), component->end(), 0.0);
+    const auto stop = [&] {
+        for (auto* c : {&v.x, &v.y, &v.z}) std::fill(c->begin(), c->end(), 0.0);
+    };
+    stop();
     if (!coarse_) coarse_.emplace(matter_);
     coarse_->limit_gain(kGain[0]);
     const auto hold = [&] {
@@ -73,6 +79,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     };
     list_candidates();
 
+    const Vec3Array first = x;
+    double thrown = 0;  // residual beyond which something was
+    bool is_light = true;
     Momentum momentum;
     Relaxation result;
     int renewed = 0, weighted_mirrors = 0, rounds = 0;
@@ -82,7 +91,8 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     for (int iteration = 1; iteration <= patience.limit; ++iteration) {
         throw_if_interrupted();
         result.iterations = iteration;
-        if (iteration % turn == 1) coarse_->limit_gain(kGain[iteration / turn % std::size(kGain)]);
+        if (iteration % turn == 1 && is_light)
+            coarse_->limit_gain(kGain[iteration / turn % std::size(kGain)]);
         patience.watch(iteration, x, a, result.residual);
         evaluate(to, moved);
         if (mirrored_ > weighted_mirrors || self_.has_found_more()) {
@@ -92,6 +102,17 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
         if (iteration % kCheckInterval == 0) {
             result.residual = residual_of(f, to);
             if (!std::isfinite(result.residual)) return result;
+            if (thrown == 0) thrown = kThrown * std::max(1.0, result.residual);
+            if (result.residual > thrown && is_light) {
+                is_light = false;
+                coarse_->limit_gain(1);
+                x = first;
+                stop();
+                self_.meet_anew();
+                list_candidates();
+                momentum = {};
+                continue;
+            }
             if (result.residual <= accuracy_) {
                 result.converged = true;
                 if (rounds++ == kMostRounds || !self_.meet_anew()) return result;

@@ -76,6 +76,73 @@ void strip(bool brief, Values& values) {
     }
 }
 
+// The farthest broken diagonal of the faces that look along z.
+double slid_as_far_as(const Aggregate& m) {
+    double ahead = -1e3;
+    for (const Span& span : m.lattice.span) {
+        const std::vector<float>& damage = m.connection[span.direction].damage;
+        const auto& way = kForward[span.direction];
+        if (damage.empty() || way[0] == 0 || way[1] == 0) continue;
+        for (int n = 0; n < span.count; ++n) {
+            if (damage[span.lower + n] < 1) continue;
+            const Vec3 middle = 0.5 * (m.particle_reference.at(span.lower + n) +
+                                       m.particle_reference.at(span.upper + n));
+            ahead = std::max(ahead, middle.x());
+        }
+    }
+    return ahead;
+}
+
+// A strip of which one layer of cells breaks, whose clamped edges slide by each other, or part
+// while they do.
+void weak_layer(bool brief, Values& values) {
+    constexpr double kHeld = 3, kFirst = 0.5;
+    struct Level {
+        double reach, half, bound;
+    };
+    for (const auto& [reach, half, bound] : {Level{8, 16.5, 0.15}, Level{16, 26.5, 0.05}}) {
+        if (brief && reach > 8) break;
+        for (double degrees : {90.0, 45.0}) {
+            if (brief && degrees < 90) break;
+            const double angle = degrees * kPi / 180;
+            const Vec3 way(std::sin(angle), std::cos(angle), 0);
+            Aggregate body = slice(5 * half, 2 * (half + kHeld), 0, unit_material(kCrackNu));
+            const Material weak = breaking(reach);
+            body.inset.push_back(weak);
+            const int middle = body.lattice.cell_count.y() / 2;
+            for (std::size_t c = 0; c < body.cell_fill.size(); ++c) {
+                const Vec3i site = body.lattice.cell_site(static_cast<CellId>(c));
+                body.cell_material.push_back(site.y() == middle);
+            }
+            Stand stand(std::move(body), kTolerance);
+            const double end = -0.8 * half;
+            notch(stand.matter, Vec3::UnitX(), Vec3::UnitY(), end);
+            for (int side : {-1, 1}) {
+                stand.grip(clamped(stand.matter, Vec3::UnitY(), side, half));
+            }
+            // Far ahead: E / (1 - nu^2) parted^2 / (4 half) + E / (2 (1 + nu)) slid^2 / (4 half).
+            const double each = (way.y() * way.y() / (1 - kCrackNu * kCrackNu) +
+                                 way.x() * way.x() / (2 * (1 + kCrackNu))) /
+                                (4 * half);
+            const Drive rest = stand.drive;
+            double share = kFirst;
+            for (; share < 4; share += kStep) {
+                Drive to = stand.drive;
+                for (int side : {-1, 1}) {
+                    to.world_from_grip[side > 0].translation =
+                        rest.world_from_grip[side > 0].translation +
+                        0.5 * side * std::sqrt(share * weak.toughness / each) * way;
+                }
+                stand.move(to);
+                if (slid_as_far_as(stand.matter) > end + 0.7 * half) break;
+            }
+            const std::string at = fmt::format(", {:g} deg, l / a = {:g}", degrees, reach);
+            values.add(
+                absolute("G / G_c" + at, 0, 1, share - 0.5 * kStep, degrees < 90 ? 0.25 : bound));
+        }
+    }
+}
+
 // Two arms with grooves between them, drawn apart at their ends.
 void cantilevers(bool, Values& values) {
     constexpr double kGroove = 0.15;  // of the thickness that is left
@@ -158,6 +225,8 @@ void closed_crack(bool, Values& values) {
 void add_fracture_cases(std::vector<Case>& cases) {
     cases.push_back({"crack", "a crack runs through a strip with clamped edges",
                      "energy balance (Rice 1968)", 0, false, strip});
+    cases.push_back({"weak-layer", "a crack slides along a weak layer, or opens it as well",
+                     "energy balance (Rice 1968)", 0, false, weak_layer});
     cases.push_back({"double-cantilever", "a crack between two arms drawn apart", "beams", 0, false,
                      cantilevers});
     cases.push_back(

@@ -91,6 +91,25 @@ TEST_CASE(
     CHECK(face_strain(0.2, 0) > 0.2);
 }
 
+TEST_CASE("sliding along a lattice plane takes the toughness as opening it does") {
+    const Fracture f = law();
+    const double k = 0.4 * kModulus * kSpacing;
+    // Over each square of the plane two diagonals are pulled and pressed alike, the others turn.
+    double work = 0, before = 0;
+    constexpr int kSteps = 20000;
+    const double most = 2 * f.broken;
+    for (int n = 1; n <= kSteps; ++n) {
+        const double slid = most * n / kSteps, by = face_strain(slid, -slid);
+        const double now = kept_share(f, by) * slid;
+        work += 0.5 * (before + now) * most / kSteps;
+        before = now;
+    }
+    CHECK(2 * 2 * k * work == Approx(kToughness).epsilon(1e-6));
+    // Pressed, only by what one of the two is still pulled.
+    CHECK(face_strain(0.2, -0.3) == Approx(face_strain(0.2, -0.2)));
+    CHECK(face_strain(-0.1, -0.3) == 0);
+}
+
 TEST_CASE("a cell whose strain measure is small has no strain that reaches the bound") {
     std::mt19937 engine(7);
     std::normal_distribution<double> draw;

@@ -179,7 +179,7 @@ TEST_CASE("what breaks while it rubs loses nothing that the books do not tell") 
     std::vector<double>& height = board.particle_position.y;
     const double lift = 1e-4 - *std::min_element(height.begin(), height.end());
     for (double& y : height) y += lift;
-    for (double& v : board.particle_velocity.y) v = -3;
+    for (double& v : board.particle_velocity.y) v = -6;
     const Apparatus apparatus = floor_with(0.5);
     SimSettings settings = motion_settings();
     settings.step_safety = 0.2;
