@@ -118,16 +118,17 @@ double off_track_factor(const Aggregate& matter, const FractureLaws& laws,
     const double beyond = off_track(Vec3::Zero());
     const double factor = std::min(kMostSpared, 1 + kOffTrack * beyond * beyond);
     if (matter.inset.empty() || factor == 1) return factor;
+    // Whether all that lies on the track holds on.
     const double own = laws.of_cell(matter, cell.cell).onset;
-    bool is_blocked = false, is_open = false;
+    int on_track = 0, holding = 0;
     for_cells_near(matter.lattice, cell.site, kPullReach,
                    [&](const CellRun& run, int n, const Vec3i& way) {
                        if (!is_sound(matter, run, n) || off_track(way.cast<double>()) > 0) return;
                        const double onset = laws.of_cell(matter, run.first + n).onset;
-                       const bool holds = !(onset > 0) || onset > factor * own;
-                       (holds ? is_blocked : is_open) = true;
+                       ++on_track;
+                       holding += onset == 0 || onset > factor * own;
                    });
-    return is_blocked && !is_open ? 1 : factor;
+    return on_track > 0 && holding == on_track ? 1 : factor;
 }
 
 }  // namespace swage

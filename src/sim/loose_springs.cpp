@@ -215,10 +215,12 @@ double LooseSprings::softens_by(std::size_t n) const {
 }
 
 void LooseSprings::commit_strains() {
-    for (std::size_t n = 0; n < spring_.size(); ++n) {
-        spring_[n].strain = now_[n].strain;
-        spring_[n].softens_by = softens_by(n);
-    }
+    for_each_chunk(spring_.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            spring_[n].strain = now_[n].strain;
+            spring_[n].softens_by = softens_by(n);
+        }
+    });
 }
 
 // What softening on from the committed history takes. A diagonal softens by the strain of its face

@@ -91,8 +91,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     for (int iteration = 1; iteration <= patience.limit; ++iteration) {
         throw_if_interrupted();
         result.iterations = iteration;
-        if (iteration % turn == 1 && is_light)
+        if (iteration % turn == 1 && is_light) {
             coarse_->limit_gain(kGain[iteration / turn % std::size(kGain)]);
+        }
         patience.watch(iteration, x, a, result.residual);
         evaluate(to, moved);
         if (mirrored_ > weighted_mirrors || self_.has_found_more()) {

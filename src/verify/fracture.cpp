@@ -226,7 +226,7 @@ void add_fracture_cases(std::vector<Case>& cases) {
     cases.push_back({"crack", "a crack runs through a strip with clamped edges",
                      "energy balance (Rice 1968)", 0, false, strip});
     cases.push_back({"weak-layer", "a crack slides along a weak layer, or opens it as well",
-                     "energy balance (Rice 1968)", 0, false, weak_layer});
+                     "energy balance (Rice 1968)", 0, true, weak_layer});
     cases.push_back({"double-cantilever", "a crack between two arms drawn apart", "beams", 0, false,
                      cantilevers});
     cases.push_back(
