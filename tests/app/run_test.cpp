@@ -364,3 +364,19 @@ TEST_CASE("a stage whose steps have damped what they move by themselves says so"
     CHECK(told("implicit"));
     CHECK_FALSE(told("explicit"));
 }
+
+TEST_CASE("books that hold nothing but round-off are not said to be open") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "still.toml";
+    run_swage({"make", "rod", "--length", "10 cm", "--out", "rod.obj"}, scratch.path());
+    put_text(scene,
+             "[mesh]\nfile = \"rod.obj\"\n[material]\nname = \"silicone\"\n[mold]\nacross = 4\n"
+             "[[stage]]\nmachine = \"floor\"\nframes = 4\nduration = \"1 s\"\n");
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.find("nothing moves") != std::string::npos);
+    CHECK(outcome.err.find("books do not close") == std::string::npos);
+}
