@@ -122,6 +122,7 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
             if (!springs) strain_measures(matter, run, measure);
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
+                if (!matter.cell_cracked.empty() && matter.cell_cracked[cell] != 0) continue;
                 // Where a cell has flowed its connections do not tell its elastic strain.
                 const bool flowed =
                     !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;

@@ -122,12 +122,14 @@ Committed LatticeForces::commit(Aggregate& matter, bool in_motion, SlabGrowths* 
         result.plastic =
             spring_flow_->commit(matter, in_motion, growths ? &growths->back() : nullptr);
     }
-    const Broken broken = loose_.commit(matter, nullptr);
+    // In motion it is committed where forces were just found.
+    if (!in_motion || spring_flow_) loose_.find_strains(matter, nullptr);
+    const Broken broken = loose_.commit(matter);
     result.fracture = broken.lost;
     result.broken = broken.count;
     if (broken.count > 0 && cells_) {
         // Sound cells beside what broke turn into springs too.
-        result.fracture += energy_of_change(matter, elastic_energy(matter));
+        result.fracture += energy_of_change(matter, energy_found(matter));
     } else if (broken.count > 0) {
         connections_changed(matter);
     } else {
@@ -151,7 +153,7 @@ Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
     const std::vector<CellId> cells =
         cells_beyond_strength(matter, loose_.laws(), in_motion ? &runs : nullptr);
     if (cells.empty()) return {};
-    const double before = elastic_energy(matter);
+    const double before = in_motion ? energy_found(matter) : elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);
     for (CellId cell : cells) matter.cell_cracked[cell] = 1;
     return {static_cast<int>(cells.size()), energy_of_change(matter, before)};
@@ -159,7 +161,7 @@ Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
 
 double LatticeForces::energy_of_change(Aggregate& matter, double before) {
     connections_changed(matter);
-    return before - elastic_energy(matter) - loose_.trial_loss(matter);
+    return before - energy_found(matter) - loose_.trial_loss();
 }
 
 bool LatticeForces::may_snap() const { return loose_.laws().snap_any() && !loose_.empty(); }
@@ -181,9 +183,14 @@ Committed LatticeForces::snap(Aggregate& matter) {
 }
 
 double LatticeForces::elastic_energy(const Aggregate& matter) {
+    loose_.find_strains(matter, nullptr);
+    return energy_found(matter);
+}
+
+double LatticeForces::energy_found(const Aggregate& matter) {
     const double lattice =
         cells_ ? cells_->elastic_energy(matter) : swage::elastic_energy(matter, spring_law_);
-    return lattice + loose_.elastic_energy(matter) + guard_energy_of(matter);
+    return lattice + loose_.elastic_energy() + guard_energy_of(matter);
 }
 
 std::vector<double> LatticeForces::stiffness_bound(const Aggregate& matter) const {

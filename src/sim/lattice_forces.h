@@ -90,6 +90,8 @@ class LatticeForces {
     // After cells or connections have become others: energy that this took, beyond what softening
     // on to the present positions will [J].
     double energy_of_change(Aggregate& matter, double before);
+    // Where the strains of loose springs have just been found [J].
+    double energy_found(const Aggregate& matter);
 
     bool in_motion_;
     LatticeLaw spring_law_;

@@ -144,8 +144,9 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
                 now_[n].strain = strain(n, bent, all);
                 now_[n].length = now[n].distance / (1 + now_[n].strain);
             }
+            find_softening();
             commit_strains();
-            return sum_of(&LooseSprings::stored_in) + sum_of(&LooseSprings::loss_of) - held.energy;
+            return elastic_energy() + trial_loss() - held.energy;
         };
         if (excess(1, 1) <= least) continue;
         double bent = 0, all = 1;
@@ -206,19 +207,25 @@ void LooseSprings::find_strains(const Aggregate& matter, const RestStrains* rest
     for_each_chunk(spring_.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) find(n);
     });
+    find_softening();
 }
 
-double LooseSprings::softens_by(std::size_t n) const {
-    const int partner = spring_[n].partner;
-    return partner == static_cast<int>(n) ? now_[n].strain
-                                          : face_strain(now_[n].strain, now_[partner].strain);
+void LooseSprings::find_softening() {
+    for_each_chunk(spring_.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            const auto partner = static_cast<std::size_t>(spring_[n].partner);
+            now_[n].softens_by = partner == n
+                                     ? now_[n].strain
+                                     : face_strain(now_[n].strain, now_[partner].strain);
+        }
+    });
 }
 
 void LooseSprings::commit_strains() {
     for_each_chunk(spring_.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
             spring_[n].strain = now_[n].strain;
-            spring_[n].softens_by = softens_by(n);
+            spring_[n].softens_by = now_[n].softens_by;
         }
     });
 }
@@ -228,7 +235,7 @@ void LooseSprings::commit_strains() {
 double LooseSprings::loss_of(std::size_t n) const {
     const Spring& s = spring_[n];
     if (s.kind != Kind::softening) return 0;
-    const double by = softens_by(n), strain = now_[n].strain;
+    const double by = now_[n].softens_by, strain = now_[n].strain;
     if (!(by > s.worst)) return 0;
     const auto own_share = [&](double worst) -> double {
         if (worst <= s.softens_by) return s.strain / s.softens_by;
@@ -269,10 +276,9 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
     }
 }
 
-Broken LooseSprings::commit(Aggregate& matter, const RestStrains* rest) {
+Broken LooseSprings::commit(Aggregate& matter) {
     Broken result;
     if (!laws_.break_any()) return result;
-    find_strains(matter, rest);
     for (std::size_t n = 0; n < spring_.size(); ++n) {
         Spring& s = spring_[n];
         const double worst = now_worst(n);
@@ -320,16 +326,6 @@ double LooseSprings::sum_of(double (LooseSprings::*part)(std::size_t) const) con
     double sum = 0;
     for (std::size_t n = 0; n < spring_.size(); ++n) sum += (this->*part)(n);
     return sum;
-}
-
-double LooseSprings::elastic_energy(const Aggregate& matter) {
-    find_strains(matter, nullptr);
-    return sum_of(&LooseSprings::stored_in);
-}
-
-double LooseSprings::trial_loss(const Aggregate& matter) {
-    find_strains(matter, nullptr);
-    return sum_of(&LooseSprings::loss_of);
 }
 
 void LooseSprings::add_stiffness_bound(std::vector<double>& bound) const {

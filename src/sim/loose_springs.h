@@ -57,15 +57,18 @@ class LooseSprings {
     // whose sweep carries every connection as if sound: what it carries too much is taken off.
     void add_forces(const Aggregate& matter, Flow flow, const RestStrains* rest, Vec3Array& force);
 
+    // Finds the springs' strains at the present positions, as add_forces() and
+    // connections_changed() do too: what follows is of the last time.
+    void find_strains(const Aggregate& matter, const RestStrains* rest);
+
     // Remembers the softening of a converged state. Connections that it breaks have no weight from
     // then on: connections_changed() must follow when there are any.
-    Broken commit(Aggregate& matter, const RestStrains* rest);
+    Broken commit(Aggregate& matter);
 
-    // [J], softened as far as the present positions ask; with mechanics "springs" beside that of
-    // the sweep.
-    double elastic_energy(const Aggregate& matter);
-    // Energy that softening on to the present positions would take [J].
-    double trial_loss(const Aggregate& matter);
+    // [J], softened as far as the strains ask; with mechanics "springs" beside that of the sweep.
+    double elastic_energy() const { return sum_of(&LooseSprings::stored_in); }
+    // Energy that softening on to them would take [J].
+    double trial_loss() const { return sum_of(&LooseSprings::loss_of); }
 
     void add_stiffness_bound(std::vector<double>& bound) const;
 
@@ -88,10 +91,10 @@ class LooseSprings {
         double softens_by = 0;
     };
     void add_springs(const Aggregate& matter, const CellRun& run, int n);
-    void find_strains(const Aggregate& matter, const RestStrains* rest);
-    // At the strains found last.
-    double softens_by(std::size_t n) const;
-    double now_worst(std::size_t n) const { return std::max(spring_[n].worst, softens_by(n)); }
+    void find_softening();
+    double now_worst(std::size_t n) const {
+        return std::max(spring_[n].worst, now_[n].softens_by);
+    }
     void commit_strains();
     double loss_of(std::size_t n) const;
     double stored_in(std::size_t n) const;
@@ -105,6 +108,7 @@ class LooseSprings {
     struct Stretch {
         Vec3 reach;                       // from lower to upper [m]
         double distance, length, strain;  // length: at rest [m]
+        double softens_by;                // the strain of its face, or its own
     };
     std::vector<Stretch> now_;  // of each spring, when last looked at
     std::vector<Vec3> pull_;    // likewise, on its lower end [N]
