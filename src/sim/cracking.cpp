@@ -122,7 +122,6 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
             if (!springs) strain_measures(matter, run, measure);
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
-                if (!matter.cell_cracked.empty() && matter.cell_cracked[cell] != 0) continue;
                 // Where a cell has flowed its connections do not tell its elastic strain.
                 const bool flowed =
                     !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
@@ -131,13 +130,12 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
                 if (!(onset > 0)) continue;
                 std::array<ParticleId, 4> row = run.row;
                 for (ParticleId& p : row) p += n;
+                if (!cell_is_sound(matter, cell, row)) continue;
                 double strain = springs ? 0 : material_strain(matter, run, n, onset);
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
-                if (strain >= onset && cell_is_sound(matter, cell, row)) {
-                    part[chunk].push_back({&run, n, strain / onset});
-                }
+                if (strain >= onset) part[chunk].push_back({&run, n, strain / onset});
             }
         }
     });

@@ -254,9 +254,9 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
     const auto pull_of = [&](std::size_t n) -> Vec3 {
         const Spring& s = spring_[n];
         const Stretch& now = now_[n];
+        if (s.kind == Kind::closing && now.strain > 0) return Vec3::Zero();
         double tension =
             spring_tension(SpringDamper{s.stiffness, 0, now.length}, now.distance, 0.0);
-        if (s.kind == Kind::closing && tension > 0) return Vec3::Zero();
         if (s.kind == Kind::softening) {
             const double sound = tension;
             if (tension > 0 || s.direction >= kEdgeCount) {
@@ -271,6 +271,7 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
         for (std::size_t n = begin; n < end; ++n) pull_[n] = pull_of(n);
     });
     for (std::size_t n = 0; n < spring_.size(); ++n) {
+        if (spring_[n].kind == Kind::closing && now_[n].strain > 0) continue;
         force.add(spring_[n].lower, pull_[n]);
         force.add(spring_[n].upper, -pull_[n]);
     }
@@ -282,7 +283,7 @@ Broken LooseSprings::commit(Aggregate& matter) {
     for (std::size_t n = 0; n < spring_.size(); ++n) {
         Spring& s = spring_[n];
         const double worst = now_worst(n);
-        if (s.kind != Kind::softening || !(worst > s.worst)) continue;
+        if (!(worst > s.worst) || s.kind != Kind::softening) continue;
         ConnectionArrays& all = matter.connection[static_cast<std::size_t>(s.direction)];
         if (all.damage.empty()) {
             for (auto& c : matter.connection) c.damage.assign(c.weight.size(), 0.0f);
