@@ -107,7 +107,8 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
 
 // Sound cells beyond onset, in the order of the cells.
 std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws,
-                               const std::vector<const CellRun*>* only) {
+                               const std::vector<const CellRun*>* only,
+                               const std::vector<float>* carried) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const std::size_t count = only ? only->size() : runs.size();
     const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
@@ -126,11 +127,12 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
                 const bool flowed =
                     !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
                 if (!springs && !flowed && measure[n] < far) continue;
+                if (carried && (*carried)[cell] <= 0) continue;
                 const double onset = laws.of_cell(matter, cell).onset;
                 if (!(onset > 0)) continue;
                 std::array<ParticleId, 4> row = run.row;
                 for (ParticleId& p : row) p += n;
-                if (!cell_is_sound(matter, cell, row)) continue;
+                if (!carried && !cell_is_sound(matter, cell, row)) continue;
                 double strain = springs ? 0 : material_strain(matter, run, n, onset);
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
@@ -170,8 +172,9 @@ std::vector<const CellRun*> cells_beside(
 }
 
 std::vector<CellId> cells_beyond_strength(const Aggregate& matter, const FractureLaws& laws,
-                                          const std::vector<const CellRun*>* only) {
-    std::vector<Beyond> beyond = all_beyond(matter, laws, only);
+                                          const std::vector<const CellRun*>* only,
+                                          const std::vector<float>* carried) {
+    std::vector<Beyond> beyond = all_beyond(matter, laws, only, carried);
     std::stable_sort(beyond.begin(), beyond.end(),
                      [](const Beyond& a, const Beyond& b) { return a.share > b.share; });
     // Being off the track only makes it less: those strained less than the largest by then are out.

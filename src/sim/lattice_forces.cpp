@@ -46,7 +46,7 @@ void LatticeForces::take_in(const Aggregate& matter) {
 }
 
 void LatticeForces::others_changed(const Aggregate& matter) {
-    loose_.connections_changed(matter);
+    loose_.connections_changed(matter, carried());
     if (spring_flow_) spring_flow_->history_changed(matter);
     if (spring_sweep_) spring_sweep_->connections_changed(matter, loose_.softening_ends(matter));
     for (LatticeSweep& own : branch_sweep_) {
@@ -151,7 +151,7 @@ Cracked LatticeForces::crack(Aggregate& matter, bool in_motion) {
     }
     if (in_motion && runs.empty()) return {};
     const std::vector<CellId> cells =
-        cells_beyond_strength(matter, loose_.laws(), in_motion ? &runs : nullptr);
+        cells_beyond_strength(matter, loose_.laws(), in_motion ? &runs : nullptr, carried());
     if (cells.empty()) return {};
     const double before = in_motion ? energy_found(matter) : elastic_energy(matter);
     matter.cell_cracked.resize(matter.cell_fill.size(), 0);

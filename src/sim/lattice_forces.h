@@ -73,9 +73,7 @@ class LatticeForces {
     double elastic_energy(const Aggregate& matter);  // [J]
 
     // What the cells carry, where forces are theirs alone; else null.
-    const std::vector<float>* cells_alone() const {
-        return cells_ && loose_.empty() ? &cells_->carried_fill() : nullptr;
-    }
+    const std::vector<float>* cells_alone() const { return loose_.empty() ? carried() : nullptr; }
 
     // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the
     // fastest of these on their own masses: w_max^2 <= max(bound / mass). Zero for a loose
@@ -83,6 +81,8 @@ class LatticeForces {
     std::vector<double> stiffness_bound(const Aggregate& matter) const;
 
   private:
+    // By sound cells, 0 by others; null: springs.
+    const std::vector<float>* carried() const { return cells_ ? &cells_->carried_fill() : nullptr; }
     void others_changed(const Aggregate& matter);  // after the sweep over cells knows of it
     double add_branches(const Aggregate& matter, std::span<const BranchStep> branches,
                         Vec3Array& force);

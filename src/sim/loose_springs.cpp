@@ -51,14 +51,18 @@ LooseSprings::LooseSprings(const Aggregate& matter)
     for (int d = 0; d < kForwardCount; ++d) reference_[d] = reference_length(matter.lattice, d);
 }
 
-void LooseSprings::connections_changed(const Aggregate& matter) {
+void LooseSprings::connections_changed(const Aggregate& matter, const std::vector<float>* carried) {
     spring_.clear();
     if (beside_sweep_ && !laws_.break_any()) return;
+    const auto is_sound = [&](const CellRun& run, int n) {
+        if (carried) return (*carried)[run.first + n] > 0;
+        std::array<ParticleId, 4> row = run.row;
+        for (ParticleId& p : row) p += n;
+        return cell_is_sound(matter, run.first + n, row);
+    };
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
-            if (!cell_is_sound(matter, run.first + n, row)) add_springs(matter, run, n);
+            if (!is_sound(run, n)) add_springs(matter, run, n);
         }
     }
     find_strains(matter, nullptr);

@@ -44,8 +44,9 @@ class LooseSprings {
     const FractureLaws& laws() const { return laws_; }
     bool empty() const { return spring_.empty(); }
 
-    // Connections were severed or broken, or cells cracked.
-    void connections_changed(const Aggregate& matter);
+    // Connections were severed or broken, or cells cracked. `carried`: what each sound cell
+    // carries, 0: none; null: they are told by themselves.
+    void connections_changed(const Aggregate& matter, const std::vector<float>* carried);
 
     // Of each particle, whether it is the lower end of any that softens; empty: none is.
     std::vector<char> softening_ends(const Aggregate& matter) const;
@@ -92,9 +93,7 @@ class LooseSprings {
     };
     void add_springs(const Aggregate& matter, const CellRun& run, int n);
     void find_softening();
-    double now_worst(std::size_t n) const {
-        return std::max(spring_[n].worst, now_[n].softens_by);
-    }
+    double now_worst(std::size_t n) const { return std::max(spring_[n].worst, now_[n].softens_by); }
     void commit_strains();
     double loss_of(std::size_t n) const;
     double stored_in(std::size_t n) const;
