@@ -22,6 +22,12 @@ double toughness_for(const Material& material, double spacing) {
     return kLeastReach * spacing * material.strength * material.strength / material.young_modulus;
 }
 
+// Three figures tell it; of a bound the next above.
+double told(double value, double (*round)(double) = std::round) {
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+    return unit * round(value / unit);
+}
+
 }  // namespace
 
 Accuracy accuracy_at(double cells) {
@@ -45,11 +51,11 @@ std::string strength_warning(const Material& material, double spacing, double ce
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
         "breaks at {} instead of {}; [mold] across = {} would do, or at this one a toughness of {}",
-        quantity_text(spacing, Quantity::length),
+        quantity_text(told(spacing), Quantity::length),
         material.name == Material{}.name ? "the material" : material.name,
-        quantity_text(resolved.strength, Quantity::stress),
+        quantity_text(told(resolved.strength), Quantity::stress),
         quantity_text(material.strength, Quantity::stress), resolved.cells_for_whole,
-        quantity_text(toughness_for(material, spacing), Quantity::toughness));
+        quantity_text(told(toughness_for(material, spacing), std::ceil), Quantity::toughness));
 }
 
 }  // namespace swage
