@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/mixed_cells.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -13,7 +14,7 @@ namespace swage {
 
 namespace {
 
-constexpr std::size_t kBatchesPerChunk = 8;
+constexpr std::size_t kBatchesPerChunk = 8, kCellsPerChunk = 64;
 constexpr double kNearYield = 1e-6;  // of the yield stress: lanes round otherwise
 
 // What a batch of cells is read from, and where its forces on the corners go: component, corner.
@@ -230,12 +231,12 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
 double MixedCells::elastic_energy(const Aggregate& matter,
                                   const std::vector<MaterialLaw>& laws) const {
     const double volume = std::pow(matter.lattice.spacing, 3);
-    double sum = 0;
-    for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
+    const auto energy_of = [&](std::size_t n) {
         const MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
         const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
         const Triple<double> normal = {cell.normal.x(), cell.normal.y(), cell.normal.z()};
         const double all = one.phase[0].fill + one.phase[1].fill;
+        double sum = 0;
         for (int p = 0; p < 2; ++p) {
             const Phase<double>& m = one.phase[p];
             const PhaseState<double>& s = one.found.phase[p];
@@ -251,8 +252,15 @@ double MixedCells::elastic_energy(const Aggregate& matter,
             sum += volume * m.fill * mean +
                    0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, a, q), q);
         }
-    }
-    return sum;
+        return sum;
+    };
+    const std::size_t count = batches_.cell.size();
+    return ordered_sum((count + kCellsPerChunk - 1) / kCellsPerChunk, [&](std::size_t chunk) {
+        double sum = 0;
+        const std::size_t end = std::min(count, (chunk + 1) * kCellsPerChunk);
+        for (std::size_t n = chunk * kCellsPerChunk; n < end; ++n) sum += energy_of(n);
+        return sum;
+    });
 }
 
 }  // namespace swage
