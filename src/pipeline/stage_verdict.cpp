@@ -14,8 +14,7 @@ namespace {
 
 constexpr double kOverlap = 0.5;  // spacings that a body may lie in itself untold
 
-// Of what is stored in matter [J]: strains are differences of numbers about 1, and what holds next
-// to none of them adds up to about this.
+// Below this energies are round-off [J]: strains of 1e-8, which are differences of numbers about 1.
 double round_off(const std::vector<WorkPiece>& bodies) {
     double sum = 0;
     for (const WorkPiece& body : bodies) {
