@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "geometry/mesh_check.h"
 #include "laws/fracture.h"
 
 namespace swage {
@@ -51,8 +52,7 @@ std::string strength_warning(const Material& material, double spacing, double ce
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
         "breaks at {} instead of {}; [mold] across = {} would do, or at this one a toughness of {}",
-        quantity_text(told(spacing), Quantity::length),
-        material.name == Material{}.name ? "the material" : material.name,
+        length_text(spacing), material.name == Material{}.name ? "the material" : material.name,
         quantity_text(told(resolved.strength), Quantity::stress),
         quantity_text(material.strength, Quantity::stress), resolved.cells_for_whole,
         quantity_text(told(toughness_for(material, spacing), std::ceil), Quantity::toughness));

@@ -258,7 +258,7 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
     const auto pull_of = [&](std::size_t n) -> Vec3 {
         const Spring& s = spring_[n];
         const Stretch& now = now_[n];
-        if (s.kind == Kind::closing && now.strain > 0) return Vec3::Zero();
+        if (is_open(n)) return Vec3::Zero();
         double tension =
             spring_tension(SpringDamper{s.stiffness, 0, now.length}, now.distance, 0.0);
         if (s.kind == Kind::softening) {
@@ -275,7 +275,6 @@ void LooseSprings::add_forces(const Aggregate& matter, Flow flow, const RestStra
         for (std::size_t n = begin; n < end; ++n) pull_[n] = pull_of(n);
     });
     for (std::size_t n = 0; n < spring_.size(); ++n) {
-        if (spring_[n].kind == Kind::closing && now_[n].strain > 0) continue;
         force.add(spring_[n].lower, pull_[n]);
         force.add(spring_[n].upper, -pull_[n]);
     }
@@ -287,7 +286,7 @@ Broken LooseSprings::commit(Aggregate& matter) {
     for (std::size_t n = 0; n < spring_.size(); ++n) {
         Spring& s = spring_[n];
         const double worst = now_worst(n);
-        if (!(worst > s.worst) || s.kind != Kind::softening) continue;
+        if (s.kind != Kind::softening || !(worst > s.worst)) continue;
         ConnectionArrays& all = matter.connection[static_cast<std::size_t>(s.direction)];
         if (all.damage.empty()) {
             for (auto& c : matter.connection) c.damage.assign(c.weight.size(), 0.0f);
@@ -318,7 +317,7 @@ Broken LooseSprings::commit(Aggregate& matter) {
 double LooseSprings::stored_in(std::size_t n) const {
     const Spring& s = spring_[n];
     const Stretch& now = now_[n];
-    if (s.kind == Kind::closing && now.strain > 0) return 0;
+    if (is_open(n)) return 0;
     double share = 1;
     if (s.kind == Kind::softening) {
         if (now.strain > 0 || s.direction >= kEdgeCount) share = kept_share(s.law, now_worst(n));

@@ -93,6 +93,10 @@ class LooseSprings {
     };
     void add_springs(const Aggregate& matter, const CellRun& run, int n);
     void find_softening();
+    // A broken edge that is not pressed does nothing.
+    bool is_open(std::size_t n) const {
+        return spring_[n].kind == Kind::closing && now_[n].strain > 0;
+    }
     double now_worst(std::size_t n) const { return std::max(spring_[n].worst, now_[n].softens_by); }
     void commit_strains();
     double loss_of(std::size_t n) const;
