@@ -19,8 +19,8 @@ Box box_of_cell(const Vec3Array& position, const std::array<ParticleId, 8>& corn
 
 }  // namespace
 
-ContactList find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
-                          const ContactList& last) {
+void find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
+                   const ContactList& last, ContactList& found) {
     const Aggregate& other = onto.matter();
     // New surface lies up to half a cell outside the cells that hold it.
     const bool is_broken = onto.points().size() > onto.own_points();
@@ -59,7 +59,8 @@ ContactList find_contacts(const ContactSide& from, const ContactSide& onto, doub
     }
     const std::vector<NearPair> pair = near_pairs(point, box);
 
-    ContactList found;
+    found.contact.clear();
+    found.memory.clear();
     std::size_t old = 0;
     const auto keep = [&] {
         if (!last.memory[old].history.touches) return;
@@ -103,7 +104,6 @@ ContactList find_contacts(const ContactSide& from, const ContactSide& onto, doub
         }
     }
     for (; old < last.size(); ++old) keep();
-    return found;
 }
 
 }  // namespace swage

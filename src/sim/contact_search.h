@@ -7,8 +7,9 @@
 namespace swage {
 
 // All points within `margin` [m] of a cell at the surface, one contact for each place where they
-// may meet it; contacts that touch are kept as they are. Sorted by point.
-ContactList find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
-                          const ContactList& last);
+// may meet it; of the last ones, those that touch are kept as they are. Sorted by point, in place
+// of what `found` holds.
+void find_contacts(const ContactSide& from, const ContactSide& onto, double margin,
+                   const ContactList& last, ContactList& found);
 
 }  // namespace swage

@@ -89,7 +89,8 @@ void ContactWay::set_contacts(const ContactList& contacts) {
 }
 
 void ContactWay::search(double margin) {
-    list_ = find_contacts(*from_, *onto_, margin, list_);
+    find_contacts(*from_, *onto_, margin, list_, spare_);
+    std::swap(list_, spare_);
     leave_out_let_be();
     is_found_ = false;
     if (is_static()) meet_anew();

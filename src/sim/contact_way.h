@@ -142,7 +142,7 @@ class ContactWay {
     std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
     std::vector<char> is_let_be_;                            // likewise; empty: none is
     double share_ = 0.5;                                     // of what this way would do alone
-    ContactList list_;
+    ContactList list_, spare_{};         // the spare one keeps its room for the next search
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit
     std::vector<Plane> plane_{};         // of each contact; empty: not for equilibria
