@@ -41,28 +41,10 @@ inline Mat3 cross_matrix(const Vec3& v) {
 }
 
 // Rotation vector [rad] in the world that turns one pose's axes into another's, the shorter way.
-inline Vec3 turn_between(const Pose& from, const Pose& to) {
-    const Eigen::AngleAxisd turn((to.rotation * from.rotation.conjugate()).normalized());
-    return (turn.angle() > kPi ? turn.angle() - 2 * kPi : turn.angle()) * turn.axis();
-}
+Vec3 turn_between(const Pose& from, const Pose& to);
 
 // The pose a share `s` (0 to 1) of the way along the screw motion from one pose to another, so
 // that a turn about a distant pivot stays on its arc. The turn is the shorter way round.
-inline Pose between(const Pose& from, const Pose& to, double s) {
-    const Pose change = to * from.inverse();
-    const Vec3 turn = turn_between(from, to);
-    const double angle = turn.norm();
-    const Vec3 axis = angle > 0 ? Vec3(turn / angle) : Vec3::UnitX();
-    // Left Jacobian of the rotation group, which maps the twist's velocity to the translation.
-    const auto jacobian = [&](double theta) -> Mat3 {
-        const Mat3 k = cross_matrix(axis);
-        if (std::abs(theta) < 1e-6) return Mat3::Identity() + 0.5 * theta * k;
-        return Mat3::Identity() + (1 - std::cos(theta)) / theta * k +
-               (theta - std::sin(theta)) / theta * k * k;
-    };
-    const Vec3 velocity = jacobian(angle).inverse() * change.translation;
-    const Pose part{Quat(Eigen::AngleAxisd(s * angle, axis)), jacobian(s * angle) * (s * velocity)};
-    return part * from;
-}
+Pose between(const Pose& from, const Pose& to, double s);
 
 }  // namespace swage

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/parallel.h"
 #include "laws/cell_forces.h"
@@ -70,149 +71,161 @@ SWAGE_INLINE void spread(const CornerSums<V>& r, V (&force)[3][8]) {
     spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, force[2]);
 }
 
-struct RunProduct {
-    CornerRows<const double> direction;
-    CornerRows<double> result;
-    int room[4];  // in each row of the result
+// What there is to do for one run of cells, or eight cells of it.
+struct Task {
+    const CellConstants& constants;
+    const RunView& run;
     double turning;
 };
+struct ProductTask : Task {
+    CornerRows<const double> direction;
+    CornerRows<double> result{};
+    int room[4]{};  // in each row of the result
+};
+// Tangents in terms of their coarse cells' corners, upper triangles by columns.
+struct MatrixTask : Task {
+    int begin;
+    // Places of their low and high side in their coarse cells, along each axis, 0 to 1.
+    Lanes low[3], high[3];
+    Lanes* matrix;
+};
+// Of their corners, the blocks that are their own: xx, yy, zz, xy, yz, zx.
+struct BlockTask : Task {
+    int begin;
+    Lanes (*block)[6];
+};
+
+// Some of eight lanes.
+template <typename V>
+SWAGE_INLINE V part_of(const Lanes& all, int first) {
+    V part;
+    std::memcpy(&part, reinterpret_cast<const double*>(&all) + first, sizeof part);
+    return part;
+}
+template <typename V>
+SWAGE_INLINE void put_part(const V& part, Lanes& all, int first) {
+    std::memcpy(reinterpret_cast<double*>(&all) + first, &part, sizeof part);
+}
 
 template <CellKind kKind, int kWidth>
-SWAGE_INLINE void run_product(const CellConstants& constants, const RunView& run,
-                              const RunProduct& p) {
+SWAGE_INLINE void act(const ProductTask& task) {
     typedef LanesOf<kWidth> V;
+    const RunView& run = task.run;
     ForceCarry<V> carry;
     for (int begin = 0; begin < run.count; begin += kWidth) {
         const int count = std::min(kWidth, run.count - begin);
         const CornerSums<V> x = gather<V>(run.x, begin, count, run.room);
-        const CornerSums<V> way = gather<V>(p.direction, begin, count, run.room);
-        add_forces(tangent_forces<kKind>(constants, run, begin, p.turning, x, way), p.result,
-                   p.room, begin, count, carry);
+        const CornerSums<V> way = gather<V>(task.direction, begin, count, run.room);
+        add_forces(tangent_forces<kKind>(task.constants, run, begin, task.turning, x, way),
+                   task.result, task.room, begin, count, carry);
     }
-    if (run.count % kWidth == 0) add_carried(p.result, run.count, carry);
+    if (run.count % kWidth == 0) add_carried(task.result, run.count, carry);
 }
 
-// A direction along one axis, from the sums of how far each corner goes.
-SWAGE_INLINE CornerSums<Lanes> along_axis(const Lanes (&sum)[7], int axis) {
-    const Lanes none{};
-    const auto along = [&](const Lanes& v) __attribute__((always_inline)) {
-        return Triple<Lanes>{axis == 0 ? v : none, axis == 1 ? v : none, axis == 2 ? v : none};
+// The forces on all corners for a direction along one axis, from how far each corner goes.
+template <CellKind kKind, typename V>
+SWAGE_INLINE void forces_along(const Task& task, int begin, const CornerSums<V>& x,
+                               const V (&way)[8], int axis, V (&force)[3][8]) {
+    V sum[7];
+    sum_corners(way, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
+    const V none{};
+    const auto along = [&](const V& v) __attribute__((always_inline)) {
+        return Triple<V>{axis == 0 ? v : none, axis == 1 ? v : none, axis == 2 ? v : none};
     };
-    return {along(sum[0]), along(sum[1]), along(sum[2]), along(sum[3]),
-            along(sum[4]), along(sum[5]), along(sum[6])};
+    const CornerSums<V> direction{along(sum[0]), along(sum[1]), along(sum[2]), along(sum[3]),
+                                  along(sum[4]), along(sum[5]), along(sum[6])};
+    spread(tangent_forces<kKind>(task.constants, task.run, begin, task.turning, x, direction),
+           force);
 }
 
-// Places of the low and high side of eight cells in their coarse cells, along each axis, 0 to 1.
-struct Places {
-    Lanes low[3], high[3];
-};
-
-// Tangent of eight cells in terms of their coarse cells' corners, upper triangle by columns.
-template <CellKind kKind>
-SWAGE_INLINE void batch_matrices(const CellConstants& constants, const RunView& run, int begin,
-                                 double turning, const Places& place, Lanes* matrix) {
-    const int count = std::min(kLanes, run.count - begin);
-    const CornerSums<Lanes> x = gather<Lanes>(run.x, begin, count, run.room);
-    for (int corner = 0; corner < 8; ++corner) {
-        // How the cell's corners follow this coarse corner.
-        Lanes follow[8], sum[7];
-        for (int c = 0; c < 8; ++c) {
-            follow[c] = 1.0 + Lanes{};
-            for (int d = 0; d < 3; ++d) {
-                const Lanes t = c >> d & 1 ? place.high[d] : place.low[d];
-                follow[c] *= corner >> d & 1 ? t : 1.0 - t;
-            }
+template <CellKind kKind, int kWidth>
+SWAGE_INLINE void act(const MatrixTask& task) {
+    typedef LanesOf<kWidth> V;
+    for (int first = 0; first < std::min(kLanes, task.run.count - task.begin); first += kWidth) {
+        const int begin = task.begin + first, count = std::min(kWidth, task.run.count - begin);
+        const CornerSums<V> x = gather<V>(task.run.x, begin, count, task.run.room);
+        V low[3], high[3];
+        for (int d = 0; d < 3; ++d) {
+            low[d] = part_of<V>(task.low[d], first), high[d] = part_of<V>(task.high[d], first);
         }
-        sum_corners(follow, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
-        for (int axis = 0; axis < 3; ++axis) {
-            Lanes force[3][8];
-            spread(tangent_forces<kKind>(constants, run, begin, turning, x, along_axis(sum, axis)),
-                   force);
-            const int column = 3 * corner + axis;
+        for (int column = 0; column < CellMatrix::kSize; ++column) {
+            const int corner = column / 3;
+            V follow[8];  // how the cell's corners follow this coarse corner
+            for (int c = 0; c < 8; ++c) {
+                follow[c] = 1.0 + V{};
+                for (int d = 0; d < 3; ++d) {
+                    const V t = c >> d & 1 ? high[d] : low[d];
+                    follow[c] *= corner >> d & 1 ? t : 1.0 - t;
+                }
+            }
+            V force[3][8];
+            forces_along<kKind>(task, begin, x, follow, column % 3, force);
             for (int i = 0; i < 3; ++i) {
                 // Back to the coarse corners, axis by axis.
-                Lanes(&f)[8] = force[i];
+                V(&f)[8] = force[i];
                 for (int d = 0; d < 3; ++d) {
                     for (int c = 0; c < 8; ++c) {
                         if (c >> d & 1) continue;
-                        const Lanes low = f[c], high = f[c | 1 << d];
-                        f[c | 1 << d] = place.low[d] * low + place.high[d] * high;
-                        f[c] = (1.0 - place.low[d]) * low + (1.0 - place.high[d]) * high;
+                        const V one = f[c], other = f[c | 1 << d];
+                        f[c | 1 << d] = low[d] * one + high[d] * other;
+                        f[c] = (1.0 - low[d]) * one + (1.0 - high[d]) * other;
                     }
                 }
                 for (int c = 0; c < 8; ++c) {
                     const int row = 3 * c + i;
-                    if (row <= column) matrix[CellMatrix::place(row, column)] = f[c];
+                    if (row > column) continue;
+                    put_part(f[c], task.matrix[CellMatrix::place(row, column)], first);
                 }
             }
         }
     }
 }
 
-// Of eight cells' corners, the blocks that are their own: xx, yy, zz, xy, yz, zx.
-template <CellKind kKind>
-SWAGE_INLINE void batch_blocks(const CellConstants& constants, const RunView& run, int begin,
-                               double turning, Lanes (*block)[6]) {
-    const int count = std::min(kLanes, run.count - begin);
-    const CornerSums<Lanes> x = gather<Lanes>(run.x, begin, count, run.room);
-    for (int corner = 0; corner < 8; ++corner) {
-        Lanes alone[8] = {}, sum[7], column[3][3];
-        alone[corner] = 1.0 + Lanes{};
-        sum_corners(alone, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
-        for (int axis = 0; axis < 3; ++axis) {
-            Lanes force[3][8];
-            spread(tangent_forces<kKind>(constants, run, begin, turning, x, along_axis(sum, axis)),
-                   force);
-            for (int i = 0; i < 3; ++i) column[axis][i] = force[i][corner];
-        }
-        const Lanes own[6] = {column[0][0], column[1][1], column[2][2],
+template <CellKind kKind, int kWidth>
+SWAGE_INLINE void act(const BlockTask& task) {
+    typedef LanesOf<kWidth> V;
+    for (int first = 0; first < std::min(kLanes, task.run.count - task.begin); first += kWidth) {
+        const int begin = task.begin + first, count = std::min(kWidth, task.run.count - begin);
+        const CornerSums<V> x = gather<V>(task.run.x, begin, count, task.run.room);
+        for (int corner = 0; corner < 8; ++corner) {
+            V alone[8] = {}, column[3][3];
+            alone[corner] = 1.0 + V{};
+            for (int axis = 0; axis < 3; ++axis) {
+                V force[3][8];
+                forces_along<kKind>(task, begin, x, alone, axis, force);
+                for (int i = 0; i < 3; ++i) column[axis][i] = force[i][corner];
+            }
+            const V own[6] = {column[0][0], column[1][1], column[2][2],
                               column[1][0], column[2][1], column[2][0]};
-        for (int n = 0; n < 6; ++n) block[corner][n] = own[n];
+            for (int n = 0; n < 6; ++n) put_part(own[n], task.block[corner][n], first);
+        }
     }
 }
 
-template <CellKind kKind>
-SWAGE_WIDE_VECTORS void wide_product(const CellConstants& k, const RunView& r,
-                                     const RunProduct& p) {
-    run_product<kKind, 8>(k, r, p);
+template <CellKind kKind, typename T>
+SWAGE_WIDE_VECTORS void act_wide(const T& task) {
+    act<kKind, 8>(task);
 }
-template <CellKind kKind>
-SWAGE_MIDDLE_VECTORS void middle_product(const CellConstants& k, const RunView& r,
-                                         const RunProduct& p) {
-    run_product<kKind, 4>(k, r, p);
+template <CellKind kKind, typename T>
+SWAGE_MIDDLE_VECTORS void act_middle(const T& task) {
+    act<kKind, 4>(task);
 }
-template <CellKind kKind>
-void narrow_product(const CellConstants& k, const RunView& r, const RunProduct& p) {
-    run_product<kKind, 2>(k, r, p);
+template <CellKind kKind, typename T>
+void act_narrow(const T& task) {
+    act<kKind, 2>(task);
 }
-template <CellKind kKind>
-void product_of(const CellConstants& k, const RunView& r, const RunProduct& p) {
+template <CellKind kKind, typename T>
+void do_kind(const T& task) {
     const int width = vector_width();
-    width == 8   ? wide_product<kKind>(k, r, p)
-    : width == 4 ? middle_product<kKind>(k, r, p)
-                 : narrow_product<kKind>(k, r, p);
+    width == 8   ? act_wide<kKind>(task)
+    : width == 4 ? act_middle<kKind>(task)
+                 : act_narrow<kKind>(task);
 }
-
-#define SWAGE_TANGENT(kind)                                                                     \
-    SWAGE_VECTOR_CLONES                                                                         \
-    void kind##_matrices(const CellConstants& k, const RunView& run, int begin, double turning, \
-                         const Places& place, Lanes* matrix) {                                  \
-        batch_matrices<CellKind::kind>(k, run, begin, turning, place, matrix);                  \
-    }                                                                                           \
-    SWAGE_VECTOR_CLONES                                                                         \
-    void kind##_blocks(const CellConstants& k, const RunView& run, int begin, double turning,   \
-                       Lanes(*block)[6]) {                                                      \
-        batch_blocks<CellKind::kind>(k, run, begin, turning, block);                            \
-    }
-SWAGE_TANGENT(elastic)
-SWAGE_TANGENT(yielding)
-SWAGE_TANGENT(rubber)
-#undef SWAGE_TANGENT
-
-// What of the kinds' functions applies.
-template <typename F>
-F of_kind(CellKind kind, F elastic, F yielding, F rubber) {
-    return kind == CellKind::rubber ? rubber : kind == CellKind::yielding ? yielding : elastic;
+template <typename T>
+void do_task(CellKind kind, const T& task) {
+    kind == CellKind::rubber     ? do_kind<CellKind::rubber>(task)
+    : kind == CellKind::yielding ? do_kind<CellKind::yielding>(task)
+                                 : do_kind<CellKind::elastic>(task);
 }
 
 }  // namespace
@@ -309,19 +322,17 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
         for (std::size_t r = slab_run_[index]; r < slab_run_[index + 1]; ++r) {
             const CellRun& run = all[r];
             const Law& law = law_of(matter, laws, run);
-            const auto sweep =
-                of_kind(law.kind, product_of<CellKind::elastic>, product_of<CellKind::yielding>,
-                        product_of<CellKind::rubber>);
-            RunProduct p{rows_of(direction, run), {}, {}, kind.geometric};
+            const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
+            ProductTask task{{law.constants, view, kind.geometric}, rows_of(direction, run)};
             for (int q = 0; q < 4; ++q) {
                 const ParticleId row = run.row[q];
                 const bool is_own = row < slab.end;
-                p.room[q] = (is_own ? slab.end : slab.reach + kSeamRoom) - row;
+                task.room[q] = (is_own ? slab.end : slab.reach + kSeamRoom) - row;
                 for (int i = 0; i < 3; ++i) {
-                    p.result.at[i][q] = is_own ? to.own[i] + row : to.seam[i] + (row - slab.end);
+                    task.result.at[i][q] = is_own ? to.own[i] + row : to.seam[i] + (row - slab.end);
                 }
             }
-            sweep(law.constants, view_of(matter, run, fill_, at_, whole_.data() + batch_[r]), p);
+            do_task(law.kind, task);
         }
     });
     add_seams(slab_, result);
@@ -344,11 +355,10 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
             for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
                 const CellRun& run = all[r];
                 const Law& law = law_of(matter, laws, run);
-                const auto blocks =
-                    of_kind(law.kind, elastic_blocks, yielding_blocks, rubber_blocks);
                 const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
                 for (int done = 0; done < run.count; done += kLanes) {
-                    blocks(law.constants, view, done, kind.geometric, block);
+                    do_task(law.kind,
+                            BlockTask{{law.constants, view, kind.geometric}, done, block});
                     for (int l = 0; l < kLanes && done + l < run.count; ++l) {
                         for (int c = 0; c < 8; ++c) {
                             const Lanes(&b)[6] = block[c];
@@ -425,26 +435,24 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
         for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
             const CellRun& run = all[r];
             const Law& law = law_of(matter, laws, run);
-            const auto matrices =
-                of_kind(law.kind, elastic_matrices, yielding_matrices, rubber_matrices);
             const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
             const Vec3i site(run.i, run.j, run.k);
             for (int done = 0; done < run.count; done += kLanes) {
-                Places place;
+                MatrixTask task{{law.constants, view, kind.geometric}, done, {}, {}, matrix};
                 CellId cell[kLanes];
                 const int many = std::min(kLanes, run.count - done);
                 for (int l = 0; l < kLanes; ++l) {
                     const Vec3i at = site + Vec3i(done + l, 0, 0);
                     for (int d = 0; d < 3; ++d) {
-                        place.low[d][l] = double(at[d] % ratio[d]) / ratio[d];
-                        place.high[d][l] = double(at[d] % ratio[d] + 1) / ratio[d];
+                        task.low[d][l] = double(at[d] % ratio[d]) / ratio[d];
+                        task.high[d][l] = double(at[d] % ratio[d] + 1) / ratio[d];
                     }
                     if (l < many) {
                         cell[l] = coarse.cell_at(at.x() / ratio.x(), at.y() / ratio.y(),
                                                  at.z() / ratio.z());
                     }
                 }
-                matrices(law.constants, view, done, kind.geometric, place, matrix);
+                do_task(law.kind, task);
                 for (int l = 0; l < many; ++l) {
                     auto& to = sum[cell[l]].upper;
                     for (std::size_t e = 0; e < to.size(); ++e) to[e] += matrix[e][l];

@@ -23,38 +23,49 @@ struct TangentBatch {
     int count;
 };
 
-SWAGE_VECTOR_CLONES
-void batch_matrices(const TangentBatch& b) {
-    Lanes at[3][8]{};
-    Phase<Lanes> phase[2]{};
-    Triple<Lanes> normal{};
+// Of so many of its cells, from this one on.
+template <int kWidth>
+SWAGE_INLINE void some_matrices(const TangentBatch& b, int first) {
+    typedef LanesOf<kWidth> V;
+    V at[3][8]{};
+    Phase<V> phase[2]{};
+    Triple<V> normal{};
     for (int p = 0; p < 2; ++p) {
         phase[p].law = &b.law[p]->moduli, phase[p].kind = b.law[p]->kind;
     }
-    for (int l = 0; l < kLanes; ++l) {
-        const int n = std::min(l, b.count - 1);
+    for (int l = 0; l < kWidth; ++l) {
+        const int n = std::min(first + l, b.count - 1);
         read_mixed(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
     }
     const double spacing = b.matter->lattice.spacing;
-    const CornerSums<Lanes> c = corner_sums(at);
-    Laminate<Lanes> found;
+    const CornerSums<V> c = corner_sums(at);
+    Laminate<V> found;
     laminate(c, phase, normal, spacing, found);
-    const Columns<Lanes> inverse = inverse_of(jump_slope(phase, normal, found, b.turning));
+    const Columns<V> inverse = inverse_of(jump_slope(phase, normal, found, b.turning));
     for (int column = 0; column < CellMatrix::kSize; ++column) {
-        Lanes alone[3][8]{};
+        V alone[3][8]{};
         alone[column % 3][column / 3] += 1.0;
-        const CornerSums<Lanes> r = laminate_slope(c, corner_sums(alone), phase, normal, spacing,
-                                                   found.jump, inverse, b.turning);
-        Lanes force[3][8];
+        const CornerSums<V> r = laminate_slope(c, corner_sums(alone), phase, normal, spacing,
+                                               found.jump, inverse, b.turning);
+        V force[3][8];
         corner_forces(r, force);
         for (int row = 0; row <= column; ++row) {
-            const Lanes& f = force[row % 3][row / 3];
-            for (int l = 0; l < b.count; ++l) {
-                b.to[l].upper[static_cast<std::size_t>(CellMatrix::place(row, column))] = -f[l];
+            const V& f = force[row % 3][row / 3];
+            for (int l = 0; l < std::min(kWidth, b.count - first); ++l) {
+                b.to[first + l].upper[static_cast<std::size_t>(CellMatrix::place(row, column))] =
+                    -f[l];
             }
         }
     }
 }
+
+template <int kWidth>
+SWAGE_INLINE void all_matrices(const TangentBatch& b) {
+    for (int first = 0; first < b.count; first += kWidth) some_matrices<kWidth>(b, first);
+}
+SWAGE_WIDE_VECTORS void wide_matrices(const TangentBatch& b) { all_matrices<8>(b); }
+SWAGE_MIDDLE_VECTORS void middle_matrices(const TangentBatch& b) { all_matrices<4>(b); }
+void narrow_matrices(const TangentBatch& b) { all_matrices<2>(b); }
 
 }  // namespace
 
@@ -75,6 +86,7 @@ const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
     }
     known_.push_back({kind, std::vector<CellMatrix>(batches_.cell.size())});
     std::vector<CellMatrix>& matrix = known_.back().matrix;
+    const int width = vector_width();
     parallel_for(batches_.count(), [&](std::size_t b) {
         TangentBatch batch{};
         batch.matter = &matter;
@@ -86,7 +98,7 @@ const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
         }
         for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
         batch.to = matrix.data() + batches_.first[b];
-        batch_matrices(batch);
+        (width == 8 ? wide_matrices : width == 4 ? middle_matrices : narrow_matrices)(batch);
     });
     return matrix;
 }
