@@ -48,6 +48,12 @@ bool floats_under_pressure(const Apparatus& apparatus) {
                        [](const Load& load) { return load.force.empty() && load.pressure != 0; });
 }
 
+bool has_broken(const Aggregate& matter) {
+    return std::any_of(matter.connection.begin(), matter.connection.end(), [](const auto& all) {
+        return std::any_of(all.damage.begin(), all.damage.end(), [](float d) { return d >= 1; });
+    });
+}
+
 }  // namespace
 
 QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparatus,
@@ -342,10 +348,10 @@ void QuasistaticSolver::stop(const Relaxation& tried, const Drive& to, int depth
                              const std::string& met) const {
     if (tried.falls) {
         fail(ExitCode::stopped,
-             "{}: the work-piece falls at {:.4g} s, for nothing holds it against gravity and "
+             "{}: the work-piece{} falls at {:.4g} s, for nothing holds it against gravity and "
              "loads, and equilibria have no fall: hold it, have it lie on something, or let it "
              "fall by solver = \"explicit\"",
-             apparatus_.name, to.time);
+             apparatus_.name, has_broken(matter_) ? ", which has broken," : "", to.time);
     }
     const char* advice = "raise frames or tolerance of the stage";
     if (tried.converged) {

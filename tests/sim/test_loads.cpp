@@ -315,8 +315,14 @@ TEST_CASE("a body that nothing holds falls, and that is said") {
     Aggregate matter = make_block(4, 3, 3, 0.05, kSoft);
     SimSettings settings;
     settings.gravity = {0, -9.81, 0};
+    Aggregate broken = matter;
+    broken.connection[0].damage.assign(broken.particle_count(), 0);
+    broken.connection[0].damage[0] = 1;
+    broken.connection[0].weight.set(0, 0);
     const std::string told = stopped_by(matter, Apparatus{}, settings, 1);
     CHECK(told.find("the work-piece falls") != std::string::npos);
+    const std::string of_broken = stopped_by(broken, Apparatus{}, settings, 1);
+    CHECK(of_broken.find("the work-piece, which has broken, falls") != std::string::npos);
 }
 
 TEST_CASE("beyond a limit load there is no rest, and the message says what to do") {
