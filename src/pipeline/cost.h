@@ -42,6 +42,9 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
 RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
                    const RunOptions& options);
 
+// Which of several bodies makes explicit steps far shorter than all others need; empty: none.
+std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter);
+
 Json cost_json(const RunCost& cost);
 
 // Throws Error(resources) when the run would need more memory, disk or time than there is, with
