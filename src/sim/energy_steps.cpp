@@ -260,12 +260,11 @@ void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutco
     }
     for (std::size_t n = 0; n < group.size(); ++n) {
         Mover& m = mover_[group[n]];
-        if (outcome.body[group[n]].broken > t.so_far[n].broken) {
-            contact_.connections_changed(group[n]);
-        }
+        const bool broke = outcome.body[group[n]].broken > t.so_far[n].broken;
         outcome.body[group[n]] = t.so_far[n];
         m.before = std::move(t.earlier[n]);
         m.body.restore(m.state, outcome.body[group[n]]);
+        if (broke) contact_.connections_changed(group[n]);  // which are whole again
         m.body.restore_forces(std::move(t.force[n]), t.gravity[n]);
         m.step = 0.5 * t.step;
         m.held = true;

@@ -365,6 +365,7 @@ void MovingBody::save(State& state) const {
 void MovingBody::restore(const State& state, BodyOutcome& outcome) {
     matter_.particle_position = state.position;
     matter_.particle_velocity = state.velocity;
+    gone_ = std::numeric_limits<double>::infinity();  // candidates may be older than what is undone
     if (remembers_) {
         for (int d = 0; d < kForwardCount; ++d) {
             matter_.connection[d].plastic = state.connection[d].plastic;

@@ -441,7 +441,8 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     outcome.body.emplace_back(apparatus_, pushes_.count());
     pushes_.start(matter_, from);
     seats_ = true;
-    const bool let_go_of = begin(from, outcome.body[0]) || std::exchange(severed_, false);
+    const bool severed = std::exchange(severed_, false);
+    const bool let_go_of = begin(from, outcome.body[0]) || severed;
     moved_ = moved_ || contacts_.travel(matter_, from, to) > 0;
     const int count = increments_between(contacts_, matter_, from, to);
     if (let_go_of) let_go(from, outcome);
