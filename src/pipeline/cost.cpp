@@ -40,7 +40,7 @@ constexpr double kProgramBytes = 80e6;  // libraries and the drawing's own buffe
 constexpr double kStillBytesPerPixel = 0.7;
 constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two triangles
 constexpr double kLongestRun = 30 * 86400.0;
-constexpr double kFarShorter = 4;          // a step than all but one body need
+constexpr double kFarShorter = 4;          // a step than a body needs
 constexpr double kCountedCells = 300'000;  // molded for real by count_cost
 
 // The stable step of a full lattice: neither slivers nor damping.
@@ -235,9 +235,8 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         named.push_back({scene.body[b].name, &matter[b]});
     }
     cost.note = start_overlaps(named);
-    if (const std::string note = step_note(scene, matter); !note.empty()) {
-        cost.note.push_back(note);
-    }
+    const std::string steps = step_note(scene, matter);
+    if (!steps.empty()) cost.note.push_back(steps);
     const StageSpec& first = scene.stage.front();
     std::vector<Material> beside;
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
@@ -258,18 +257,22 @@ std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matt
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
         if (solver == Solver::quasistatic || solver == Solver::implicit_steps) continue;
-        std::size_t stiffest = 0;
-        double most = 0, next = 0;
-        for (std::size_t b = 0; b < matter.size(); ++b) {
-            const double steps = explicit_steps_per_second(matter[b], stage.sim);
-            next = std::max(next, std::min(most, steps));
-            if (steps > most) most = steps, stiffest = b;
+        std::vector<double> steps;
+        for (const Aggregate& body : matter) {
+            steps.push_back(explicit_steps_per_second(body, stage.sim));
         }
-        if (next == 0 || most < kFarShorter * next) continue;
+        const auto most = std::max_element(steps.begin(), steps.end());
+        std::string others;
+        for (std::size_t b = 0; b < steps.size(); ++b) {
+            if (*most < kFarShorter * steps[b]) continue;
+            others += fmt::format("{}{} {:.0f} times", others.empty() ? "" : ", ",
+                                  scene.body[b].name, *most / steps[b]);
+        }
+        if (others.empty()) continue;
         return fmt::format(
-            "{} makes the steps of all {:.0f} times shorter than any other body needs: larger "
-            "cells there, or a young_modulus that is still hard beside the others', take less time",
-            scene.body[stiffest].name, most / next);
+            "all steps are as short as {} needs, those of others could be longer: {}; larger "
+            "cells there, or a young_modulus that is still hard beside theirs, take less time",
+            scene.body[std::size_t(most - steps.begin())].name, others);
     }
     return {};
 }

@@ -42,7 +42,7 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
 RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
                    const RunOptions& options);
 
-// Which of several bodies makes explicit steps far shorter than all others need; empty: none.
+// Which of several bodies makes explicit steps far shorter than others need; empty: none does.
 std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter);
 
 Json cost_json(const RunCost& cost);

@@ -116,10 +116,11 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
     allowance_ = std::numeric_limits<double>::infinity();
     for (std::size_t w = 0; w < way_.size(); ++w) {
         const auto [from, onto, back] = pair_[w];
-        if (asleep[from] && asleep[onto]) continue;
         const double gap = box_gap(box[from], box[onto]);
         const bool near = from == onto || gap <= 2 * step;
         allowance_ = std::min(allowance_, near ? step : 0.5 * gap);
+        // What they are to each other stands, also for when they wake.
+        if (asleep[from] && asleep[onto]) continue;
         if (near) {
             way_[w].search(2 * step);
         } else {

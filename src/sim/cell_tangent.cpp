@@ -122,12 +122,19 @@ SWAGE_INLINE void act(const ProductTask& task) {
     if (run.count % kWidth == 0) add_carried(task.result, run.count, carry);
 }
 
-// The forces on all corners for a direction along one axis, from how far each corner goes.
+// Calls see(first, begin, x) for the cells of a batch, as many at a time as the vectors hold.
+template <int kWidth, typename See>
+SWAGE_INLINE void for_parts(const RunView& run, int batch, const See& see) {
+    for (int first = 0; first < std::min(kLanes, run.count - batch); first += kWidth) {
+        const int begin = batch + first, count = std::min(kWidth, run.count - begin);
+        see(first, begin, gather<LanesOf<kWidth>>(run.x, begin, count, run.room));
+    }
+}
+
+// The forces on all corners for a direction along one axis, from the sums of how far each goes.
 template <CellKind kKind, typename V>
 SWAGE_INLINE void forces_along(const Task& task, int begin, const CornerSums<V>& x,
-                               const V (&way)[8], int axis, V (&force)[3][8]) {
-    V sum[7];
-    sum_corners(way, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
+                               const V (&sum)[7], int axis, V (&force)[3][8]) {
     const V none{};
     const auto along = [&](const V& v) __attribute__((always_inline)) {
         return Triple<V>{axis == 0 ? v : none, axis == 1 ? v : none, axis == 2 ? v : none};
@@ -141,65 +148,69 @@ SWAGE_INLINE void forces_along(const Task& task, int begin, const CornerSums<V>&
 template <CellKind kKind, int kWidth>
 SWAGE_INLINE void act(const MatrixTask& task) {
     typedef LanesOf<kWidth> V;
-    for (int first = 0; first < std::min(kLanes, task.run.count - task.begin); first += kWidth) {
-        const int begin = task.begin + first, count = std::min(kWidth, task.run.count - begin);
-        const CornerSums<V> x = gather<V>(task.run.x, begin, count, task.run.room);
-        V low[3], high[3];
-        for (int d = 0; d < 3; ++d) {
-            low[d] = part_of<V>(task.low[d], first), high[d] = part_of<V>(task.high[d], first);
-        }
-        for (int column = 0; column < CellMatrix::kSize; ++column) {
-            const int corner = column / 3;
-            V follow[8];  // how the cell's corners follow this coarse corner
-            for (int c = 0; c < 8; ++c) {
-                follow[c] = 1.0 + V{};
-                for (int d = 0; d < 3; ++d) {
-                    const V t = c >> d & 1 ? high[d] : low[d];
-                    follow[c] *= corner >> d & 1 ? t : 1.0 - t;
-                }
+    for_parts<kWidth>(
+        task.run, task.begin,
+        [&](int first, int begin, const CornerSums<V>& x) __attribute__((always_inline)) {
+            V low[3], high[3];
+            for (int d = 0; d < 3; ++d) {
+                low[d] = part_of<V>(task.low[d], first), high[d] = part_of<V>(task.high[d], first);
             }
-            V force[3][8];
-            forces_along<kKind>(task, begin, x, follow, column % 3, force);
-            for (int i = 0; i < 3; ++i) {
-                // Back to the coarse corners, axis by axis.
-                V(&f)[8] = force[i];
-                for (int d = 0; d < 3; ++d) {
-                    for (int c = 0; c < 8; ++c) {
-                        if (c >> d & 1) continue;
-                        const V one = f[c], other = f[c | 1 << d];
-                        f[c | 1 << d] = low[d] * one + high[d] * other;
-                        f[c] = (1.0 - low[d]) * one + (1.0 - high[d]) * other;
+            for (int corner = 0; corner < 8; ++corner) {
+                V follow[8], sum[7];  // how the cell's corners follow this coarse corner
+                for (int c = 0; c < 8; ++c) {
+                    follow[c] = 1.0 + V{};
+                    for (int d = 0; d < 3; ++d) {
+                        const V t = c >> d & 1 ? high[d] : low[d];
+                        follow[c] *= corner >> d & 1 ? t : 1.0 - t;
                     }
                 }
-                for (int c = 0; c < 8; ++c) {
-                    const int row = 3 * c + i;
-                    if (row > column) continue;
-                    put_part(f[c], task.matrix[CellMatrix::place(row, column)], first);
+                sum_corners(follow, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
+                for (int axis = 0; axis < 3; ++axis) {
+                    const int column = 3 * corner + axis;
+                    V force[3][8];
+                    forces_along<kKind>(task, begin, x, sum, axis, force);
+                    for (int i = 0; i < 3; ++i) {
+                        // Back to the coarse corners, axis by axis.
+                        V(&f)[8] = force[i];
+                        for (int d = 0; d < 3; ++d) {
+                            for (int c = 0; c < 8; ++c) {
+                                if (c >> d & 1) continue;
+                                const V one = f[c], other = f[c | 1 << d];
+                                f[c | 1 << d] = low[d] * one + high[d] * other;
+                                f[c] = (1.0 - low[d]) * one + (1.0 - high[d]) * other;
+                            }
+                        }
+                        for (int c = 0; c < 8; ++c) {
+                            const int row = 3 * c + i;
+                            if (row > column) continue;
+                            put_part(f[c], task.matrix[CellMatrix::place(row, column)], first);
+                        }
+                    }
                 }
             }
-        }
-    }
+        });
 }
 
 template <CellKind kKind, int kWidth>
 SWAGE_INLINE void act(const BlockTask& task) {
     typedef LanesOf<kWidth> V;
-    for (int first = 0; first < std::min(kLanes, task.run.count - task.begin); first += kWidth) {
-        const int begin = task.begin + first, count = std::min(kWidth, task.run.count - begin);
-        const CornerSums<V> x = gather<V>(task.run.x, begin, count, task.run.room);
-        for (int corner = 0; corner < 8; ++corner) {
-            V alone[8] = {}, column[3][3];
-            alone[corner] = 1.0 + V{};
-            for (int axis = 0; axis < 3; ++axis) {
-                V force[3][8];
-                forces_along<kKind>(task, begin, x, alone, axis, force);
-                for (int i = 0; i < 3; ++i) column[axis][i] = force[i][corner];
+    for_parts<kWidth>(
+        task.run, task.begin,
+        [&](int first, int begin, const CornerSums<V>& x) __attribute__((always_inline)) {
+            for (int corner = 0; corner < 8; ++corner) {
+                V alone[8] = {}, sum[7], column[3][3];
+                alone[corner] = 1.0 + V{};
+                sum_corners(alone, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
+                for (int axis = 0; axis < 3; ++axis) {
+                    V force[3][8];
+                    forces_along<kKind>(task, begin, x, sum, axis, force);
+                    for (int i = 0; i < 3; ++i) column[axis][i] = force[i][corner];
+                }
+                const V own[6] = {column[0][0], column[1][1], column[2][2],
+                                  column[1][0], column[2][1], column[2][0]};
+                for (int n = 0; n < 6; ++n) put_part(own[n], task.block[corner][n], first);
             }
-            const V own[6] = {column[0][0], column[1][1], column[2][2],
-                              column[1][0], column[2][1], column[2][0]};
-            for (int n = 0; n < 6; ++n) put_part(own[n], task.block[corner][n], first);
-        }
-    }
+        });
 }
 
 template <CellKind kKind, typename T>

@@ -144,7 +144,6 @@ void MovingBody::begin_step(const Drive& before) {
 
 void MovingBody::find_candidates(const Drive& now) {
     contacts_.find_candidates(matter_, now);
-    if (touches_) listed_ = matter_.particle_position;
     gone_ = 0;
 }
 
@@ -360,12 +359,12 @@ void MovingBody::save(State& state) const {
     state.pushes.assign(1, pushes_);
     if (saves_branches_) state.damping.assign(1, damping_);
     state.load = load_;
+    state.gone = gone_;
 }
 
 void MovingBody::restore(const State& state, BodyOutcome& outcome) {
     matter_.particle_position = state.position;
     matter_.particle_velocity = state.velocity;
-    gone_ = std::numeric_limits<double>::infinity();  // candidates may be older than what is undone
     if (remembers_) {
         for (int d = 0; d < kForwardCount; ++d) {
             matter_.connection[d].plastic = state.connection[d].plastic;
@@ -393,6 +392,7 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
         outcome.damped_work += block_energy_;
     }
     load_ = state.load;
+    gone_ = state.gone;  // as long ago as the candidates that it goes back to
 }
 
 }  // namespace swage

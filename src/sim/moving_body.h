@@ -124,6 +124,7 @@ class MovingBody {
         std::vector<LoadSet> pushes;           // one
         std::vector<InternalDamping> damping;  // one, or none
         std::vector<LoadSum> load;
+        double gone;
     };
     void save(State& state) const;
     // NOTE: but for energy-stepped ones, which are often taken back, no copy is kept of what the
@@ -148,10 +149,10 @@ class MovingBody {
     double safety_, step_, present_step_;
     bool flowed_ = false;  // since present_step_ was found
     SurfaceDrag drag_;
-    Vec3Array force_, listed_;  // listed: positions when the candidates were found
+    Vec3Array force_;
     std::vector<LoadSum> load_;
     double turned_ = 0;  // way gone since the last look at what is bent, at the most [m]
-    double gone_ = 0;    // no particle has gone farther since then [m]
+    double gone_ = 0;    // no particle has gone farther since candidates were found [m]
     bool touches_;       // a tool could
     bool remembers_;     // its matter yields or breaks
     bool implicit_;

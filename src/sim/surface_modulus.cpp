@@ -37,8 +37,9 @@ std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints&
     }
     std::vector<double> modulus;
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const CellId own = cell[points.row(p)[0]];
         // A particle that no cell holds any more counts as the body's own material.
+        const std::array<ParticleId, 4> row = points.row(p);
+        const CellId own = row[1] < 0 ? -1 : cell[row[0]];
         int material = own < 0 ? 0 : matter.cell_material[own];
         if (const MixedCell* mixed = matter.mixed_at(own)) {
             material = material_at(*mixed, points.place(p) - Vec3::Constant(0.5));

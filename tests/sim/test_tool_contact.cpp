@@ -2,6 +2,7 @@
 // Tools, and blocks that meet, in explicit steps: restitution, static and kinetic friction,
 // stickiness, and their books.
 #include "base/parallel.h"
+#include "sim/moving_body.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
 
@@ -402,4 +403,32 @@ TEST_CASE("a block topples from a sloping floor where its edge says, of two cell
         }
         CHECK((lean > 0.1) == topples);
     }
+}
+
+TEST_CASE("a body that is taken back again and again does not lose sight of its tool") {
+    const double spacing = 0.1;
+    Aggregate m = make_block(3, 3, 3, spacing, kSpringy);
+    const Apparatus apparatus = floor_with(0);
+    const Drive drive = floor_at(0);
+    const auto sink = [&](MovingBody& body, double way) {
+        for (double& y : m.particle_position.y) y -= way * spacing;
+        body.renew_candidates(drive, drive, way * spacing);
+    };
+    place(m, {Quat::Identity(), Vec3(0, 2.7 * spacing, 0)});  // 1.2 cells above it
+    BodyOutcome outcome(apparatus, 0);
+    MovingBody body(m, 0, apparatus, motion_settings());
+    body.start(drive, outcome);
+    for (double way : {0.44, 0.44}) {
+        sink(body, way);
+        MovingBody::State state;
+        body.save(state);
+        sink(body, 0.02);  // far enough to look for candidates
+        body.restore(state, outcome);
+    }
+    sink(body, 0.4);  // 0.08 cells deep
+    body.begin_step(drive);
+    body.find_forces(drive, 1e-6, outcome);
+    double push = 0;
+    for (double y : body.force().y) push += y;
+    CHECK(push > 1);  // [N]; what is left of inner forces is round-off
 }

@@ -3,6 +3,7 @@
 
 #include "geometry/box_mesh.h"
 #include "geometry/make_shape.h"
+#include "matter/touch_points.h"
 #include "mold/mold.h"
 #include "sim/advance.h"
 #include "sim/connection_shares.h"
@@ -108,6 +109,17 @@ TEST_CASE("a surface is as stiff as the material just beneath it") {
     const Aggregate rubber = row_of_two(soft, hard, 2.1);
     CHECK(surface_modulus(rubber, rest) == surface_modulus(m, rest));
     CHECK(surface_modulus(rubber, moves) == Approx(surface_modulus(m, rest) / 0.06));
+}
+
+TEST_CASE("particles that no cell holds count as the body's own material") {
+    Aggregate m = row_of_two(elastic(1, 0), elastic(100, 0), 2.1);
+    for (ConnectionArrays& all : m.connection) {
+        for (std::size_t p = 0; p < m.particle_count(); ++p) all.weight.set(p, 0);
+    }
+    const TouchPoints touch(m, TouchPoints::With::tools);
+    REQUIRE(touch.size() == touch.own() + m.particle_count());
+    const std::vector<double> modulus = surface_moduli(m, touch.points(), Solver::explicit_steps);
+    for (std::size_t p = touch.own(); p < touch.size(); ++p) CHECK(modulus[p] == 1);
 }
 
 TEST_CASE("a ball with a heavy core falls, bounces and keeps its books in every solver") {
