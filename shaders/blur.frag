@@ -1,11 +1,11 @@
 #version 330 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean over 4 pixels in a row or column, of those on the same surface: takes out the 4 by 4
-// pattern of the pass before.
+// Takes out the 4 by 4 pattern of the pass before: the mean over 4 by 4 pixels. Where some of these
+// are on another surface, which would leave teeth of the pattern along its edge: the value here of
+// the plane that fits those of 8 by 8 which are on the same, the near ones best.
 #include "frame.glsl"
 #include "packing.glsl"
 uniform sampler2D visibility;
-uniform int down;
 layout(location = 0) out vec4 blurred;
 
 vec3 at(ivec2 texel) {
@@ -13,20 +13,56 @@ vec3 at(ivec2 texel) {
     return unpacked_visibility(texelFetch(visibility, clamp(texel, ivec2(0), last), 0));
 }
 
+// The surface's slope in depth: of the two sides the flatter.
+float flatter(float before, float center, float after) {
+    float down_to = center - before, up_to = after - center;
+    return abs(up_to) < abs(down_to) ? up_to : down_to;
+}
+
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    ivec2 step_by = down != 0 ? ivec2(0, 1) : ivec2(1, 0);
-    vec3 before = at(here - step_by), center = at(here), after = at(here + step_by);
-    // The surface's slope in depth: of the two sides the flatter.
-    float down_to = center.z - before.z, up_to = after.z - center.z;
-    float rise = abs(up_to) < abs(down_to) ? up_to : down_to;
-    vec3 row[4] = vec3[4](before, center, after, at(here + 2 * step_by));
+    vec3 center = at(here);
+    vec2 rise =
+        vec2(flatter(at(here - ivec2(1, 0)).z, center.z, at(here + ivec2(1, 0)).z),
+             flatter(at(here - ivec2(0, 1)).z, center.z, at(here + ivec2(0, 1)).z));
+    float narrow = 1.0 / (0.008 * center.z);
     vec3 sum = vec3(0.0);
-    for (int i = -1; i <= 2; ++i) {
-        vec3 v = row[i + 1];
-        float off = abs(v.z - center.z - rise * float(i)) / (0.008 * center.z);
-        float weight = max(0.0, 1.0 - off);
-        sum += weight * vec3(v.xy, 1.0);
+    for (int n = 0; n < 16; ++n) {
+        ivec2 off = ivec2(n & 3, n >> 2) - 1;
+        vec3 v = at(here + off);
+        float same = max(0.0, 1.0 - narrow * abs(v.z - center.z - dot(rise, vec2(off))));
+        sum += same * vec3(v.xy, 1.0);
     }
-    blurred = packed_visibility(sum.xy / sum.z, center.z);
+    vec2 value = sum.xy / sum.z;
+
+    // Weighted sums of 1, place, place times place; of the values, and of these times place.
+    float one = 0.0;
+    vec2 place = vec2(0.0), with_x = vec2(0.0), with_y = vec2(0.0), all = vec2(0.0);
+    vec3 square = vec3(0.0);  // xx, xy, yy
+    int count = sum.z < 14.0 ? 64 : 0;  // a loop of no turns costs less than a branch
+    for (int n = 0; n < count; ++n) {
+        ivec2 off = ivec2(n & 7, n >> 3) - 3;
+        vec3 v = at(here + off);
+        vec2 p = vec2(off);
+        float same = max(0.0, 1.0 - narrow * abs(v.z - center.z - dot(rise, p)));
+        float weight = same * exp(-0.12 * dot(p, p));
+        one += weight;
+        place += weight * p;
+        square += weight * vec3(p.x * p.x, p.x * p.y, p.y * p.y);
+        all += weight * v.xy;
+        with_x += weight * p.x * v.xy;
+        with_y += weight * p.y * v.xy;
+    }
+    if (count > 0) {
+        // About the mean place; slopes are drawn to none where hardly anything tells them.
+        vec2 mean = place / one, mean_value = all / one;
+        vec3 spread = square / one - vec3(mean.x * mean.x, mean.x * mean.y, mean.y * mean.y) +
+                      vec3(0.3, 0.0, 0.3);
+        vec2 on_x = with_x / one - mean.x * mean_value, on_y = with_y / one - mean.y * mean_value;
+        float determinant = spread.x * spread.z - spread.y * spread.y;
+        vec2 slope_x = (spread.z * on_x - spread.y * on_y) / determinant;
+        vec2 slope_y = (spread.x * on_y - spread.y * on_x) / determinant;
+        value = clamp(mean_value - slope_x * mean.x - slope_y * mean.y, 0.0, 1.0);
+    }
+    blurred = packed_visibility(value, center.z);
 }

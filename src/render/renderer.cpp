@@ -6,7 +6,6 @@
 #include "render/renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <iterator>
 
@@ -104,9 +103,8 @@ struct Renderer::Parts {
           shadow(make_target(gl, kShadowMapSide, kShadowMapSide, {.depth_texture = true})),
           half(make_target(gl, (settings.width + 1) / 2, (settings.height + 1) / 2,
                            {.color = GL_RGBA32F, .depth_buffer = true})) {
-        for (Target& target : visibility) {
-            target = make_target(gl, half.width, half.height, {.color = GL_RGBA8});
-        }
+        visibility = make_target(gl, half.width, half.height, {.color = GL_RGBA8});
+        blurred = make_target(gl, half.width, half.height, {.color = GL_RGBA8});
         plain = make_target(gl, settings.width, settings.height,
                             {.color = GL_RGBA8, .depth_buffer = true});
         const Vec3 back = camera.at(0).world_from_view.col(2);
@@ -127,8 +125,7 @@ struct Renderer::Parts {
     Shader shadow_shader, depth_shader, ground_depth_shader, visibility_shader, blur_shader,
         surface_shader, textured_shader, ground_shader, backdrop_shader, smooth_shader;
     GlHandle nothing, frame_buffer;
-    Target shadow, half;
-    std::array<Target, 2> visibility;
+    Target shadow, half, visibility, blurred;
     Target plain, sampled, smoothed;  // the latter two are made when first needed
     bool eye_is_outside = true;       // of the box of all that is drawn, in this picture
     Stopwatch* watch = nullptr;
@@ -215,18 +212,15 @@ void Renderer::Parts::draw_depth(const std::vector<Drawable>& drawables, bool gr
 
 void Renderer::Parts::draw_visibility() const {
     gl.Disable(GL_DEPTH_TEST);
-    visibility[0].bind(gl);
+    visibility.bind(gl);
     visibility_shader.use();
     set_unit(gl, 0, half.color.id());
     set_unit(gl, 1, shadow.depth.id());
     cover_screen();
+    blurred.bind(gl);
     blur_shader.use();
-    for (int down = 0; down < 2; ++down) {
-        visibility[static_cast<std::size_t>(1 - down)].bind(gl);
-        blur_shader.set("down", down);
-        set_unit(gl, 0, visibility[static_cast<std::size_t>(down)].color.id());
-        cover_screen();
-    }
+    set_unit(gl, 0, visibility.color.id());
+    cover_screen();
     gl.Enable(GL_DEPTH_TEST);
 }
 
@@ -234,7 +228,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
                                     const Target& target) {
     target.bind(gl);
     gl.Clear(GL_DEPTH_BUFFER_BIT);  // the backdrop covers every pixel
-    set_unit(gl, 0, visibility[0].color.id());
+    set_unit(gl, 0, blurred.color.id());
     static const SurfaceMaterial plain_material;
     for (const Drawable& d : drawables) {
         const TriMesh& mesh = *d.item->mesh;

@@ -139,6 +139,44 @@ TEST_CASE("a body throws a shadow on the ground", "[renderer]") {
     CHECK(brighter_ground == 0);  // and nothing else changes the ground
 }
 
+TEST_CASE("a shadow has no teeth along the edge of what throws it", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    // A red board, aslant in the picture, a little above the ground.
+    const TriMesh board = surface_of(BoxShape{Vec3(2, 0.1, 0.4), 0});
+    RenderSettings settings = small_picture();
+    settings.width = 640, settings.height = 480;
+    settings.camera[0].azimuth = GENERATE(0.2, 0.4, 0.7);
+    settings.camera[0].elevation = 0.3;
+    const Image image =
+        drawn(settings, {{&board, nullptr, {Quat::Identity(), {0, 0.06, 0}}, colored({1, 0, 0})}});
+    const auto is_ground = [&](int x, int y) {
+        const std::uint8_t* p = image.pixel(x, y);
+        return p[0] < p[2] + 20;
+    };
+    // The front edge, a straight line through where the ground begins in each column.
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (int x = 200; x < 440; ++x) {
+        int y = image.height - 1;
+        while (y > 0 && is_ground(x, y)) --y;
+        n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+    }
+    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx), start = (sy - slope * sx) / n;
+    const auto below_edge = [&](int x) {
+        const double y = start + slope * x + 4;
+        const int row = static_cast<int>(y);
+        REQUIRE(is_ground(x, row));
+        return brightness(image, x, row) * (row + 1 - y) +
+               brightness(image, x, row + 1) * (y - row);
+    };
+    // What neighbours along the edge do not share.
+    double rough = 0;
+    for (int x = 203; x < 437; ++x) {
+        rough += std::abs(below_edge(x) - 0.5 * (below_edge(x - 3) + below_edge(x + 3))) / 234;
+    }
+    INFO("rough by " << rough << " of 255");
+    CHECK(rough < 0.9);
+}
+
 TEST_CASE("an endless floor has no edge, and takes shadows as the ground does", "[renderer]") {
     if (!can_draw(GlProviderKind::automatic)) return;
     const TriMesh box = box_mesh(0.4), slab = surface_of(BoxShape{Vec3(60, 0.2, 60), 0});
