@@ -32,6 +32,13 @@ std::vector<char> crumbs_of(const Pieces& pieces) {
     return crumb;
 }
 
+// How many particles are in such pieces.
+std::ptrdiff_t particles_in_crumbs(const Pieces& pieces) {
+    const std::vector<char> crumb = crumbs_of(pieces);
+    return std::count_if(pieces.particle_piece.begin(), pieces.particle_piece.end(),
+                         [&](int piece) { return crumb[piece] != 0; });
+}
+
 // What would fall off as a crumb stays with one side that it is cut from, that which held it by
 // most; with both it would join them. `cut`: the matter with all of the plan severed.
 void keep_crumbs(const Aggregate& cut, std::deque<std::vector<SeverEvent>>& plan) {
@@ -86,7 +93,7 @@ AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& 
 struct WorkedBody {
     Aggregate* matter;
     int pieces;
-    std::ptrdiff_t crumbs = 0;  // particles
+    std::ptrdiff_t crumbs;  // particles
     Books books{};
     bool begun = false;
     double stored_at_start = 0;                  // [J]
@@ -179,11 +186,10 @@ void Simulation::Rooms::count_pieces(std::size_t b, const char* who,
                                      std::vector<std::string>& warning) {
     WorkedBody& at = body[b];
     const Pieces pieces = find_pieces(*at.matter);
-    const std::vector<char> crumb = crumbs_of(pieces);
-    const auto loose = std::count_if(pieces.particle_piece.begin(), pieces.particle_piece.end(),
-                                     [&](int piece) { return crumb[piece] != 0; });
+    const std::ptrdiff_t loose = particles_in_crumbs(pieces);
     if (loose > at.crumbs) {
-        warning.push_back(fmt::format("{} left crumbs of less than one cell", who));
+        warning.push_back(fmt::format("{} left crumbs of less than one cell{}", who,
+                                      body.size() > 1 ? ", which no other body meets" : ""));
     }
     at.crumbs = loose;
     at.pieces = pieces.count;
@@ -239,7 +245,8 @@ Simulation::Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& a
                 matter.particle_velocity.set(p, Vec3::Zero());
             }
         }
-        rooms_->body.push_back({&matter, find_pieces(matter).count});
+        const Pieces pieces = find_pieces(matter);
+        rooms_->body.push_back({&matter, pieces.count, particles_in_crumbs(pieces)});
     }
     rooms_->work.assign(apparatus.tool.size() + apparatus.grip.size(), 0.0);
     rooms_->push_work.assign(rooms_->pushes(0).count(), 0.0);

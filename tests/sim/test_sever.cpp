@@ -177,3 +177,24 @@ TEST_CASE("a crumb between two cuts stays with one side and does not join them")
     CHECK(r.severed > 0);
     CHECK(r.pieces == 2);
 }
+
+TEST_CASE("crumbs of an earlier stage are not blamed on the first blade of the next") {
+    Aggregate m = make_block(6, 2, 2, 0.1, Material{});
+    const Vec3 corner = m.particle_position.at(0);
+    cut_along(m, corner + Vec3::Constant(0.02), Vec3::Ones(), 3, 1);
+    REQUIRE(find_pieces(m).count == 2);  // one is a single particle
+    Apparatus apparatus;
+    apparatus.name = "cut";
+    apparatus.blade.push_back({"blade", {Vec3(0.02, 0, -1), Vec3(0.02, 0, 1)}, {}});
+    const auto drive = [](double y) {
+        Drive d;
+        d.world_from_blade = {Pose{Quat::Identity(), Vec3(0, y, 0)}};
+        return d;
+    };
+    const SimSettings settings;
+    Simulation simulation(m, apparatus, settings);
+    const FrameReport r = simulation.advance(drive(0.5), drive(-0.5));
+    CHECK(r.severed > 0);
+    CHECK(r.pieces == 3);
+    CHECK(r.warning.empty());
+}
