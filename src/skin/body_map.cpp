@@ -4,11 +4,19 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "matter/cell_middle.h"
 
 namespace swage {
+
+namespace {
+
+constexpr double kThinnest = 1e-3;  // of a cell's volume at rest, below which none is looked for
+
+}  // namespace
 
 BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(find_pieces(matter)) {
     std::vector<ParticleId> all(matter.particle_count());
@@ -34,18 +42,21 @@ Vec3 BodyMap::world(const BodyPlace& place) const {
                                   : part_displacement(cell, carrier, followed));
 }
 
-std::optional<BodyPlace> BodyMap::solve(CellId cell, CornerMask side, const Vec3& world) const {
-    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
-    const CellFrames frames = this->frames(corner);
-    Mat3 slope = Mat3::Zero();
+Mat3 BodyMap::mean_slope(CellId cell, CornerMask side) const {
+    const CellFrames frames = this->frames(matter_.lattice.cell_corners(cell));
+    Mat3 sum = Mat3::Zero();
     int used = 0;
     for (int c = 0; c < 8; ++c) {
         if (!(side >> c & 1)) continue;
-        slope += frames.corner.col(c).head<9>().reshaped(3, 3);
+        sum += frames.corner.col(c).head<9>().reshaped(3, 3);
         ++used;
     }
-    slope = Mat3::Identity() + slope / used;
-    if (std::abs(slope.determinant()) < 1e-3) return std::nullopt;
+    return Mat3::Identity() + sum / used;
+}
+
+std::optional<BodyPlace> BodyMap::solve(CellId cell, CornerMask side, const Vec3& world) const {
+    const Mat3 slope = mean_slope(cell, side);
+    if (std::abs(slope.determinant()) < kThinnest) return std::nullopt;
     const Mat3 inverse = slope.inverse();
     const CellBox box = cell_box(matter_, cell);
     BodyPlace place{box.low + 0.5 * box.size, cell, side};
@@ -59,18 +70,27 @@ std::optional<BodyPlace> BodyMap::solve(CellId cell, CornerMask side, const Vec3
     return place;
 }
 
-std::optional<BodyPlace> BodyMap::place_at(const Vec3& world,
-                                           const std::vector<CellId>& cells) const {
+BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<CellId>& cells,
+                            const BodyPlace& near) const {
     constexpr std::size_t kTried = 8;
-    std::vector<std::pair<double, CellId>> nearest;
-    for (CellId cell : cells) nearest.emplace_back((cell_middle(matter_, cell) - world).squaredNorm(), cell);
+    const double a = matter_.lattice.spacing;
+    const Vec3 way = world - this->world(near);
+    // Of what is pressed to a third.
+    const double reach = 4 * a + 3 * way.norm();
+    std::vector<std::tuple<bool, double, CellId>> nearest;
+    for (CellId cell : cells) {
+        const CellBox box = cell_box(matter_, cell);
+        const bool is_far = (box.low + 0.5 * box.size - near.reference).norm() > reach;
+        nearest.emplace_back(is_far, (cell_middle(matter_, cell) - world).squaredNorm(), cell);
+    }
     const std::size_t tried = std::min(kTried, nearest.size());
     std::partial_sort(nearest.begin(), nearest.begin() + tried, nearest.end());
 
     std::optional<BodyPlace> best;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t n = 0; n < tried; ++n) {
-        const CellId cell = nearest[n].second;
+        const auto& [is_far, distance2, cell] = nearest[n];
+        if (is_far && best) break;
         const CornerGroups groups = corner_groups(matter_, matter_.lattice.cell_corners(cell));
         CornerMask seen = 0;
         for (CornerMask group : groups) {
@@ -78,18 +98,25 @@ std::optional<BodyPlace> BodyMap::place_at(const Vec3& world,
             seen |= group;
             const std::optional<BodyPlace> place = solve(cell, group, world);
             if (!place) continue;
-            // How far the place lies outside the cell, and outside the share of its corners.
+            // How far the place lies outside the cell, and outside the share of its corners, and
+            // how far from the world's place the search has ended.
             const CellBox box = cell_box(matter_, cell);
             const Vec3 local = (place->reference - box.low).cwiseQuotient(box.size);
             double outside = (local - local.cwiseMax(0.0).cwiseMin(1.0)).norm();
             const auto weight = trilinear_weights(local.cwiseMax(0.0).cwiseMin(1.0));
             const auto heaviest = std::max_element(weight.begin(), weight.end()) - weight.begin();
             if (!(group >> heaviest & 1)) outside += 0.5;
+            outside += (world - this->world(*place)).norm() / a;
             if (outside < least) least = outside, best = place;
         }
         if (least < 1e-9) break;
     }
-    return best;
+    if (best) return *best;
+    // Far outside of all matter, as a skin on a block may be: it hangs on the next place.
+    BodyPlace guess = near;
+    const Mat3 slope = mean_slope(near.cell, near.side);
+    guess.reference += std::abs(slope.determinant()) < kThinnest ? way : slope.inverse() * way;
+    return guess;
 }
 
 BodyPlace BodyMap::beside(const Vec3& reference, std::span<const BodyPlace> others) const {

@@ -14,7 +14,7 @@ namespace swage {
 
 // A place of the body at molding, with the cell and the corners that it follows.
 struct BodyPlace {
-    Vec3 reference;
+    Vec3 reference = Vec3::Zero();
     CellId cell = -1;
     CornerMask side = kAllCorners;
 };
@@ -26,8 +26,10 @@ class BodyMap {
 
     Vec3 world(const BodyPlace& place) const;
     // The place that is now at `world`; searched in the cells, of those given, whose centres are
-    // nearest. A place outside of all is the best guess. Nothing if no cell is given.
-    std::optional<BodyPlace> place_at(const Vec3& world, const std::vector<CellId>& cells) const;
+    // nearest, of those around `near` in the body first: what has gone into itself has more than
+    // one. A place outside of all is the best guess.
+    BodyPlace place_at(const Vec3& world, const std::vector<CellId>& cells,
+                       const BodyPlace& near) const;
 
     const Pieces& pieces() const { return pieces_; }
     // Corners of the cell that belong to one piece and hang together with the one next to the
@@ -39,6 +41,8 @@ class BodyMap {
 
   private:
     CellFrames frames(const std::array<ParticleId, 8>& corner) const;
+    Mat3 mean_slope(CellId cell, CornerMask side) const;  // of the world by the body
+    // Nothing where the cell has no thickness or the search leaves its surroundings.
     std::optional<BodyPlace> solve(CellId cell, CornerMask side, const Vec3& world) const;
 
     const Aggregate& matter_;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "geometry/disjoint_sets.h"
 #include "matter/cell_middle.h"
@@ -59,7 +61,7 @@ class PlaneCut {
         std::vector<BodyPlace> cut, inner;
         std::vector<double> share;
         find_cut_places(split, cut, share);
-        find_cap_places(split, inner);
+        find_cap_places(split, cut, inner);
 
         // The side of the plane that each vertex must follow; 0: as it likes.
         std::vector<int> own(old + split.added.size(), 0);
@@ -172,14 +174,46 @@ class PlaneCut {
         return cells;
     }
 
-    void find_cap_places(const SurfaceSplit& split, std::vector<BodyPlace>& places) const {
+    // From the rim inward: each beside one that is known.
+    void find_cap_places(const SurfaceSplit& split, const std::vector<BodyPlace>& cut,
+                         std::vector<BodyPlace>& places) const {
         if (split.cap_point.empty()) return;
         const std::vector<CellId> cells = crossed_cells();
-        for (const Vec3& point : split.cap_point) {
-            std::optional<BodyPlace> place = map_.place_at(point, cells);
-            // Far outside of all matter, as a skin on a block may be: it hangs on the next cell.
-            if (!place) place = BodyPlace{point, carrying_cell(matter_, point)};
-            places.push_back(*place);
+        const int old = static_cast<int>(position_.size());
+        const int first = old + static_cast<int>(cut.size());
+        std::map<int, std::set<int>> beside;
+        for (const SplitTriangle& t : split.triangle) {
+            if (t.parent >= 0) continue;
+            for (int k = 0; k < 3; ++k) {
+                beside[t.raw[k]].insert({t.raw[(k + 1) % 3], t.raw[(k + 2) % 3]});
+            }
+        }
+        std::deque<int> known;
+        for (const auto& [raw, others] : beside) {
+            if (raw < first) known.push_back(raw);
+        }
+        places.assign(split.cap_point.size(), {});  // without a cell: not known
+        const auto spread = [&] {
+            for (; !known.empty(); known.pop_front()) {
+                const int raw = known.front();
+                const BodyPlace near = raw < old     ? place_of(raw)
+                                       : raw < first ? cut[raw - old]
+                                                     : places[raw - first];
+                for (int other : beside[raw]) {
+                    if (other < first || places[other - first].cell >= 0) continue;
+                    places[other - first] =
+                        map_.place_at(split.cap_point[other - first], cells, near);
+                    known.push_back(other);
+                }
+            }
+        };
+        spread();
+        for (std::size_t n = 0; n < places.size(); ++n) {  // whom the rim does not reach
+            if (places[n].cell >= 0) continue;
+            const Vec3& point = split.cap_point[n];
+            places[n] = map_.place_at(point, cells, {point, carrying_cell(matter_, point)});
+            known.push_back(first + static_cast<int>(n));
+            spread();
         }
     }
 

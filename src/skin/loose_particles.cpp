@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "skin/carrier.h"
 
 namespace swage {
 
@@ -117,6 +118,43 @@ bool all_edges_hold(const Aggregate& matter, CellId cell) {
     return true;
 }
 
+// The cells' own corner that the particle is.
+int corner_of(const Aggregate& matter, CellId cell, ParticleId particle) {
+    const auto corner = matter.lattice.cell_corners(cell);
+    return static_cast<int>(std::find(corner.begin(), corner.end(), particle) - corner.begin());
+}
+
+// The nearest whole firm cells that share a corner with what hangs together with the particle in
+// one of its slivers.
+std::vector<CellId> firm_left(const Aggregate& matter, ParticleId particle,
+                              std::span<const CellId> slivers) {
+    std::vector<CellId> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (CellId sliver : slivers) {
+        const int own = corner_of(matter, sliver, particle);
+        const CornerMask held = corner_groups(matter, matter.lattice.cell_corners(sliver))[own];
+        const Vec3i site = matter.lattice.cell_site(sliver);
+        const Vec3 at(own & 1, own >> 1 & 1, own >> 2);
+        for (int n = 0; n < 27; ++n) {
+            const Vec3i step = step_to(n), next = site + step;
+            bool shares = false;
+            for (int c = 0; c < 8 && !shares; ++c) {
+                const Vec3i in_next = Vec3i(c & 1, c >> 1 & 1, c >> 2) - step;
+                shares = (held >> c & 1) && in_next.minCoeff() >= 0 && in_next.maxCoeff() <= 1;
+            }
+            const double d = (at - step.cast<double>() - Vec3::Constant(0.5)).squaredNorm();
+            if (!shares || d > least) continue;
+            const CellId cell = matter.lattice.cell_at(next.x(), next.y(), next.z());
+            if (cell < 0 || !is_firm(matter, cell) || !all_edges_hold(matter, cell)) continue;
+            if (d < least) nearest.clear(), least = d;
+            nearest.push_back(cell);
+        }
+    }
+    std::sort(nearest.begin(), nearest.end());
+    nearest.erase(std::unique(nearest.begin(), nearest.end()), nearest.end());
+    return nearest;
+}
+
 }  // namespace
 
 LooseParticles find_loose(const Aggregate& matter) {
@@ -145,6 +183,7 @@ LooseParticles find_loose(const Aggregate& matter) {
         add_shares(matter, firm, matter.particle_reference.at(particle), loose.share);
         loose.first_need.push_back(static_cast<int>(loose.need.size()));
         for (const SliverCorner& sliver : own) loose.need.push_back(sliver.cell);
+        loose.sliver_count.push_back(static_cast<int>(own.size()));
         loose.need.insert(loose.need.end(), firm.begin(), firm.end());
     }
     if (loose.particle.empty()) return loose;
@@ -163,22 +202,36 @@ std::vector<Vec3> loose_displacements(const LooseParticles& loose, const Aggrega
     const auto displacement = [&](ParticleId p) -> Vec3 {
         return matter.particle_position.at(p) - reference.at(p);
     };
+    const auto sum = [&](std::span<const LooseParticles::Share> shares) {
+        Vec3 place = Vec3::Zero();
+        for (const auto& [particle, weight] : shares) place += weight * displacement(particle);
+        return place;
+    };
+    const auto part = [](const auto& all, const std::vector<int>& first, std::size_t n) {
+        return std::span(all).subspan(first[n], first[n + 1] - first[n]);
+    };
     std::vector<Vec3> moved(loose.particle.size());
     parallel_for((moved.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
         const std::size_t end = std::min(moved.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            moved[n] = displacement(loose.particle[n]);
-            Vec3 should = Vec3::Zero();
-            for (int k = loose.first_share[n]; k < loose.first_share[n + 1]; ++k) {
-                should += loose.share[k].weight * displacement(loose.share[k].particle);
+            const ParticleId own = loose.particle[n];
+            moved[n] = displacement(own);
+            Vec3 should = sum(part(loose.share, loose.first_share, n));
+            if ((moved[n] - should).squaredNorm() <= most * most) continue;
+            const std::span<const CellId> need = part(loose.need, loose.first_need, n);
+            const bool hangs = std::all_of(need.begin(), need.end(), [&](CellId cell) {
+                return all_edges_hold(matter, cell);
+            });
+            if (!hangs) {
+                const std::vector<CellId> firm =
+                    firm_left(matter, own, need.first(loose.sliver_count[n]));
+                if (firm.empty()) continue;
+                std::vector<LooseParticles::Share> share;
+                add_shares(matter, firm, reference.at(own), share);
+                should = sum(share);
             }
             const Vec3 away = moved[n] - should;
-            if (away.squaredNorm() <= most * most) continue;
-            const bool hangs =
-                std::all_of(loose.need.begin() + loose.first_need[n],
-                            loose.need.begin() + loose.first_need[n + 1],
-                            [&](CellId cell) { return all_edges_hold(matter, cell); });
-            if (hangs) moved[n] = should + most / away.norm() * away;
+            if (away.squaredNorm() > most * most) moved[n] = should + most / away.norm() * away;
         }
     });
     return moved;

@@ -21,8 +21,11 @@ struct LooseParticles {
     // mean, would have it: into share, one more at the end. Exact for what is linear in the place.
     std::vector<int> first_share;
     std::vector<Share> share;
-    std::vector<int> first_need;  // into need, one more at the end
-    std::vector<CellId> need;     // cells that have to be whole for that
+    // Cells that have to be whole for that, the particle's own slivers first: into need, one more
+    // at the end.
+    std::vector<int> first_need;
+    std::vector<CellId> need;
+    std::vector<int> sliver_count;
 };
 
 // Loose are those of whose cells none is firm while each adjoins one that is: so a fin thinner than
@@ -30,8 +33,9 @@ struct LooseParticles {
 LooseParticles find_loose(const Aggregate& matter);
 
 // Displacements [m] of the loose particles that a skin follows: their own, as long as they stay
-// within 0.15 spacings of where firm matter would have them, else at that distance from it. Their
-// own too where matter is severed or broken in between.
+// within 0.15 spacings of where firm matter would have them, else at that distance from it. Where
+// matter is severed or broken in between, the nearest whole firm cells count that a particle still
+// hangs together with by one of its slivers; where there are none it goes its own way.
 std::vector<Vec3> loose_displacements(const LooseParticles& loose, const Aggregate& matter,
                                       const Vec3Array& reference);
 

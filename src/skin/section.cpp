@@ -151,4 +151,97 @@ std::optional<SectionTriangles> fill_section(const Section& section) {
     return result;
 }
 
+namespace {
+
+struct Loop {
+    std::vector<int> segment;
+    double area = 0;  // [m2], below 0 around a hole
+};
+
+// Segments in no closed loop go to `open`.
+std::vector<Loop> find_loops(const Section& section, std::vector<int>& open) {
+    std::vector<std::vector<int>> leaving(section.point.size());
+    const int count = static_cast<int>(section.segment.size());
+    for (int s = count; s-- > 0;) leaving[section.segment[s][0]].push_back(s);
+    std::vector<char> taken(section.segment.size(), 0);
+    std::vector<Loop> loops;
+    for (int first = 0; first < count; ++first) {
+        if (taken[first]) continue;
+        Loop loop;
+        for (int s = first; s >= 0;) {
+            taken[s] = 1;
+            loop.segment.push_back(s);
+            const auto [a, b] = section.segment[s];
+            const Vec2 &p = section.point[a], &q = section.point[b];
+            loop.area += 0.5 * (p[0] * q[1] - p[1] * q[0]);
+            s = -1;
+            if (b == section.segment[first][0]) break;
+            while (!leaving[b].empty() && taken[leaving[b].back()]) leaving[b].pop_back();
+            if (!leaving[b].empty()) s = leaving[b].back();
+        }
+        if (section.segment[loop.segment.back()][1] == section.segment[first][0]) {
+            loops.push_back(std::move(loop));
+        } else {
+            open.insert(open.end(), loop.segment.begin(), loop.segment.end());
+        }
+    }
+    return loops;
+}
+
+bool lies_in(const Section& section, const Loop& loop, const Vec2& at) {
+    bool inside = false;
+    for (int s : loop.segment) {
+        const Vec2 p = section.point[section.segment[s][0]] - at;
+        const Vec2 q = section.point[section.segment[s][1]] - at;
+        if ((p[1] > 0) == (q[1] > 0)) continue;
+        if ((p[0] * q[1] - p[1] * q[0] > 0) == (q[1] > p[1])) inside = !inside;
+    }
+    return inside;
+}
+
+bool lies_in(const Section& section, const Loop& loop, const Loop& hole) {
+    return std::all_of(hole.segment.begin(), hole.segment.end(), [&](int s) {
+        return lies_in(section, loop, section.point[section.segment[s][0]]);
+    });
+}
+
+double distance_at_rest(const Section& section, const Loop& a, const Loop& b) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int s : a.segment) {
+        const Vec3& p = section.at_rest[section.segment[s][0]];
+        for (int t : b.segment) {
+            least = std::min(least, (section.at_rest[section.segment[t][0]] - p).squaredNorm());
+        }
+    }
+    return std::sqrt(least);
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> sheets_of(const Section& section) {
+    std::vector<int> open;
+    const std::vector<Loop> loops = find_loops(section, open);
+    std::vector<int> sheet(loops.size(), -1);
+    std::vector<std::vector<int>> sheets;
+    for (std::size_t n = 0; n < loops.size(); ++n) {
+        if (!(loops[n].area > 0)) continue;
+        sheet[n] = static_cast<int>(sheets.size());
+        sheets.push_back(loops[n].segment);
+    }
+    for (const Loop& hole : loops) {
+        if (hole.area > 0) continue;
+        const Loop* around = nullptr;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Loop& loop : loops) {
+            if (!(loop.area > 0) || !lies_in(section, loop, hole)) continue;
+            const double distance = distance_at_rest(section, loop, hole);
+            if (distance < nearest) nearest = distance, around = &loop;
+        }
+        std::vector<int>& to = around == nullptr ? open : sheets[sheet[around - loops.data()]];
+        to.insert(to.end(), hole.segment.begin(), hole.segment.end());
+    }
+    if (!open.empty()) sheets.push_back(open);
+    return sheets;
+}
+
 }  // namespace swage

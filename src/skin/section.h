@@ -12,6 +12,7 @@ namespace swage {
 
 struct Section {
     std::vector<Vec2> point;
+    std::vector<Vec3> at_rest;                // where each was in the body at molding
     std::vector<std::array<int, 2>> segment;  // closed loops, the inside on the left
     std::vector<Vec2> wish;                   // places inside that should become points
     double spacing = 0;                       // [m] of the points that are added inside
@@ -25,5 +26,10 @@ struct SectionTriangles {
 // Every segment becomes an edge of the triangles. Nothing when the segments cross or touch each
 // other, do not close, or wind more than once around a place.
 std::optional<SectionTriangles> fill_section(const Section& section);
+
+// The segments by sheet, where sheets lie over each other and their loops may cross: those of a
+// loop and of the holes in it, which at rest were nearest to it. What does not close, or is a hole
+// in nothing, comes last.
+std::vector<std::vector<int>> sheets_of(const Section& section);
 
 }  // namespace swage

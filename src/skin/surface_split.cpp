@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "geometry/disjoint_sets.h"
@@ -59,11 +60,12 @@ class Splitter {
   private:
     int old_count() const { return static_cast<int>(position_.size()); }
     bool on_plane(int raw) const { return raw >= old_count() || sign_[raw] == 0; }
-    Vec3 place(int raw) const {
-        if (raw < old_count()) return position_[raw];
+    Vec3 place(int raw, const std::vector<Vec3>& position) const {
+        if (raw < old_count()) return position[raw];
         const CutPoint& cut = split_.cut[raw - old_count()];
-        return position_[cut.low] + cut.share * (position_[cut.high] - position_[cut.low]);
+        return position[cut.low] + cut.share * (position[cut.high] - position[cut.low]);
     }
+    Vec3 place(int raw) const { return place(raw, position_); }
 
     void classify() {
         std::vector<double> shortest(position_.size(), std::numeric_limits<double>::infinity());
@@ -186,34 +188,43 @@ class Splitter {
 
     void cap_all() {
         std::vector<int> all(seam_.size());
-        for (std::size_t s = 0; s < seam_.size(); ++s) all[s] = static_cast<int>(s);
+        std::iota(all.begin(), all.end(), 0);
         if (all.empty() || cap(all)) return;
-        // Parts that cross or touch each other, or are not closed, must not spoil the others.
-        const Components components = surface_components(mesh_);
-        std::map<int, std::vector<int>> by_component;
-        for (int s : all) by_component[components.triangle_component[seam_[s].plus]].push_back(s);
-        for (const auto& [component, seams] : by_component) {
-            if (by_component.size() > 1 && cap(seams)) continue;
+        // A body that has gone into itself, or whose parts have: each sheet is filled by itself.
+        Section section;
+        std::vector<int> raw;
+        add_segments(all, section, raw);
+        for (const std::vector<int>& sheet : sheets_of(section)) {
+            if (cap(sheet)) continue;
             ++split_.open_parts;
-            for (int s : seams) {
+            for (int s : sheet) {
                 const Vec3 middle = 0.5 * (place(seam_[s].from) + place(seam_[s].to));
                 seam_[s].kept = plane_.covers(plane_.flat(middle));
             }
         }
     }
 
+    // `raw`: of each of the section's points.
+    void add_segments(const std::vector<int>& seams, Section& section, std::vector<int>& raw) {
+        std::map<int, int> local;
+        const auto point = [&](int r) {
+            const auto [at, fresh] = local.emplace(r, static_cast<int>(raw.size()));
+            if (fresh) {
+                raw.push_back(r);
+                section.point.push_back(plane_.flat(place(r)));
+                section.at_rest.push_back(place(r, mesh_.position));
+            }
+            return at->second;
+        };
+        for (int s : seams) section.segment.push_back({point(seam_[s].from), point(seam_[s].to)});
+    }
+
     // Fills the section that these edges bound and keeps what the blade sweeps.
     bool cap(const std::vector<int>& seams) {
         Section section;
         section.spacing = spacing_;
-        std::map<int, int> local;
         std::vector<int> raw;
-        const auto point = [&](int r) {
-            const auto [at, fresh] = local.emplace(r, static_cast<int>(raw.size()));
-            if (fresh) raw.push_back(r), section.point.push_back(plane_.flat(place(r)));
-            return at->second;
-        };
-        for (int s : seams) section.segment.push_back({point(seam_[s].from), point(seam_[s].to)});
+        add_segments(seams, section, raw);
         for (const auto& [a, b] : plane_.outline) {
             const int steps =
                 std::clamp(static_cast<int>((b - a).norm() / (0.5 * spacing_)), 1, 999);

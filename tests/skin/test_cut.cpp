@@ -302,6 +302,43 @@ TEST_CASE("a blade that stops inside the body leaves the surface in one piece") 
     CHECK(high - low == Approx(2 * .2 * (.15 - .0161)).epsilon(.05));
 }
 
+TEST_CASE("a body that has gone into itself is closed where it is cut, each part by its own") {
+    const bool hollow = GENERATE(false, true);
+    Fixture f(bar(hollow));
+    const double whole = signed_volume(f.mesh);
+    // A ring that is longer than its way round: one end lies half-way in the other.
+    test::deform(f.matter, [](const Vec3& p) -> Vec3 {
+        const double turn = 1.1 * 2 * kPi * p.x(), r = 0.35 + p.y();
+        return {r * std::sin(turn), r * std::cos(turn), p.z() + 0.15 * p.x() + 0.02 * p.y()};
+    });
+    f.follow();
+    const Vec3 point(.0013, 0, 0), normal = Vec3::UnitX();
+    const CutResult result = f.cut(sweep_of(point, normal, 3));
+    CHECK(result.planes == 1);
+    CHECK(result.open_parts == 0);
+    check_sound(f.mesh, f.position);
+    const std::vector<TriMesh> parts = parts_of(f.mesh);
+    CHECK(parts.size() == 4);  // cut at the top, and each end
+    double sum = 0;
+    for (const TriMesh& part : parts) {
+        CHECK(signed_volume(part) > 0);
+        sum += signed_volume(part);
+    }
+    CHECK(sum == Approx(whole).epsilon(1e-9));
+    double farthest = 0, off = 0;
+    for (std::size_t t = 0; t < f.mesh.triangle.size(); ++t) {
+        if (f.mesh.triangle_uv[t][0] >= 0) continue;
+        const Corners& c = f.mesh.triangle[t];
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 edge = f.mesh.position[c[k]] - f.mesh.position[c[(k + 1) % 3]];
+            farthest = std::max(farthest, edge.norm());
+            off = std::max(off, std::abs(normal.dot(f.position[c[k]] - point)));
+        }
+    }
+    CHECK(farthest < 3 * f.matter.lattice.spacing);
+    CHECK(off < 0.02 * f.matter.lattice.spacing);
+}
+
 TEST_CASE("two blades cut four closed parts out of a bar") {
     Fixture f(bar());
     const double whole = signed_volume(f.mesh);

@@ -108,6 +108,26 @@ TEST_CASE("a loose particle that is cut off from firm matter goes its own way") 
     CHECK(above > 0);
 }
 
+TEST_CASE("beside a cut a loose particle is drawn back by what firm matter is left on its side") {
+    Aggregate matter = ball(9);
+    const Vec3 normal = Vec3(1, .2, .1).normalized(), away(.5, 0, 0);
+    const auto side = [&](const Vec3& p) { return normal.dot(p) > .01; };
+    const LooseParticles loose = find_loose(matter);
+    test::sever_plane(matter, .01 * normal, normal);
+    test::deform(matter, [&](const Vec3& p) { return side(p) ? Vec3(p + away) : p; });
+    drive_about(matter, 9);
+    const auto moved = loose_displacements(loose, matter, matter.particle_reference.all());
+    const double spacing = matter.lattice.spacing;
+    int beside = 0;
+    for (std::size_t n = 0; n < moved.size(); ++n) {
+        const Vec3 p = matter.particle_reference.at(loose.particle[n]);
+        const Vec3 should = side(p) ? away : Vec3(Vec3::Zero());
+        CHECK((moved[n] - should).norm() < .15001 * spacing);
+        beside += std::abs(normal.dot(p) - .01) < spacing;
+    }
+    CHECK(beside > 10);
+}
+
 TEST_CASE("a fin thinner than a sliver is left to itself") {
     // A block with a fin a quarter of a cell thick, that stands four cells high on it.
     std::vector<Vec3i> cells;
