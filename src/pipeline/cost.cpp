@@ -33,6 +33,8 @@ constexpr double kDampedShare = 2, kYieldingShare = 1.4;  // of explicit steps t
 constexpr double kIterationShare = 1.4;                   // and of a relaxation's iteration
 constexpr double kSecondsPerPixel = 1.8e-7;               // drawing and writing, two cores
 constexpr double kEnergyStepsPerStep = 100;               // while a body swings
+constexpr double kImplicitStepsPerFrame = 4;              // where no tool is in reach
+constexpr double kImplicitWork = 250;                     // of such a step: 50 to 400
 constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
 constexpr double kBytesPerVertex = 600;
 constexpr double kVerticesPerFace = 6;  // of a boundary, a cell's face: four, and its steps
@@ -60,16 +62,23 @@ double least_damping(const SceneSpec& scene) {
     return least;
 }
 
-// What laws make of an explicit step's time.
-double law_share(const SceneSpec& scene) {
-    bool damps = false, yields = false;
+template <class Test>
+bool any_material(const SceneSpec& scene, Test&& test) {
     for (const BodySpec& body : scene.body) {
         for (const Material* m : body.materials()) {
-            damps = damps || m->damping_ratio > 0;
-            yields = yields || std::isfinite(m->yield_stress);
+            if (test(*m)) return true;
         }
     }
-    return (damps ? kDampedShare : 1) * (yields ? kYieldingShare : 1);
+    return false;
+}
+bool yields(const SceneSpec& scene) {
+    return any_material(scene, [](const Material& m) { return std::isfinite(m.yield_stress); });
+}
+
+// What laws make of an explicit step's time.
+double law_share(const SceneSpec& scene) {
+    const bool damps = any_material(scene, [](const Material& m) { return m.damping_ratio > 0; });
+    return (damps ? kDampedShare : 1) * (yields(scene) ? kYieldingShare : 1);
 }
 
 // Of the body with the shortest stable step.
@@ -114,17 +123,19 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     double work = 0;  // the steps, as if nothing damped or yielded in them
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
-        if (solver == Solver::quasistatic || solver == Solver::implicit_steps) {
-            const bool relaxes = solver == Solver::quasistatic && !stage.machine.tool.empty();
+        if (solver == Solver::quasistatic) {
+            const bool relaxes = !stage.machine.tool.empty();
             const bool counted = equilibria > 0 && &stage == &scene.stage.front();
-            const bool yields = std::isfinite(scene.work_piece().material.yield_stress);
-            const double steps = (relaxes  ? kRelaxationWork
-                                  : yields ? kYieldingWork
-                                           : kSmoothWork) *
+            const double steps = (relaxes         ? kRelaxationWork
+                                  : yields(scene) ? kYieldingWork
+                                                  : kSmoothWork) *
                                  (counted ? static_cast<double>(equilibria)
                                           : (relaxes ? kEquilibriaPerFrame : 1) * stage.frames);
             cost.steps += steps, work += (relaxes ? kIterationShare : 1) * steps;
             cost.relaxes = cost.relaxes || relaxes;
+        } else if (solver == Solver::implicit_steps) {
+            const double steps = kImplicitStepsPerFrame * stage.frames;
+            cost.steps += steps, work += kImplicitWork * steps;
         } else {
             const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
                                    : solver == Solver::euler
@@ -137,11 +148,11 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     }
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
     double vertices = 0;
-    for (const InputMesh& one : input) {
+    for (std::size_t b = 0; b < input.size(); ++b) {
         vertices += scene.skin.kind == SkinKind::boundary
-                        ? kVerticesPerFace * surface_area(one.to_mold()) /
-                              (cost.mold.spacing * cost.mold.spacing)
-                        : static_cast<double>(one.mesh.position.size());
+                        ? kVerticesPerFace * surface_area(input[b].to_mold()) /
+                              (cost.spacing[b] * cost.spacing[b])
+                        : static_cast<double>(input[b].mesh.position.size());
     }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;

@@ -20,7 +20,7 @@ struct RunCost {
     double thickness = 0;           // of the work-piece, or of its thin parts, in cells: about
     double tool_give = 0;           // what the softest tool gives way by, in cells; 0: no tools
     int frames = 0;                 // stills, the start included
-    double steps = 0;               // relaxation iterations and explicit steps, about
+    double steps = 0;               // relaxation iterations and steps of motion, about
     double seconds = 0;             // of simulation and drawing on this machine, about
     bool relaxes = false;           // under tools: what snaps or slips may take ten times that
     double memory_bytes = 0;        // at the peak, about

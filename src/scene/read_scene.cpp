@@ -111,6 +111,8 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     BodySpec& work_piece = scene.body.emplace_back();
     read_mesh_section(mesh, folder, work_piece);
     read_material(material, assets, folder, work_piece.material, scene.inputs);
+    work_piece.gives_damping =
+        work_piece.material.damping_ratio > 0 && material.find("damping_ratio");
     for (const Node* node : root.tables("inset", "[[inset]]")) {
         TableReader inset(*node, "[[inset]]", reading);
         work_piece.inset.push_back(read_inset(inset, assets, folder, scene.inputs));

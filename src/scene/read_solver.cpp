@@ -70,11 +70,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     if (sim.solver == Solver::implicit_steps && several) {
         table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
     }
-    bool damps = false;
-    for (const BodySpec& body : scene.body) {
-        for (const Material* m : body.materials()) damps = damps || m->damping_ratio > 0;
-    }
-    if (sim.solver == Solver::implicit_steps && damps) {
+    if (sim.solver == Solver::implicit_steps && scene.work_piece().gives_damping) {
         table.warn("solver",
                    "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "
                    "themselves");

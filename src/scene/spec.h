@@ -46,6 +46,7 @@ struct BodySpec {
     std::optional<Vec3> color;  // linear RGB, instead of what its file says
     bool metal = false;         // that colour is
     Material material;
+    bool gives_damping = false;  // its own, not what a known material has
     std::vector<InsetSpec> inset;
     MoldSettings mold;
 

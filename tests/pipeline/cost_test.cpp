@@ -83,6 +83,48 @@ TEST_CASE("a step that damps, or of matter that yields, is told to take longer")
     CHECK(seconds_a_step(0.02, 1e6) > 1.2 * damped);
 }
 
+TEST_CASE("implicit steps are told by the frame, each taking hundreds of times an explicit one") {
+    InputMesh input;
+    input.mesh = make_shape("bar", {}).mesh;
+    SceneSpec scene;
+    scene.body.resize(1);
+    scene.body[0].mold.across = 6;
+    scene.stage.resize(1);
+    scene.stage[0].frames = 10;
+    scene.stage[0].duration = 1;
+    RunOptions options;
+    options.draw = false;
+    const auto cost_by = [&](Solver solver) {
+        scene.stage[0].sim.solver = solver;
+        return estimate_cost(scene, {input}, options);
+    };
+    const RunCost implicit = cost_by(Solver::implicit_steps);
+    const RunCost explicit_one = cost_by(Solver::explicit_steps);
+    CHECK(implicit.steps == 40);
+    CHECK(implicit.seconds / implicit.steps > 50 * explicit_one.seconds / explicit_one.steps);
+}
+
+TEST_CASE("a boundary's meshes are told by each body's own cells") {
+    InputMesh input;
+    input.mesh = make_shape("bar", {}).mesh;
+    SceneSpec scene;
+    scene.body.resize(1);
+    scene.body[0].mold.across = 12;
+    scene.skin.kind = SkinKind::boundary;
+    scene.stage.resize(1);
+    scene.stage[0].frames = 10;
+    scene.output.meshes_per_frame = true;
+    RunOptions options;
+    options.draw = false;
+    const double fine = estimate_cost(scene, {input}, options).disk_bytes;
+    scene.body[0].mold.across = 3;
+    const double coarse = estimate_cost(scene, {input}, options).disk_bytes;
+    scene.body.push_back(scene.body[0]);
+    scene.body[1].mold.across = 12;
+    CHECK(estimate_cost(scene, {input, input}, options).disk_bytes ==
+          Approx(fine + coarse).epsilon(0.01));
+}
+
 TEST_CASE("what the softest tool gives way by is told in cells") {
     InputMesh input;
     input.mesh = make_shape("bar", {}).mesh;
