@@ -27,9 +27,4 @@ struct SectionTriangles {
 // other, do not close, or wind more than once around a place.
 std::optional<SectionTriangles> fill_section(const Section& section);
 
-// The segments by sheet, where sheets lie over each other and their loops may cross: those of a
-// loop and of the holes in it, which at rest were nearest to it. What does not close, or is a hole
-// in nothing, comes last.
-std::vector<std::vector<int>> sheets_of(const Section& section);
-
 }  // namespace swage

@@ -14,6 +14,7 @@
 
 #include "geometry/disjoint_sets.h"
 #include "skin/section.h"
+#include "skin/sheets.h"
 
 namespace swage {
 
@@ -195,7 +196,7 @@ class Splitter {
         std::vector<int> raw;
         add_segments(all, section, raw);
         for (const std::vector<int>& sheet : sheets_of(section)) {
-            if (cap(sheet)) continue;
+            if (cap(sheet) || cap(sheet, true)) continue;
             ++split_.open_parts;
             for (int s : sheet) {
                 const Vec3 middle = 0.5 * (place(seam_[s].from) + place(seam_[s].to));
@@ -220,11 +221,16 @@ class Splitter {
     }
 
     // Fills the section that these edges bound and keeps what the blade sweeps.
-    bool cap(const std::vector<int>& seams) {
+    bool cap(const std::vector<int>& seams, bool is_tangled = false) {
         Section section;
         section.spacing = spacing_;
         std::vector<int> raw;
         add_segments(seams, section, raw);
+        if (is_tangled) {
+            std::optional<Section> without = untangled(std::move(section));
+            if (!without) return false;
+            section = std::move(*without);
+        }
         for (const auto& [a, b] : plane_.outline) {
             const int steps =
                 std::clamp(static_cast<int>((b - a).norm() / (0.5 * spacing_)), 1, 999);

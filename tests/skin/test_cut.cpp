@@ -339,6 +339,28 @@ TEST_CASE("a body that has gone into itself is closed where it is cut, each part
     CHECK(off < 0.02 * f.matter.lattice.spacing);
 }
 
+TEST_CASE("a section that crosses itself where matter has folded into itself is closed too") {
+    Fixture f(bar());
+    const double whole = signed_volume(f.mesh);
+    // Bent by 140 degrees about a line that lies inside of it.
+    test::deform(f.matter, [](const Vec3& p) -> Vec3 {
+        const double k = 12, bent = std::clamp(p.x(), -.1, .1), turn = k * bent;
+        const Vec3 along(std::cos(turn), std::sin(turn), 0), across(-along.y(), along.x(), 0);
+        return Vec3(std::sin(turn) / k, (1 - std::cos(turn)) / k, p.z()) + (p.x() - bent) * along +
+               p.y() * across;
+    });
+    f.follow();
+    const CutResult result = f.cut(sweep_of({0, 0, .0123}, Vec3(.1, -.05, 1).normalized(), 3));
+    CHECK(result.open_parts == 0);
+    CHECK(result.cap_triangles > 0);
+    CHECK(fixtures::is_closed(f.mesh));
+    const std::vector<TriMesh> parts = parts_of(f.mesh);
+    CHECK(parts.size() == 2);
+    double sum = 0;
+    for (const TriMesh& part : parts) sum += signed_volume(part);
+    CHECK(sum == Approx(whole).epsilon(1e-9));
+}
+
 TEST_CASE("two blades cut four closed parts out of a bar") {
     Fixture f(bar());
     const double whole = signed_volume(f.mesh);
