@@ -58,7 +58,12 @@ std::string section_text(const SectionReference& section) {
     for (const KeyReference& key : section.key) width = std::max(width, key.key.size());
     std::string text = section.section + "\n";
     for (const KeyReference& key : section.key) {
-        text += "  " + key.key + std::string(width - key.key.size() + 2, ' ') + key.takes;
+        text += "  " + key.key + std::string(width - key.key.size() + 2, ' ');
+        if (key.takes.empty()) {  // of expressions
+            text += key.help + "\n";
+            continue;
+        }
+        text += key.takes;
         if (!key.usual.empty()) text += "; default " + key.usual;
         text += "\n" + std::string(width + 4, ' ') + key.help + "\n";
     }
@@ -68,6 +73,7 @@ std::string section_text(const SectionReference& section) {
 int keys(const KeysArguments& given) {
     std::vector<SectionReference> all =
         given.machine ? machine_key_reference() : scene_key_reference(asset_paths(given.assets));
+    if (given.machine) all.push_back(expression_reference());
     if (!given.word.empty()) all = chosen(all, given.word);
     if (given.json) {
         Json list = Json::array();
@@ -99,10 +105,12 @@ void add_keys_command(CLI::App& app, Action& chosen) {
                                     "  swage keys\n"
                                     "  swage keys stage\n"
                                     "  swage keys young_modulus\n"
-                                    "  swage keys --machine\n",
+                                    "  swage keys --machine\n"
+                                    "  swage keys --machine expressions\n",
                                     chosen, [] { return keys(given); });
     command->add_option("word", given.word, "a section or a key")->type_name("WORD");
-    command->add_flag("--machine", given.machine, "the keys of machine files instead");
+    command->add_flag("--machine", given.machine,
+                      "the keys of machine files and what their expressions may say instead");
     add_assets_option(*command, given.assets);
     command->add_flag("--json", given.json, "print JSON");
 }

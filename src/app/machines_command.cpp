@@ -85,8 +85,26 @@ Json machine_json(const MachineSpec& machine) {
             {"blades", machine.blade.size()}, {"loads", machine.load.size()}};
 }
 
+bool is_file(const MachinesArguments& given) { return given.name.ends_with(".toml"); }
+
+// Of that file, or what a scene in the present folder can name.
+MachineCatalogue catalogue_for(const MachinesArguments& given) {
+    if (!is_file(given)) {
+        return machine_catalogue(asset_paths(given.assets), std::filesystem::current_path());
+    }
+    MachineReading reading = read_machine(given.name);
+    if (!reading.machine) {
+        log_mistakes(reading.mistakes);
+        fail(ExitCode::scene, "{}: no machine can be made of it", given.name);
+    }
+    MachineCatalogue one;
+    one.machine.push_back(std::move(*reading.machine));
+    one.mistakes = std::move(reading.mistakes);
+    return one;
+}
+
 int machines(const MachinesArguments& given) {
-    const MachineCatalogue catalogue = machine_catalogue(asset_paths(given.assets));
+    const MachineCatalogue catalogue = catalogue_for(given);
     log_mistakes(catalogue.mistakes);
     if (given.name.empty()) {
         Json list = Json::array();
@@ -102,8 +120,9 @@ int machines(const MachinesArguments& given) {
         }
         return 0;
     }
+    const std::string name = is_file(given) ? catalogue.machine.front().name : given.name;
     const auto at = std::find_if(catalogue.machine.begin(), catalogue.machine.end(),
-                                 [&](const MachineSpec& spec) { return spec.name == given.name; });
+                                 [&](const MachineSpec& spec) { return spec.name == name; });
     if (at == catalogue.machine.end()) {
         std::vector<std::string> names;
         for (const MachineSpec& machine : catalogue.machine) names.push_back(machine.name);
@@ -125,9 +144,10 @@ void add_machines_command(CLI::App& app, Action& chosen) {
     CLI::App* command = add_command(app, "machines", "List the machines, or tell one's parameters",
                                     "  swage machines\n"
                                     "  swage machines bend\n"
-                                    "  swage machines twist --json\n",
+                                    "  swage machines twist --json\n"
+                                    "  swage machines machines/mine.toml\n",
                                     chosen, [] { return machines(given); });
-    command->add_option("name", given.name, "a machine")->type_name("NAME");
+    command->add_option("name", given.name, "a machine, or its file")->type_name("NAME");
     add_assets_option(*command, given.assets);
     command->add_flag("--json", given.json, "print JSON");
 }

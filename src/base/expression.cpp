@@ -47,33 +47,58 @@ struct Function {
     Three three = nullptr;
     Many many = nullptr;
     const char* arguments;
+    const char* help;
 };
 
 const Function kFunctions[] = {
-    {.name = "ramp", .three = ramp, .arguments = "ramp(t, a, b)"},
-    {.name = "line", .three = line, .arguments = "line(t, a, b)"},
-    {.name = "step", .two = step, .arguments = "step(t, a)"},
-    {.name = "clamp", .three = clamp, .arguments = "clamp(x, a, b)"},
-    {.name = "min", .many = smallest, .arguments = "min(a, b, ...)"},
-    {.name = "max", .many = largest, .arguments = "max(a, b, ...)"},
-    {.name = "abs", .one = std::fabs, .arguments = "abs(x)"},
-    {.name = "sign", .one = sign, .arguments = "sign(x)"},
-    {.name = "floor", .one = std::floor, .arguments = "floor(x)"},
-    {.name = "ceil", .one = std::ceil, .arguments = "ceil(x)"},
-    {.name = "round", .one = std::round, .arguments = "round(x)"},
-    {.name = "mod", .two = std::fmod, .arguments = "mod(x, y)"},
-    {.name = "sqrt", .one = std::sqrt, .arguments = "sqrt(x)"},
-    {.name = "exp", .one = std::exp, .arguments = "exp(x)"},
-    {.name = "log", .one = std::log, .arguments = "log(x)"},
-    {.name = "pow", .two = std::pow, .arguments = "pow(x, y)"},
-    {.name = "hypot", .two = std::hypot, .arguments = "hypot(x, y)"},
-    {.name = "sin", .one = std::sin, .arguments = "sin(x)"},
-    {.name = "cos", .one = std::cos, .arguments = "cos(x)"},
-    {.name = "tan", .one = std::tan, .arguments = "tan(x)"},
-    {.name = "asin", .one = std::asin, .arguments = "asin(x)"},
-    {.name = "acos", .one = std::acos, .arguments = "acos(x)"},
-    {.name = "atan", .one = std::atan, .arguments = "atan(x)"},
-    {.name = "atan2", .two = std::atan2, .arguments = "atan2(y, x)"},
+    {.name = "ramp",
+     .three = ramp,
+     .arguments = "ramp(t, a, b)",
+     .help = "0 before a, 1 after b, smooth between"},
+    {.name = "line",
+     .three = line,
+     .arguments = "line(t, a, b)",
+     .help = "0 before a, 1 after b, straight between"},
+    {.name = "step", .two = step, .arguments = "step(t, a)", .help = "0 before a, 1 from a on"},
+    {.name = "clamp",
+     .three = clamp,
+     .arguments = "clamp(x, a, b)",
+     .help = "x, but not below a and not above b"},
+    {.name = "min",
+     .many = smallest,
+     .arguments = "min(a, b, ...)",
+     .help = "the least of any number of values"},
+    {.name = "max",
+     .many = largest,
+     .arguments = "max(a, b, ...)",
+     .help = "the greatest of any number of values"},
+    {.name = "abs", .one = std::fabs, .arguments = "abs(x)", .help = "without its sign"},
+    {.name = "sign", .one = sign, .arguments = "sign(x)", .help = "-1, 0 or 1"},
+    {.name = "floor", .one = std::floor, .arguments = "floor(x)", .help = "whole number below"},
+    {.name = "ceil", .one = std::ceil, .arguments = "ceil(x)", .help = "whole number above"},
+    {.name = "round", .one = std::round, .arguments = "round(x)", .help = "nearest whole number"},
+    {.name = "mod",
+     .two = std::fmod,
+     .arguments = "mod(x, y)",
+     .help = "what is left of x divided by y"},
+    {.name = "sqrt", .one = std::sqrt, .arguments = "sqrt(x)", .help = "square root"},
+    {.name = "exp", .one = std::exp, .arguments = "exp(x)", .help = "e to the power x"},
+    {.name = "log", .one = std::log, .arguments = "log(x)", .help = "natural logarithm"},
+    {.name = "pow", .two = std::pow, .arguments = "pow(x, y)", .help = "as x ^ y"},
+    {.name = "hypot",
+     .two = std::hypot,
+     .arguments = "hypot(x, y)",
+     .help = "square root of x^2 + y^2"},
+    {.name = "sin", .one = std::sin, .arguments = "sin(x)", .help = "of an angle"},
+    {.name = "cos", .one = std::cos, .arguments = "cos(x)", .help = "of an angle"},
+    {.name = "tan", .one = std::tan, .arguments = "tan(x)", .help = "of an angle"},
+    {.name = "asin", .one = std::asin, .arguments = "asin(x)", .help = "an angle"},
+    {.name = "acos", .one = std::acos, .arguments = "acos(x)", .help = "an angle"},
+    {.name = "atan", .one = std::atan, .arguments = "atan(x)", .help = "an angle"},
+    {.name = "atan2",
+     .two = std::atan2,
+     .arguments = "atan2(y, x)",
+     .help = "the angle towards (x, y)"},
 };
 
 const Function* function_named(std::string_view name) {
@@ -374,6 +399,12 @@ double evaluate_text(const std::string& text, const std::map<std::string, double
         values.push_back(value);
     }
     return Formula(text, names).evaluate(values);
+}
+
+std::vector<FormulaFunction> formula_functions() {
+    std::vector<FormulaFunction> functions;
+    for (const Function& f : kFunctions) functions.push_back({f.arguments, f.help});
+    return functions;
 }
 
 bool is_reserved_name(const std::string& name) {

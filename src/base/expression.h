@@ -2,13 +2,8 @@
 // Formulas that users write, compiled once and evaluated often: "angle/2*ramp(t, 0, 0.7)".
 //
 // Numbers may carry a unit ("2*radius + 3 mm", "60 deg"); values are SI. Operators: + - * / ^,
-// < <= > >= == !=, && ||, CONDITION ? A : B. The constant pi. Functions:
-//   ramp(t, a, b)    0 before a, 1 after b, smooth between (slope 0 at both ends)
-//   line(t, a, b)    the same with a straight slope
-//   step(t, a)       0 before a, 1 from a on
-//   clamp(x, a, b)   x, but not below a and not above b
-//   min, max (any number of arguments), abs, sign, floor, ceil, round, mod, sqrt, exp, log, pow,
-//   hypot, sin, cos, tan, asin, acos, atan, atan2 (angles in radians)
+// < <= > >= == !=, && ||, CONDITION ? A : B. The constant pi. formula_functions() lists the
+// functions; angles are in radians.
 #pragma once
 
 #include <map>
@@ -43,6 +38,12 @@ class Formula {
 
 // Compiles and evaluates at once.
 double evaluate_text(const std::string& text, const std::map<std::string, double>& variables);
+
+struct FormulaFunction {
+    std::string call;  // "ramp(t, a, b)"
+    std::string help;
+};
+std::vector<FormulaFunction> formula_functions();
 
 // Names that no variable may have: functions, constants and units.
 bool is_reserved_name(const std::string& name);

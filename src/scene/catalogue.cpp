@@ -7,9 +7,10 @@
 
 namespace swage {
 
-MachineCatalogue machine_catalogue(const AssetPaths& assets) {
+MachineCatalogue machine_catalogue(const AssetPaths& assets,
+                                   const std::filesystem::path& scene_folder) {
     MachineCatalogue catalogue;
-    for (const MachineFile& known : known_machines(assets)) {
+    for (const MachineFile& known : known_machines(assets, scene_folder)) {
         MachineReading reading = read_machine(known.file);
         if (reading.machine) catalogue.machine.push_back(std::move(*reading.machine));
         catalogue.mistakes.insert(catalogue.mistakes.end(), reading.mistakes.begin(),

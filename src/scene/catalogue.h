@@ -15,7 +15,9 @@ struct MachineCatalogue {
     std::vector<MachineSpec> machine;  // sorted by name
     std::vector<Mistake> mistakes;     // of machine files that cannot be used
 };
-MachineCatalogue machine_catalogue(const AssetPaths& assets);
+// With a folder: also those in its machines/, which a scene there can name.
+MachineCatalogue machine_catalogue(const AssetPaths& assets,
+                                   const std::filesystem::path& scene_folder = {});
 
 struct MaterialCatalogue {
     std::vector<Material> material;  // in the order of the files

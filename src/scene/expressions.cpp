@@ -5,9 +5,23 @@
 
 namespace swage {
 
+const std::vector<std::pair<std::string, std::string>>& work_piece_names_told() {
+    static const std::vector<std::pair<std::string, std::string>> told = {
+        {"length", "of the work-piece's box, along the machine's x"},
+        {"height", "of that box, along the machine's y"},
+        {"width", "of that box, along the machine's z"},
+        {"spacing", "of the work-piece's lattice"},
+        {"lattice_reach", "by which that sticks out of the box"},
+        {"material_friction", "of the work-piece, or of what else touches the tool"}};
+    return told;
+}
+
 const std::vector<std::string>& work_piece_names() {
-    static const std::vector<std::string> names = {"length",  "height",        "width",
-                                                   "spacing", "lattice_reach", "material_friction"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const auto& [name, meaning] : work_piece_names_told()) all.push_back(name);
+        return all;
+    }();
     return names;
 }
 

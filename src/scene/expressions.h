@@ -16,6 +16,8 @@ namespace swage {
 
 // What every expression sees of the work-piece: length, height, width, ...
 const std::vector<std::string>& work_piece_names();
+const std::vector<std::pair<std::string, std::string>>&
+work_piece_names_told();  // and what each is
 
 class ExpressionReader {
   public:

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "base/expression.h"
+#include "scene/expressions.h"
 #include "scene/key_help.h"
 #include "scene/read_inset.h"
 #include "scene/read_machine.h"
@@ -113,6 +115,23 @@ std::vector<SectionReference> machine_key_reference() {
                     "load = [{}], check = [{}] }"),
         {}, reading, machine);
     return reference(reading, machine_key_help());
+}
+
+SectionReference expression_reference() {
+    SectionReference all{"expressions", {}};
+    const auto add = [&](const std::string& writing, const std::string& meaning) {
+        all.key.push_back({writing, "", "", meaning});
+    };
+    add("2.5, 3 mm, 60 deg, pi", "numbers, which may carry a unit");
+    add("+ - * / ^ ( )", "as usual");
+    add("< <= > >= == != && ||", "1 where it holds, else 0");
+    add("a ? b : c", "b where a holds, else c");
+    for (const auto& [name, meaning] : work_piece_names_told()) add(name, meaning);
+    add("NAME", "a parameter of the machine");
+    add("TOOL_x, TOOL_y, TOOL_z", "in what follows a [[tool]]: its middle");
+    add("t", "in motions: 0 to 1 over the stage");
+    for (const FormulaFunction& f : formula_functions()) add(f.call, f.help);
+    return all;
 }
 
 }  // namespace swage

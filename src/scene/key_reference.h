@@ -25,4 +25,7 @@ struct SectionReference {
 std::vector<SectionReference> scene_key_reference(const AssetPaths& assets);
 std::vector<SectionReference> machine_key_reference();
 
+// What stands in expressions, of which `key` holds the writing and `help` the meaning.
+SectionReference expression_reference();
+
 }  // namespace swage

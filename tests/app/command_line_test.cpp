@@ -256,6 +256,32 @@ TEST_CASE("info and machines tell the same in words and in JSON") {
     CHECK(bend.find("deg") != std::string::npos);
 }
 
+TEST_CASE("one's own machine is told where a scene would find it, and by its file") {
+    const Scratch scratch;
+    fs::create_directory(scratch.path() / "machines");
+    put_text(scratch.path() / "machines" / "nose.toml",
+             "help = \"nose: pushes\"\n[parameter.depth]\nquantity = \"number\"\n"
+             "default = \"0.3\"\n[[tool]]\nname = \"ball\"\nshape = \"sphere\"\n"
+             "radius = \"0.2*height\"\nat = [\"0\", \"height\", \"0\"]\n");
+    put_text(scratch.path() / "machines" / "bad.toml", "[[tool]]\nname = 3\n");
+    const auto told = [&](const std::string& name) {
+        return run_swage({"machines", name}, scratch.path());
+    };
+    for (const char* name : {"nose", "machines/nose.toml"}) {
+        const Outcome outcome = told(name);
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        CHECK(outcome.out.find("pushes") != std::string::npos);
+        CHECK(outcome.out.find("depth") != std::string::npos);
+    }
+    CHECK(told("machines/bad.toml").code == 3);
+    CHECK(told("machines/bad.toml").err.find("bad.toml:2:8: ") != std::string::npos);
+    CHECK(told("machines/none.toml").code == 3);
+    const std::string keys = run_swage({"keys", "--machine", "expressions"}).out;
+    CHECK(keys.find("ramp(t, a, b)") != std::string::npos);
+    CHECK(keys.find("lattice_reach") != std::string::npos);
+}
+
 TEST_CASE("made meshes are the same to the bit each time, and as large as asked for") {
     const Scratch scratch;
     const fs::path a = scratch.path() / "a.obj", b = scratch.path() / "b.obj";
