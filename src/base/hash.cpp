@@ -34,6 +34,7 @@ std::uint64_t hash_of_file(const std::filesystem::path& file) {
         in.read(block.data(), block.size());
         hasher.add_bytes(block.data(), static_cast<std::size_t>(in.gcount()));
     }
+    if (in.bad()) fail(ExitCode::mesh, "{}: cannot be read to its end", file.string());
     return hasher.value();
 }
 

@@ -56,6 +56,17 @@ inline constexpr std::array<CellConnection, kCellConnectionCount> kCellConnectio
     }
     return table;
 }();
+// The corner at its other end.
+constexpr int upper_corner(const CellConnection& c) {
+    const auto& f = kForward[c.direction];
+    return c.corner + f[0] + 2 * f[1] + 4 * f[2];
+}
+
+// A number for each site within a million cells of the origin.
+inline std::uint64_t key_of(const Vec3i& site) {
+    const auto part = [](int i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1FFFFF; };
+    return part(site.x()) | part(site.y()) << 21 | part(site.z()) << 42;
+}
 
 // Consecutive particles along x.
 struct ParticleRun {

@@ -29,7 +29,6 @@ class ContactPatch {
     void clear();
     // Where the particle stands, which is taken in if it does not yet.
     int slot_of(ParticleId particle);
-    bool is_empty() const { return particle_.empty(); }
 
     // Begins a step's contact with what else acts on the body [N].
     void read(const Vec3Array& force);

@@ -95,8 +95,7 @@ double largest_connection_strain(const Aggregate& matter, const std::array<Parti
     double largest = 0;
     for (const CellConnection& c : kCellConnection) {
         const ParticleId lower = row[c.corner >> 1] + (c.corner & 1);
-        const auto& f = kForward[c.direction];
-        const int high = c.corner + f[0] + 2 * f[1] + 4 * f[2];
+        const int high = upper_corner(c);
         const ParticleId upper = row[high >> 1] + (high & 1);
         const double rest = reference_length(matter.lattice, c.direction) *
                             (1 + matter.connection[c.direction].plastic_of(lower));

@@ -12,11 +12,6 @@ namespace {
 constexpr int kReach = 2;       // cells that corners are told from
 constexpr float kDeep = -2.5f;  // of what lies deeper
 
-std::uint64_t key_of(const Vec3i& site) {
-    const auto part = [](int i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1FFFFF; };
-    return part(site.x()) | part(site.y()) << 21 | part(site.z()) << 42;
-}
-
 template <typename Body>
 void around(int reach, const Body& body) {
     for (int k = -reach; k <= reach; ++k) {

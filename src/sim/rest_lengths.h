@@ -11,11 +11,6 @@ namespace swage {
 
 using SlotLengths = std::array<double, kCellConnectionCount>;  // by kCellConnection [m]
 
-inline int upper_corner(const CellConnection& c) {
-    const auto& f = kForward[c.direction];
-    return c.corner + f[0] + 2 * f[1] + 4 * f[2];
-}
-
 // Mechanics of cells (laws/cell_rest.h). `mixed`: the cell's, or null; of two materials, where what
 // both have flowed is without force along the connection, as sim/connection_shares.h lays them.
 SlotLengths rest_lengths(const Aggregate& matter, CellId cell, const MixedCell* mixed);

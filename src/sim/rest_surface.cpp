@@ -24,11 +24,6 @@ constexpr double kEdge = 0.02;          // by how much the mean over an edge may
 constexpr int kMostSides = 4;
 constexpr std::size_t kChunk = 64;
 
-std::uint64_t key_of(const Vec3i& site) {
-    const auto part = [](int i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1FFFFF; };
-    return part(site.x()) | part(site.y()) << 21 | part(site.z()) << 42;
-}
-
 // A distance where the cells end. What is deeper there lies beyond a sliver that is no cell; where
 // parts are thinner than a cell it may be deep by what lies behind them, which is none of it.
 double at_end(double distance) {

@@ -15,15 +15,6 @@ namespace {
 // from its spacing by the noise of single precision.
 constexpr double kSlack = 1e-3;
 
-// The other end of a connection within a cell.
-constexpr int high_corner(const CellConnection& connection) {
-    int high = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        high |= ((connection.corner >> axis & 1) + kForward[connection.direction][axis]) << axis;
-    }
-    return high;
-}
-
 // Squared distance from a place (in cells from the origin) to a run of cells.
 double distance2(const CellRun& run, int first, int count, const Vec3& at) {
     const Vec3 low(run.i + first, run.j, run.k);
@@ -98,7 +89,7 @@ CornerGroups grouped(Joined&& is_joined) {
     for (int c = 0; c < 8; ++c) group[c] = static_cast<CornerMask>(1 << c);
     for (const CellConnection& link : kCellConnection) {
         if (!is_joined(link)) continue;
-        const CornerMask joined = group[link.corner] | group[high_corner(link)];
+        const CornerMask joined = group[link.corner] | group[upper_corner(link)];
         for (int c = 0; c < 8; ++c) {
             if (joined >> c & 1) group[c] = joined;
         }

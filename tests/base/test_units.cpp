@@ -31,6 +31,9 @@ TEST_CASE("a quantity has the value of its unit, however it is spelled") {
     const Good good[] = {
         {"18 cm", Quantity::length, 0.18},
         {"18cm", Quantity::length, 0.18},
+        {"2 inches", Quantity::length, 0.0508},
+        {"90 degrees", Quantity::angle, kPi / 2},
+        {"1 sec", Quantity::time, 1},
         {"  -18\tcm ", Quantity::length, -0.18},
         {"+2 m", Quantity::length, 2},
         {".5 mm", Quantity::length, 0.0005},
