@@ -145,7 +145,7 @@ void add_machines_command(CLI::App& app, Action& chosen) {
                                     "  swage machines\n"
                                     "  swage machines bend\n"
                                     "  swage machines twist --json\n"
-                                    "  swage machines machines/mine.toml\n",
+                                    "  swage machines machines/press.toml\n",
                                     chosen, [] { return machines(given); });
     command->add_option("name", given.name, "a machine, or its file")->type_name("NAME");
     add_assets_option(*command, given.assets);

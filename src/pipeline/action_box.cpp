@@ -62,7 +62,8 @@ SkinPieces find_pieces_of(const TriMesh& skin) {
 }
 
 constexpr double kStray = 0.05;  // of the surface that may leave the picture
-constexpr double kReach = 0.12;  // of the action's size, that what lies near it may add
+constexpr double kClose = 0.12;  // of the framed pieces' size: what lies as near is framed too
+constexpr double kReach = 0.2;   // of the action's size, that tools near it may add
 constexpr double kDeep = 1;      // of that size, that tools may reach below it and stand on ground
 
 // Which pieces the picture frames: all but the farthest from the middle.
@@ -104,7 +105,7 @@ std::vector<char> framed(const SkinPieces& pieces, const std::vector<Eigen::Vect
     for (std::size_t v = 0; v < position.size(); ++v) {
         if (is_framed[pieces.of_vertex[v]]) kept.grow(position[v].cast<double>());
     }
-    const Vec3 reach = Vec3::Constant(kReach * kept.size().maxCoeff());
+    const Vec3 reach = Vec3::Constant(kClose * kept.size().maxCoeff());
     for (std::size_t p = 0; p < count; ++p) {
         const Vec3& m = middle[p];
         is_framed[p] |=
