@@ -25,7 +25,7 @@ struct RunCost {
     bool relaxes = false;           // under tools: what snaps or slips may take ten times that
     double memory_bytes = 0;        // at the peak, about
     double disk_bytes = 0;          // of the run directory, about
-    std::vector<std::string> note;  // of the first machine at the work-piece; of the skin
+    std::vector<std::string> note;  // of machines at the work-piece as it is at first; of steps
 
     // Most of it is far thinner than its box.
     bool has_thin_parts() const { return thickness < mold.cell_count.minCoeff(); }

@@ -14,6 +14,7 @@
 #include "pipeline/plot.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
+#include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 
 namespace swage {
@@ -89,9 +90,15 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
 
     std::vector<NamedMatter> named;
     for (const WorkPiece& body : bodies) named.push_back({body.name, &body.matter});
-    for (const std::string& overlap : start_overlaps(named)) {
-        log_warning("{}", overlap);
-        warnings.push_back(overlap);
+    std::vector<Material> beside;
+    for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter.material);
+    std::vector<std::string> at_start = start_overlaps(named);
+    for (std::string& mistake : foreseen_mistakes(scene, bodies.front().matter, beside)) {
+        at_start.push_back(std::move(mistake));
+    }
+    for (const std::string& warning : at_start) {
+        log_warning("{}", warning);
+        warnings.push_back(warning);
     }
 
     MotionRecorder recorder(directory.store());

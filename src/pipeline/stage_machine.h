@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "machines/legs.h"
@@ -12,6 +13,11 @@ namespace swage {
 // bodies. Throws as build_machine does, with the place in the scene before the sentence.
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside);
+
+// What the machines of all stages but the first would say against their parameters at the
+// work-piece as it is before the first.
+std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
+                                           const std::vector<Material>& beside);
 
 // Its way over so many frames, as straight as that matter's spacing asks for.
 Legs stage_legs(const Machine& machine, int frames, const Aggregate& work_piece);

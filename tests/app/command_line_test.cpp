@@ -184,6 +184,29 @@ TEST_CASE("check tells every mistake at once, with its place, and as JSON") {
     CHECK(Json::parse(json.out).at("mistakes").size() == 2);
 }
 
+TEST_CASE("check tells before a run what a later stage would say against its parameters") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "two.toml";
+    run_swage({"make", "bar", "--length", "20 cm", "--out", "bar.obj"}, scratch.path());
+    const auto told = [&](const char* radius) {
+        put_text(scene, std::string("[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
+                                    "[mold]\nacross = 3\n[[stage]]\nmachine = \"twist\"\n"
+                                    "frames = 2\n[[stage]]\nmachine = \"bend\"\nradius = \"") +
+                            radius + "\"\n");
+        const std::string mistake = "two.toml:12:10: machine bend: radius = ";
+        const Outcome check = run_swage({"check", scene.string()});
+        CHECK(check.code == 0);
+        const bool is_told = check.out.find(mistake) != std::string::npos;
+        const Outcome run = run_swage({"run", scene.string(), "--no-render"}, scratch.path());
+        const std::size_t first = run.err.find(mistake);
+        CHECK((first != std::string::npos) == is_told);
+        CHECK((first < run.err.find("simulate: ")) == is_told);
+        return is_told;
+    };
+    CHECK(told("90 cm"));  // three lengths is the most
+    CHECK_FALSE(told("3 cm"));
+}
+
 TEST_CASE("check tells what a run will cost, and the run costs it") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path());
