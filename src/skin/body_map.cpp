@@ -70,7 +70,12 @@ std::optional<BodyPlace> BodyMap::solve(CellId cell, CornerMask side, const Vec3
     return place;
 }
 
-BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<CellId>& cells,
+MappedCell BodyMap::mapped(CellId cell) const {
+    const CellBox box = cell_box(matter_, cell);
+    return {cell, cell_middle(matter_, cell), box.low + 0.5 * box.size};
+}
+
+BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<MappedCell>& cells,
                             const BodyPlace& near) const {
     constexpr std::size_t kTried = 8;
     const double a = matter_.lattice.spacing;
@@ -78,10 +83,10 @@ BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<CellId>& cells,
     // Of what is pressed to a third.
     const double reach = 4 * a + 3 * way.norm();
     std::vector<std::tuple<bool, double, CellId>> nearest;
-    for (CellId cell : cells) {
-        const CellBox box = cell_box(matter_, cell);
-        const bool is_far = (box.low + 0.5 * box.size - near.reference).norm() > reach;
-        nearest.emplace_back(is_far, (cell_middle(matter_, cell) - world).squaredNorm(), cell);
+    nearest.reserve(cells.size());
+    for (const MappedCell& one : cells) {
+        const bool is_far = (one.reference - near.reference).squaredNorm() > reach * reach;
+        nearest.emplace_back(is_far, (one.middle - world).squaredNorm(), one.cell);
     }
     const std::size_t tried = std::min(kTried, nearest.size());
     std::partial_sort(nearest.begin(), nearest.begin() + tried, nearest.end());

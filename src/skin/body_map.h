@@ -19,6 +19,12 @@ struct BodyPlace {
     CornerMask side = kAllCorners;
 };
 
+// Where a cell's middle is now, and was at molding.
+struct MappedCell {
+    CellId cell;
+    Vec3 middle, reference;
+};
+
 // A snapshot: the matter must outlive it and stay as it is.
 class BodyMap {
   public:
@@ -28,8 +34,9 @@ class BodyMap {
     // The place that is now at `world`; searched in the cells, of those given, whose centres are
     // nearest, of those around `near` in the body first: what has gone into itself has more than
     // one. A place outside of all is the best guess.
-    BodyPlace place_at(const Vec3& world, const std::vector<CellId>& cells,
+    BodyPlace place_at(const Vec3& world, const std::vector<MappedCell>& cells,
                        const BodyPlace& near) const;
+    MappedCell mapped(CellId cell) const;
 
     const Pieces& pieces() const { return pieces_; }
     // Corners of the cell that belong to one piece and hang together with the one next to the

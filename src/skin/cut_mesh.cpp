@@ -159,16 +159,14 @@ class PlaneCut {
     }
 
     // Cells that the plane crosses, or nearly.
-    std::vector<CellId> crossed_cells() const {
-        std::vector<CellId> cells;
+    std::vector<MappedCell> crossed_cells() const {
+        std::vector<MappedCell> cells;
         const double a = matter_.lattice.spacing;
-        for (const CellRun& run : matter_.lattice.cell_run) {
-            for (int n = 0; n < run.count; ++n) {
-                const Vec3 center = cell_middle(matter_, run.first + n);
-                if (std::abs(plane_.height(center)) < 2 * a &&
-                    plane_.near(plane_.flat(center), a)) {
-                    cells.push_back(run.first + n);
-                }
+        const CellId count = static_cast<CellId>(matter_.cell_fill.size());
+        for (CellId cell = 0; cell < count; ++cell) {
+            const Vec3 middle = cell_middle(matter_, cell);
+            if (std::abs(plane_.height(middle)) < 2 * a && plane_.near(plane_.flat(middle), a)) {
+                cells.push_back(map_.mapped(cell));
             }
         }
         return cells;
@@ -178,7 +176,7 @@ class PlaneCut {
     void find_cap_places(const SurfaceSplit& split, const std::vector<BodyPlace>& cut,
                          std::vector<BodyPlace>& places) const {
         if (split.cap_point.empty()) return;
-        const std::vector<CellId> cells = crossed_cells();
+        const std::vector<MappedCell> cells = crossed_cells();
         const int old = static_cast<int>(position_.size());
         const int first = old + static_cast<int>(cut.size());
         std::map<int, std::set<int>> beside;
