@@ -97,7 +97,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
                                bytes_text(cost.mold.bytes)));
     line("disk", "about " + bytes_text(cost.disk_bytes));
     line("time", "about " + seconds_text(cost.seconds) +
-                     (cost.relaxes ? "; what snaps or slips may take ten times that" : ""));
+                     (cost.slow.empty() ? "" : "; " + cost.slow + " may take ten times that"));
     for (const std::string& note : cost.note) line("note", note);
     return text;
 }

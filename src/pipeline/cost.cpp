@@ -119,7 +119,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.frames = frame_count(scene);
     cost.tool_give = softest_give(scene);
     cost.steps = 0;
-    cost.relaxes = false;
+    cost.slow.clear();
     double work = 0;  // the steps, as if nothing damped or yielded in them
     for (const StageSpec& stage : scene.stage) {
         const Solver solver = stage.sim.solver;
@@ -132,10 +132,11 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
                                  (counted ? static_cast<double>(equilibria)
                                           : (relaxes ? kEquilibriaPerFrame : 1) * stage.frames);
             cost.steps += steps, work += (relaxes ? kIterationShare : 1) * steps;
-            cost.relaxes = cost.relaxes || relaxes;
+            if (relaxes) cost.slow = "what snaps or slips";
         } else if (solver == Solver::implicit_steps) {
             const double steps = kImplicitStepsPerFrame * stage.frames;
             cost.steps += steps, work += kImplicitWork * steps;
+            if (cost.slow.empty()) cost.slow = "what is thin, or hits a tool,";
         } else {
             const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
                                    : solver == Solver::euler
@@ -302,7 +303,7 @@ Json cost_json(const RunCost& cost) {
             {"frames", cost.frames},
             {"steps", cost.steps},
             {"seconds", cost.seconds},
-            {"relaxes", cost.relaxes},
+            {"slow", cost.slow},
             {"thickness_cells", cost.thickness},
             {"tool_give_cells", cost.tool_give},
             {"notes", cost.note}};

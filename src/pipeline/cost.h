@@ -22,7 +22,7 @@ struct RunCost {
     int frames = 0;                 // stills, the start included
     double steps = 0;               // relaxation iterations and steps of motion, about
     double seconds = 0;             // of simulation and drawing on this machine, about
-    bool relaxes = false;           // under tools: what snaps or slips may take ten times that
+    std::string slow;               // what may take ten times that; empty: nothing
     double memory_bytes = 0;        // at the peak, about
     double disk_bytes = 0;          // of the run directory, about
     std::vector<std::string> note;  // of machines at the work-piece as it is at first; of steps
