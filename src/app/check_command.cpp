@@ -135,7 +135,10 @@ int check(const CheckArguments& given) {
             Json& told = json["strength"];
             if (std::find(told.begin(), told.end(), one) == told.end()) told.push_back(one);
         }
-        if (!given.json) put_out(cost_text(*reading.scene, input, cost));
+        if (!given.json) {
+            for (const std::string& warning : cost.warning) log_warning("{}", warning);
+            if (log_level() != LogLevel::quiet) put_out(cost_text(*reading.scene, input, cost));
+        }
         refuse_excess(cost, options);
     } catch (const Error& error) {
         if (!given.json) throw;

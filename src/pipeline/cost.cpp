@@ -246,7 +246,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (std::size_t b = 0; b < matter.size(); ++b) {
         named.push_back({scene.body[b].name, &matter[b]});
     }
-    cost.note = start_overlaps(named);
+    cost.warning = start_overlaps(named);
     const std::string steps = step_note(scene, matter);
     if (!steps.empty()) cost.note.push_back(steps);
     const StageSpec& first = scene.stage.front();
@@ -255,7 +255,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const Machine machine = stage_machine(first, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     const std::vector<std::string> mistakes = foreseen_mistakes(scene, matter[0], beside);
-    cost.note.insert(cost.note.end(), mistakes.begin(), mistakes.end());
+    cost.warning.insert(cost.warning.end(), mistakes.begin(), mistakes.end());
     const Legs legs = stage_legs(machine, std::min(first.frames, kSampledFrames), matter[0]);
     const long equilibria =
         first.sim.solver == Solver::quasistatic
@@ -306,7 +306,8 @@ Json cost_json(const RunCost& cost) {
             {"slow", cost.slow},
             {"thickness_cells", cost.thickness},
             {"tool_give_cells", cost.tool_give},
-            {"notes", cost.note}};
+            {"notes", cost.note},
+            {"warnings", cost.warning}};
 }
 
 void refuse_excess(const RunCost& cost, const RunOptions& options) {

@@ -15,17 +15,18 @@ namespace swage {
 
 struct RunCost {
     MoldEstimate mold;  // sums over all bodies; spacing and cell_count are the work-piece's
-    std::vector<double> spacing;    // of each body [m]
-    bool counted = false;           // the mold was made, so its numbers are no estimate
-    double thickness = 0;           // of the work-piece, or of its thin parts, in cells: about
-    double tool_give = 0;           // what the softest tool gives way by, in cells; 0: no tools
-    int frames = 0;                 // stills, the start included
-    double steps = 0;               // relaxation iterations and steps of motion, about
-    double seconds = 0;             // of simulation and drawing on this machine, about
-    std::string slow;               // what may take ten times that; empty: nothing
-    double memory_bytes = 0;        // at the peak, about
-    double disk_bytes = 0;          // of the run directory, about
-    std::vector<std::string> note;  // of machines at the work-piece as it is at first; of steps
+    std::vector<double> spacing;       // of each body [m]
+    bool counted = false;              // the mold was made, so its numbers are no estimate
+    double thickness = 0;              // of the work-piece, or of its thin parts, in cells: about
+    double tool_give = 0;              // what the softest tool gives way by, in cells; 0: no tools
+    int frames = 0;                    // stills, the start included
+    double steps = 0;                  // relaxation iterations and steps of motion, about
+    double seconds = 0;                // of simulation and drawing on this machine, about
+    std::string slow;                  // what may take ten times that; empty: nothing
+    double memory_bytes = 0;           // at the peak, about
+    double disk_bytes = 0;             // of the run directory, about
+    std::vector<std::string> note;     // of the first machine at the work-piece; of steps
+    std::vector<std::string> warning;  // what a run warns of before its first stage
 
     // Most of it is far thinner than its box.
     bool has_thin_parts() const { return thickness < mold.cell_count.minCoeff(); }

@@ -196,7 +196,10 @@ TEST_CASE("check tells before a run what a later stage would say against its par
         const std::string mistake = "two.toml:12:10: machine bend: radius = ";
         const Outcome check = run_swage({"check", scene.string()});
         CHECK(check.code == 0);
-        const bool is_told = check.out.find(mistake) != std::string::npos;
+        const bool is_told = check.err.find(mistake) != std::string::npos;
+        const Outcome quiet = run_swage({"check", scene.string(), "--quiet"});
+        CHECK((quiet.err.find(mistake) != std::string::npos) == is_told);
+        CHECK(quiet.out.empty());
         const Outcome run = run_swage({"run", scene.string(), "--no-render"}, scratch.path());
         const std::size_t first = run.err.find(mistake);
         CHECK((first != std::string::npos) == is_told);
