@@ -2,6 +2,7 @@
 #include "app/command.h"
 #include "base/error.h"
 #include "geometry/mesh_check.h"
+#include "geometry/mesh_repair.h"
 #include "pipeline/run_record.h"
 
 namespace swage {
@@ -15,7 +16,20 @@ struct InfoArguments {
 
 std::string yes_no(bool value) { return value ? "yes" : "no"; }
 
-std::string text_of(const std::string& file, const InputMesh& input) {
+// What a run makes of a mesh that bounds no volume.
+std::vector<std::string> repairs_of(const InputMesh& input) {
+    if (input.report.bounds_a_volume()) return {};
+    try {
+        Repair repair = repair_mesh(input.mesh);
+        repair.account.push_back("then: " + summary_line(check_mesh(repair.mesh)));
+        return repair.account;
+    } catch (const Error& error) {
+        return {fmt::format("refuses it: {}", error.what())};
+    }
+}
+
+std::string text_of(const std::string& file, const InputMesh& input,
+                    const std::vector<std::string>& repairs) {
     const MeshReport& report = input.report;
     const Vec3 size = report.box.empty() ? Vec3::Zero().eval() : report.box.size();
     std::string text = file + "\n";
@@ -45,17 +59,20 @@ std::string text_of(const std::string& file, const InputMesh& input) {
     }
     for (const std::string& finding : input.finding) line("finding", finding);
     for (const std::string& finding : report.finding) line("finding", finding);
+    for (const std::string& repair : repairs) line("a run", repair);
     return text;
 }
 
 int info(const InfoArguments& given) {
     const InputMesh input = read_mesh_as_it_is(given.file, std::nullopt);
+    const std::vector<std::string> repairs = repairs_of(input);
     if (given.json) {
         Json json = mesh_json(input);
         json["file"] = given.file;
+        json["repairs"] = repairs;
         put_json(json);
     } else {
-        put_out(text_of(given.file, input));
+        put_out(text_of(given.file, input, repairs));
     }
     return 0;
 }

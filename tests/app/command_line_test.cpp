@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <array>
 #include <sstream>
 
 #include "pipeline/json.h"
@@ -280,6 +283,38 @@ TEST_CASE("info and machines tell the same in words and in JSON") {
     const std::string bend = run_swage({"machines", "bend"}).out;
     CHECK(bend.find("radius") != std::string::npos);
     CHECK(bend.find("deg") != std::string::npos);
+}
+
+TEST_CASE("info tells what a run makes of a mesh that bounds no volume") {
+    const Scratch scratch;
+    const fs::path seams = scratch.path() / "seams.ply", sheet = scratch.path() / "sheet.ply";
+    const auto ply = [](const fs::path& file, const std::vector<std::array<int, 3>>& triangles) {
+        const char* corner[] = {"0 0", "1 0", "0 1", "0 0"};
+        std::string text = fmt::format(
+            "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+            "property float z\nelement face {}\nproperty list uchar int vertex_indices\n"
+            "end_header\n",
+            3 * triangles.size(), triangles.size());
+        double apart = 0;  // no two triangles' corners are at quite the same place
+        for (const auto& t : triangles) {
+            for (int c : t) text += fmt::format("{} {}\n", corner[c], (c == 3) + apart);
+            apart += 1e-5;
+        }
+        for (std::size_t n = 0; n < triangles.size(); ++n) {
+            text += fmt::format("3 {} {} {}\n", 3 * n, 3 * n + 1, 3 * n + 2);
+        }
+        put_text(file, text);
+    };
+    ply(seams, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}});
+    ply(sheet, {{0, 2, 1}});
+    const std::string mended = run_swage({"info", seams.string()}).out;
+    INFO(mended);
+    CHECK(mended.find("a run        stitched") != std::string::npos);
+    CHECK(mended.find("a run        then: 4 vertices, 4 triangles") != std::string::npos);
+    CHECK(run_swage({"info", sheet.string()}).out.find("a run        refuses it: ") !=
+          std::string::npos);
+    const Json bar = Json::parse(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
+    CHECK(bar.at("repairs").empty());
 }
 
 TEST_CASE("one's own machine is told where a scene would find it, and by its file") {
