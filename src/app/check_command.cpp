@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "app/command.h"
 #include "app/scene_argument.h"
@@ -142,7 +143,10 @@ int check(const CheckArguments& given) {
         refuse_excess(cost, options);
     } catch (const Error& error) {
         if (!given.json) throw;
-        json["mistakes"].push_back({{"text", error.what()}, {"warning", false}});
+        std::istringstream mistakes(error.what());
+        for (std::string line; std::getline(mistakes, line);) {
+            json["mistakes"].push_back({{"text", line}, {"warning", false}});
+        }
         put_json(json);
         return static_cast<int>(error.code());
     }

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <new>
+#include <sstream>
 
 #include "app/command.h"
 #include "app/suggest.h"
@@ -76,7 +77,9 @@ int run_guarded(int argc, char** argv) {
     try {
         return run_command_line(argc, argv);
     } catch (const Error& error) {
-        log_error(error.what());
+        // A line for each mistake.
+        std::istringstream mistakes(error.what());
+        for (std::string line; std::getline(mistakes, line);) log_error(line);
         return exit_code(error.code());
     } catch (const Interrupted& interrupted) {
         log_text("stopped; whole files are kept");

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "machines/machine_spec.h"
@@ -12,19 +13,24 @@
 
 namespace swage {
 
-// A parameter's value that cannot be, so that a caller can say where it was given.
+struct ParameterMistake {
+    std::string parameter, sentence;
+};
+
+// Values of parameters that cannot be, so that a caller can say where each was given.
 class ParameterError : public Error {
   public:
-    ParameterError(std::string parameter, const std::string& sentence)
-        : Error(ExitCode::scene, sentence), parameter_(std::move(parameter)) {}
-    const std::string& parameter() const { return parameter_; }
+    explicit ParameterError(std::vector<ParameterMistake> mistakes)  // one at least
+        : Error(ExitCode::scene, mistakes.front().sentence), mistakes_(std::move(mistakes)) {}
+    const std::vector<ParameterMistake>& mistakes() const { return mistakes_; }
 
   private:
-    std::string parameter_;
+    std::vector<ParameterMistake> mistakes_;
 };
 
 // `known` are the variables of the work-piece. Returns every parameter, SI. Throws
-// ParameterError naming machine, parameter, value and allowed range.
+// ParameterError naming machine, parameter, value and allowed range of all that are given wrong, or
+// of the first default that cannot be.
 Variables resolve_parameters(const MachineSpec& spec, const Variables& given,
                              const Variables& known);
 

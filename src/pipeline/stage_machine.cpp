@@ -2,6 +2,7 @@
 #include "pipeline/stage_machine.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "machines/parameters.h"
 
 namespace swage {
@@ -10,13 +11,18 @@ namespace {
 
 constexpr double kLegSlack = 0.05;  // spacings
 
-std::string told_at(const std::string& place, const Error& error) {
-    return place.empty() ? error.what() : place + ": " + error.what();
+std::string at(const std::string& place, const std::string& sentence) {
+    return place.empty() ? sentence : place + ": " + sentence;
 }
 
-std::string told(const StageSpec& stage, const ParameterError& error) {
-    const auto given = stage.parameter_place.find(error.parameter());
-    return told_at(given != stage.parameter_place.end() ? given->second : stage.place, error);
+std::vector<std::string> told(const StageSpec& stage, const ParameterError& error) {
+    std::vector<std::string> mistakes;
+    for (const auto& [parameter, sentence] : error.mistakes()) {
+        const auto given = stage.parameter_place.find(parameter);
+        mistakes.push_back(
+            at(given != stage.parameter_place.end() ? given->second : stage.place, sentence));
+    }
+    return mistakes;
 }
 
 Machine machine_at(const StageSpec& stage, const Aggregate& work_piece,
@@ -32,10 +38,10 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
     try {
         return machine_at(stage, work_piece, beside);
     } catch (const ParameterError& error) {
-        throw Error(error.code(), told(stage, error));
+        throw Error(error.code(), joined(told(stage, error), "\n"));
     } catch (const Error& error) {
         if (error.code() != ExitCode::scene) throw;
-        throw Error(error.code(), told_at(stage.place, error));
+        throw Error(error.code(), at(stage.place, error.what()));
     }
 }
 
@@ -46,8 +52,9 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
         try {
             machine_at(scene.stage[n], work_piece, beside);
         } catch (const ParameterError& error) {
-            mistakes.push_back(told(scene.stage[n], error) +
-                               " (by the work-piece as it is at first)");
+            for (const std::string& mistake : told(scene.stage[n], error)) {
+                mistakes.push_back(mistake + " (by the work-piece as it is at first)");
+            }
         } catch (const Error&) {
             // Whether it finds what to hold or to touch, the work-piece of then will show.
         }

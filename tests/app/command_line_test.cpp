@@ -187,6 +187,25 @@ TEST_CASE("check tells every mistake at once, with its place, and as JSON") {
     CHECK(Json::parse(json.out).at("mistakes").size() == 2);
 }
 
+TEST_CASE("all of a machine's parameters that the work-piece does not allow are told at once") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "wrong.toml";
+    run_swage({"make", "bar", "--length", "20 cm", "--out", "bar.obj"}, scratch.path());
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 3\n"
+             "[[stage]]\nmachine = \"bend\"\nradius = \"90 cm\"\npusher_radius = \"40 cm\"\n");
+    const Outcome outcome = run_swage({"check", scene.string()});
+    INFO(outcome.err);
+    CHECK(outcome.code == 3);
+    CHECK(outcome.err.find("wrong.toml:9:10: machine bend: radius = 90 cm is out of range") !=
+          std::string::npos);
+    CHECK(outcome.err.find("wrong.toml:10:17: machine bend: pusher_radius = 40 cm is out of") !=
+          std::string::npos);
+    CHECK(outcome.err.find("the default of") == std::string::npos);
+    const Json json = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    CHECK(json.at("mistakes").size() == 2);
+}
+
 TEST_CASE("check tells before a run what a later stage would say against its parameters") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "two.toml";
