@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "app/command.h"
 #include "app/scene_argument.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "pipeline/accuracy.h"
 #include "pipeline/cost.h"
 #include "pipeline/run_record.h"
@@ -143,8 +143,7 @@ int check(const CheckArguments& given) {
         refuse_excess(cost, options);
     } catch (const Error& error) {
         if (!given.json) throw;
-        std::istringstream mistakes(error.what());
-        for (std::string line; std::getline(mistakes, line);) {
+        for (const std::string& line : lines_of(error.what())) {
             json["mistakes"].push_back({{"text", line}, {"warning", false}});
         }
         put_json(json);

@@ -6,12 +6,12 @@
 
 #include <cstdio>
 #include <new>
-#include <sstream>
 
 #include "app/command.h"
 #include "app/suggest.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/run_directory.h"
 
@@ -78,8 +78,7 @@ int run_guarded(int argc, char** argv) {
         return run_command_line(argc, argv);
     } catch (const Error& error) {
         // A line for each mistake.
-        std::istringstream mistakes(error.what());
-        for (std::string line; std::getline(mistakes, line);) log_error(line);
+        for (const std::string& line : lines_of(error.what())) log_error(line);
         return exit_code(error.code());
     } catch (const Interrupted& interrupted) {
         log_text("stopped; whole files are kept");

@@ -2,6 +2,7 @@
 // Small work on text. (fmt::join over strings makes GCC 12 warn of what is not there.)
 #pragma once
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@ inline std::string joined(const std::vector<std::string>& items, const char* sep
         text += item;
     }
     return text;
+}
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
 }
 
 }  // namespace swage

@@ -270,6 +270,15 @@ double lattice_reach(const Aggregate& matter, const WorkFrame& frame) {
 
 }  // namespace
 
+Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame) {
+    return {{"length", frame.size.x()},
+            {"height", frame.size.y()},
+            {"width", frame.size.z()},
+            {"spacing", matter.lattice.spacing},
+            {"lattice_reach", lattice_reach(matter, frame)},
+            {kMaterialFriction, matter.material.friction}};
+}
+
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
                       const WorkFrame& frame, const Aggregate& matter,
                       const std::vector<Material>& beside) try {
@@ -282,12 +291,7 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
         setting.touch.push_back(work_from_world *
                                 touch.points().position(std::size_t(p), matter.particle_position));
     }
-    setting.known = {{"length", frame.size.x()},
-                     {"height", frame.size.y()},
-                     {"width", frame.size.z()},
-                     {"spacing", setting.spacing},
-                     {"lattice_reach", lattice_reach(matter, frame)},
-                     {kMaterialFriction, matter.material.friction}};
+    setting.known = work_piece_variables(matter, frame);
 
     Machine machine;
     machine.spec = spec;

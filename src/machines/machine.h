@@ -45,6 +45,10 @@ struct Machine {
     std::optional<Timed> gravity_strength;  // none: full from the start
 };
 
+// What expressions know of the work-piece: length, height, width, spacing, lattice_reach and
+// material_friction.
+Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame);
+
 // `given`: parameters by name, SI; the rest take their defaults. Throws Error(scene) naming machine
 // and parameter, tool, grip or blade: unknown or out of range; a tool that can never touch; a grip
 // that holds nothing, a point that two hold, or one that does not start at rest; a load on nothing.

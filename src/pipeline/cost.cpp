@@ -254,7 +254,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
     const Machine machine = stage_machine(first, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
-    const std::vector<std::string> mistakes = foreseen_mistakes(scene, matter[0], beside);
+    const std::vector<std::string> mistakes = foreseen_mistakes(scene, matter[0]);
     cost.warning.insert(cost.warning.end(), mistakes.begin(), mistakes.end());
     const Legs legs = stage_legs(machine, std::min(first.frames, kSampledFrames), matter[0]);
     const long equilibria =

@@ -90,10 +90,8 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
 
     std::vector<NamedMatter> named;
     for (const WorkPiece& body : bodies) named.push_back({body.name, &body.matter});
-    std::vector<Material> beside;
-    for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter.material);
     std::vector<std::string> at_start = start_overlaps(named);
-    for (std::string& mistake : foreseen_mistakes(scene, bodies.front().matter, beside)) {
+    for (std::string& mistake : foreseen_mistakes(scene, bodies.front().matter)) {
         at_start.push_back(std::move(mistake));
     }
     for (const std::string& warning : at_start) {

@@ -25,18 +25,14 @@ std::vector<std::string> told(const StageSpec& stage, const ParameterError& erro
     return mistakes;
 }
 
-Machine machine_at(const StageSpec& stage, const Aggregate& work_piece,
-                   const std::vector<Material>& beside) {
-    return build_machine(stage.machine, stage.parameter,
-                         place_work_frame(work_piece, stage.axis, stage.up), work_piece, beside);
-}
-
 }  // namespace
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside) {
     try {
-        return machine_at(stage, work_piece, beside);
+        return build_machine(stage.machine, stage.parameter,
+                             place_work_frame(work_piece, stage.axis, stage.up), work_piece,
+                             beside);
     } catch (const ParameterError& error) {
         throw Error(error.code(), joined(told(stage, error), "\n"));
     } catch (const Error& error) {
@@ -45,18 +41,20 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
     }
 }
 
-std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
-                                           const std::vector<Material>& beside) {
+std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece) {
     std::vector<std::string> mistakes;
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
+        const StageSpec& stage = scene.stage[n];
         try {
-            machine_at(scene.stage[n], work_piece, beside);
+            const WorkFrame frame = place_work_frame(work_piece, stage.axis, stage.up);
+            resolve_parameters(stage.machine, stage.parameter,
+                               work_piece_variables(work_piece, frame));
         } catch (const ParameterError& error) {
-            for (const std::string& mistake : told(scene.stage[n], error)) {
+            for (const std::string& mistake : told(stage, error)) {
                 mistakes.push_back(mistake + " (by the work-piece as it is at first)");
             }
         } catch (const Error&) {
-            // Whether it finds what to hold or to touch, the work-piece of then will show.
+            // An expression without a value here may have one at the work-piece of then.
         }
     }
     return mistakes;

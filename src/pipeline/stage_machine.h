@@ -16,8 +16,7 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
 
 // What the machines of all stages but the first would say against their parameters at the
 // work-piece as it is before the first.
-std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
-                                           const std::vector<Material>& beside);
+std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece);
 
 // Its way over so many frames, as straight as that matter's spacing asks for.
 Legs stage_legs(const Machine& machine, int frames, const Aggregate& work_piece);

@@ -21,6 +21,24 @@ RunCost cost_of(const std::string& shape, const std::map<std::string, double>& s
     return estimate_cost(scene, {input}, {});
 }
 
+// A bar and one stage, not drawn.
+struct BarScene {
+    InputMesh input;
+    SceneSpec scene;
+
+    explicit BarScene(int across) {
+        input.mesh = make_shape("bar", {}).mesh;
+        scene.body.resize(1);
+        scene.body[0].mold.across = across;
+        scene.stage.resize(1);
+    }
+    RunCost cost() const {
+        RunOptions options;
+        options.draw = false;
+        return estimate_cost(scene, std::vector(scene.body.size(), input), options);
+    }
+};
+
 }  // namespace
 
 TEST_CASE("a body's thin parts are told in cells, and a solid one has none") {
@@ -60,21 +78,13 @@ TEST_CASE("what a boundary's meshes take is told by its cells, not by the mesh t
 }
 
 TEST_CASE("a step that damps, or of matter that yields, is told to take longer") {
-    InputMesh input;
-    input.mesh = make_shape("bar", {}).mesh;
     const auto seconds_a_step = [&](double damping_ratio, double yield_stress) {
-        SceneSpec scene;
-        scene.body.resize(1);
-        scene.body[0].mold.across = 6;
-        scene.body[0].material.damping_ratio = damping_ratio;
-        scene.body[0].material.yield_stress = yield_stress;
-        scene.stage.resize(1);
-        scene.stage[0].sim.solver = Solver::explicit_steps;
-        scene.stage[0].duration = 10;
-        RunOptions options;
-        options.draw = false;
-        const RunCost cost = estimate_cost(scene, {input}, options);
-        return cost.seconds / cost.steps;
+        BarScene bar(6);
+        bar.scene.body[0].material.damping_ratio = damping_ratio;
+        bar.scene.body[0].material.yield_stress = yield_stress;
+        bar.scene.stage[0].sim.solver = Solver::explicit_steps;
+        bar.scene.stage[0].duration = 10;
+        return bar.cost().seconds / bar.cost().steps;
     };
     const double never = std::numeric_limits<double>::infinity();
     const double plain = seconds_a_step(0, never), damped = seconds_a_step(0.02, never);
@@ -84,67 +94,46 @@ TEST_CASE("a step that damps, or of matter that yields, is told to take longer")
 }
 
 TEST_CASE("implicit steps are told by the frame, each taking hundreds of times an explicit one") {
-    InputMesh input;
-    input.mesh = make_shape("bar", {}).mesh;
-    SceneSpec scene;
-    scene.body.resize(1);
-    scene.body[0].mold.across = 6;
-    scene.stage.resize(1);
-    scene.stage[0].frames = 10;
-    scene.stage[0].duration = 1;
-    RunOptions options;
-    options.draw = false;
-    const auto cost_by = [&](Solver solver) {
-        scene.stage[0].sim.solver = solver;
-        return estimate_cost(scene, {input}, options);
-    };
-    const RunCost implicit = cost_by(Solver::implicit_steps);
-    const RunCost explicit_one = cost_by(Solver::explicit_steps);
+    BarScene bar(6);
+    bar.scene.stage[0].frames = 10;
+    bar.scene.stage[0].duration = 1;
+    bar.scene.stage[0].sim.solver = Solver::implicit_steps;
+    const RunCost implicit = bar.cost();
+    bar.scene.stage[0].sim.solver = Solver::explicit_steps;
+    const RunCost explicit_one = bar.cost();
     CHECK(implicit.steps == 40);
     CHECK(implicit.seconds / implicit.steps > 50 * explicit_one.seconds / explicit_one.steps);
 }
 
 TEST_CASE("a boundary's meshes are told by each body's own cells") {
-    InputMesh input;
-    input.mesh = make_shape("bar", {}).mesh;
-    SceneSpec scene;
-    scene.body.resize(1);
-    scene.body[0].mold.across = 12;
-    scene.skin.kind = SkinKind::boundary;
-    scene.stage.resize(1);
-    scene.stage[0].frames = 10;
-    scene.output.meshes_per_frame = true;
-    RunOptions options;
-    options.draw = false;
-    const double fine = estimate_cost(scene, {input}, options).disk_bytes;
-    scene.body[0].mold.across = 3;
-    const double coarse = estimate_cost(scene, {input}, options).disk_bytes;
-    scene.body.push_back(scene.body[0]);
-    scene.body[1].mold.across = 12;
-    CHECK(estimate_cost(scene, {input, input}, options).disk_bytes ==
-          Approx(fine + coarse).epsilon(0.01));
+    BarScene bar(12);
+    bar.scene.skin.kind = SkinKind::boundary;
+    bar.scene.stage[0].frames = 10;
+    bar.scene.output.meshes_per_frame = true;
+    const double fine = bar.cost().disk_bytes;
+    bar.scene.body[0].mold.across = 3;
+    const double coarse = bar.cost().disk_bytes;
+    bar.scene.body.push_back(bar.scene.body[0]);
+    bar.scene.body[1].mold.across = 12;
+    CHECK(bar.cost().disk_bytes == Approx(fine + coarse).epsilon(0.01));
 }
 
 TEST_CASE("what the softest tool gives way by is told in cells") {
-    InputMesh input;
-    input.mesh = make_shape("bar", {}).mesh;
-    SceneSpec scene;
-    scene.body.resize(1);
-    scene.body[0].mold.across = 6;
-    scene.stage.resize(1);
-    const auto give = [&] { return estimate_cost(scene, {input}, {}).tool_give; };
+    BarScene bar(6);
+    StageSpec& stage = bar.scene.stage[0];
+    const auto give = [&] { return bar.cost().tool_give; };
     CHECK(give() == 0);
-    scene.stage[0].machine.tool.resize(2);
-    for (ToolSpec& tool : scene.stage[0].machine.tool) tool.contact_stiffness = 20;
+    stage.machine.tool.resize(2);
+    for (ToolSpec& tool : stage.machine.tool) tool.contact_stiffness = 20;
     CHECK(give() == Approx(0.05));
-    scene.stage[0].machine.tool[1].contact_stiffness = 0;
+    stage.machine.tool[1].contact_stiffness = 0;
     CHECK(give() == Approx(0.5));
-    scene.stage[0].sim.contact_stiffness = 10;
+    stage.sim.contact_stiffness = 10;
     CHECK(give() == Approx(0.1));
-    scene.stage[0].sim.contact_stiffness = 0;
-    scene.stage[0].machine.tool.resize(1);
-    scene.stage[0].machine.tool[0].contact_stiffness = 20;
-    scene.stage[0].sim.solver = Solver::explicit_steps;  // which no tool's word shortens
+    stage.sim.contact_stiffness = 0;
+    stage.machine.tool.resize(1);
+    stage.machine.tool[0].contact_stiffness = 20;
+    stage.sim.solver = Solver::explicit_steps;  // which no tool's word shortens
     CHECK(give() == Approx(0.5));
 }
 

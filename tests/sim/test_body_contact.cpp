@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/parallel.h"
-#include "sim/advance.h"
 #include "sim/body_contact.h"
-#include "sim/vector_clones.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -12,25 +9,6 @@ using namespace swage;
 using namespace swage::test;
 
 namespace {
-
-struct Momenta {
-    Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
-    double size = 0, turn = 0;
-};
-
-Momenta momenta(const std::vector<const Aggregate*>& bodies) {
-    Momenta sum;
-    for (const Aggregate* m : bodies) {
-        for (std::size_t p = 0; p < m->particle_count(); ++p) {
-            const Vec3 mv = m->particle_mass[p] * m->particle_velocity.at(p);
-            sum.linear += mv;
-            sum.angular += m->particle_position.at(p).cross(mv);
-            sum.size += mv.norm();
-            sum.turn += m->particle_position.at(p).cross(mv).norm();
-        }
-    }
-    return sum;
-}
 
 // What contact alone does at the present positions.
 struct Pressed {
@@ -205,99 +183,6 @@ TEST_CASE("force and moment of contact vanish in sum, however the bodies lie and
     CHECK(moment.norm() < 1e-13 * size);
 }
 
-TEST_CASE("a tumbling collision keeps momentum and angular momentum") {
-    Material m = kSpringy;
-    m.restitution = 0.7;
-    Aggregate a = make_block(5, 2, 2, 0.1, m), b = make_block(3, 3, 3, 0.09, m);
-    place(b, {Quat(Eigen::AngleAxisd(0.6, Vec3(1, 1, 0.3).normalized())), Vec3(0.15, 0.32, 0.05)});
-    for (std::size_t p = 0; p < a.particle_count(); ++p) {
-        a.particle_velocity.set(p, Vec3(0, 2, 0) + Vec3(0, 0, 6).cross(a.particle_position.at(p)));
-    }
-    for (std::size_t p = 0; p < b.particle_count(); ++p) {
-        b.particle_velocity.set(p, Vec3(-0.5, -3, 0));
-    }
-    const Momenta before = momenta({&a, &b});
-    const double energy = [&] {
-        double sum = 0;
-        for (const Aggregate* one : {&a, &b}) {
-            for (std::size_t p = 0; p < one->particle_count(); ++p) {
-                sum += 0.5 * one->particle_mass[p] * one->particle_velocity.at(p).squaredNorm();
-            }
-        }
-        return sum;
-    }();
-    const Apparatus nothing;
-    Simulation simulation({&a, &b}, nothing, motion_settings());
-    FrameReport r;
-    long steps = 0;
-    for (int f = 0; steps < 10'000; ++f) {
-        r = simulation.advance(still(0.1 * f), still(0.1 * (f + 1)));
-        steps += r.steps;
-        CHECK(r.kinetic + r.elastic < 1.001 * energy);
-    }
-    const Momenta after = momenta({&a, &b});
-    CHECK((a.mean_velocity() - Vec3(0, 2, 0)).norm() > 0.5);
-    CHECK(r.kinetic + r.elastic < 0.95 * energy);
-    CHECK((after.linear - before.linear).norm() < 1e-9 * before.size);
-    CHECK((after.angular - before.angular).norm() < 1e-9 * before.turn);
-}
-
-TEST_CASE("bodies that collide part, and neither passes through the other") {
-    for (double e : {0.0, 0.5, 1.0}) {
-        Material m = kSpringy;
-        m.restitution = e;
-        Aggregate a = make_block(3, 3, 3, 0.1, m), b = make_block(3, 3, 3, 0.1, m);
-        place(b, {Quat::Identity(), Vec3(0.02, 0.32, 0.01)});
-        for (std::size_t p = 0; p < b.particle_count(); ++p) {
-            b.particle_velocity.set(p, Vec3(0, -2, 0));
-        }
-        const Apparatus nothing;
-        Simulation simulation({&a, &b}, nothing, motion_settings());
-        double nearest = 1;
-        for (int f = 0; f < 60; ++f) {
-            simulation.advance(still(0.002 * f), still(0.002 * (f + 1)));
-            nearest = std::min(nearest, b.centre().y() - a.centre().y());
-        }
-        const double parting = b.mean_velocity().y() - a.mean_velocity().y();
-        INFO("e " << e << ", parting " << parting << ", nearest " << nearest);
-        CHECK(nearest > 0.24);
-        CHECK(parting > 0);
-        CHECK(parting < 2.001);
-    }
-}
-
-namespace {
-
-// A held floor and what moves on it.
-struct Floor {
-    Aggregate plate, block;
-    Apparatus apparatus;
-    SimSettings settings = motion_settings();
-    Pose pose{Quat::Identity(), Vec3(0, -0.1, 0)};
-    double let_down = 0.3;  // [s] over which gravity sets in
-
-    Floor(const Material& material, const Vec3& gravity)
-        : plate(make_block(12, 2, 6, 0.1, material)), block(make_block(4, 2, 4, 0.1, material)) {
-        place(plate, pose);
-        settings.gravity = gravity;
-        Grip hold;
-        hold.name = "hold";
-        hold.point = points_where(plate, [](const Vec3& x) { return x.y() < -0.0999; });
-        for (int p : hold.point) hold.anchor.push_back(plate.surface_reference(p));
-        apparatus.name = "floor";
-        apparatus.grip.push_back(hold);
-        place(block, {Quat::Identity(), Vec3(0, 0.09999, 0)});
-    }
-    Drive drive(double time) const {
-        Drive d = still(time);
-        d.world_from_grip.push_back(pose);
-        d.gravity_strength = std::min(1.0, time / let_down);
-        return d;
-    }
-};
-
-}  // namespace
-
 TEST_CASE("what slept is looked at again soon after it wakes, however far all else is") {
     Aggregate a = make_block(3, 3, 3, 0.1, kSpringy), b = a, far = a;
     const auto move = [](Aggregate& m, double by) {
@@ -313,67 +198,6 @@ TEST_CASE("what slept is looked at again soon after it wakes, however far all el
     move(b, -0.18);
     contact.renew({0, 0, 0});
     CHECK(contact.candidates() > 0);
-}
-
-TEST_CASE("steps that energy chooses let bodies meet as explicit ones do") {
-    struct Met {
-        double start;  // energy [J]
-        Vec3 a{}, b{};
-        FrameReport last{};
-    };
-    const auto collide = [](Solver solver) {
-        Material dull = kSpringy;
-        dull.restitution = 0.5;
-        dull.friction = 0.4;
-        dull.damping_ratio = 0.1;
-        Aggregate a = make_block(2, 2, 2, 0.1, dull), b = make_block(2, 2, 2, 0.1, dull);
-        place(b,
-              {Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())), Vec3(0.32, 0.06, 0.05)});
-        for (std::size_t p = 0; p < b.particle_count(); ++p) b.particle_velocity.x[p] = -2;
-        const Apparatus nothing;
-        SimSettings settings = motion_settings(solver);
-        settings.step_safety = 0.02;
-        Simulation simulation({&a, &b}, nothing, settings);
-        Met met{.start = 0.5 * b.mass() * 4};
-        for (int n = 0; n < 6; ++n) {
-            met.last = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
-        }
-        met.a = a.mean_velocity(), met.b = b.mean_velocity();
-        return met;
-    };
-    const Met fixed = collide(Solver::explicit_steps), chosen = collide(Solver::energy_stepped);
-    CHECK((fixed.a - chosen.a).norm() < 0.01);
-    CHECK((fixed.b - chosen.b).norm() < 0.01);
-    CHECK(chosen.last.friction == Approx(fixed.last.friction).epsilon(0.02));
-    CHECK(chosen.last.damped == Approx(fixed.last.damped).epsilon(0.02));
-    CHECK(std::abs(chosen.last.remainder) < 2e-3 * chosen.start);
-    CHECK(
-        chosen.last.body[0].passed + chosen.last.body[1].passed ==
-        Approx(fixed.last.body[0].passed + fixed.last.body[1].passed).margin(0.03 * chosen.start));
-}
-
-TEST_CASE("steps that energy chooses go on where they take back what has broken") {
-    Material brittle = kSpringy;
-    brittle.restitution = 0.5;
-    const Material whole = brittle;
-    brittle.strength = 2e4, brittle.toughness = 1;
-    Aggregate a = make_block(4, 3, 3, 0.1, brittle), b = make_block(2, 2, 2, 0.1, whole);
-    place(b, {Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())), Vec3(0.05, 0.32, 0.03)});
-    for (double& v : b.particle_velocity.y) v = -2;
-    SimSettings settings = motion_settings(Solver::energy_stepped);
-    settings.step_safety = 0.2;
-    const Apparatus nothing;
-    Simulation simulation({&a, &b}, nothing, settings);
-    FrameReport last;
-    long rejected = 0;
-    // With cells that contact still took for broken it stopped at 34 ms.
-    for (int n = 0; n < 5; ++n) {
-        last = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
-        rejected += last.rejected;
-    }
-    CHECK(last.pieces > 2);
-    CHECK(rejected > 0);
-    CHECK(std::abs(last.remainder) < 0.05 * 0.5 * b.mass() * 4);
 }
 
 TEST_CASE("a block slides over another's lattice without rattling") {
@@ -406,64 +230,6 @@ TEST_CASE("a block slides over another's lattice without rattling") {
     }
 }
 
-TEST_CASE("a block on another body stays below static friction and slides above") {
-    Material m = kSpringy;
-    m.damping_ratio = 0.1;
-    m.friction = 0.3;
-    m.static_friction = 0.45;
-    const double g = 9.81;
-    for (const auto& [share, slides] : {std::pair(0.441, false), std::pair(0.459, true)}) {
-        Floor floor(m, Vec3(0, -g, 0));
-        // Pushed along the face that touches, so that it does not topple.
-        Load push = push_below(floor.block, share * floor.block.mass() * g);
-        push.body = 1;
-        floor.apparatus.load.push_back(push);
-        const auto drive = [&](double time) {
-            Drive d = floor.drive(time);
-            d.load_strength = {std::clamp((time - 0.4) / 0.3, 0.0, 1.0)};
-            return d;
-        };
-        Simulation simulation({&floor.plate, &floor.block}, floor.apparatus, floor.settings);
-        simulation.advance(drive(0), drive(0.3));
-        simulation.advance(drive(0.3), drive(0.4));
-        const double rest = floor.block.centre().x();
-        simulation.advance(drive(0.4), drive(0.7));
-        simulation.advance(drive(0.7), drive(0.8));
-        const double v = floor.block.mean_velocity().x();
-        simulation.advance(drive(0.8), drive(0.9));
-        const double gained = (floor.block.mean_velocity().x() - v) / 0.1;
-        INFO("push " << share << ", from " << rest << " to " << floor.block.centre().x()
-                     << ", gained " << gained);
-        if (slides) {
-            CHECK(gained == Approx(g * (share - 0.3)).epsilon(0.01));
-        } else {
-            CHECK(std::abs(floor.block.centre().x() - rest) < 1e-3);
-            CHECK(std::abs(floor.block.mean_velocity().x()) < 2e-3);
-        }
-    }
-}
-
-TEST_CASE("sticking lumps hold below their tension and part above it") {
-    for (const auto& [tension, holds] : {std::pair(5000.0, true), std::pair(1400.0, false)}) {
-        Material m = kSpringy;
-        m.young_modulus = 3e5;
-        m.damping_ratio = 0.1;
-        m.stickiness = tension;
-        // The block hangs below the plate: 2 kPa.
-        Floor floor(m, Vec3(0, 9.81, 0));
-        Simulation simulation({&floor.plate, &floor.block}, floor.apparatus, floor.settings);
-        for (int f = 0; f < 12; ++f) {
-            simulation.advance(floor.drive(0.05 * f), floor.drive(0.05 * (f + 1)));
-        }
-        INFO("tension " << tension << ": " << floor.block.centre().y());
-        if (holds) {
-            CHECK(floor.block.centre().y() == Approx(0.1).margin(0.01));
-        } else {
-            CHECK(floor.block.centre().y() > 0.2);
-        }
-    }
-}
-
 TEST_CASE("nothing pushes inside a body, however it is bent") {
     Aggregate strip = make_block(40, 3, 4, 0.05, kSpringy);
     SimSettings settings = motion_settings();
@@ -481,29 +247,4 @@ TEST_CASE("nothing pushes inside a body, however it is bent") {
     // Pressed to a third of its height, its own sides still do not meet.
     deform(strip, [](const Vec3& x) -> Vec3 { return x.cwiseProduct(Vec3(0.3, 0.3, 1)); });
     CHECK(pressed({&strip}, settings).sums[0].contacts == 0);
-}
-
-TEST_CASE("contact gives equal bytes at any number of threads and width of vectors") {
-    std::uint64_t first = 0;
-    for (const auto& [threads, width] : {std::pair(1, 0), std::pair(2, 0), std::pair(1, 2)}) {
-        set_thread_count(threads);
-        limit_vector_width(width);
-        Aggregate a = make_block(12, 12, 12, 0.05, kSpringy),
-                  b = make_block(12, 12, 12, 0.05, kSpringy);
-        place(b, {Quat(Eigen::AngleAxisd(0.2, Vec3::UnitX())), Vec3(0.03, 0.64, 0.02)});
-        for (std::size_t p = 0; p < b.particle_count(); ++p) {
-            b.particle_velocity.set(p, Vec3(0.4, -3, 0));
-        }
-        SimSettings settings = motion_settings();
-        settings.self_contact = true;
-        const Apparatus nothing;
-        Simulation simulation({&a, &b}, nothing, settings);
-        simulation.advance(still(0), still(0.03));
-        const std::uint64_t hash = state_hash(a) ^ (state_hash(b) << 1);
-        if (first == 0) first = hash;
-        CHECK(hash == first);
-        CHECK(a.mean_velocity().norm() > 0.01);
-    }
-    set_thread_count(0);
-    limit_vector_width(0);
 }
