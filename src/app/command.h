@@ -46,9 +46,4 @@ FrameRange parse_frame_range(const std::string& text);
 // Reads "1280x720". Throws CLI::ValidationError.
 std::pair<int, int> parse_size(const std::string& text);
 
-// 1234567 as "1,234,567"; 12345678 bytes as "11.8 MiB"; 75 s as "1 min 15 s".
-std::string count_text(double count);
-std::string bytes_text(double bytes);
-std::string seconds_text(double seconds);
-
 }  // namespace swage

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_repair.h"
 #include "pipeline/run_record.h"

@@ -24,4 +24,9 @@ inline std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
+// 1234567 as "1,234,567"; 12345678 bytes as "11.8 MiB"; 75 s as "1 min 15 s".
+std::string count_text(double count);
+std::string bytes_text(double bytes);
+std::string seconds_text(double seconds);
+
 }  // namespace swage

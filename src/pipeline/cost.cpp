@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "machines/machine.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
@@ -315,15 +316,15 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
     const double memory = free_memory(), disk = free_disk(fs::absolute(options.out));
     if (cost.memory_bytes > memory) {
         fail(ExitCode::resources,
-             "the run would need about {:.1f} GiB of memory, and {:.1f} GiB are free: a larger "
-             "[mold] spacing needs less (--force runs all the same)",
-             cost.memory_bytes / (1 << 30), memory / (1 << 30));
+             "the run would need about {} of memory, and {} are free: a larger [mold] spacing "
+             "needs less (--force runs all the same)",
+             bytes_text(cost.memory_bytes), bytes_text(memory));
     }
     if (cost.disk_bytes > disk) {
         fail(ExitCode::resources,
-             "the run would write about {:.1f} GiB, and {:.1f} GiB of disk are free: fewer frames "
-             "or a smaller [render] size need less (--force runs all the same)",
-             cost.disk_bytes / (1 << 30), disk / (1 << 30));
+             "the run would write about {}, and {} of disk are free: fewer frames or a smaller "
+             "[render] size need less (--force runs all the same)",
+             bytes_text(cost.disk_bytes), bytes_text(disk));
     }
     if (cost.seconds > kLongestRun) {
         fail(ExitCode::resources,
