@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -36,13 +38,22 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
 #if defined(__SANITIZE_THREAD__)
     // The sanitizer does not see into libtbb and would report its own hand-over of work.
     std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < count; i = next++) body(i);
+    std::vector<std::exception_ptr> thrown(static_cast<std::size_t>(thread_count()));
+    const auto work = [&](std::exception_ptr& mine) {
+        try {
+            for (std::size_t i = next++; i < count; i = next++) body(i);
+        } catch (...) {
+            mine = std::current_exception();
+            next = count;
+        }
     };
     std::vector<std::thread> helper;
-    for (int n = 1; n < thread_count(); ++n) helper.emplace_back(work);
-    work();
+    for (std::size_t n = 1; n < thrown.size(); ++n) helper.emplace_back(work, std::ref(thrown[n]));
+    work(thrown[0]);
     for (std::thread& thread : helper) thread.join();
+    for (const std::exception_ptr& one : thrown) {
+        if (one) std::rethrow_exception(one);
+    }
 #else
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
