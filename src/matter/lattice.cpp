@@ -7,16 +7,12 @@
 
 namespace swage {
 
-namespace {
-
-// Runs of consecutive sites of one row, found by binary search in the order (k, j, i).
-const ParticleRun* first_run_of_row(const std::vector<ParticleRun>& runs, int j, int k) {
-    const auto before = [](const ParticleRun& run, const std::pair<int, int>& row) {
-        return std::pair(run.k, run.j) < row;
-    };
-    const auto at = std::lower_bound(runs.begin(), runs.end(), std::pair(k, j), before);
-    return at == runs.end() ? nullptr : &*at;
+std::span<const ParticleRun> row_of(const std::vector<ParticleRun>& runs, int j, int k) {
+    const auto place = [](const ParticleRun& run) { return std::pair(run.k, run.j); };
+    return std::ranges::equal_range(runs, std::pair(k, j), {}, place);
 }
+
+namespace {
 
 // Sites of the particles: all corners of active cells, in the order (k, j, i).
 std::vector<ParticleRun> make_particle_runs(const std::vector<Vec3i>& cells) {
@@ -50,7 +46,6 @@ std::vector<ParticleRun> make_particle_runs(const std::vector<Vec3i>& cells) {
 // Every pair of neighbouring sites that are both present, cut into spans of constant offset.
 std::vector<Span> make_spans(const std::vector<ParticleRun>& runs) {
     std::vector<Span> spans;
-    const ParticleRun* end = runs.data() + runs.size();
     for (const ParticleRun& low : runs) {
         for (int d = 0; d < kForwardCount; ++d) {
             const auto [di, dj, dk] = kForward[d];
@@ -58,15 +53,13 @@ std::vector<Span> make_spans(const std::vector<ParticleRun>& runs) {
                 if (low.count > 1) spans.push_back({d, low.first, low.first + 1, low.count - 1});
                 continue;
             }
-            const int j = low.j + dj, k = low.k + dk;
-            for (const ParticleRun* up = first_run_of_row(runs, j, k);
-                 up != nullptr && up != end && up->j == j && up->k == k; ++up) {
+            for (const ParticleRun& up : row_of(runs, low.j + dj, low.k + dk)) {
                 // Sites i of `low` whose neighbour i + di lies in `up`.
-                const int begin = std::max(low.i, up->i - di);
-                const int stop = std::min(low.i + low.count, up->i + up->count - di);
+                const int begin = std::max(low.i, up.i - di);
+                const int stop = std::min(low.i + low.count, up.i + up.count - di);
                 if (begin >= stop) continue;
-                spans.push_back({d, low.first + (begin - low.i), up->first + (begin + di - up->i),
-                                 stop - begin});
+                spans.push_back(
+                    {d, low.first + (begin - low.i), up.first + (begin + di - up.i), stop - begin});
             }
         }
     }
@@ -74,10 +67,8 @@ std::vector<Span> make_spans(const std::vector<ParticleRun>& runs) {
 }
 
 ParticleId particle_at(const std::vector<ParticleRun>& runs, int i, int j, int k) {
-    const ParticleRun* end = runs.data() + runs.size();
-    for (const ParticleRun* run = first_run_of_row(runs, j, k);
-         run != nullptr && run != end && run->j == j && run->k == k; ++run) {
-        if (i >= run->i && i < run->i + run->count) return run->first + (i - run->i);
+    for (const ParticleRun& run : row_of(runs, j, k)) {
+        if (i >= run.i && i < run.i + run.count) return run.first + (i - run.i);
     }
     return -1;
 }
@@ -182,6 +173,16 @@ std::array<ParticleId, 4> Lattice::cell_row(CellId cell) const {
     std::array<ParticleId, 4> row = run.row;
     for (ParticleId& p : row) p += cell - run.first;
     return row;
+}
+
+std::vector<CellId> Lattice::cells_by_low_corner() const {
+    std::vector<CellId> cells;
+    if (particle_run.empty()) return cells;
+    cells.assign(std::size_t(particle_run.back().first + particle_run.back().count), -1);
+    for (const CellRun& run : cell_run) {
+        for (int n = 0; n < run.count; ++n) cells[run.row[0] + n] = run.first + n;
+    }
+    return cells;
 }
 
 std::array<ParticleId, 8> Lattice::cell_corners(CellId cell) const {

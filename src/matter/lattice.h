@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "base/math.h"
@@ -92,6 +93,9 @@ struct CellRun {
     std::array<ParticleId, 4> row;
 };
 
+// Those of one (y, z), of runs in the order of a lattice's.
+std::span<const ParticleRun> row_of(const std::vector<ParticleRun>& runs, int j, int k);
+
 struct Lattice {
     Vec3 origin = Vec3::Zero();        // site (0, 0, 0) at molding [m]
     double spacing = 0;                // [m]
@@ -108,6 +112,8 @@ struct Lattice {
     // Corner c has bit 0 along x, bit 1 along y, bit 2 along z.
     std::array<ParticleId, 8> cell_corners(CellId cell) const;
     std::array<ParticleId, 4> cell_row(CellId cell) const;  // the lower ends, as CellRun::row
+    // Of each particle the cell whose lowest corner it is, or -1.
+    std::vector<CellId> cells_by_low_corner() const;
 };
 
 // Where the particles were at molding: on the lattice's sites, so that none need be kept.

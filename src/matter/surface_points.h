@@ -40,6 +40,7 @@ class SurfacePoints {
     void add(std::array<ParticleId, 4> row, const Vec3& place, double area, const Vec3& normal);
     // A point that a particle is by itself.
     void add_loose(ParticleId particle, double area, const Vec3& normal);
+    bool is_loose(std::size_t point) const { return row_[point][1] == kLoose; }
     void move(std::size_t point, const Vec3& place, double area);
 
     const std::array<ParticleId, 4>& row(std::size_t point) const { return row_[point]; }

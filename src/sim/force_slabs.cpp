@@ -37,14 +37,8 @@ std::vector<RowSlab> cell_slabs(const Aggregate& matter) {
     const auto same_row = [](const CellRun& a, const CellRun& b) {
         return a.j == b.j && a.k == b.k;
     };
-    // The first particle at (j, k).
     const auto row_begin = [&](const CellRun& run) {
-        const auto& rows = matter.lattice.particle_run;
-        return std::lower_bound(rows.begin(), rows.end(), std::pair(run.k, run.j),
-                                [](const ParticleRun& row, const std::pair<int, int>& at) {
-                                    return std::pair(row.k, row.j) < at;
-                                })
-            ->first;
+        return row_of(matter.lattice.particle_run, run.j, run.k).front().first;
     };
     const std::size_t cells = matter.cell_fill.size();
     const std::size_t count = slab_count(cells);
@@ -68,20 +62,6 @@ std::vector<RowSlab> cell_slabs(const Aggregate& matter) {
     }
     return slabs;
 }
-
-namespace {
-
-// The runs of one row, found by their place in the order (k, j, i).
-std::span<const ParticleRun> row_of(const std::vector<ParticleRun>& runs, int j, int k) {
-    const auto before = [](const ParticleRun& run, const std::pair<int, int>& row) {
-        return std::pair(run.k, run.j) < row;
-    };
-    const auto begin = std::lower_bound(runs.begin(), runs.end(), std::pair(k, j), before);
-    const auto end = std::lower_bound(begin, runs.end(), std::pair(k, j + 1), before);
-    return {begin, end};
-}
-
-}  // namespace
 
 std::vector<SpringRun> spring_runs(const Lattice& lattice) {
     constexpr int kAbove[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};

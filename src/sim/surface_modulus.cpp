@@ -31,15 +31,11 @@ double pressed_modulus(const Material& material, Solver solver) {
 std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints& points,
                                    Solver solver) {
     if (matter.inset.empty()) return {};
-    std::vector<CellId> cell(matter.particle_count(), -1);  // by its lowest corner
-    for (const CellRun& run : matter.lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) cell[run.row[0] + n] = run.first + n;
-    }
+    const std::vector<CellId> cell = matter.lattice.cells_by_low_corner();
     std::vector<double> modulus;
     for (std::size_t p = 0; p < points.size(); ++p) {
         // A particle that no cell holds any more counts as the body's own material.
-        const std::array<ParticleId, 4> row = points.row(p);
-        const CellId own = row[1] < 0 ? -1 : cell[row[0]];
+        const CellId own = points.is_loose(p) ? -1 : cell[points.row(p)[0]];
         int material = own < 0 ? 0 : matter.cell_material[own];
         if (const MixedCell* mixed = matter.mixed_at(own)) {
             material = material_at(*mixed, points.place(p) - Vec3::Constant(0.5));
