@@ -134,7 +134,8 @@ bool EnergyGuard::accepts(double turned_over, double done, double lost, double g
     double more = gain + lost - done;
     if (more > 0) more = std::max(0.0, more - noise);
     tried_ = excess_ + more;
-    if (!(tried_ <= kMostGain * budget || more <= kLeastGain * budget)) return false;
+    const bool creeps = more <= kLeastGain * budget && tried_ <= kCreptGain * budget;
+    if (!(tried_ <= kMostGain * budget || creeps || more <= 0)) return false;
     if (more > at_once * budget) return false;
     budget_ = budget;
     excess_ = std::max(tried_, -kMostGain * budget);

@@ -7,9 +7,10 @@
 //     a cell turns inside out (with an eighth of the step it still may: fast matter can crush
 //         itself, and comes back by laws/volume_guard.h);
 //     the energy that the bodies hold is more than was put in, by over a twentieth of all that ever
-//         was, and still grows; or grows in one block by a two-hundredth (with a quarter of the
-//         step it still may: what is squeezed to a tenth is a hundred times as stiff, and steps
-//         that were found for it at rest are too long, but a shorter one does not mend everything).
+//         was, and grows by more than a five-hundredth of that in a block; by over a fifth, and
+//         grows; or grows in one block by a two-hundredth (with a quarter of the step it still may:
+//         what is squeezed to a tenth is a hundred times as stiff, and steps that were found for it
+//         at rest are too long, but a shorter one does not mend everything).
 #pragma once
 
 #include <limits>
@@ -22,6 +23,7 @@ namespace swage {
 inline constexpr double kFarthestWay = 0.5;  // spacings a step
 inline constexpr double kMostGain = 0.05;    // of all energy that was ever put in
 inline constexpr double kLeastGain = 0.002;  // the same, in one block: less is no alarm
+inline constexpr double kCreptGain = 0.2;    // until this much has come of it
 inline constexpr double kSuddenGain = 0.005;
 inline constexpr int kSuddenHalvings = 2;     // after which as much may be gained
 inline constexpr int kInsideOutHalvings = 3;  // after which a cell may turn inside out

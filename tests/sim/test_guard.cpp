@@ -187,6 +187,16 @@ TEST_CASE("energy that appears from nowhere is refused once it is a twentieth of
     CHECK(guard.accepts(0, 0, 0, 2));
 }
 
+TEST_CASE("energy that creeps in by little in each block is stopped at a fifth") {
+    EnergyGuard guard;
+    guard.start(100);
+    double held = 100;
+    while (held < 1000 && guard.accepts(0, 0, 0, 0.19)) held += 0.19;
+    CHECK(held == Approx(120).margin(0.2));
+    CHECK(guard.accepts(0, 0, 0, 0));
+    CHECK_FALSE(guard.accepts(0, 0, 0, kNan));
+}
+
 TEST_CASE("steps beyond the stable one are halved until energy keeps") {
     Aggregate m = block();
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
