@@ -26,6 +26,10 @@ double share_of(double one, double other) {
     return (0.5 * part * square(part / mean) / mean + kLeastShare) / (1 + 2 * kLeastShare);
 }
 
+double held_by_both(double one, double other) {
+    return share_of(one, other) * one + share_of(other, one) * other;
+}
+
 double box_gap(const Box& a, const Box& b) {
     return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
 }
@@ -161,11 +165,18 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().read(*force[b]);
     }
-    std::vector<double> stored(way_.size());
-    for (std::size_t w : awake) stored[w] = way_[w].meet(step);
+    std::vector<ContactWay::Held> held(way_.size());
+    for (std::size_t w : awake) held[w] = way_[w].meet(step);
     for (std::size_t w : awake) {
-        const std::size_t back = pair_[w].back;
-        way_[w].push(back == w ? 0.5 : share_of(stored[w], stored[back]));
+        const ContactWay::Held& own = held[w];
+        if (pair_[w].back == w) {
+            way_[w].push(0.5, 0.5 * own.gone);
+            continue;
+        }
+        const ContactWay::Held& other = held[pair_[w].back];
+        const double lost = held_by_both(own.now + own.gone, other.now + other.gone) -
+                            held_by_both(own.now, other.now);
+        way_[w].push(share_of(own.now, other.now), 0.5 * lost);
     }
     for (std::size_t w : awake) way_[w].respond(step, again);
     for (std::size_t b = 0; b < side_.size(); ++b) {

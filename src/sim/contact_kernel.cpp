@@ -114,9 +114,8 @@ struct ContactWay::Kernel {
         double sunk = last.sunk;
         if (last.is_new) {
             const double pressed = last.history.touches ? last.pressed : 0;
-            const double gone =
-                way.is_static() ? 0 : 2 * step * stretch * std::sqrt(dot3(at.now, at.now));
-            sunk = whole - pressed - gone;
+            const double approach = way.is_static() ? 0 : std::max(0.0, -dot3(at.now, at.normal));
+            sunk = std::max(sunk, whole - pressed - step * stretch * approach);
         }
         at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, whole));
         at.normal[3] -= at.now[3] / stretch;
@@ -174,7 +173,7 @@ struct ContactWay::Kernel {
         }
         at.spring[3] = 0;
         at.reach[3] = give;
-        sums.stored += 0.5 / k * dot3(at.spring, at.spring);
+        sums.held.now += 0.5 / k * dot3(at.spring, at.spring);
     }
 
     // Whether an earlier contact of its point has come into the same cell by another way: of one
@@ -191,7 +190,8 @@ struct ContactWay::Kernel {
     SWAGE_INLINE void find_chunk(std::size_t chunk, double step) const {
         Chunk& result = way.chunk_[chunk];
         result.moved.clear();
-        result.took = result.stored = result.lost = 0;
+        result.took = result.lost = 0;
+        result.held = {};
         const std::size_t begin = way.begin_of(chunk), end = way.begin_of(chunk + 1);
         for (std::size_t n = begin; n < end; ++n) {
             Contact& contact = way.list_.contact[n];
@@ -205,6 +205,7 @@ struct ContactWay::Kernel {
                        gradient, at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
             if (meets(at) && is_twice(begin, n)) at.inverse[0][3] = at.inverse[1][3] = 0;
+            if (!is_known(at)) result.held.gone += last.stored;
             if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
             prepare(contact, last, corner, gradient, step, at, result);
         }
@@ -286,6 +287,7 @@ struct ContactWay::Kernel {
 
     SWAGE_INLINE void respond(double step, bool again) const {
         ContactSums& sums = way.sums_ = {};
+        sums.damped = 0.5 * way.broken_;
         for (const Chunk& chunk : way.chunk_) {
             sums.took += 0.5 * chunk.took;
             sums.friction += 0.5 * way.share_ * chunk.lost;
@@ -306,6 +308,7 @@ struct ContactWay::Kernel {
             next.sunk = at.now[3];
             next.pressed = at.inverse[0][3] * at.normal[3];
             next.soft = at.inverse[1][3];
+            next.stored = f.stored / way.share_;
             next.is_new = !is_known(at) && (last.is_new || !way.is_static());
             contact.dashed = f.force - f.elastic;
             if (f.history.touches) {
@@ -314,7 +317,6 @@ struct ContactWay::Kernel {
                 next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
                                   dot3(at.inverse[2], reach));
                 next.held = 0.5 * at.inverse[2][3] * dot3(reach, reach);
-                next.stored = f.stored;
                 sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
                 sums.stored += 0.5 * f.stored;
                 sums.friction += 0.5 * f.friction;
@@ -324,10 +326,8 @@ struct ContactWay::Kernel {
                 if (last.history.touches && next.soft < last.soft) {
                     sums.damped += 0.5 * (last.soft / next.soft - 1) * f.stored;
                 }
-            } else if (last.history.touches) {
-                sums.damped += 0.5 * (is_known(at) ? parting_loss(last.stiffness, last.bond,
-                                                                  vec3(at.now), step)
-                                                   : last.stored);
+            } else if (last.history.touches && is_known(at)) {
+                sums.damped += 0.5 * parting_loss(last.stiffness, last.bond, vec3(at.now), step);
             }
         }
     }

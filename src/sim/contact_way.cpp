@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/parallel.h"
 #include "sim/contact_search.h"
@@ -67,7 +68,10 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& 
 void ContactWay::keep_contacts(const std::function<bool(int point)>& meets) {
     std::size_t kept = 0;
     for (std::size_t n = 0; n < list_.size(); ++n) {
-        if (!meets(list_.contact[n].point)) continue;
+        if (!meets(list_.contact[n].point)) {
+            gone_ += list_.memory[n].stored;
+            continue;
+        }
         list_.contact[kept] = list_.contact[n];
         list_.memory[kept++] = list_.memory[n];
     }
@@ -84,6 +88,7 @@ void ContactWay::leave_out_let_be() {
 void ContactWay::set_contacts(const ContactList& contacts) {
     list_ = contacts;
     leave_out_let_be();
+    gone_ = 0;
     is_found_ = false;
     if (is_static()) meet_anew();
 }
@@ -170,13 +175,13 @@ void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {
 }
 
 // What one thread has just found it pushes at once, while it is near.
-double ContactWay::meet(double step) {
+ContactWay::Held ContactWay::meet(double step) {
     meeting_.resize(list_.size());
     chunk_.resize(chunks(list_.size()));
     for (Pushed* pushed : {&point_push_, &cell_push_}) {
         pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
     }
-    double stored = 0;
+    Held held{0, std::exchange(gone_, 0)};
     const std::size_t group = thread_count() == 1 ? 1 : chunk_.size();
     for (std::size_t begin = 0; begin < chunk_.size(); begin += group) {
         const std::size_t end = std::min(chunk_.size(), begin + group);
@@ -192,14 +197,16 @@ double ContactWay::meet(double step) {
                 }
             }
             push_chunk(chunk);
-            stored += chunk_[chunk].stored;
+            held.now += chunk_[chunk].held.now;
+            held.gone += chunk_[chunk].held.gone;
         }
     }
-    return stored;
+    return held;
 }
 
-void ContactWay::push(double share) {
+void ContactWay::push(double share, double lost) {
     share_ = share;
+    broken_ = lost;
     point_push_.add_to(from_->patch(), share);
     cell_push_.add_to(onto_->patch(), share);
 }

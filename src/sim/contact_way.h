@@ -48,10 +48,14 @@ class ContactWay {
     void surfaces_changed(bool points_too, double step);
 
     // Finds how each point lies and moves now, for a step of this length [s], and what springs
-    // would do if this way were alone; returns what they would hold then [J].
-    double meet(double step);
-    // Adds this share of it.
-    void push(double share);
+    // would do if this way were alone. What they would hold then, and what those held whose points
+    // or cells have broken since [J].
+    struct Held {
+        double now = 0, gone = 0;
+    };
+    Held meet(double step);
+    // Adds this share of it. `lost`: what both ways hold less for what is gone [J].
+    void push(double share, double lost);
     // Dashpots and friction, one contact after the other, given what all springs do. `again`: as
     // they were when last committed.
     void respond(double step, bool again);
@@ -90,7 +94,7 @@ class ContactWay {
     struct Chunk {
         std::vector<int> moved;  // contacts that have come into other cells
         double took = 0;         // ContactSums::took, of the one half
-        double stored = 0;       // by springs of the whole stiffness [J]
+        Held held;               // by springs of the whole stiffness
         double lost = 0;         // likewise, where the surface turned away from where points stick
     };
     // What springs do to the particles of a patch, from the slot `low` on [N].
@@ -142,6 +146,8 @@ class ContactWay {
     std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
     std::vector<char> is_let_be_;                            // likewise; empty: none is
     double share_ = 0.5;                                     // of what this way would do alone
+    double gone_ = 0;                                        // Held::gone, of points, so far [J]
+    double broken_ = 0;                                      // lost by what is gone, in this step
     ContactList list_, spare_{};         // the spare one keeps its room for the next search
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit
