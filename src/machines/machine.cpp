@@ -285,7 +285,7 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
     Setting setting{spec, frame, matter.lattice.spacing, {}, {}, {}};
     const Pose work_from_world = frame.world_from_work.inverse();
     for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
-    const TouchPoints touch(matter, TouchPoints::With::tools);
+    const TouchPoints touch(matter);
     for (int p = 0; p < int(touch.size()); ++p) {
         if (!touch.meets(p)) continue;
         setting.touch.push_back(work_from_world *

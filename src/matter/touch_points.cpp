@@ -7,17 +7,13 @@
 
 namespace swage {
 
-TouchPoints::TouchPoints(const Aggregate& matter, With with)
-    : with_(with), points_(matter.surface) {
+TouchPoints::TouchPoints(const Aggregate& matter) : points_(matter.surface) {
     const Lattice& lattice = matter.lattice;
     add_edge_points(matter, points_);
     own_ = points_.size();
-    std::vector<CellId> by_low_corner(matter.particle_count(), -1);
-    for (const CellRun& run : lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) by_low_corner[run.row[0] + n] = run.first + n;
-    }
+    const std::vector<CellId> by_low_corner = lattice.cells_by_low_corner();
     for (std::size_t p = 0; p < own_; ++p) {
-        carrier_.push_back(by_low_corner[points_.row(p)[0]]);
+        carrier_.push_back(points_.is_loose(p) ? -1 : by_low_corner[points_.row(p)[0]]);
         const Vec3 at = points_.reference(p, matter.particle_reference);
         const Vec3 inner = (at - lattice.origin) / lattice.spacing - 1e-3 * points_.normal(p);
         home_.push_back(inner.array().floor().cast<int>());
@@ -37,24 +33,33 @@ int TouchPoints::face_point(const Lattice& lattice, CellId cell, const Vec3i& si
     return at->second;
 }
 
-int TouchPoints::loose_point(double spacing, ParticleId particle) {
+int TouchPoints::loose_point(const Lattice& lattice, ParticleId particle, const Vec3i& site) {
     const auto [at, is_new] = loose_.try_emplace(particle, static_cast<int>(points_.size()));
-    if (is_new) points_.add_loose(particle, spacing * spacing, Vec3::UnitY());  // it has none
+    if (!is_new) return at->second;
+    const double a = lattice.spacing;
+    points_.add_loose(particle, a * a, Vec3::UnitY());  // it has none
+    home_.push_back(site);
     return at->second;
 }
 
 void TouchPoints::add_loose(const Aggregate& matter) {
+    const Lattice& lattice = matter.lattice;
     std::vector<char> held(matter.particle_count(), 0);
-    for (const CellRun& run : matter.lattice.cell_run) {
+    std::vector<Vec3i> site(matter.particle_count());  // of a cell of each
+    for (const CellRun& run : lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
-            if (!whole_[run.first + n]) continue;
-            for (ParticleId p : run.row) held[p + n] = held[p + n + 1] = 1;
+            for (ParticleId p : run.row) {
+                for (ParticleId end : {p + n, p + n + 1}) {
+                    if (whole_[run.first + n]) held[end] = 1;
+                    site[end] = {run.i + n, run.j, run.k};
+                }
+            }
         }
     }
     for (std::size_t p = 0; p < held.size(); ++p) {
         if (held[p]) continue;
-        const auto point = static_cast<std::size_t>(
-            loose_point(matter.lattice.spacing, static_cast<ParticleId>(p)));
+        const auto point =
+            static_cast<std::size_t>(loose_point(lattice, static_cast<ParticleId>(p), site[p]));
         if (point == meets_.size()) meets_.push_back(0);
         meets_[point] = 1;
     }
@@ -88,7 +93,7 @@ void TouchPoints::connections_changed(const Aggregate& matter) {
             }
         }
     }
-    if (with_ == With::tools) add_loose(matter);
+    add_loose(matter);
 }
 
 }  // namespace swage

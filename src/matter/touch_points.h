@@ -3,7 +3,7 @@
 // molded, with its edges and corners, and where cells are no longer whole, cut or broken, a new
 // surface half-way through them: a point before each face of a whole cell that looks at one, half a
 // spacing out, which the whole cell carries. What a cell no longer whole carries meets nothing;
-// particles that no whole cell has left meet tools by themselves.
+// particles that no whole cell has left meet by themselves.
 #pragma once
 
 #include <map>
@@ -16,8 +16,7 @@ namespace swage {
 
 class TouchPoints {
   public:
-    enum class With { tools, bodies };
-    TouchPoints(const Aggregate& matter, With with);
+    explicit TouchPoints(const Aggregate& matter);
 
     // A blade or a crack has changed which cells are whole, or a step back has made them so again.
     // Points keep their numbers.
@@ -28,17 +27,18 @@ class TouchPoints {
     // The body's own; those of new surface come after them.
     std::size_t own() const { return own_; }
     bool meets(int point) const { return meets_[point] != 0; }
-    // The cell that the point lies in or just outside of; of new surface, that which carries it.
-    // With bodies only.
+    // A particle by itself.
+    bool is_loose(int point) const { return points_.is_loose(static_cast<std::size_t>(point)); }
+    // The cell that the point lies in or just outside of; of new surface, that which carries it; of
+    // a loose particle, one that did.
     const std::vector<Vec3i>& home() const { return home_; }
     const std::vector<char>& whole() const { return whole_; }  // of each cell
 
   private:
     int face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face);
-    int loose_point(double spacing, ParticleId particle);
+    int loose_point(const Lattice& lattice, ParticleId particle, const Vec3i& site);
     void add_loose(const Aggregate& matter);
 
-    With with_;
     SurfacePoints points_;
     std::size_t own_;
     std::vector<CellId> carrier_;  // of each point of its own; -1: no cell

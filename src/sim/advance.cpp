@@ -188,8 +188,7 @@ void Simulation::Rooms::count_pieces(std::size_t b, const char* who,
     const Pieces pieces = find_pieces(*at.matter);
     const std::ptrdiff_t loose = particles_in_crumbs(pieces);
     if (loose > at.crumbs) {
-        warning.push_back(fmt::format("{} left crumbs of less than one cell{}", who,
-                                      body.size() > 1 ? ", which no other body meets" : ""));
+        warning.push_back(fmt::format("{} left crumbs of less than one cell", who));
     }
     at.crumbs = loose;
     at.pieces = pieces.count;

@@ -66,7 +66,7 @@ ContactSet::ContactSet(const Aggregate& matter, const Apparatus& apparatus,
       tool_way_(apparatus.tool.size()),
       motion_load_(apparatus.tool.size() + apparatus.grip.size()) {
     if (apparatus.tool.empty()) return;
-    touch_ = std::make_shared<TouchPoints>(matter, TouchPoints::With::tools);
+    touch_ = std::make_shared<TouchPoints>(matter);
     point_modulus_ = surface_moduli(matter, points(), settings_.solver);
 }
 

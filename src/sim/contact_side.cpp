@@ -30,7 +30,7 @@ ContactSide::ContactSide(Aggregate& matter, bool itself)
     : matter_(&matter),
       patch_(matter),
       itself_(itself),
-      touch_(matter, TouchPoints::With::bodies),
+      touch_(matter),
       molded_(std::make_shared<const RestSurface>(matter)) {
     find_cells();
 }
@@ -52,6 +52,10 @@ void ContactSide::find_cells() {
     std::vector<char> taken(matter_->particle_count(), 0);
     for (CellId cell : rim_) {
         for (ParticleId p : matter_->lattice.cell_corners(cell)) taken[p] = 1;
+    }
+    for (std::size_t p = touch_.own(); p < touch_.size(); ++p) {
+        const int point = static_cast<int>(p);
+        if (touch_.is_loose(point) && touch_.meets(point)) taken[points().corner(p)[0]] = 1;
     }
     skin_.clear();
     for (std::size_t p = 0; p < taken.size(); ++p) {
@@ -99,8 +103,10 @@ void ContactSide::find_near() {
     near_set_.assign(home_of.size(), -1);
     std::vector<Vec3i> home;  // of points that follow one another and share it
     for (std::size_t p = 0; p < home_of.size(); ++p) {
-        if (p == 0 || home_of[p] != home_of[p - 1]) home.push_back(home_of[p]);
-        near_set_[p] = static_cast<int>(home.size()) - 1;
+        if (!touch_.is_loose(static_cast<int>(p))) {
+            if (home.empty() || home_of[p] != home.back()) home.push_back(home_of[p]);
+            near_set_[p] = static_cast<int>(home.size()) - 1;
+        }
         const Vec3 at = points().reference(p, matter_->particle_reference);
         own_place_[p] = ((at - lattice.origin) / lattice.spacing).cast<float>();
     }
@@ -139,7 +145,7 @@ void ContactSide::find_near() {
 
 bool ContactSide::is_neighbour(int point, const Vec3i& site) const {
     const Vec3i at = site - touch_.home()[point];
-    if (!in_box(at)) return false;
+    if (near_set_[point] < 0 || !in_box(at)) return false;
     const int bit = bit_of(at);
     return near_[near_set_[point]][bit / 64] >> (bit % 64) & 1;
 }

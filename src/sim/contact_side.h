@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "matter/touch_points.h"
 #include "sim/contact_patch.h"
 #include "sim/cut_surface.h"
 #include "sim/rest_surface.h"
-#include "matter/touch_points.h"
 
 namespace swage {
 
@@ -50,7 +50,7 @@ class ContactSide {
                (molded_->is_rim(cell) || (cut_ != nullptr && cut_->is_rim(cell)));
     }
     bool is_whole(CellId cell) const { return touch_.whole()[cell] != 0; }
-    // Particles of cells near the surface.
+    // Particles of cells near the surface, and loose ones.
     const std::vector<ParticleId>& skin() const { return skin_; }
 
     // How much a point meets a place of its own body, from 0 to 1, and how that changes with the
@@ -83,7 +83,8 @@ class ContactSide {
     std::vector<ParticleId> skin_;
     // With itself: of each point its place at molding, from the lattice's origin, in cells.
     std::vector<Eigen::Vector3f> own_place_;
-    // Of each point a set, of each set a bit for each cell of the box around its home.
+    // Of each point a set, -1: empty, a loose particle's; of each set a bit for each cell of the
+    // box around its home.
     std::vector<int> near_set_;
     std::vector<std::array<std::uint64_t, 12>> near_;
 };

@@ -18,6 +18,20 @@ inline void place(Aggregate& m, const Pose& pose) {
     }
 }
 
+// Breaks what joins the particles of two layers of cells across y, in the cells of the one.
+inline void break_layer(Aggregate& block, int layer) {
+    for (const CellRun& run : block.lattice.cell_run) {
+        if (run.j != layer) continue;
+        for (int n = 0; n < run.count; ++n) {
+            for (const CellConnection& c : kCellConnection) {
+                if (kForward[c.direction][1] == 0) continue;
+                block.connection[c.direction].weight.set(
+                    run.row[c.corner >> 1] + n + (c.corner & 1), 0);
+            }
+        }
+    }
+}
+
 inline SimSettings motion_settings(Solver solver = Solver::explicit_steps) {
     SimSettings s;
     s.solver = solver;

@@ -122,6 +122,88 @@ TEST_CASE("bodies that collide part, and neither passes through the other") {
     }
 }
 
+TEST_CASE("particles that are all that is left of cells do not fall through another body") {
+    Floor floor(kSpringy, Vec3(0, -9.81, 0));
+    floor.let_down = 0.01;
+    floor.settings.step_safety = 0.2;  // the books' remainder is of second order in it
+    Aggregate& block = floor.block = make_block(2, 5, 2, 0.1, kSpringy);
+    for (int layer : {0, 1}) break_layer(block, layer);  // two sheets of particles
+    place(block, {Quat::Identity(), Vec3(0, 0.3, 0)});
+    Simulation simulation({&floor.plate, &block}, floor.apparatus, floor.settings);
+    FrameReport r;
+    for (int f = 0; f < 50; ++f) {
+        r = simulation.advance(floor.drive(0.02 * f), floor.drive(0.02 * (f + 1)));
+        for (double y : block.particle_position.y) CHECK(y > -0.02);
+    }
+    CHECK(std::abs(r.remainder) < 0.01 * block.mass() * 9.81 * 0.3);
+}
+
+TEST_CASE("particles that are all that is left of cells do not pass through what they broke off") {
+    for (Solver solver : {Solver::explicit_steps, Solver::energy_stepped}) {
+        Aggregate block = make_block(3, 5, 3, 0.1, kSpringy);
+        break_layer(block, 0);  // a sheet of particles below
+        const auto is_sheet = [&](std::size_t p) {
+            return block.particle_reference.at(p).y() < -0.2;
+        };
+        double sheet = 0;  // mass
+        for (std::size_t p = 0; p < block.particle_count(); ++p) {
+            if (!is_sheet(p)) continue;
+            sheet += block.particle_mass[p];
+            block.particle_velocity.set(p, Vec3(0, 1, 0));
+        }
+        SimSettings settings = motion_settings(solver);
+        settings.self_contact = true;
+        settings.step_safety = 0.4;
+        const Apparatus nothing;
+        Simulation simulation(block, nothing, settings);
+        FrameReport r;
+        for (int f = 0; f < 40; ++f) {
+            r = simulation.advance(still(0.01 * f), still(0.01 * (f + 1)));
+            double low = 1, high = -1;
+            for (std::size_t p = 0; p < block.particle_count(); ++p) {
+                const double y = block.particle_position.y[p];
+                is_sheet(p) ? high = std::max(high, y) : low = std::min(low, y);
+            }
+            CHECK(high < low);
+        }
+        CHECK(std::abs(r.remainder) < 0.01 * 0.5 * sheet);
+    }
+}
+
+TEST_CASE("what breaks where another strikes it neither gains nor loses energy by it") {
+    for (double friction : {0.0, 0.5}) {
+        const double speed = 20;
+        const Material whole{.young_modulus = 5e8,
+                             .poisson_ratio = 0.2,
+                             .density = 1200,
+                             .damping_ratio = 0,
+                             .friction = friction,
+                             .restitution = 1};
+        Material brittle = whole;
+        brittle.strength = 1e6;
+        brittle.toughness = 40;
+        Aggregate board = make_block(20, 2, 8, 0.005, brittle),
+                  block = make_block(5, 4, 5, 0.007, whole);
+        const Quat askew(Eigen::AngleAxisd(0.3, Vec3(1, 0.2, 0.3).normalized()));
+        place(block, {askew, Vec3(0, 0.032, 0)});
+        for (double& v : block.particle_velocity.y) v = -speed;
+        SimSettings settings = motion_settings();
+        settings.step_safety = 0.4;
+        const Apparatus nothing;
+        Simulation simulation({&board, &block}, nothing, settings);
+        FrameReport r;
+        for (int f = 0; f < 3; ++f) {
+            r = simulation.advance(still(5e-4 * f), still(5e-4 * (f + 1)));
+        }
+        const double energy = 0.5 * block.mass() * speed * speed;
+        INFO("friction " << friction << ", pieces " << r.pieces);
+        CHECK(r.pieces > 50);
+        CHECK(r.fracture > 0.02 * energy);
+        CHECK(std::abs(r.remainder) < 0.005 * energy);
+        CHECK(r.friction >= -1e-3 * energy);
+    }
+}
+
 TEST_CASE("steps that energy chooses let bodies meet as explicit ones do") {
     struct Met {
         double start;  // energy [J]

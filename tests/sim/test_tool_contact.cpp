@@ -319,24 +319,6 @@ TEST_CASE(
     }
 }
 
-namespace {
-
-// Breaks what joins the particles of two layers of cells across y, in the cells of the one.
-void break_layer(Aggregate& block, int layer) {
-    for (const CellRun& run : block.lattice.cell_run) {
-        if (run.j != layer) continue;
-        for (int n = 0; n < run.count; ++n) {
-            for (const CellConnection& c : kCellConnection) {
-                if (kForward[c.direction][1] == 0) continue;
-                block.connection[c.direction].weight.set(
-                    run.row[c.corner >> 1] + n + (c.corner & 1), 0);
-            }
-        }
-    }
-}
-
-}  // namespace
-
 TEST_CASE("a piece that lands on the face where it was broken off lies on that face") {
     // Of a block of 3 x 7 x 3 cells the lower half stands aside.
     const double a = 0.1;

@@ -116,7 +116,7 @@ TEST_CASE("particles that no cell holds count as the body's own material") {
     for (ConnectionArrays& all : m.connection) {
         for (std::size_t p = 0; p < m.particle_count(); ++p) all.weight.set(p, 0);
     }
-    const TouchPoints touch(m, TouchPoints::With::tools);
+    const TouchPoints touch(m);
     REQUIRE(touch.size() == touch.own() + m.particle_count());
     const std::vector<double> modulus = surface_moduli(m, touch.points(), Solver::explicit_steps);
     for (std::size_t p = touch.own(); p < touch.size(); ++p) CHECK(modulus[p] == 1);
