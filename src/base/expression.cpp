@@ -205,19 +205,30 @@ class Reader {
         std::size_t next = at_;
         while (next < text_.size() && is_blank(text_[next])) ++next;
         double factor = 1;
-        if (const auto unit = leading_unit(text_.substr(next))) {
+        const bool has_word = next < text_.size() && begins_word(text_[next]);
+        const std::string_view word = has_word ? word_at(next) : std::string_view();
+        const auto unit = leading_unit(text_.substr(next));
+        if (unit && !is_variable(word)) {
             factor = unit->factor;
             at_ = next + unit->size;
-        } else if (next < text_.size() && begins_word(text_[next])) {
-            const std::string_view word = word_at(next);
-            if (is_variable(word) || function_named(word) != nullptr || word == "pi") {
-                refuse(next, fmt::format("a sign is missing before \"{0}\"; to multiply write "
-                                         "{1}*{0}",
-                                         word, text_.substr(from, number.size)));
-            }
+            refuse_power_of_unit(text_.substr(from, number.size), text_.substr(next, unit->size));
+        } else if (is_variable(word) || function_named(word) != nullptr || word == "pi") {
+            refuse(next, fmt::format("a sign is missing before \"{0}\"; to multiply write {1}*{0}",
+                                     word, text_.substr(from, number.size)));
+        } else if (has_word) {
             refuse(next, fmt::format("unknown unit \"{}\"", word));
         }
         write(fmt::format("({:.17g})", number.value * factor), from);
+    }
+
+    // Of "3 cm^2" some would expect 9 and some 3 square centimetres.
+    void refuse_power_of_unit(std::string_view number, std::string_view unit) const {
+        std::size_t next = at_;
+        while (next < text_.size() && is_blank(text_[next])) ++next;
+        if (next == text_.size() || text_[next] != '^') return;
+        refuse(next, fmt::format("this may raise {0} {1} or the unit alone: write ({0} {1})^... or "
+                                 "{0}*(1 {1})^...",
+                                 number, unit));
     }
 
     void read_word() {

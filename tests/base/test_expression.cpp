@@ -46,11 +46,34 @@ TEST_CASE("a number in an expression may carry a unit") {
     CHECK(evaluate_text("2*radius + 3 mm", {{"radius", 0.1}}) == Approx(0.203).epsilon(1e-15));
     CHECK(value_of("60 deg") == Approx(kPi / 3).epsilon(1e-15));
     CHECK(value_of("-60deg") == Approx(-kPi / 3).epsilon(1e-15));
-    CHECK(value_of("2*3 cm^2") == Approx(2 * 9e-4).epsilon(1e-15));
+    CHECK(value_of("2*(3 cm)^2") == Approx(2 * 9e-4).epsilon(1e-15));
+    CHECK(value_of("5 m/s^2 + 1 kg/m^3") == 6);
     CHECK(value_of("5 mm/s") == 0.005);
     CHECK(value_of("50 %") == 0.5);
     // After a number without a unit, a variable is never taken for one.
     CHECK(evaluate_text("3*t", {{"t", 2}}) == 6);
+}
+
+TEST_CASE("a variable named as a unit is refused after a number, not read as that unit") {
+    const std::vector<std::string> variables = {"t", "min", "in"};
+    CHECK(mistake_of("2 t", variables) ==
+          "2: a sign is missing before \"t\"; to multiply write 2*t");
+    CHECK(mistake_of("1 - 2 t", variables) ==
+          "6: a sign is missing before \"t\"; to multiply write 2*t");
+    CHECK(mistake_of("7 t/m3", variables) ==
+          "2: a sign is missing before \"t\"; to multiply write 7*t");
+    CHECK(mistake_of("3in", variables) ==
+          "1: a sign is missing before \"in\"; to multiply write 3*in");
+    CHECK(value_of("2 t") == 2000);   // where no variable has the name
+    CHECK(value_of("5 min") == 300);  // nor is the unit taken for the function
+}
+
+TEST_CASE("a power of a number with a unit is refused, as it may be read in two ways") {
+    const char* either = "this may raise 3 cm or the unit alone: write (3 cm)^... or 3*(1 cm)^...";
+    CHECK(mistake_of("3 cm^2") == fmt::format("4: {}", either));
+    CHECK(mistake_of("1 + 3cm ^ 2") == fmt::format("8: {}", either));
+    CHECK(value_of("(3 cm)^2") == Approx(9e-4).epsilon(1e-15));
+    CHECK(value_of("3*(1 cm)^2") == Approx(3e-4).epsilon(1e-15));
 }
 
 TEST_CASE("a ramp rises smoothly from 0 to 1 and never leaves them") {
