@@ -57,6 +57,16 @@ std::string names_of(const std::vector<MachineFile>& machines) {
     return names.empty() ? "none" : joined(names, ", ");
 }
 
+bool lie_along(const std::string& axis, const std::string& up) {
+    return axis != "auto" && up != "auto" && axis.back() == up.back();
+}
+
+// What a stage leaves to its machine, that says, unless it would lie along what the stage says.
+void fall_back(const MachineSpec& machine, StageSpec& stage) {
+    if (stage.axis == "auto" && !lie_along(machine.axis, stage.up)) stage.axis = machine.axis;
+    if (stage.up == "auto" && !lie_along(stage.axis, machine.up)) stage.up = machine.up;
+}
+
 }  // namespace
 
 bool is_stage_key(const std::string& key) {
@@ -212,7 +222,7 @@ void read_frame_words(TableReader& table, std::string& axis, std::string& up) {
     };
     table.choice("axis", same({"auto", "x", "y", "z"}), axis);
     table.choice("up", same({"auto", "x", "-x", "y", "-y", "z", "-z"}), up);
-    if (axis != "auto" && up != "auto" && axis.back() == up.back()) {
+    if (lie_along(axis, up)) {
         table.mistake(
             "up", fmt::format("up = \"{}\" lies along axis = \"{}\"; choose another", up, axis));
     }
@@ -254,10 +264,7 @@ StageSpec StageReader::read(const Node& node) {
     table.truth("remold", stage.remold);
     read_frame_words(table, stage.axis, stage.up);
     const bool has_machine = loaded != nullptr && loaded->machine;
-    if (has_machine && stage.axis == "auto" && stage.up == "auto") {
-        stage.axis = loaded->machine->axis;
-        stage.up = loaded->machine->up;
-    }
+    if (has_machine) fall_back(*loaded->machine, stage);
     read_solver(table, scene_, has_machine ? &*loaded->machine : nullptr,
                 has_machine && loaded->machine->upright ? stage.up : "auto", stage.sim);
     if (has_machine) {
