@@ -26,11 +26,14 @@ std::string bytes_text(double bytes) {
 }
 
 std::string seconds_text(double seconds) {
-    if (seconds < 60) return fmt::format("{:.{}f} s", seconds, seconds < 10 ? 1 : 0);
-    const double minutes = std::floor(seconds / 60);
-    if (minutes < 60) return fmt::format("{:.0f} min {:.0f} s", minutes, seconds - 60 * minutes);
-    return fmt::format("{} h {:.0f} min", count_text(std::floor(minutes / 60)),
-                       minutes - 60 * std::floor(minutes / 60));
+    if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+    // Rounded before it is parted: 119.7 s are 2 min 0 s, not 1 min 60 s.
+    const double whole = std::round(seconds);
+    if (whole < 60) return fmt::format("{:.0f} s", whole);
+    const double minutes = std::floor(whole / 60);
+    if (minutes < 60) return fmt::format("{:.0f} min {:.0f} s", minutes, whole - 60 * minutes);
+    const double all_minutes = std::round(seconds / 60), hours = std::floor(all_minutes / 60);
+    return fmt::format("{} h {:.0f} min", count_text(hours), all_minutes - 60 * hours);
 }
 
 }  // namespace swage
