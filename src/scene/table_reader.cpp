@@ -24,6 +24,14 @@ std::string with_unit(Quantity quantity) {
     return unit.empty() ? quantity_name(quantity) : quantity_name(quantity) + " [" + unit + "]";
 }
 
+// Whether a text that reads as a quantity says which: "deg" and "°" do, the e of "1e3" does not.
+bool has_unit(std::string_view text) {
+    return std::any_of(text.begin(), text.end(), [](char c) {
+        const auto byte = static_cast<unsigned char>(c);
+        return byte >= 0x80 || (std::isalpha(byte) && c != 'e' && c != 'E');
+    });
+}
+
 bool contains(const std::vector<std::string>& list, const std::string& word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
@@ -154,10 +162,7 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
     if (node.kind == Node::Kind::text) {
         try {
             into = parse_quantity(node.text, quantity);
-            const bool has_unit = std::any_of(node.text.begin(), node.text.end(), [](char c) {
-                return std::isalpha(static_cast<unsigned char>(c)) && c != 'e' && c != 'E';
-            });
-            if (quantity == Quantity::angle && !has_unit) warn_of_turns(key, node, into);
+            if (quantity == Quantity::angle && !has_unit(node.text)) warn_of_turns(key, node, into);
             return true;
         } catch (const TextError& error) {
             reading_.mistakes.add(place_inside(node, error.at()), key + ": " + error.what());

@@ -256,6 +256,16 @@ TEST_CASE("values out of range are refused with the range") {
     CHECK(mistakes_in(stage("angle = \"180 deg\"").text()) == "");  // the end itself is allowed
 }
 
+TEST_CASE("an angle of more than a turn draws no word about its unit where it has one") {
+    for (const char* text : {"\"450\u00b0\"", "\"450 deg\"", "\"2 turns\"", "\"10 rad\""}) {
+        INFO(text);
+        const std::string mesh = "[mesh]\nfile = \"bar.obj\"\nturn = [0, %, 0]\n";
+        CHECK(mistakes_in(
+                  with(&Parts::mesh, std::string(mesh).replace(mesh.find('%'), 1, text)).text())
+                  .empty());
+    }
+}
+
 TEST_CASE("mistakes in loads are found at their place") {
     const auto load = [](const std::string& lines) { return stage("[[stage.load]]\n" + lines); };
     check_all({
