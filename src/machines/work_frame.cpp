@@ -35,25 +35,23 @@ std::vector<Vec3> surface_positions(const Aggregate& matter) {
     return points;
 }
 
-WorkFrame place_work_frame(const Aggregate& matter, const std::string& axis,
-                           const std::string& up) {
+WorkFrame place_work_frame(const Aggregate& matter, const std::string& axis, const std::string& up,
+                           bool upright) {
     const Box box = box_of(surface_positions(matter));
     if (box.empty()) fail(ExitCode::mesh, "the work-piece has no surface to place a machine at");
 
+    Vec3 y = up == "auto" ? Vec3::UnitY() : direction_or_fail("up", up);
     Vec3 x;
     if (axis == "auto") {
+        Vec3 side = box.size();
+        if (upright) side -= side.cwiseProduct(y.cwiseAbs());  // what stands on it may be tall
         int longest = 0;
-        box.size().maxCoeff(&longest);
+        side.maxCoeff(&longest);
         x = Vec3::Unit(longest);
     } else {
         x = direction_or_fail("axis", axis);
     }
-    Vec3 y;
-    if (up == "auto") {
-        y = x.y() == 0 ? Vec3::UnitY() : Vec3::UnitZ();
-    } else {
-        y = direction_or_fail("up", up);
-    }
+    if (up == "auto" && !upright && x.y() != 0) y = Vec3::UnitZ();
     if (x.cross(y).norm() == 0) {
         fail(ExitCode::scene, "up = \"{}\" lies along the work-piece's axis ({}); choose another",
              up, axis == "auto" ? "its longest side" : axis);

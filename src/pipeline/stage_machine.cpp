@@ -25,14 +25,17 @@ std::vector<std::string> told(const StageSpec& stage, const ParameterError& erro
     return mistakes;
 }
 
+WorkFrame work_frame(const StageSpec& stage, const Aggregate& work_piece) {
+    return place_work_frame(work_piece, stage.axis, stage.up, stage.machine.upright);
+}
+
 }  // namespace
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside) {
     try {
-        return build_machine(stage.machine, stage.parameter,
-                             place_work_frame(work_piece, stage.axis, stage.up), work_piece,
-                             beside);
+        return build_machine(stage.machine, stage.parameter, work_frame(stage, work_piece),
+                             work_piece, beside);
     } catch (const ParameterError& error) {
         throw Error(error.code(), joined(told(stage, error), "\n"));
     } catch (const Error& error) {
@@ -46,7 +49,7 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
         const StageSpec& stage = scene.stage[n];
         try {
-            const WorkFrame frame = place_work_frame(work_piece, stage.axis, stage.up);
+            const WorkFrame frame = work_frame(stage, work_piece);
             resolve_parameters(stage.machine, stage.parameter,
                                work_piece_variables(work_piece, frame));
         } catch (const ParameterError& error) {

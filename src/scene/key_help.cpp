@@ -79,9 +79,10 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[[stage]]", "remold", "mold the deformed mesh anew before the stage"},
         {"[[stage]]", "axis",
          "of the world, along which the machine has its length; auto: the "
-         "longest side of the box"},
+         "longest side of the box, across up if the machine is upright"},
         {"[[stage]]", "up",
-         "the way in the world that the machine calls up; auto: y, or z where axis is y"},
+         "the way in the world that the machine calls up; auto: y, or, if it is not upright, z "
+         "where axis is y"},
         {"[[stage]]",
          "solver",
          "how matter moves; see the README",

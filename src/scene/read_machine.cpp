@@ -39,6 +39,14 @@ class MachineReader {
         root.truth("moves", machine.moves);
         root.truth("upright", machine.upright);
         read_frame_words(root, machine.axis, machine.up);
+        if (machine.upright && machine.up == "auto") {
+            machine.up = "y";  // gravity's way does not depend on what lies on the machine
+            if (machine.axis == "y") {
+                root.mistake("axis",
+                             "axis = \"y\" points up in an upright machine; choose another, or say "
+                             "up = \"z\" too");
+            }
+        }
         read_parameters(root.table("parameter"), machine);
         for (const Node* node : root.tables("tool", "[[tool]]")) read_tool(*node, machine);
         // From here on the places of all tools are known, and motions also see the time.

@@ -62,9 +62,17 @@ bool lie_along(const std::string& axis, const std::string& up) {
 }
 
 // What a stage leaves to its machine, that says, unless it would lie along what the stage says.
-void fall_back(const MachineSpec& machine, StageSpec& stage) {
+void fall_back(TableReader& table, const MachineSpec& machine, StageSpec& stage) {
     if (stage.axis == "auto" && !lie_along(machine.axis, stage.up)) stage.axis = machine.axis;
-    if (stage.up == "auto" && !lie_along(stage.axis, machine.up)) stage.up = machine.up;
+    if (stage.up != "auto") return;
+    if (!lie_along(stage.axis, machine.up)) {
+        stage.up = machine.up;
+    } else if (machine.upright) {
+        table.mistake(
+            "axis", fmt::format("axis = \"{}\" points up with the machine {}, whose up is \"{}\"; "
+                                "choose another, or say up too",
+                                stage.axis, machine.name, machine.up));
+    }
 }
 
 }  // namespace
@@ -264,7 +272,7 @@ StageSpec StageReader::read(const Node& node) {
     table.truth("remold", stage.remold);
     read_frame_words(table, stage.axis, stage.up);
     const bool has_machine = loaded != nullptr && loaded->machine;
-    if (has_machine) fall_back(*loaded->machine, stage);
+    if (has_machine) fall_back(table, *loaded->machine, stage);
     read_solver(table, scene_, has_machine ? &*loaded->machine : nullptr,
                 has_machine && loaded->machine->upright ? stage.up : "auto", stage.sim);
     if (has_machine) {

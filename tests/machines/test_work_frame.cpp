@@ -18,6 +18,22 @@ TEST_CASE("the work frame lies along the longest side, at the middle of the body
     }
 }
 
+TEST_CASE("an upright machine lies along the longest side across up, however tall the body") {
+    const Aggregate body = body_of(box_points({0, 0, 0}, {2, 3, 1}, {4, 6, 2}), 0.5);
+    const auto axes = [&](const char* up) {
+        const Pose pose = place_work_frame(body, "auto", up, true).world_from_work;
+        return std::pair<Vec3, Vec3>(pose.turn(Vec3::UnitX()), pose.turn(Vec3::UnitY()));
+    };
+    for (const char* up : {"auto", "y"}) {
+        CHECK((axes(up).first - Vec3::UnitX()).norm() < 1e-12);
+        CHECK((axes(up).second - Vec3::UnitY()).norm() < 1e-12);
+    }
+    CHECK((axes("-x").first - Vec3::UnitY()).norm() < 1e-12);
+    CHECK((axes("-x").second + Vec3::UnitX()).norm() < 1e-12);
+    CHECK_THROWS_AS(place_work_frame(body, "auto", "y"), Error);
+    CHECK_THROWS_AS(place_work_frame(body, "y", "auto", true), Error);
+}
+
 TEST_CASE("the work frame follows the words of the scene, signs too, and stays right-handed") {
     const Aggregate body = body_of(box_points({0, 0, 0}, {3, 2, 1}, {6, 4, 2}), 0.5);
     const std::vector<std::pair<std::string, Vec3>> names = {{"x", {1, 0, 0}},  {"-x", {-1, 0, 0}},

@@ -51,3 +51,17 @@ TEST_CASE("a machine's own axis and up each hold where a stage does not say that
     CHECK(words(sideways, kMine + "axis = \"z\"\n") == "z auto");
     CHECK(words("", "machine = \"floor\"\naxis = \"z\"\ngravity = 1\n") == "z y");
 }
+
+TEST_CASE("an upright machine's up is settled before it is known what lies on it") {
+    const std::string upright = "upright = true\n";
+    CHECK(words(upright, kMine) == "auto y");
+    CHECK(words(upright, kMine + "axis = \"z\"\n") == "z y");
+    CHECK(words(upright, kMine + "axis = \"y\"\nup = \"z\"\n") == "y z");
+    CHECK(words(upright + "up = \"-z\"\n", kMine + "axis = \"y\"\n") == "y -z");
+    CHECK(words(upright, kMine + "axis = \"y\"\n") ==
+          "s.toml:7:8: axis = \"y\" points up with the machine mine, whose up is \"y\"; choose "
+          "another, or say up too\n");
+    CHECK(words(upright + "axis = \"y\"\n", kMine) ==
+          "machines/mine.toml:3:8: axis = \"y\" points up in an upright machine; choose another, "
+          "or say up = \"z\" too\n");
+}

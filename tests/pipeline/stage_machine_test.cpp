@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/stage_machine.h"
+
+#include "tests/catch.h"
+#include "tests/scene/scratch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+
+TEST_CASE("a lone gravity points against what the machine calls up, however the body stands") {
+    const test::Scratch scratch;
+    const std::string stage = GENERATE("", "up = \"z\"\n", "up = \"-x\"\n", "axis = \"z\"\n");
+    const SceneReading reading =
+        read_scene(scratch.write("s.toml",
+                                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = "
+                                 "\"rubber\"\n[[stage]]\nmachine = \"shelf\"\n"
+                                 "gravity = \"9.81 m/s2\"\n" +
+                                     stage),
+                   {}, test::shipped());
+    REQUIRE(reading.scene);
+    const StageSpec& shelf = reading.scene->stage[0];
+    for (int longest = 0; longest < 3; ++longest) {
+        INFO(stage << longest);
+        Vec3i cells(4, 4, 4);
+        cells[longest] = 16;
+        const Aggregate body = test::make_block(cells.x(), cells.y(), cells.z(), 0.1,
+                                                reading.scene->work_piece().material);
+        const Machine machine = stage_machine(shelf, body, {});
+        const Vec3 up = machine.frame.world_from_work.turn(Vec3::UnitY());
+        CHECK((shelf.sim.gravity + 9.81 * up).norm() < 1e-12);
+        for (const Pose& rest : machine.work_from_tool) {
+            CHECK((machine.frame.world_from_work * rest.translation).dot(up) < -0.2);
+        }
+    }
+}
