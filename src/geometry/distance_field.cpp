@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/mesh_check.h"
 #include "geometry/triangle_tree.h"
 
 namespace swage {
@@ -14,9 +15,12 @@ namespace swage {
 namespace {
 
 constexpr int kDefaultDivisions = 80;
+constexpr int kAcross = 3;   // spacings of what is thin
 constexpr int kPadding = 4;  // samples beyond the mesh's box; the outermost only serve as stencil
 constexpr int kRoundsOutside = 3;  // towards the nearest point; one alone errs by 5 %
 constexpr double kMaxSamples = 1 << 27;
+constexpr double kMostForThin = 1 << 22;  // 16 MiB, and seconds to compute
+constexpr double kCoarser = 1.05;
 
 struct Weights {
     std::array<double, 4> value, slope;
@@ -29,6 +33,20 @@ Weights cubic_weights(double t) {
              0.5 * (3 * t2 - 2 * t)}};
 }
 
+Vec3 samples_along(const Box& box, double spacing) {
+    return (box.size() / spacing).array().ceil() + 2 * kPadding + 1;
+}
+
+double usual_spacing(const TriMesh& mesh, const Box& box) {
+    const double usual = box.size().maxCoeff() / kDefaultDivisions;
+    if (!check_mesh(mesh).watertight) return usual;
+    const double thickness = 2 * std::abs(signed_volume(mesh)) / surface_area(mesh);
+    double fine = std::min(usual, thickness / kAcross);
+    if (!(fine > 0)) return usual;
+    while (fine < usual && samples_along(box, fine).prod() > kMostForThin) fine *= kCoarser;
+    return std::min(fine, usual);
+}
+
 }  // namespace
 
 DistanceField::DistanceField(const TriMesh& mesh, double spacing) : spacing_(spacing) {
@@ -37,9 +55,9 @@ DistanceField::DistanceField(const TriMesh& mesh, double spacing) : spacing_(spa
     for (const Corners& corners : mesh.triangle) {
         for (int corner : corners) box.grow(mesh.position[corner]);
     }
-    if (spacing_ == 0) spacing_ = box.size().maxCoeff() / kDefaultDivisions;
+    if (spacing_ == 0) spacing_ = usual_spacing(mesh, box);
     if (!(spacing_ > 0)) fail(ExitCode::mesh, "a surface without extent has no distance");
-    const Vec3 sides = (box.size() / spacing_).array().ceil() + 2 * kPadding + 1;
+    const Vec3 sides = samples_along(box, spacing_);
     if (sides.prod() > kMaxSamples) {
         fail(ExitCode::resources, "a distance field of {:.0f} x {:.0f} x {:.0f} samples is too big",
              sides.x(), sides.y(), sides.z());
@@ -65,6 +83,9 @@ DistanceField::DistanceField(const TriMesh& mesh, double spacing) : spacing_(spa
             sample_[row * count_.x() + i] = static_cast<float>(inside ? -distance : distance);
         }
     });
+    // Of a sheet that encloses nothing some samples may lie inside by rounding.
+    const auto least = *std::min_element(sample_.begin(), sample_.end());
+    has_inside_ = least < -1e-6 * spacing_;
 }
 
 Distance DistanceField::at(const Vec3& point) const {

@@ -56,7 +56,14 @@ MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
     const double scale =
         positive(setting, tool.length, tool.name, "length") / box.size().maxCoeff();
     for (Vec3& p : mesh->position) p = scale * (p - box.center());
-    return {mesh, std::make_shared<const DistanceField>(*mesh)};
+    auto field = std::make_shared<const DistanceField>(*mesh);
+    if (!field->has_inside()) {
+        refuse(setting, fmt::format("the mesh of tool {} encloses nothing that its samples, {} "
+                                    "apart, would find: it has to be a closed surface, and thicker "
+                                    "than that",
+                                    tool.name, quantity_text(field->spacing(), Quantity::length)));
+    }
+    return {mesh, field};
 }
 
 Shape shape_of(const Setting& setting, const ToolSpec& tool) {

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/parallel.h"
+#include "geometry/box_mesh.h"
 #include "geometry/distance_field.h"
 #include "geometry/triangle_tree.h"
 #include "tests/catch.h"
@@ -191,6 +192,28 @@ TEST_CASE("a mesh's distance field converges to the distance with the third orde
     CHECK(std::log2(error[0] / error[1]) > 2.5);
     CHECK(std::log2(error[1] / error[2]) > 2.3);  // the flat triangles begin to show
     CHECK(error[2] < 2e-4);
+}
+
+TEST_CASE("a thin mesh has an inside, and its surfaces are where they are") {
+    for (const double thickness : {4e-4, 2e-4}) {
+        INFO(thickness);
+        const Vec3 half = 0.5 * Vec3(0.06, thickness, 0.04);
+        const DistanceField field(box_mesh(-half, half));
+        for (const double x : {-0.0213, -0.0071, 0.0, 0.0004, 0.0117, 0.0199}) {
+            CHECK(field.at({x, 0, 0.3 * x}).value < -0.25 * thickness);
+            for (const double side : {-1, 1}) {
+                const Distance d = field.at({x, side * half.y(), 0.3 * x});
+                CHECK(std::abs(d.value) < 0.02 * thickness);
+                CHECK((d.normal - side * Vec3::UnitY()).norm() < 0.02);
+            }
+        }
+    }
+}
+
+TEST_CASE("a mesh that is not thin is sampled at an 80th of its longest side") {
+    const Vec3 size(0.08, 0.02, 0.01);
+    CHECK(DistanceField(box_mesh(-size / 2, size / 2)).spacing() == size.x() / 80);
+    CHECK(DistanceField(ball(1, 40)).spacing() == 2.0 / 80);
 }
 
 TEST_CASE("a mesh's normal is the gradient of its distance, of length one near the surface") {
