@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <csignal>
@@ -29,6 +30,7 @@ int wake_pipe[2] = {-1, -1};
 pid_t owner = 0;
 std::mutex unfinished_mutex;
 fs::path unfinished;
+std::atomic<bool> frames_at_stake = false;
 
 extern "C" void take_signal(int signal) {
     // A forked child has no watching thread.
@@ -53,7 +55,11 @@ bool wait_for_signal(int timeout_milliseconds) {
 void watch() {
     wait_for_signal(-1);
     log_text("stopping after the work at hand; once more to stop at once");
-    const bool again = wait_for_signal(kPatienceMilliseconds);
+    bool again = wait_for_signal(kPatienceMilliseconds);
+    // One body's skin, cut or molding may take long and has no safe point inside.
+    while (!again && !is_stopping() && frames_at_stake) {
+        again = wait_for_signal(kPatienceMilliseconds);
+    }
     if (!again && is_stopping()) wait_for_signal(kFarewellMilliseconds);
     {
         const std::lock_guard lock(unfinished_mutex);
@@ -94,6 +100,8 @@ void set_unfinished_work(const fs::path& directory) {
     const std::lock_guard lock(unfinished_mutex);
     unfinished = directory;
 }
+
+void set_frames_at_stake(bool are_at_stake) { frames_at_stake = are_at_stake; }
 
 void remove_temporaries(const fs::path& directory, long pid) {
     std::error_code ignored;

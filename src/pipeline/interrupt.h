@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // SIGINT and SIGTERM: the first asks the run to end at its next safe point (base/interrupt.h), the
-// second ends the process at once. A run that does not come to a safe point in time is ended by a
-// watching thread, which first removes unfinished files.
+// second ends the process at once. What does not come to a safe point in time is ended by a
+// watching thread, which first removes unfinished files; it waits on while finished frames would go
+// with them.
 #pragma once
 
 #include <filesystem>
@@ -16,6 +17,9 @@ void watch_for_interrupts();
 // The directory whose unfinished files of this process the watcher removes (with its
 // sub-folders); empty: none.
 void set_unfinished_work(const std::filesystem::path& directory);
+
+// Whether frames are finished that stand in an unfinished file yet.
+void set_frames_at_stake(bool are_at_stake);
 
 // Removes temporaries left in a directory tree by processes that wrote files whole; `pid` 0: by
 // this one, and by any that is no more.

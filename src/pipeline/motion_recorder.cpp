@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/motion_recorder.h"
 
+#include "pipeline/interrupt.h"
+
 namespace swage {
 
 std::vector<Pose> part_poses(const Drive& drive) {
@@ -9,6 +11,8 @@ std::vector<Pose> part_poses(const Drive& drive) {
     poses.insert(poses.end(), drive.world_from_blade.begin(), drive.world_from_blade.end());
     return poses;
 }
+
+MotionRecorder::~MotionRecorder() { set_frames_at_stake(false); }
 
 void MotionRecorder::set_machine(const Apparatus& apparatus) {
     std::vector<DrawnPart> parts;
@@ -45,6 +49,7 @@ void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive
     frame.pose = part_poses(drive);
     writer_.add_frame(frame);
     ++frames_;
+    set_frames_at_stake(true);
 }
 
 }  // namespace swage

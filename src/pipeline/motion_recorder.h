@@ -15,6 +15,8 @@ std::vector<Pose> part_poses(const Drive& drive);
 class MotionRecorder {
   public:
     explicit MotionRecorder(const std::filesystem::path& file) : writer_(file) {}
+    // From its first frame on and as long as it lives, frames are at stake (pipeline/interrupt.h).
+    ~MotionRecorder();
 
     void set_machine(const Apparatus& apparatus);
     void add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive);

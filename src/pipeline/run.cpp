@@ -106,12 +106,17 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (const StageSpec& stage : scene.stage) {
         const StageContext context{scene, directory.root(), recorder, watch, progress, can_plot};
         try {
+            throw_if_interrupted();
             StageOutcome outcome = run_stage(stage, recorder.frame_count(), bodies, context);
             record["stages"].push_back(outcome.record);
             steps += outcome.steps;
             warnings.insert(warnings.end(), outcome.warning.begin(), outcome.warning.end());
             for (const std::string& warning : outcome.warning) log_warning("{}", warning);
             ended = {outcome.stopped, outcome.interrupted};
+        } catch (const Interrupted& interrupted) {
+            // While the stage was set up.
+            if (recorder.frame_count() == 0) throw;
+            ended.interrupted = interrupted;
         } catch (const Error& error) {
             // A stage that cannot be set up at what those before have made, or written.
             if (recorder.frame_count() == 0) throw;

@@ -156,9 +156,9 @@ class StageRun {
         try {
             FrameReport frame;
             for (; leg_ < legs_.leg.size() && legs_.leg[leg_].frame == n - 1; ++leg_) {
+                throw_if_interrupted();
                 plan_cuts(simulation, number);
                 const auto lap = context_.watch.lap("simulate");
-                throw_if_interrupted();
                 frame.go_on(simulation.advance(ahead_.front(), ahead_[steps_]));
                 curves.pass(frame.load);
                 ahead_ = ahead_.subspan(steps_);
@@ -266,6 +266,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     if (stage.remold) {
         const auto lap = context.watch.lap("mold");
         for (std::size_t b = 0; b < bodies.size(); ++b) {
+            throw_if_interrupted();
             bodies[b] = mold_anew(bodies[b], context.scene.body[b], context.scene.skin.kind);
         }
         log_info("{}: molded anew: {} particles", stage.name, particle_count(bodies));

@@ -84,6 +84,32 @@ TEST_CASE("frames that were finished before a run was asked to stop can be drawn
     CHECK(fs::exists(drawn / "frames/frame_0004.png"));
 }
 
+TEST_CASE("finished frames are kept though what comes after them takes long to stop") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(
+        scratch.path(), 3, "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 3\n");
+    const fs::path run = scratch.path() / "run";
+    // A plot that is longer at work than the watcher waits for a safe point.
+    const fs::path gnuplot = scratch.path() / "gnuplot";
+    put_text(gnuplot, "#!/bin/sh\ntouch plotting\nsleep 3\n");
+    fs::permissions(gnuplot, fs::perms::owner_all);
+    RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path(),
+                         {{"PATH", scratch.path().string() + ":" + std::getenv("PATH")}});
+    REQUIRE(wait_for(scratch.path() / "plotting", running));
+    running.signal(SIGINT);
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    CHECK(outcome.code == 128 + SIGINT);
+    check_only_whole_files(run);
+    REQUIRE(fs::exists(run / "run.json"));
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(record["state"] == "interrupted");
+    CHECK(record["frames"] == 4);  // those of the first stage, and none of the second
+    const Outcome render = run_swage({"render", run.string(), "--frames", "4"});
+    INFO(render.err);
+    CHECK(render.code == 0);
+}
+
 TEST_CASE("a second run in the same directory is refused while the first goes on") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 200);
