@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "app/command.h"
 #include "app/scene_argument.h"
@@ -31,6 +32,17 @@ Json mistakes_json(const std::vector<Mistake>& mistakes) {
                         {"warning", mistake.warning}});
     }
     return list;
+}
+
+// A line of an error: the place in front where it has one, else the scene as a whole.
+Mistake mistake_of(const std::string& line, const std::string& scene) {
+    static const std::regex placed("(.*?):([0-9]{1,9}):([0-9]{1,9}): (.*)");
+    std::smatch part;
+    if (!std::regex_match(line, part, placed)) return {.file = scene, .text = line};
+    return {.file = part.str(1),
+            .line = std::stoi(part.str(2)),
+            .column = std::stoi(part.str(3)),
+            .text = part.str(4)};
 }
 
 // Of [mold], with which the work-piece's thinnest parts come within 1 %.
@@ -143,9 +155,11 @@ int check(const CheckArguments& given) {
         refuse_excess(cost, options);
     } catch (const Error& error) {
         if (!given.json) throw;
+        std::vector<Mistake> mistakes = reading.mistakes;
         for (const std::string& line : lines_of(error.what())) {
-            json["mistakes"].push_back({{"text", line}, {"warning", false}});
+            mistakes.push_back(mistake_of(line, given.scene.file));
         }
+        json["mistakes"] = mistakes_json(mistakes);
         put_json(json);
         return static_cast<int>(error.code());
     }

@@ -206,6 +206,31 @@ TEST_CASE("all of a machine's parameters that the work-piece does not allow are 
     CHECK(json.at("mistakes").size() == 2);
 }
 
+TEST_CASE("a mistake that only the mesh shows has its place in JSON, as those before it have") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const auto mistake = [&](const char* set) {
+        const Json json =
+            Json::parse(run_swage({"check", scene.string(), "--json", "--set", set}).out);
+        return json.at("mistakes").at(0);
+    };
+    put_text(scene, bytes_of(scene) + "[[stage]]\nmachine = \"bend\"\n");
+    Json json = mistake("mold.across=5000");  // of the scene as a whole
+    CHECK(json.value("file", "") == scene.string());
+    CHECK(json.value("line", -1) == 0);
+    CHECK(json.value("column", -1) == 0);
+    CHECK(json.at("text").get<std::string>().find("small.toml") == std::string::npos);
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[[stage]]\n"
+             "machine = \"bend\"\nradius = \"90 cm\"\n");
+    json = mistake("mold.across=3");
+    CHECK(json.value("file", "") == scene.string());
+    CHECK(json.value("line", -1) == 7);
+    CHECK(json.value("column", -1) == 10);
+    CHECK(json.at("text").get<std::string>().rfind("machine bend: radius = 90 cm is out", 0) == 0);
+    CHECK(json.at("warning") == false);
+}
+
 TEST_CASE("check tells before a run what a later stage would say against its parameters") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "two.toml";
