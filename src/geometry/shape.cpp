@@ -59,10 +59,22 @@ Box bounds(const BoxShape& box) { return centred(box.size); }
 Box bounds(const SphereShape& sphere) { return centred(Vec3::Constant(2 * sphere.radius)); }
 Box bounds(const MeshShape& mesh) { return box_of(mesh.mesh->position); }
 
+double thinness(const CylinderShape& cylinder) {
+    return std::min(2 * cylinder.radius, cylinder.length);
+}
+double thinness(const BoxShape& box) { return box.size.minCoeff(); }
+double thinness(const SphereShape& sphere) { return 2 * sphere.radius; }
+// Samples are as fine as it is thin.
+double thinness(const MeshShape& mesh) { return 3 * mesh.field->spacing(); }
+
 }  // namespace
 
 Distance distance_to(const Shape& shape, const Vec3& point) {
     return std::visit([&](const auto& one) { return distance(one, point); }, shape);
+}
+
+double thinness_of(const Shape& shape) {
+    return std::visit([](const auto& one) { return thinness(one); }, shape);
 }
 
 Box bounds_of(const Shape& shape) {

@@ -41,6 +41,9 @@ Distance distance_to(const Shape& shape, const Vec3& point);
 // Bounds in the shape's own frame.
 Box bounds_of(const Shape& shape);
 
+// About the shortest way through it [m].
+double thinness_of(const Shape& shape);
+
 // The surface for drawing and export, in the shape's own frame.
 TriMesh surface_of(const Shape& shape);
 

@@ -53,8 +53,8 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             const Touch found = pair.next;
             pair.next = {.local = tool_from_world[pair.tool] * x};
             const double hold = stickiness_ * points().area(pair.point);
-            Distance d = distance_to(tool.shape, pair.next.local);
-            d.value += pair.deep;
+            const Distance d = distance_of(pair, pair.last.local, pair.next.local, pair.next.entry);
+            pair.next.depth = -d.value;
             if (d.value >= 0 && !(pair.history.touches && hold > 0)) continue;
             Meeting m;
             m.pair = n;
@@ -188,8 +188,9 @@ ToolLosses ContactSet::commit_motion(const Drive& now) {
         }
         // What its spring held when its cell broke.
         if (pair.gone) lost.damped += next.stored;
-        come_out(pair, next.local);
+        come_out(pair, next.depth);
         pair.history = next.history;
+        pair.entry = next.history.touches ? next.entry : ToolEntry{};
         pair.anchor = next.anchor;
         pair.stuck = next.history.touches;
     }

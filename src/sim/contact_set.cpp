@@ -23,6 +23,8 @@ constexpr std::size_t kPairsPerChunk = 1024, kChunksAtOnce = 8;
 // Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
 // grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
+// Spacings that a point deep in a tool may lie beside it.
+constexpr double kBeside = 0.25;
 // What points that touch may add to the square of a swing by which steps go in turns, 4.
 constexpr double kTouchShare = 0.5;
 
@@ -139,6 +141,12 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
             int point;
             double clearance, distance;
         };
+        // In this move, so that it touches though it is outside.
+        const double thin = thinness_of(tool.shape);
+        const auto may_be_through = [&](std::size_t p, const Vec3& local) {
+            return p < start_position_.size() && t < tool_from_world_at_start_.size() &&
+                   (local - tool_from_world_at_start_[t] * start_position_[p]).norm() >= thin;
+        };
         std::vector<std::vector<Near>> near(chunks);
         parallel_for(chunks, [&](std::size_t chunk) {
             const std::size_t end = std::min(count, (chunk + 1) * kPointsPerChunk);
@@ -154,9 +162,9 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                 if (distance >= spacing_) continue;
                 double carried = 0;  // at most, of how far its particles move
                 for (double w : points().carriers(p).weight) carried += std::abs(w);
-                near[chunk].push_back({static_cast<int>(p),
-                                       kSureShare * distance / (std::sqrt(3.0) * carried),
-                                       distance});
+                const double sure =
+                    may_be_through(p, local) ? 0 : kSureShare * distance / std::sqrt(3.0);
+                near[chunk].push_back({static_cast<int>(p), sure / carried, distance});
             }
         });
         const int tool_id = static_cast<int>(t);
@@ -169,13 +177,15 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                 }
                 clearances.push_back(clearance);
                 if (old != pair_.end() && old->tool == tool_id && old->point == p) {
+                    if (old->stuck) clearances.back() = 0;
                     found.push_back(*old++);
                 } else {
                     Pair& pair = found.emplace_back(Pair{tool_id, p, false, Vec3::Zero()});
                     const bool is_new_surface = static_cast<std::size_t>(p) >= touch_->own();
                     if (is_new_surface) pair.deep = std::max(0.0, -distance);
-                    pair.next.local = tool_from_world *
-                                      points().position(std::size_t(p), matter.particle_position);
+                    pair.last.local = pair.next.local =
+                        tool_from_world *
+                        points().position(std::size_t(p), matter.particle_position);
                 }
             }
         }
@@ -217,9 +227,26 @@ std::vector<HeldPoint> ContactSet::held_points(const Aggregate& matter, const Dr
     return held;
 }
 
+Vec3 ContactSet::start_of(const Pair& pair) const {
+    return tool_from_world_at_start_[pair.tool] * start_position_[pair.point];
+}
+
 Vec3 ContactSet::anchor_of(const Pair& pair) const {
-    return pair.stuck ? pair.anchor
-                      : tool_from_world_at_start_[pair.tool] * start_position_[pair.point];
+    return pair.stuck ? pair.anchor : start_of(pair);
+}
+
+Distance ContactSet::distance_of(const Pair& pair, const Vec3& from, const Vec3& now,
+                                 ToolEntry& entry) const {
+    entry = pair.entry;
+    Distance d =
+        distance_by_entry(apparatus_->tool[pair.tool].shape, kBeside * spacing_, from, now, entry);
+    d.value += pair.deep;
+    return d;
+}
+
+Distance ContactSet::distance_since_start(const Pair& pair, const Vec3& now,
+                                          ToolEntry& entry) const {
+    return distance_of(pair, pair.stuck ? now : start_of(pair), now, entry);
 }
 
 // Of pairs from `begin` on those that touch, in their order.
@@ -233,8 +260,8 @@ void ContactSet::find_touches(const Aggregate& matter, const std::vector<ToolFra
         const Tool& tool = apparatus_->tool[pair.tool];
         const auto& [turn, at] = frame[pair.tool];
         const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
-        Distance d = distance_to(tool.shape, turn.transpose() * (x - at));
-        d.value += pair.deep;
+        ToolEntry entry;
+        Distance d = distance_since_start(pair, turn.transpose() * (x - at), entry);
         if (d.value >= 0) continue;
         d.normal = turn * d.normal;
         const double k = pair_stiffness(pair);
@@ -332,19 +359,20 @@ double ContactSet::commit(const Aggregate& matter, const Drive& now) {
         Pair& pair = pair_[n];
         const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
         const Vec3 local = now.world_from_tool[pair.tool].inverse() * x;
-        come_out(pair, local);
+        ToolEntry entry;
+        come_out(pair, -distance_since_start(pair, local, entry).value);
+        pair.entry = touches[n] ? entry : ToolEntry{};
         pair.stuck = touches[n];
         pair.history = {.touches = pair.stuck, .rests = pair.stuck};
         pair.next = {.local = local, .history = pair.history, .anchor = pair.anchor};
+        pair.last = pair.next;
     }
     forget_gone();
     return lost;
 }
 
-void ContactSet::come_out(Pair& pair, const Vec3& local) const {
-    if (pair.deep == 0) return;
-    const double depth = -distance_to(apparatus_->tool[pair.tool].shape, local).value;
-    pair.deep = std::clamp(depth, 0.0, pair.deep);
+void ContactSet::come_out(Pair& pair, double depth) {
+    pair.deep = std::clamp(depth + pair.deep, 0.0, pair.deep);
 }
 
 void ContactSet::forget_gone() {

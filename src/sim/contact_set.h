@@ -34,6 +34,7 @@
 #include "sim/held_point.h"
 #include "sim/load_sum.h"
 #include "sim/settings.h"
+#include "sim/tool_entry.h"
 
 namespace swage {
 
@@ -136,12 +137,15 @@ class ContactSet {
         double stored = 0;            // in its spring [J]
         ImpactHistory history{};      // to commit
         Vec3 anchor = Vec3::Zero();   // likewise, in the tool's frame
+        ToolEntry entry{};            // likewise
+        double depth = 0;             // that counts [m]
     };
     struct Pair {
         int tool, point;
         bool stuck;   // has a committed anchor
         Vec3 anchor;  // in the tool's frame
         ImpactHistory history{};
+        ToolEntry entry{};     // where it touches
         double deep = 0;       // new surface came to be this deep, and goes no deeper [m]
         bool gone = false;     // its cell is no longer whole; until the step is kept
         Touch last{}, next{};  // before the present step and after it
@@ -158,6 +162,12 @@ class ContactSet {
     double pair_stiffness(const Pair& pair) const;
     const SurfacePoints& points() const { return touch_->points(); }
     Vec3 anchor_of(const Pair& pair) const;  // in the tool's frame
+    Vec3 start_of(const Pair& pair) const;   // of the move, likewise
+    // Places in the tool's frame. What counts, less Pair::deep.
+    Distance distance_of(const Pair& pair, const Vec3& from, const Vec3& now,
+                         ToolEntry& entry) const;
+    // Of equilibria: on the way from where the move began.
+    Distance distance_since_start(const Pair& pair, const Vec3& now, ToolEntry& entry) const;
     // A pair that touches.
     struct TouchNow {
         std::size_t pair;
@@ -177,7 +187,7 @@ class ContactSet {
     void for_each_touch(const Aggregate& matter, const Drive& now, const Act& act,
                         double moved = kAnywhere) const;
 
-    void come_out(Pair& pair, const Vec3& local) const;
+    static void come_out(Pair& pair, double depth);  // depth: that counts
     void forget_gone();
 
     const Apparatus* apparatus_;

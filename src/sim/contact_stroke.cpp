@@ -68,8 +68,9 @@ ContactSet::Stroke ContactSet::stroke(const Aggregate& matter, const Drive& from
         const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
         const Vec3& start = start_position_[pair.point];
         const auto distance = [&](const Pose& pose, const Vec3& at) {
-            Distance d = distance_to(tool.shape, pose.inverse() * at);
-            return Distance{d.value + pair.deep, pose.turn(d.normal)};
+            ToolEntry entry;
+            const Distance d = distance_since_start(pair, pose.inverse() * at, entry);
+            return Distance{d.value, pose.turn(d.normal)};
         };
         const auto gap = [&](const Pose& pose, const Vec3& at) { return distance(pose, at).value; };
         const Distance d = distance(last, x);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// By which of a tool's surfaces a point has come in. The nearest one would let a point that is
+// beyond the middle of a thin tool out on the far side: fast matter would go through. From there on
+// the plane of the surface that it came in by holds, as long as its foot on that lies on the tool.
+#pragma once
+
+#include "geometry/shape.h"
+
+namespace swage {
+
+// In the tool's frame. A normal of zero: none.
+struct ToolEntry {
+    Vec3 normal = Vec3::Zero();
+    double offset = 0;  // of the plane, along the normal [m]
+};
+
+// The distance of a point at `now` from the surface that it came in by: by `entry` or, where that
+// is none, on the straight way from `from`. `entry` goes on with it. `beside`: how far off the tool
+// the foot may lie [m].
+Distance distance_by_entry(const Shape& shape, double beside, const Vec3& from, const Vec3& now,
+                           ToolEntry& entry);
+
+}  // namespace swage
