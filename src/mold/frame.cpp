@@ -11,6 +11,7 @@ namespace {
 // Mesh files often hold single precision: a side of three times 0.1 is three cells of 0.1.
 constexpr double kWholeCells = 3e-7;
 constexpr double kOnPlane = 1e-9;  // [bins]
+constexpr double kOnSide = 1e-6;   // [bins], beyond the box by round-off
 
 bool is_whole(double cells) {
     return cells > 0.5 && std::abs(cells - std::round(cells)) <= kWholeCells * cells;
@@ -42,7 +43,8 @@ Vec3 MoldFrame::bins(const Vec3& point) const {
         double v = 2 * (point[d] - origin[d]) / step[d];
         const double plane = std::round(v);
         if (std::abs(v - plane) < kOnPlane) v = plane;
-        bins[d] = std::clamp(v, 0.0, 2.0 * cell_count[d]);
+        const double inside = std::clamp(v, 0.0, 2.0 * cell_count[d]);
+        bins[d] = std::abs(v - inside) < kOnSide ? inside : v;
     }
     return bins;
 }

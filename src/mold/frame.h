@@ -17,7 +17,8 @@ struct MoldFrame {
     Vec3 step;  // [m], a cell's true width
     double cell_volume() const { return step.prod(); }
 
-    // In bins, 0 to twice cell_count; whole when within 1e-9 of it.
+    // In bins, 0 to twice cell_count in the box; whole when within 1e-9 of it, on the box's side
+    // when less than 1e-6 beyond it.
     Vec3 bins(const Vec3& point) const;
     Vec3 point(const Vec3& bins) const { return origin + bins.cwiseProduct(0.5 * step); }
 };

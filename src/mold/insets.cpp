@@ -24,17 +24,7 @@ struct Part {
     Vec3 outward = Vec3::Zero();
 };
 
-void refuse_unfit(const Inset& inset, const MoldFrame& frame, std::size_t number) {
-    const Box box = surface_box(inset.solid);
-    const Vec3 low = frame.bins(box.low), high = frame.bins(box.high);
-    if ((low.array() < -1e-6).any() ||
-        (high.array() > 2.0 * frame.cell_count.cast<double>().array() + 1e-6).any()) {
-        fail(ExitCode::mesh,
-             "cannot mold: inset {} reaches out of the work-piece's cells, from ({:.4g}, {:.4g}, "
-             "{:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m; cut it to the work-piece",
-             number, box.low.x(), box.low.y(), box.low.z(), box.high.x(), box.high.y(),
-             box.high.z());
-    }
+void refuse_unfit(const Inset& inset, std::size_t number) {
     if (!(signed_volume(inset.solid) > 0)) {
         fail(ExitCode::mesh, "cannot mold: inset {} encloses no volume, or is turned inside out",
              number);
@@ -56,14 +46,14 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
     // Of each cell that any inset reaches, the parts by material.
     std::map<CellId, std::map<int, Part>> parts;
     for (std::size_t n = 0; n < insets.size(); ++n) {
-        refuse_unfit(insets[n], frame, n + 1);
+        refuse_unfit(insets[n], n + 1);
         const int material = static_cast<int>(n) + 1;
         matter.inset.push_back(insets[n].material);
-        double inside = 0, all = 0;
+        double inside = 0, all = signed_volume(insets[n].solid) / frame.cell_volume();
         const std::vector<CellLayer> own = share_cells(insets[n].solid, frame);
         for (std::size_t k = 0; k < own.size(); ++k) {
+            all += own[k].deficit - own[k].surplus;
             for (const CellFill& s : own[k].share) {
-                all += s.fill;
                 const CellId cell = matter.lattice.cell_at(s.i, s.j, static_cast<int>(k));
                 if (cell < 0) continue;
                 const double whole = matter.cell_fill[cell];

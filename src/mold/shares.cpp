@@ -62,16 +62,30 @@ class LayerSharer {
         if (!(square > 0)) return;
         // Shares of area are the same in bins and in space.
         const Vec3 area_of_cross = cross * (area / square);
-        const int direction = direction_of(normal);
-        const Vec3i bins = 2 * frame_.cell_count;
-        const BinRange all{0, std::numeric_limits<int>::max()};
-        for_each_bin(triangle, 2, normal, bins.z(), {2 * k_, 2 * k_ + 1}, [&](int bz, auto& slab) {
-            for_each_bin(slab, 1, normal, bins.y(), all, [&](int by, auto& bar) {
-                for_each_bin(bar, 0, normal, bins.x(), all, [&](int bx, auto& part) {
-                    add_part(part, {bx, by, bz}, area_of_cross, normal, direction);
-                });
-            });
-        });
+        const Vec3 end = 2 * frame_.cell_count.cast<double>();
+        const auto inside = [&](const Vec3& p) {
+            return (p.array() >= 0).all() && (p.array() <= end.array()).all();
+        };
+        if (std::all_of(corner.begin(), corner.end(), inside)) {
+            add_polygon(triangle, area_of_cross, normal);
+            return;
+        }
+        // What reaches out of the box tells of the cells only where it lies beyond the high ends of
+        // their rows: seen along x, it is the face that the box cuts there.
+        ClipPolygon before, rest, beyond;
+        for (int d : {2, 1, 0}) {
+            split(triangle, d, 0, before, rest);
+            split(rest, d, end[d], triangle, beyond);
+        }
+        double farthest = 0;
+        for (int n = 0; n < beyond.count; ++n) {
+            farthest = std::max(farthest, beyond.corner[n].x());
+            beyond.corner[n].x() = end.x();
+        }
+        add_polygon(triangle, area_of_cross, normal);
+        if (farthest <= end.x()) return;  // it lies in the end itself
+        const Vec3 side = std::copysign(1.0, normal.x()) * Vec3::UnitX();
+        add_polygon(beyond, frame_.step.y() * frame_.step.z() / 8 * side, side);
     }
 
     CellLayer finish() {
@@ -87,6 +101,20 @@ class LayerSharer {
     }
 
   private:
+    // In the box. Used up.
+    void add_polygon(ClipPolygon& polygon, const Vec3& area_of_cross, const Vec3& normal) {
+        const int direction = direction_of(normal);
+        const Vec3i bins = 2 * frame_.cell_count;
+        const BinRange all{0, std::numeric_limits<int>::max()};
+        for_each_bin(polygon, 2, normal, bins.z(), {2 * k_, 2 * k_ + 1}, [&](int bz, auto& slab) {
+            for_each_bin(slab, 1, normal, bins.y(), all, [&](int by, auto& bar) {
+                for_each_bin(bar, 0, normal, bins.x(), all, [&](int bx, auto& part) {
+                    add_part(part, {bx, by, bz}, area_of_cross, normal, direction);
+                });
+            });
+        });
+    }
+
     std::size_t column(int i, int j) const {
         return i + static_cast<std::size_t>(frame_.cell_count.x()) * j;
     }

@@ -32,7 +32,7 @@ struct CellLayer {
     double deficit = 0;  // [cells], filled less than not at all by parts turned inside out
 };
 
-// The surface must be closed (mold/caps.h).
+// The surface must be closed (mold/caps.h). What of it reaches out of the frame's box is cut off.
 std::vector<CellLayer> share_cells(const TriMesh& mesh, const MoldFrame& frame);
 
 inline constexpr double kLeastFill = 1e-3;
