@@ -17,11 +17,12 @@ struct InfoArguments {
 
 std::string yes_no(bool value) { return value ? "yes" : "no"; }
 
-// What a run makes of a mesh that bounds no volume.
+// What a run makes of a mesh that bounds no volume, or a wrong one.
 std::vector<std::string> repairs_of(const InputMesh& input) {
-    if (input.report.bounds_a_volume()) return {};
+    if (input.report.is_one_body()) return {};
     try {
         Repair repair = repair_mesh(input.mesh);
+        if (repair.account.empty()) return {};
         repair.account.push_back("then: " + summary_line(check_mesh(repair.mesh)));
         return repair.account;
     } catch (const Error& error) {

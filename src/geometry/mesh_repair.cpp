@@ -56,10 +56,12 @@ class Repairer {
 
     Repair run() {
         if (mesh_.triangle.empty()) fail(ExitCode::mesh, "the mesh has no triangles");
-        drop_repeated_corners();
         const double size = box_of(mesh_.position).size().norm();
-        const bool encloses = count_edges(mesh_).unbalanced == 0 &&
-                              std::abs(signed_volume(mesh_)) > 1e-12 * size * size * size;
+        const double volume = signed_volume(mesh_);
+        const bool encloses =
+            count_edges(mesh_).unbalanced == 0 && std::abs(volume) > 1e-12 * size * size * size;
+        if (encloses && volume > 0) return settled();
+        drop_repeated_corners();
         if (!encloses) {
             drop_duplicates();
             if (count_edges(mesh_).odd > 0) stitch();
@@ -80,6 +82,25 @@ class Repairer {
 
   private:
     void say(std::string sentence) { account_.push_back(std::move(sentence)); }
+
+    // Of a mesh that bounds a volume: only where its bodies make that another one than it should be
+    // is there anything to repair.
+    Repair settled() {
+        TriMesh input = mesh_;
+        const double volume = signed_volume(input);
+        drop_repeated_corners();
+        if (!settle_bodies(mesh_, account_)) {
+            log_warning(
+                "repair: parts of the mesh cross each other and cannot be united; it is left as "
+                "it is");
+            return {std::move(input), {}};
+        }
+        if (std::abs(signed_volume(mesh_) - volume) <= 1e-9 * volume) {
+            return {std::move(input), {}};
+        }
+        drop_unused_positions(mesh_);
+        return {std::move(mesh_), std::move(account_)};
+    }
 
     void drop_repeated_corners() {
         std::vector<char> keep(mesh_.triangle.size(), 1);

@@ -14,13 +14,14 @@ struct Repair {
     std::vector<std::string> account;  // a sentence for everything that was done; empty: nothing
 };
 
-// A mesh that already bounds a volume comes back as it is, cavities included (closed surfaces
-// inside another that face inwards). Otherwise, as far as needed: duplicates go, gaps between
-// vertices are stitched, triangles are turned to agree, holes are filled, small open sheets are
-// left out, inside-out bodies are turned, a body within a body of the same sense is left out (its
-// volume would count twice). What that cannot mend is wrapped anew, without its attributes.
-// Attributes stay with every triangle that stays. Throws Error(mesh) when no volume can be made of
-// it, such as for an open sheet.
+// As far as needed: duplicates go, gaps between vertices are stitched, triangles are turned to
+// agree, holes are filled, small open sheets are left out, inside-out bodies are turned, a body
+// within a body of the same sense is left out (its volume would count twice), bodies that cross are
+// united. What that cannot mend is wrapped anew, without its attributes. Attributes stay with every
+// triangle that stays. Throws Error(mesh) when no volume can be made of it, such as for an open
+// sheet.
+// Of a mesh that already bounds a volume only the bodies are put right; if they are, or cannot be,
+// it comes back as it is, cavities included (closed surfaces inside another that face inwards).
 Repair repair_mesh(const TriMesh& mesh);
 
 }  // namespace swage

@@ -34,10 +34,13 @@ bool looks_the_same(const TriMesh& a, const TriMesh& b) {
            a.triangle_smooth.empty() == b.triangle_smooth.empty();
 }
 
-// A mesh that does not bound a volume is repaired. A block is molded over the box alone.
+// A mesh that does not bound a volume is repaired, and one whose bodies make it a wrong one. A
+// block is molded over the box alone.
 void make_solid(InputMesh& input, MoldKind kind) {
-    if (kind == MoldKind::block || input.report.bounds_a_volume()) return;
-    for (const std::string& finding : input.report.finding) log_warning("{}", finding);
+    if (kind == MoldKind::block || input.report.is_one_body()) return;
+    if (!input.report.bounds_a_volume()) {
+        for (const std::string& finding : input.report.finding) log_warning("{}", finding);
+    }
     Repair repaired = repair_mesh(input.mesh);
     input.repair = repaired.account;
     for (const std::string& act : repaired.account) log_info("repaired: {}", act);
@@ -121,10 +124,7 @@ std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body) {
         } else {
             InputMesh read = read_mesh_as_it_is(spec.file, std::nullopt);
             for (Vec3& p : read.mesh.position) p *= input.scale;
-            if (!read.report.bounds_a_volume()) {
-                read.report = check_mesh(read.mesh);
-                make_solid(read, MoldKind::shape);
-            }
+            make_solid(read, MoldKind::shape);
             solid = read.to_mold();
         }
         insets.push_back({std::move(solid), spec.material});
@@ -182,7 +182,8 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, SkinKind skin)
     InputMesh input;
     input.mesh = piece.deformed();
     input.report = check_mesh(input.mesh);
-    make_solid(input, body.mold.kind);
+    // Pieces that touch where they were cut are no bodies to be united.
+    if (!input.report.bounds_a_volume()) make_solid(input, body.mold.kind);
     BodySpec as_it_stands = body;
     as_it_stands.start = {};
     // Bent, its box says nothing of how thick it is.

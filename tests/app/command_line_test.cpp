@@ -329,7 +329,7 @@ TEST_CASE("info and machines tell the same in words and in JSON") {
     CHECK(bend.find("deg") != std::string::npos);
 }
 
-TEST_CASE("info tells what a run makes of a mesh that bounds no volume") {
+TEST_CASE("info tells what a run makes of a mesh that bounds no volume, or a wrong one") {
     const Scratch scratch;
     const fs::path seams = scratch.path() / "seams.ply", sheet = scratch.path() / "sheet.ply";
     const auto ply = [](const fs::path& file, const std::vector<std::array<int, 3>>& triangles) {
@@ -357,6 +357,20 @@ TEST_CASE("info tells what a run makes of a mesh that bounds no volume") {
     CHECK(mended.find("a run        then: 4 vertices, 4 triangles") != std::string::npos);
     CHECK(run_swage({"info", sheet.string()}).out.find("a run        refuses it: ") !=
           std::string::npos);
+    // Two tetrahedra of one volume that is right, and with one of them inside out.
+    for (const bool inside_out : {false, true}) {
+        const fs::path two = scratch.path() / "two.obj";
+        put_text(two, std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n") +
+                          "v 3 0 0\nv 5 0 0\nv 3 2 0\nv 3 0 2\n" +
+                          "f 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7\n" +
+                          (inside_out ? "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n"
+                                      : "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"));
+        const std::string told = run_swage({"info", two.string()}).out;
+        INFO(told);
+        const bool repaired = told.find("a run        turned 1 of 2 bodies") != std::string::npos;
+        CHECK(repaired == inside_out);
+        CHECK((told.find("a run") != std::string::npos) == inside_out);
+    }
     const Json bar = Json::parse(run_swage({"info", "assets/meshes/bar.obj", "--json"}).out);
     CHECK(bar.at("repairs").empty());
 }

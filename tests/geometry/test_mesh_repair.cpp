@@ -52,6 +52,21 @@ TEST_CASE("a good mesh comes out of repair untouched") {
     CHECK(repair.mesh.triangle_uv == ball.triangle_uv);
 }
 
+TEST_CASE("what bounds its true volume comes out of repair untouched") {
+    TriMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+    // A label, given from both sides; a triangle without area; a vertex that nothing uses.
+    mesh.triangle.push_back({0, 0, 1});
+    TriMesh label;
+    label.position = {{2, 0, 0}, {3, 0, 0}, {2, 1, 0}};
+    label.triangle = {{0, 1, 2}, {0, 2, 1}};
+    append(mesh, label);
+    mesh.position.push_back({5, 5, 5});
+    const Repair repair = repair_mesh(mesh);
+    CHECK(repair.account.empty());
+    CHECK(repair.mesh.triangle == mesh.triangle);
+    CHECK(repair.mesh.position == mesh.position);
+}
+
 TEST_CASE("a hole is filled, and all that stood keeps its attributes") {
     TriMesh ball = ball_mesh(10, 0.3);
     smooth_by_crease_angle(ball, 0.7);

@@ -4,9 +4,15 @@
 #include <Eigen/Geometry>
 
 #include "geometry/make_shape.h"
+#include "geometry/mesh_write.h"
 #include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
+using fixtures::box_mesh;
+using fixtures::together;
+using fixtures::turned_inside_out;
 
 namespace {
 
@@ -18,6 +24,14 @@ WorkPiece block(const StartSpec& start, SkinKind skin) {
     body.mold.across = 3;
     body.color = Vec3(0.5, 0, 0);
     return make_work_piece(input, body, skin);
+}
+
+// What a run makes of a file that holds this mesh.
+InputMesh read_from_file(const TriMesh& mesh) {
+    const Scratch scratch;
+    const std::filesystem::path file = scratch.path() / "mesh.obj";
+    write_obj(file, mesh);
+    return read_input_mesh({file, {}}, MoldKind::shape);
 }
 
 struct Sums {
@@ -103,4 +117,44 @@ TEST_CASE("velocity and spin at the start are those of the body's centre of mass
     // Of a block of 0.4 x 0.1 about its third axis, as far as its corners are not round.
     const double inertia = s.mass * (0.4 * 0.4 + 0.1 * 0.1) / 12;
     CHECK(std::abs(s.turning.z() / (7 * inertia) - 1) < 0.1);
+}
+
+TEST_CASE("a mesh with one body inside out is molded whole") {
+    const TriMesh large = box_mesh({0, 0, 0}, {2, 1, 1}), small = box_mesh({3, 0, 0}, {4, 1, 1});
+    const InputMesh input = read_from_file(together(large, turned_inside_out(small)));
+    REQUIRE(input.repair.size() == 1);
+    CHECK(input.repair[0] == "turned 1 of 2 bodies: inside out");
+    BodySpec body;
+    body.mold.across = 3;
+    CHECK(make_work_piece(input, body, SkinKind::mount).matter.volume() == Approx(3));
+}
+
+TEST_CASE("what two bodies of a mesh share is molded once") {
+    const TriMesh ball = fixtures::sphere_mesh(1, 3);
+    const TriMesh other = fixtures::moved(ball, {Quat::Identity(), {0.9, 0.1, 0.2}});
+    const InputMesh crossing = read_from_file(together(ball, other));
+    REQUIRE(crossing.repair.size() == 1);
+    CHECK(crossing.repair[0].find("united 2 crossing bodies") == 0);
+    // Two caps of the height by which each passes the plane between the two.
+    const double cap = 1 - 0.5 * Vec3(0.9, 0.1, 0.2).norm();
+    const double common = 2 * kPi * cap * cap * (3 - cap) / 3;
+    BodySpec body;
+    body.mold.across = 12;
+    const double volume = make_work_piece(crossing, body, SkinKind::mount).matter.volume();
+    CHECK(volume == Approx(2 * 4 * kPi / 3 - common).epsilon(0.01));
+
+    const InputMesh inside =
+        read_from_file(together(ball, box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3})));
+    CHECK(inside.repair.size() == 1);
+    CHECK(signed_volume(inside.to_mold()) == Approx(signed_volume(ball)));
+}
+
+TEST_CASE("a mesh whose bodies are sound is taken as it is") {
+    TriMesh mesh = box_mesh({0, 0, 0}, {3, 3, 3});
+    mesh = together(mesh, turned_inside_out(box_mesh({1, 1, 1}, {2, 2, 2})));  // a cavity
+    mesh = together(mesh, box_mesh({3, 1, 1}, {4, 2, 2}));                     // touches
+    const InputMesh input = read_from_file(mesh);
+    CHECK(input.repair.empty());
+    CHECK(input.mesh.position == mesh.position);
+    CHECK(input.mesh.triangle == mesh.triangle);
 }
