@@ -6,6 +6,8 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "geometry/disjoint_sets.h"
@@ -19,7 +21,9 @@ namespace swage {
 
 namespace {
 
-constexpr std::size_t kMostPairs = 5000;  // of shells with overlapping boxes
+constexpr std::size_t kMostClose = 1'000'000;    // pairs of shells with overlapping boxes
+constexpr std::size_t kMostMeeting = 5000;       // pairs of shells that cross or touch
+constexpr std::size_t kMostLooked = 50'000'000;  // pairs of triangles with overlapping boxes
 constexpr double kCreaseAngle = 40 * kPi / 180;
 
 std::string counted(std::size_t count, const char* one, const char* many) {
@@ -175,7 +179,8 @@ class Settler {
   public:
     Settler(TriMesh& mesh, std::vector<std::string>& account) : mesh_(mesh), account_(account) {}
 
-    bool run() {
+    // Why it could not be done; the mesh is then as it was.
+    std::optional<std::string> run() {
         const std::vector<int> shell = shells_of(mesh_);
         const int count = 1 + *std::max_element(shell.begin(), shell.end());
         if (count == 1) {  // by far the most frequent
@@ -183,16 +188,16 @@ class Settler {
                 for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) flip_triangle(mesh_, t);
                 account_.push_back("turned the whole surface: it was inside out");
             }
-            return true;
+            return std::nullopt;
         }
         shells_ = split(mesh_, shell, count);
         drop_flat();
-        if (!find_pairs()) return false;
+        if (auto reason = find_pairs()) return reason;
         find_nesting();
         turn_outward();
         drop_contained();
-        if (!unite_crossing()) return false;
-        if (!changed_) return true;
+        if (!unite_crossing()) return "its parts cross each other and cannot be united";
+        if (!changed_) return std::nullopt;
         std::vector<const TriMesh*> parts;
         for (const Shell& s : shells_)
             if (!s.mesh.triangle.empty()) parts.push_back(&s.mesh);
@@ -201,7 +206,7 @@ class Settler {
             mesh_.triangle_polygon.clear();
             smooth_by_crease_angle(mesh_, kCreaseAngle);
         }
-        return true;
+        return std::nullopt;
     }
 
   private:
@@ -227,7 +232,7 @@ class Settler {
                                        counted(triangles, "triangle", "triangles")));
     }
 
-    bool find_pairs() {
+    std::optional<std::string> find_pairs() {
         const int count = static_cast<int>(shells_.size());
         std::vector<int> by_x(count);
         std::iota(by_x.begin(), by_x.end(), 0);
@@ -242,13 +247,50 @@ class Settler {
                 if (b.box.low.x() > a.box.high.x()) break;
                 if (overlap(a.box, b.box))
                     close.emplace_back(std::min(by_x[i], by_x[j]), std::max(by_x[i], by_x[j]));
-                if (close.size() > kMostPairs) return false;
+                if (close.size() > kMostClose)
+                    return fmt::format(
+                        "more than {} pairs of its parts lie so close that one may be in the other",
+                        kMostClose);
             }
         std::sort(close.begin(), close.end());
-        for (const auto& [a, b] : close)
-            (surfaces_meet(shells_[a].mesh, shells_[b].mesh) ? meeting_ : apart_)
-                .emplace_back(a, b);
-        return true;
+        std::vector<int> of;
+        const TriMesh near = triangles_near_others(close, of);
+        const auto meeting = parts_that_meet(near, of, kMostLooked);
+        if (!meeting) return "its parts run too closely among each other to tell where they meet";
+        if (meeting->size() > kMostMeeting)
+            return fmt::format("more than {} pairs of its parts cross or touch each other",
+                               kMostMeeting);
+        meeting_ = *meeting;
+        std::set_difference(close.begin(), close.end(), meeting_.begin(), meeting_.end(),
+                            std::back_inserter(apart_));
+        return std::nullopt;
+    }
+
+    // Those in the box of another shell, of which alone they can meet one; `of` gets their shells.
+    TriMesh triangles_near_others(const std::vector<std::pair<int, int>>& close,
+                                  std::vector<int>& of) const {
+        std::vector<std::vector<int>> others(shells_.size());
+        for (const auto& [a, b] : close) {
+            others[a].push_back(b);
+            others[b].push_back(a);
+        }
+        TriMesh near;
+        for (std::size_t s = 0; s < shells_.size(); ++s) {
+            if (others[s].empty()) continue;
+            const TriMesh& mesh = shells_[s].mesh;
+            const int base = static_cast<int>(near.position.size());
+            near.position.insert(near.position.end(), mesh.position.begin(), mesh.position.end());
+            for (const Corners& t : mesh.triangle) {
+                Box box;
+                for (const int i : t) box.grow(mesh.position[i]);
+                if (std::none_of(others[s].begin(), others[s].end(),
+                                 [&](int other) { return overlap(box, shells_[other].box); }))
+                    continue;
+                near.triangle.push_back({t[0] + base, t[1] + base, t[2] + base});
+                of.push_back(static_cast<int>(s));
+            }
+        }
+        return near;
     }
 
     void find_nesting() {
@@ -409,7 +451,7 @@ std::vector<int> shells_of(const TriMesh& mesh) {
     return shell;
 }
 
-bool settle_bodies(TriMesh& mesh, std::vector<std::string>& account) {
+std::optional<std::string> settle_bodies(TriMesh& mesh, std::vector<std::string>& account) {
     return Settler(mesh, account).run();
 }
 

@@ -2,6 +2,7 @@
 // Closed surfaces among each other: which is inside which, which way they face, where they cross.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ std::vector<int> shells_of(const TriMesh& mesh);
 
 // For closed, oriented shells: turns bodies outward (with all that is inside them, so that a cavity
 // stays one), leaves out a body inside another of the same sense, unites bodies that cross. Adds a
-// sentence to `account` for each kind of change. False when crossing bodies could not be united.
-bool settle_bodies(TriMesh& mesh, std::vector<std::string>& account);
+// sentence to `account` for each kind of change. Where that cannot be done, the mesh stays as it is
+// and the reason is returned.
+std::optional<std::string> settle_bodies(TriMesh& mesh, std::vector<std::string>& account);
 
 }  // namespace swage

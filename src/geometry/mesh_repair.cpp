@@ -70,8 +70,8 @@ class Repairer {
         }
         if (count_edges(mesh_).unbalanced > 0) {
             wrap("its surface cannot be oriented, or more than two triangles meet at an edge");
-        } else if (!settle_bodies(mesh_, account_)) {
-            wrap("its parts cross each other and cannot be united");
+        } else if (const auto reason = settle_bodies(mesh_, account_)) {
+            wrap(*reason);
         }
         if (!account_.empty()) drop_unused_positions(mesh_);
         const MeshReport report = check_mesh(mesh_);
@@ -89,10 +89,8 @@ class Repairer {
         TriMesh input = mesh_;
         const double volume = signed_volume(input);
         drop_repeated_corners();
-        if (!settle_bodies(mesh_, account_)) {
-            log_warning(
-                "repair: parts of the mesh cross each other and cannot be united; it is left as "
-                "it is");
+        if (const auto reason = settle_bodies(mesh_, account_)) {
+            log_warning("repair: the mesh is left as it is, for {}", *reason);
             return {std::move(input), {}};
         }
         if (std::abs(signed_volume(mesh_) - volume) <= 1e-9 * volume) {
@@ -394,7 +392,7 @@ class Repairer {
                         100 * sheet_area / all_area));
     }
 
-    void wrap(const char* reason) {
+    void wrap(const std::string& reason) {
         const double diagonal = box_of(mesh_.position).size().norm();
         const double offset = diagonal / 2000;
         for (const double alpha : {diagonal / 100, diagonal / 20}) {

@@ -5,15 +5,17 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
-#include <CGAL/Polygon_mesh_processing/intersection.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/intersections.h>
 
 #include <algorithm>
 #include <exception>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "geometry/polygon.h"
 
@@ -142,10 +144,36 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
     return true;
 }
 
-bool surfaces_meet(const TriMesh& a, const TriMesh& b) {
-    Surface first, second;
-    if (!to_surface(a, first) || !to_surface(b, second)) return true;
-    return CGAL::Polygon_mesh_processing::do_intersect(first, second);
+std::optional<std::vector<std::pair<int, int>>> parts_that_meet(const TriMesh& mesh,
+                                                                const std::vector<int>& part,
+                                                                std::size_t most) {
+    using Bounds = CGAL::Box_intersection_d::Box_with_info_d<double, 3, int>;
+    std::vector<Kernel::Triangle_3> triangle;
+    std::vector<Bounds> bounds;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const Corners& c = mesh.triangle[t];
+        triangle.emplace_back(to_cgal(mesh.position[c[0]]), to_cgal(mesh.position[c[1]]),
+                              to_cgal(mesh.position[c[2]]));
+        // What has no area lies on the edges of its neighbours.
+        if (triangle[t].is_degenerate()) continue;
+        bounds.emplace_back(triangle[t].bbox(), static_cast<int>(t));
+    }
+    struct TooMany {};
+    std::set<std::pair<int, int>> meeting;
+    std::size_t looked = 0;
+    try {
+        CGAL::box_self_intersection_d(
+            bounds.begin(), bounds.end(), [&](const Bounds& a, const Bounds& b) {
+                if (++looked > most) throw TooMany();
+                const std::pair<int, int> parts = std::minmax(part[a.info()], part[b.info()]);
+                if (parts.first == parts.second || meeting.contains(parts)) return;
+                if (CGAL::do_intersect(triangle[a.info()], triangle[b.info()]))
+                    meeting.insert(parts);
+            });
+    } catch (const TooMany&) {
+        return std::nullopt;
+    }
+    return std::vector<std::pair<int, int>>(meeting.begin(), meeting.end());
 }
 
 }  // namespace swage

@@ -2,6 +2,8 @@
 // The two repairs that CGAL does; kept apart because its headers take a minute to compile.
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "geometry/trimesh.h"
@@ -21,7 +23,11 @@ TriMesh wrap_triangles(const TriMesh& mesh, double alpha, double offset);
 // cannot be made (a surface that crosses itself, say). Positions and triangles only.
 bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
 
-// Whether the two surfaces cross or touch.
-bool surfaces_meet(const TriMesh& a, const TriMesh& b);
+// Of triangles that belong to parts, one number a triangle: the pairs of parts that cross or touch,
+// the lower number first, sorted. None when more than `most` pairs of triangles would have to be
+// looked at.
+std::optional<std::vector<std::pair<int, int>>> parts_that_meet(const TriMesh& mesh,
+                                                                const std::vector<int>& part,
+                                                                std::size_t most);
 
 }  // namespace swage

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
 #include <random>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "geometry/mesh_bodies.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair.h"
@@ -193,6 +195,54 @@ TEST_CASE("crossing bodies are united to their true volume and keep their looks"
             const Vec2& uv = repair.mesh.uv[repair.mesh.triangle_uv[t][k]];
             CHECK((uv - Vec2(p.x(), p.y() + p.z())).norm() < 1e-9);
         }
+}
+
+namespace {
+
+// Square rods along the diagonal of space, 4 mm from middle to middle and 2 mm wide.
+TriMesh oblique_rods(int count) {
+    const Mat3 turn = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::Ones()).toRotationMatrix();
+    TriMesh rods;
+    for (int n = 0; n < count; ++n) {
+        const Vec3 low(0.004 * (n % 11), 0.004 * (n / 11), 0);
+        append(rods, box_mesh(low, low + Vec3(0.002, 0.002, 0.3)));
+    }
+    for (Vec3& p : rods.position) p = turn * p;
+    return rods;
+}
+
+}  // namespace
+
+TEST_CASE("bodies that do not touch stay apart, however many lie in each other's boxes") {
+    const int count = 105;
+    TriMesh rods = oblique_rods(count);
+    const double volume = signed_volume(rods);
+    REQUIRE(volume == Approx(count * 1.2e-6));
+    drop(rods, {0, 1});  // an end
+    const Repair repair = repair_mesh(rods);
+    REQUIRE(repair.account.size() == 1);
+    CHECK(told(repair, "closed 1 hole"));
+    CHECK(signed_volume(repair.mesh) == Approx(volume));
+    CHECK(check_mesh(repair.mesh).components == count);
+}
+
+TEST_CASE("too many bodies that cross are left as they are, for that reason") {
+    // Rods that all go through one place.
+    TriMesh star;
+    for (int n = 0; n < 102; ++n) {
+        TriMesh rod = box_mesh({-1, -0.002, -0.002}, {1, 0.002, 0.002});
+        const double turn = kPi * n / 102, tilt = 0.3 * std::sin(7.0 * n);
+        for (Vec3& p : rod.position)
+            p = Eigen::AngleAxisd(turn, Vec3::UnitZ()) * Eigen::AngleAxisd(tilt, Vec3::UnitY()) * p;
+        append(star, rod);
+    }
+    const TriMesh before = star;
+    std::vector<std::string> account;
+    const auto reason = settle_bodies(star, account);
+    REQUIRE(reason);
+    CHECK(*reason == "more than 5000 pairs of its parts cross or touch each other");
+    CHECK(star.triangle == before.triangle);
+    CHECK(account.empty());
 }
 
 TEST_CASE("bodies that share a face or a corner are left as they are") {
