@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "geometry/close_points.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
 #include "geometry/mesh_bodies.h"
@@ -194,22 +195,19 @@ class Repairer {
         });
         if (gap > 0.2 * shortest) return 0;  // would eat detail
         std::vector<int> border;
-        for (std::size_t i = 0; i < at_border.size(); ++i)
-            if (at_border[i]) border.push_back(static_cast<int>(i));
-        std::sort(border.begin(), border.end(), [&](int a, int b) {
-            const double ax = mesh.position[a].x(), bx = mesh.position[b].x();
-            return ax != bx ? ax < bx : a < b;
-        });
+        std::vector<Vec3> place;
+        for (std::size_t i = 0; i < at_border.size(); ++i) {
+            if (!at_border[i]) continue;
+            border.push_back(static_cast<int>(i));
+            place.push_back(mesh.position[i]);
+        }
         DisjointSets same(mesh.position.size());
         std::size_t merged = 0;
-        for (std::size_t i = 0; i < border.size(); ++i)
-            for (std::size_t j = i + 1; j < border.size(); ++j) {
-                const Vec3 apart = mesh.position[border[j]] - mesh.position[border[i]];
-                if (apart.x() > gap) break;
-                if (apart.norm() > gap || same.root(border[i]) == same.root(border[j])) continue;
-                same.unite(border[i], border[j]);
-                ++merged;
-            }
+        for_each_close_pair(place, gap, [&](int a, int b) {
+            if (same.root(border[a]) == same.root(border[b])) return;
+            same.unite(border[a], border[b]);
+            ++merged;
+        });
         std::vector<char> keep;
         for (Corners& t : mesh.triangle) {
             for (int& i : t) i = same.root(i);
