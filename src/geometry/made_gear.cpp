@@ -139,7 +139,8 @@ TriMesh make_gear(const ShapeValues& values) {
     // side, down the teeth, in below. What lies flat is remeshed; walls and slopes stay.
     std::vector<Row> rows;
     const double start = outline.front().x();
-    const double step = 0.25 * half, web = 0.5 * half;
+    // The web is half as thick as the gear, unless its slopes would leave no room between them.
+    const double step = std::min(0.25 * half, 0.3 * (web_end - hub)), web = half - 2 * step;
     const int high = std::max(1, static_cast<int>(std::lround(2 * half / edge)));
     const int bore_count = count_around(bore, edge), hub_count = count_around(hub, edge);
     const int web_count = count_around(web_end, edge);

@@ -10,6 +10,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "geometry/make_shape.h"
+#include "geometry/triangle_tree.h"
 #include "tests/catch.h"
 #include "tests/shared/meshes.h"
 
@@ -75,6 +76,30 @@ TEST_CASE("every shape is one closed outward surface with even triangles") {
         REQUIRE(mesh.material.size() == 1);
         CHECK_FALSE(mesh.material[0].name.empty());
         CHECK(uv_area(mesh) > 0.1);
+    }
+}
+
+TEST_CASE("a gear of any width and bore crosses itself nowhere") {
+    for (const double width : {0.001, 0.01, 0.03, 0.06, 0.1, 0.4}) {
+        for (const double bore : {0.006, 0.02, 0.05}) {
+            INFO("width " << width << ", bore " << bore);
+            const TriMesh gear = make_small("gear", {{"width", width}, {"bore", bore}}).mesh;
+            CHECK(fixtures::is_closed(gear));
+            CHECK(handles(gear) == 1);
+            CHECK(signed_volume(gear) > 0);
+            // Each place is inside once or not at all.
+            const TriangleTree tree(gear);
+            double off = 0;
+            for (int r = 0; r < 40; ++r)
+                for (int y = -32; y <= 32; ++y) {
+                    const double radius = 0.0013 * r, turn = 0.7 * r;
+                    const Vec3 point(radius * std::cos(turn), 0.5 * width * (y + 0.3) / 30,
+                                     radius * std::sin(turn));
+                    const double winding = tree.winding_number(point);
+                    off = std::max(off, std::min(std::abs(winding), std::abs(winding - 1)));
+                }
+            CHECK(off < 0.4);
+        }
     }
 }
 
