@@ -80,11 +80,7 @@ class PlyReader {
         }
         if (polygons_.size() == 0)
             fail(ExitCode::mesh, "{} vertices and no faces", mesh_.position.size());
-        if (!texture_.empty()) {
-            mesh_.material.push_back({.name = "material", .color = Vec3::Ones()});
-            mesh_.material[0].texture = (source_.file.parent_path() / texture_).string();
-            std::fill(polygons_.material.begin(), polygons_.material.end(), 0);
-        }
+        add_materials();
         mesh_.at_vertices = 1;
         add_polygons(polygons_, mesh_);
         return std::move(mesh_);
@@ -136,7 +132,7 @@ class PlyReader {
                 property.name = next_word(words);
                 element_.back().property.push_back(std::move(property));
             } else if (key == "comment" && next_word(words) == "TextureFile") {
-                texture_ = trimmed(words);
+                texture_.emplace_back(trimmed(words));
             }
         }
         if (!has_format) fail(ExitCode::mesh, "the header names no format");
@@ -285,11 +281,16 @@ class PlyReader {
         const int indices = element.find({"vertex_indices", "vertex_index"});
         if (indices < 0 || !element.property[indices].is_list)
             fail(ExitCode::mesh, "the faces have no list 'vertex_indices'");
-        const int uv = element.find({"texcoord"});
+        const int uv = element.find({"texcoord"}), texture = element.find({"texnumber"});
+        if (texture_.size() > 1 && texture < 0)
+            source_.finding.push_back(
+                fmt::format("{} textures are named, and no face says which is its own: the first "
+                            "was taken",
+                            texture_.size()));
         if (element.find({"red", "r", "diffuse_red"}) >= 0)
             source_.finding.push_back(
                 "colours of faces were left out (those of vertices are read)");
-        each(element, [&](std::uint64_t item, const auto&, const auto& list) {
+        each(element, [&](std::uint64_t item, const auto& value, const auto& list) {
             const auto& corner = list[indices];
             const bool has_uv = uv >= 0 && list[uv].size() == 2 * corner.size();
             for (std::size_t k = 0; k < corner.size(); ++k) {
@@ -300,7 +301,9 @@ class PlyReader {
                 }
                 add_corner(vertex_index(element, item, corner[k]), corner_uv);
             }
-            polygons_.end_polygon(-1, -1, 0);
+            const double number = texture >= 0 ? value[texture] : 0;
+            const bool has_texture = number >= 0 && number < static_cast<double>(texture_.size());
+            polygons_.end_polygon(has_texture ? static_cast<int>(number) : -1, -1, 0);
         });
     }
 
@@ -324,7 +327,7 @@ class PlyReader {
                         add_corner(odd ? b : a, -1);
                         add_corner(odd ? a : b, -1);
                         add_corner(c, -1);
-                        polygons_.end_polygon(-1, -1, 0);
+                        polygons_.end_polygon(texture_.empty() ? -1 : 0, -1, 0);
                     }
                     odd = !odd;
                 }
@@ -334,11 +337,26 @@ class PlyReader {
         });
     }
 
+    // One for each texture, and one for the faces without.
+    void add_materials() {
+        if (texture_.empty()) return;
+        for (std::size_t n = 0; n < texture_.size(); ++n) {
+            RawMaterial material{.name = "material", .color = Vec3::Ones()};
+            if (texture_.size() > 1) material.name += fmt::format("_{}", n + 1);
+            material.texture = (source_.file.parent_path() / texture_[n]).string();
+            mesh_.material.push_back(std::move(material));
+        }
+        const int plain = static_cast<int>(texture_.size());
+        if (std::count(polygons_.material.begin(), polygons_.material.end(), -1) == 0) return;
+        mesh_.material.push_back({.name = "plain"});
+        std::replace(polygons_.material.begin(), polygons_.material.end(), -1, plain);
+    }
+
     MeshSource& source_;
     std::string_view rest_;
     bool ascii_ = false, swap_ = false, has_vertex_uv_ = false;
     std::vector<Element> element_;
-    std::string texture_;
+    std::vector<std::string> texture_;
     RawMesh mesh_;
     PolygonList polygons_;
 };

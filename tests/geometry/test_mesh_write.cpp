@@ -113,6 +113,45 @@ TEST_CASE("PLY keeps double precision, polygons, colours and texture seams") {
     CHECK(read_quietly(folder / "ball.ply").triangle == ball.triangle);
 }
 
+TEST_CASE("each face of a PLY keeps its texture, and those without have none") {
+    const Folder folder;
+    TriMesh cube = read_quietly(folder.write("in.obj", fixtures::cube_obj()));
+    cube.material.assign(3, {});
+    for (int m : {0, 2}) {  // the second material has no texture
+        const std::string name = fmt::format("image_{}.png", m);
+        cube.material[m].texture = folder.write(name, name);
+    }
+    cube.triangle_material.clear();
+    for (std::size_t t = 0; t < cube.triangle.size(); ++t)
+        cube.triangle_material.push_back(static_cast<int>(t / 2 % 3));
+    std::filesystem::create_directory(folder / "out");
+    write_ply(folder / "out/cube.ply", cube);
+    const TriMesh again = read_quietly(folder / "out/cube.ply");
+    REQUIRE(again.triangle_material.size() == cube.triangle.size());
+    CHECK(again.material.size() == 3);
+    for (std::size_t t = 0; t < cube.triangle.size(); ++t) {
+        INFO("triangle " << t);
+        CHECK(again.material[again.triangle_material[t]].texture.filename() ==
+              cube.material[cube.triangle_material[t]].texture.filename());
+    }
+}
+
+TEST_CASE("of several textures of a PLY whose faces choose none the first is taken, and said") {
+    const Folder folder;
+    for (const char* name : {"a.png", "b.png"}) folder.write(name, name);
+    const auto file =
+        folder.write("one.ply",
+                     "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\n"
+                     "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                     "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    std::vector<std::string> finding;
+    const TriMesh mesh = read_mesh(file, {}, &finding);
+    CHECK(mesh.material[mesh.triangle_material[0]].texture.filename() == "a.png");
+    REQUIRE(finding.size() == 1);
+    CHECK(finding[0].find("2 textures are named") != std::string::npos);
+}
+
 TEST_CASE("vertex colours survive an OBJ") {
     const Folder folder;
     TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
