@@ -122,8 +122,13 @@ std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body) {
             solid = box_mesh(box.low + spec.from.cwiseProduct(box.size()),
                              box.low + spec.to.cwiseProduct(box.size()));
         } else {
-            InputMesh read = read_mesh_as_it_is(spec.file, std::nullopt);
+            InputMesh read;
+            read.mesh = read_mesh(spec.file, {}, &read.finding);
             for (Vec3& p : read.mesh.position) p *= input.scale;
+            read.report = check_mesh(read.mesh);
+            for (const std::string& finding : read.finding) {
+                log_warning("{}: {}", spec.file.filename().string(), finding);
+            }
             make_solid(read, MoldKind::shape);
             solid = read.to_mold();
         }

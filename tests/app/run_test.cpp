@@ -380,3 +380,16 @@ TEST_CASE("books that hold nothing but round-off are not said to be open") {
     CHECK(outcome.err.find("nothing moves") != std::string::npos);
     CHECK(outcome.err.find("books do not close") == std::string::npos);
 }
+
+TEST_CASE("what is amiss with the file of an inset is told as that of a body") {
+    const Scratch scratch;
+    run_swage({"make", "bar", "--length", "5 cm", "--out", (scratch.path() / "core.obj").string()});
+    fs::remove(scratch.path() / "core.mtl");
+    const fs::path scene =
+        put_small_scene(scratch.path(), 3, "[[inset]]\nname = \"lead\"\nfile = \"core.obj\"\n");
+    const Outcome check = run_swage({"check", scene.string()});
+    CHECK(check.code == 0);
+    INFO(check.err);
+    CHECK(check.err.find("core.obj: the material file 'core.mtl' cannot be read") !=
+          std::string::npos);
+}
