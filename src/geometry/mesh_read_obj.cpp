@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/error.h"
 #include "base/srgb.h"
@@ -167,6 +168,7 @@ class ObjReader {
             source_.finding.push_back(
                 fmt::format("{} free-form curves and surfaces were left out", free_forms_));
 
+        const std::size_t asked = material_name_.size();
         // Faces before the first usemtl, o or g belong to a default.
         const auto give_default = [](std::vector<int>& id, int fallback) {
             std::replace(id.begin(), id.end(), -1, fallback);
@@ -179,13 +181,31 @@ class ObjReader {
         if (!mesh_.part_name.empty() && missing(polygons_.part))
             give_default(polygons_.part, id_of("default", part_id_, mesh_.part_name));
         for (const std::string& name : material_name_) mesh_.material.push_back({.name = name});
-        for (const std::string& library : library_) read_library(library);
+        bool all_read = true;
+        for (const std::string& library : library_) all_read &= read_library(library);
+        if (all_read) tell_undefined(asked);
         add_polygons(polygons_, mesh_);
         return std::move(mesh_);
     }
 
-    // A library name may hold blanks, or be several names.
-    void read_library(const std::string& names) {
+    // Which of the first `asked` materials no library has.
+    void tell_undefined(std::size_t asked) {
+        std::string names;
+        std::size_t count = 0;
+        for (std::size_t n = 0; n < asked; ++n) {
+            const std::string& name = material_name_[n];
+            if (defined_.contains(name)) continue;
+            if (++count <= 5) names += (count == 1 ? "'" : ", '") + name.substr(0, 40) + "'";
+        }
+        if (count == 0) return;
+        if (count > 5) names += fmt::format(" and {} more", count - 5);
+        source_.finding.push_back(fmt::format("no material file defines {} {}: left grey",
+                                              count == 1 ? "the material" : "the materials",
+                                              names));
+    }
+
+    // A library name may hold blanks, or be several names. False when it cannot be read.
+    bool read_library(const std::string& names) {
         const fs::path folder = source_.file.parent_path();
         const auto try_name = [&](std::string name) {
             std::replace(name.begin(), name.end(), '\\', '/');
@@ -194,13 +214,14 @@ class ObjReader {
             if (text) read_materials(*text, file.parent_path());
             return text.has_value();
         };
-        if (try_name(names)) return;
+        if (try_name(names)) return true;
         std::string_view rest = names;
         int found = 0;
         for (std::string_view word; !(word = next_word(rest)).empty();)
             found += word != names && try_name(std::string(word));
         if (found == 0)
             source_.finding.push_back(fmt::format("the material file '{}' cannot be read", names));
+        return found > 0;
     }
 
     // Image name after its options, "-s 1 1 1" and the like.
@@ -237,6 +258,7 @@ class ObjReader {
                                                                                   : fallback;
             };
             if (key == "newmtl") {
+                defined_.emplace(trimmed(rest));
                 const auto at = material_id_.find(std::string(trimmed(rest)));
                 material = at == material_id_.end() ? &unused : &mesh_.material[at->second];
             } else if (key == "Kd") {
@@ -277,6 +299,7 @@ class ObjReader {
     int lines_and_points_ = 0, free_forms_ = 0;
     std::map<std::string, int> material_id_, part_id_;
     std::vector<std::string> material_name_, library_;
+    std::set<std::string> defined_;  // materials of the libraries
 };
 
 }  // namespace

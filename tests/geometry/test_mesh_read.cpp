@@ -192,6 +192,26 @@ TEST_CASE("OBJ materials arrive with colours, shine and images, also from awkwar
     CHECK(finding.size() == 2);  // the map_Bump, the missing image
 }
 
+TEST_CASE("a material that no library of an OBJ defines is told") {
+    const Folder folder;
+    folder.write("m.mtl", "newmtl known\nKd 1 0 0\n");
+    const auto findings = [&](const std::string& head, const std::string& uses) {
+        std::vector<std::string> finding;
+        read_mesh(folder.write("m.obj", head + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + uses), {},
+                  &finding);
+        return finding;
+    };
+    CHECK(findings("mtllib m.mtl\n", "usemtl known\nf 1 3 2\n").empty());
+    const auto misspelt =
+        findings("mtllib m.mtl\n", "usemtl Known\nf 1 3 2\nusemtl known\nf 1 3 2\n");
+    REQUIRE(misspelt.size() == 1);
+    CHECK(misspelt[0] == "no material file defines the material 'Known': left grey");
+    CHECK(findings("", "usemtl a\nf 1 3 2\nusemtl b\nf 1 2 3\n") ==
+          std::vector<std::string>{"no material file defines the materials 'a', 'b': left grey"});
+    // Where the library is missing, that says it all.
+    CHECK(findings("mtllib none.mtl\n", "usemtl a\nf 1 3 2\n").size() == 1);
+}
+
 TEST_CASE("normals of a file decide which corners shade alike") {
     const Folder folder;
     // Two triangles at a right angle: by the crease rule sharp, here one normal at the edge.
