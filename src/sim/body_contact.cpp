@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/box.h"
 #include "geometry/disjoint_sets.h"
@@ -56,7 +57,7 @@ BodyContact::BodyContact(const std::vector<Aggregate*>& bodies, const SimSetting
 
 void BodyContact::limit_stiffness(double step) {
     step_ = step;
-    for (ContactWay& way : way_) way.set_stiffness(step);
+    for (std::size_t w : near_) way_[w].set_stiffness(step);
 }
 
 void BodyContact::connections_changed(std::size_t body) {
@@ -70,23 +71,29 @@ void BodyContact::connections_changed(std::size_t body) {
 }
 
 struct BodyContact::State {
-    std::vector<ContactList> contacts;
+    std::vector<std::pair<std::size_t, ContactList>> contacts;  // of ways that were near
 };
 
 std::shared_ptr<const BodyContact::State> BodyContact::save() const {
     State state;
-    for (const ContactWay& way : way_) state.contacts.push_back(way.contacts());
+    for (std::size_t w : near_) state.contacts.emplace_back(w, way_[w].contacts());
     return std::make_shared<const State>(std::move(state));
 }
 
 void BodyContact::restore(const State& state) {
-    for (std::size_t w = 0; w < way_.size(); ++w) way_[w].set_contacts(state.contacts[w]);
+    for (std::size_t w : near_) way_[w].set_contacts({});
+    near_.clear();
+    for (const auto& [w, contacts] : state.contacts) {
+        way_[w].come_near(step_);
+        way_[w].set_contacts(contacts);
+        near_.push_back(w);
+    }
     allowance_ = -1;
 }
 
 std::size_t BodyContact::candidates() const {
     std::size_t count = 0;
-    for (const ContactWay& way : way_) count += way.contacts().size();
+    for (std::size_t w : near_) count += way_[w].contacts().size();
     return count;
 }
 
@@ -118,26 +125,30 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
     }
     const double step = kWay * least_spacing_;
     allowance_ = std::numeric_limits<double>::infinity();
+    std::vector<std::size_t> were = std::exchange(near_, {});
     for (std::size_t w = 0; w < way_.size(); ++w) {
         const auto [from, onto, back] = pair_[w];
         const double gap = box_gap(box[from], box[onto]);
         const bool near = from == onto || gap <= 2 * step;
         allowance_ = std::min(allowance_, near ? step : 0.5 * gap);
+        const bool was_near = std::binary_search(were.begin(), were.end(), w);
         // What they are to each other stands, also for when they wake.
-        if (asleep[from] && asleep[onto]) continue;
-        if (near) {
-            way_[w].search(2 * step);
-        } else {
-            way_[w].set_contacts({});
+        const bool stands = asleep[from] && asleep[onto];
+        if (stands ? was_near : near) {
+            near_.push_back(w);
+            way_[w].come_near(step_);
+            if (!stands) way_[w].search(2 * step);
+        } else if (was_near) {
+            way_[w].part();
         }
     }
     for (ContactSide& side : side_) side.patch().clear();
-    for (ContactWay& way : way_) way.resolve();
+    for (std::size_t w : near_) way_[w].resolve();
 }
 
 std::vector<std::size_t> BodyContact::groups() const {
     DisjointSets sets(side_.size());
-    for (std::size_t w = 0; w < way_.size(); ++w) {
+    for (std::size_t w : near_) {
         if (way_[w].contacts().contact.empty()) continue;
         sets.unite(static_cast<int>(pair_[w].from), static_cast<int>(pair_[w].onto));
     }
@@ -154,7 +165,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     std::vector<char> acts(side_.size(), 0);
     std::vector<std::size_t> awake;
     sums.assign(side_.size(), {});
-    for (std::size_t w = 0; w < way_.size(); ++w) {
+    for (std::size_t w : near_) {
         if (asleep[pair_[w].from] && asleep[pair_[w].onto]) {
             way_[w].freeze();
             continue;
@@ -182,30 +193,30 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().write(*force[b], gravity, step, sums[b]);
     }
-    for (std::size_t w = 0; w < way_.size(); ++w) {
+    for (std::size_t w : near_) {
         sums[pair_[w].from].join(way_[w].sums());
         sums[pair_[w].onto].join(way_[w].sums());
     }
 }
 
 void BodyContact::add_stiffness(std::vector<double>& stiffness) const {
-    for (const ContactWay& way : way_) way.add_stiffness(stiffness);
+    for (std::size_t w : near_) way_[w].add_stiffness(stiffness);
 }
 
 std::vector<PressedPlaces> BodyContact::pressed() const {
     std::vector<PressedPlaces> all;
-    for (const ContactWay& way : way_) way.add_pressed(all);
+    for (std::size_t w : near_) way_[w].add_pressed(all);
     return all;
 }
 
 int BodyContact::let_be(double deeper) {
     int count = 0;
-    for (ContactWay& way : way_) count += way.let_be(deeper);
+    for (std::size_t w : near_) count += way_[w].let_be(deeper);
     return count;
 }
 
 void BodyContact::meet_anew() {
-    for (ContactWay& way : way_) way.meet_anew();
+    for (std::size_t w : near_) way_[w].meet_anew();
 }
 
 void BodyContact::commit() {

@@ -86,7 +86,8 @@ class BodyContact {
     std::vector<ContactSide> side_;
     std::vector<std::vector<Vec3>> listed_;  // of each side, where its skin was
     std::vector<ContactWay> way_;
-    std::vector<Pair> pair_;    // the sides of each way
+    std::vector<Pair> pair_;         // the sides of each way
+    std::vector<std::size_t> near_;  // ways of bodies that are near each other, in their order
     double least_spacing_ = 0;  // [m]
     double step_ = 0;           // that stiffness is held to; 0: any [s]
     double allowance_ = -1;     // that any particle may go until renew() finds anew [m]

@@ -62,7 +62,23 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& 
             .holding = 0.5 * (m.holding_friction() + n.holding_friction()),
             .hold = 0};
     if (is_static()) law_.holding = law_.friction;
-    set_stiffness(0);
+}
+
+void ContactWay::come_near(double step) {
+    if (!is_near()) set_stiffness(step);
+}
+
+void ContactWay::part() {
+    list_ = spare_ = {};
+    meeting_ = {};
+    next_ = {};
+    plane_ = {};
+    chunk_ = {};
+    stiffness_ = stiffest_ = hold_ = {};
+    point_push_ = cell_push_ = {};
+    sums_ = {};
+    gone_ = broken_ = 0;
+    is_found_ = false;
 }
 
 void ContactWay::keep_contacts(const std::function<bool(int point)>& meets) {
@@ -141,7 +157,7 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
     has_changed_ = true;
     for (ContactMemory& memory : list_.memory) memory.is_new = true;
     is_found_ = false;
-    if (!points_too) return;
+    if (!points_too || !is_near()) return;
     keep_contacts([&](int point) { return from_->meets(point); });
     if (is_static()) meet_anew();
     set_stiffness(step);

@@ -36,6 +36,12 @@ class ContactWay {
     // The sides, which may be one, must outlive it.
     ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& settings);
 
+    // The bodies have come near: what is asked of each point is found, for steps of this length [s].
+    // None of the rest may be called before, but for surfaces_changed() and commit().
+    void come_near(double step);
+    // They have gone from each other: nothing is kept.
+    void part();
+
     const ContactList& contacts() const { return list_; }
     void set_contacts(const ContactList& contacts);
     // Finds what is nearer than `margin` [m]; what touches stays.
@@ -81,6 +87,7 @@ class ContactWay {
   private:
     // Nothing has a speed.
     bool is_static() const { return solver_ == Solver::quasistatic; }
+    bool is_near() const { return !stiffness_.empty(); }
     // How a point meets the cell that holds it, at the present positions. The fourth lanes hold
     // what has no vector.
     struct alignas(32) Meeting {
