@@ -23,8 +23,9 @@ constexpr std::size_t kPairsPerChunk = 1024, kChunksAtOnce = 8;
 // Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
 // grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
-// Spacings that a point deep in a tool may lie beside it.
-constexpr double kBeside = 0.25;
+// Spacings that a point beyond the middle of a tool may lie beside it, and how deep where nothing
+// has a speed: what is let go of there goes round tools and through them on its way to rest.
+constexpr double kBeside = 0.25, kDeepAtRest = 1;
 // What points that touch may add to the square of a swing by which steps go in turns, 4.
 constexpr double kTouchShare = 0.5;
 
@@ -238,8 +239,10 @@ Vec3 ContactSet::anchor_of(const Pair& pair) const {
 Distance ContactSet::distance_of(const Pair& pair, const Vec3& from, const Vec3& now,
                                  ToolEntry& entry) const {
     entry = pair.entry;
-    Distance d =
-        distance_by_entry(apparatus_->tool[pair.tool].shape, kBeside * spacing_, from, now, entry);
+    const EntryReach reach{kBeside * spacing_, settings_.solver == Solver::quasistatic
+                                                   ? kDeepAtRest * spacing_
+                                                   : kAnywhere};
+    Distance d = distance_by_entry(apparatus_->tool[pair.tool].shape, reach, from, now, entry);
     d.value += pair.deep;
     return d;
 }

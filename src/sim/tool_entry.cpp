@@ -28,9 +28,10 @@ ToolEntry met_on_the_way(const Shape& shape, const Vec3& from, const Vec3& now) 
 
 }  // namespace
 
-Distance distance_by_entry(const Shape& shape, double beside, const Vec3& from, const Vec3& now,
-                           ToolEntry& entry) {
+Distance distance_by_entry(const Shape& shape, const EntryReach& reach, const Vec3& from,
+                           const Vec3& now, ToolEntry& entry) {
     const Distance nearest = distance_to(shape, now);
+    if (thinness_of(shape) >= 2 * reach.deep) return nearest;  // beyond its middle is too deep
     const bool is_inside = nearest.value < 0;
     bool goes_on = nearest.normal.dot(entry.normal) >= 0;
     if (entry.normal.isZero(0)) {
@@ -44,7 +45,9 @@ Distance distance_by_entry(const Shape& shape, double beside, const Vec3& from, 
     if (!goes_on) {
         const double depth = entry.normal.dot(now) - entry.offset;
         const Vec3 foot = now - depth * entry.normal;
-        if (depth < 0 && distance_to(shape, foot).value < beside) return {depth, entry.normal};
+        if (depth < 0 && depth > -reach.deep && distance_to(shape, foot).value < reach.beside) {
+            return {depth, entry.normal};
+        }
     }
     entry = is_inside ? entry_at(nearest, now) : ToolEntry{};
     return nearest;

@@ -14,10 +14,14 @@ struct ToolEntry {
     double offset = 0;  // of the plane, along the normal [m]
 };
 
+// How far off the tool the foot may lie, and how deep behind the plane the point [m].
+struct EntryReach {
+    double beside, deep;
+};
+
 // The distance of a point at `now` from the surface that it came in by: by `entry` or, where that
-// is none, on the straight way from `from`. `entry` goes on with it. `beside`: how far off the tool
-// the foot may lie [m].
-Distance distance_by_entry(const Shape& shape, double beside, const Vec3& from, const Vec3& now,
-                           ToolEntry& entry);
+// is none, on the straight way from `from`. `entry` goes on with it.
+Distance distance_by_entry(const Shape& shape, const EntryReach& reach, const Vec3& from,
+                           const Vec3& now, ToolEntry& entry);
 
 }  // namespace swage

@@ -100,10 +100,10 @@ TEST_CASE("what a tool presses rests on it alike, however thin the tool and long
 
 TEST_CASE("a point is held by the side of a tool that it came in by, until it has slid off it") {
     const Shape plate = BoxShape{Vec3(0.01, 1, 1), 0};
-    const double beside = 0.0125;
+    const EntryReach reach{0.0125, 0.1};
     ToolEntry entry;
     const auto at = [&](const Vec3& from, const Vec3& now) {
-        return distance_by_entry(plate, beside, from, now, entry);
+        return distance_by_entry(plate, reach, from, now, entry);
     };
     // In from the right, and on to behind the plate.
     CHECK(at({0.01, 0, 0}, {0.004, 0, 0}).value == Approx(-0.001));
@@ -119,6 +119,8 @@ TEST_CASE("a point is held by the side of a tool that it came in by, until it ha
     CHECK(at({0.02, 0, 0}, {-0.03, 0, 0}).value == Approx(-0.035));
     entry = {};
     CHECK(at({0.02, 0.6, 0}, {-0.03, 0.6, 0}).value > 0);
+    entry = {};
+    CHECK(at({0.02, 0, 0}, {-0.2, 0, 0}).value > 0);  // too far
     // From the left it is the other side.
     CHECK(at({-0.01, 0, 0}, {0.003, 0, 0}).value == Approx(-0.008));
 }
