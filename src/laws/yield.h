@@ -12,12 +12,15 @@
 //
 // p_b is the plastic strain that the cell gives the connection, alpha the accumulated plastic
 // strain; a connection's rest_length follows the mean of its cells. For a uniform strain S = 2 |dev
-// eps|^2, the same in every direction, so the cell yields where von Mises says. Bending and
-// twisting within the cell count as distortion too and yield by the same factor: kept elastic they
-// would carry a moment of 1.8 E I kappa / N^2 for ever (N cells across), more than the plastic one
-// at large curvature. Size never yields, so flow keeps the volume. Measuring it by the edges' mean
-// strain instead lets the cell fold like a trellis, whose edges keep their lengths while its volume
-// goes.
+// eps|^2, the same in every direction, so the cell yields where von Mises says, as long as it has
+// not flowed far: p_b is of connections, which turn and stretch away from what it meant (1.13 and
+// 1.6 times the work at a flow of 0.1 and 0.3).
+//
+// Bending and twisting within the cell count as distortion too and yield by the same factor: kept
+// elastic they would carry a moment of 1.8 E I kappa / N^2 for ever (N cells across), more than the
+// plastic one at large curvature. Size never yields, so flow keeps the volume. Measuring it by the
+// edges' mean strain instead lets the cell fold like a trellis, whose edges keep their lengths
+// while its volume goes.
 //
 // NOTE: yielding each connection by its own strain, the nearest thing to the papers, was tried
 // first: tuned for tension it is half too weak in shear, it flows under pressure, and bars fold
