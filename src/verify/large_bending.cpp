@@ -72,7 +72,7 @@ void elastica(bool, Values& values) {
             const std::string at = ", alpha " + number_name(alpha);
             const auto& [across, bound] = kLevel[n];
             values.add(relative("drop / L" + at, across, drop, -way.z(), bound));
-            values.add(absolute("shortening / L" + at, across, shortening, -way.x(), bound));
+            values.add(relative("shortening / L" + at, across, shortening, -way.x(), bound));
         }
     }
 }
