@@ -39,7 +39,7 @@ constexpr double kImplicitWork = 250;                     // of such a step: 50 
 constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
 constexpr double kBytesPerVertex = 600;
 constexpr double kVerticesPerFace = 6;  // of a boundary, a cell's face: four, and its steps
-constexpr double kProgramBytes = 80e6;  // libraries and the drawing's own buffers
+constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and their buffers
 constexpr double kStillBytesPerPixel = 0.7;
 constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two triangles
 constexpr double kLongestRun = 30 * 86400.0;
@@ -162,7 +162,8 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.seconds = work * cost.mold.particles * kSecondsPerParticleStep / cores +
                    stills * (0.02 + pixels * kSecondsPerPixel) * 2 / cores;
     cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
-                        vertices * kBytesPerVertex + (options.draw ? pixels * 60 : 0);
+                        vertices * kBytesPerVertex +
+                        (options.draw ? kDrawingBytes + pixels * 60 : 0);
     const double meshes =
         static_cast<double>(scene.output.meshes_per_frame ? cost.frames : scene.stage.size());
     cost.disk_bytes = stills * pixels * kStillBytesPerPixel + cost.frames * (vertices * 12 + 400) +
