@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which points lie close to each other, in about linear time.
+// Which points lie close to each other, in about linear time. NOTE: geometry/near_pairs.h could
+// tell, but keeps all pairs: where thousands of corners lie at one place, the square of that.
 #pragma once
 
 #include <algorithm>

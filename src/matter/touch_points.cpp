@@ -33,33 +33,26 @@ int TouchPoints::face_point(const Lattice& lattice, CellId cell, const Vec3i& si
     return at->second;
 }
 
-int TouchPoints::loose_point(const Lattice& lattice, ParticleId particle, const Vec3i& site) {
+int TouchPoints::loose_point(double spacing, ParticleId particle) {
     const auto [at, is_new] = loose_.try_emplace(particle, static_cast<int>(points_.size()));
     if (!is_new) return at->second;
-    const double a = lattice.spacing;
-    points_.add_loose(particle, a * a, Vec3::UnitY());  // it has none
-    home_.push_back(site);
+    points_.add_loose(particle, spacing * spacing, Vec3::UnitY());  // it has none
+    home_.push_back(Vec3i::Zero());                                 // nor this
     return at->second;
 }
 
 void TouchPoints::add_loose(const Aggregate& matter) {
-    const Lattice& lattice = matter.lattice;
     std::vector<char> held(matter.particle_count(), 0);
-    std::vector<Vec3i> site(matter.particle_count());  // of a cell of each
-    for (const CellRun& run : lattice.cell_run) {
+    for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
-            for (ParticleId p : run.row) {
-                for (ParticleId end : {p + n, p + n + 1}) {
-                    if (whole_[run.first + n]) held[end] = 1;
-                    site[end] = {run.i + n, run.j, run.k};
-                }
-            }
+            if (!whole_[run.first + n]) continue;
+            for (ParticleId p : run.row) held[p + n] = held[p + n + 1] = 1;
         }
     }
     for (std::size_t p = 0; p < held.size(); ++p) {
         if (held[p]) continue;
-        const auto point =
-            static_cast<std::size_t>(loose_point(lattice, static_cast<ParticleId>(p), site[p]));
+        const auto point = static_cast<std::size_t>(
+            loose_point(matter.lattice.spacing, static_cast<ParticleId>(p)));
         if (point == meets_.size()) meets_.push_back(0);
         meets_[point] = 1;
     }

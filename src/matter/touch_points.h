@@ -29,14 +29,14 @@ class TouchPoints {
     bool meets(int point) const { return meets_[point] != 0; }
     // A particle by itself.
     bool is_loose(int point) const { return points_.is_loose(static_cast<std::size_t>(point)); }
-    // The cell that the point lies in or just outside of; of new surface, that which carries it; of
-    // a loose particle, one that did.
+    // The cell that the point lies in or just outside of; of new surface, that which carries it.
+    // Loose particles have none.
     const std::vector<Vec3i>& home() const { return home_; }
     const std::vector<char>& whole() const { return whole_; }  // of each cell
 
   private:
     int face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face);
-    int loose_point(const Lattice& lattice, ParticleId particle, const Vec3i& site);
+    int loose_point(double spacing, ParticleId particle);
     void add_loose(const Aggregate& matter);
 
     SurfacePoints points_;

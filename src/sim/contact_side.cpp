@@ -144,8 +144,9 @@ void ContactSide::find_near() {
 }
 
 bool ContactSide::is_neighbour(int point, const Vec3i& site) const {
+    if (near_set_[point] < 0) return false;
     const Vec3i at = site - touch_.home()[point];
-    if (near_set_[point] < 0 || !in_box(at)) return false;
+    if (!in_box(at)) return false;
     const int bit = bit_of(at);
     return near_[near_set_[point]][bit / 64] >> (bit % 64) & 1;
 }
