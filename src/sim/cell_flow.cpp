@@ -67,28 +67,28 @@ double most_distorted(const Aggregate& matter, const CellRun& run) {
     }
     const int room = static_cast<int>(x.size()) - run.row[3];
     double most = 0;
-    for (int begin = 0; begin < run.count; begin += kLanes) {
-        const int count = std::min(kLanes, run.count - begin);
-        const CornerSums<Lanes> c = gather<Lanes>(rows, begin, count, room);
-        const Lanes j = (s * s * s) * dot(c.x, cross(c.y, c.z)) - 1.0, third = (1.0 / 3) * j;
-        Lanes edges{}, diagonals{}, squares = j * j;
-        const auto add = [&](const Triple<Lanes>& way, double scale, Lanes& sum)
+    for (int begin = 0; begin < run.count; begin += kFewLanes) {
+        const int count = std::min(kFewLanes, run.count - begin);
+        const CornerSums<FewLanes> c = gather<FewLanes>(rows, begin, count, room);
+        const FewLanes j = (s * s * s) * dot(c.x, cross(c.y, c.z)) - 1.0, third = (1.0 / 3) * j;
+        FewLanes edges{}, diagonals{}, squares = j * j;
+        const auto add = [&](const Triple<FewLanes>& way, double scale, FewLanes& sum)
             __attribute__((always_inline)) {
-            const Lanes q = scale * dot(way, way) - 1.0, off = 0.5 * q - third;
+            const FewLanes q = scale * dot(way, way) - 1.0, off = 0.5 * q - third;
             sum += off * off;
             squares += q * q;
         };
         // `m`, `n`: the modes with the axes beside; of the four edges along one axis, and of the
         // four diagonals in the planes of two.
-        const auto four_edges = [&](const Triple<Lanes>& d, const Triple<Lanes>& m,
-                                    const Triple<Lanes>& n) __attribute__((always_inline)) {
+        const auto four_edges = [&](const Triple<FewLanes>& d, const Triple<FewLanes>& m,
+                                    const Triple<FewLanes>& n) __attribute__((always_inline)) {
             add(d + m + n + c.xyz, s * s, edges);
             add(d + m - n - c.xyz, s * s, edges);
             add(d - m + n - c.xyz, s * s, edges);
             add(d - m - n + c.xyz, s * s, edges);
         };
-        const auto four_diagonals = [&](const Triple<Lanes>& d, const Triple<Lanes>& e,
-                                        const Triple<Lanes>& m, const Triple<Lanes>& n)
+        const auto four_diagonals = [&](const Triple<FewLanes>& d, const Triple<FewLanes>& e,
+                                        const Triple<FewLanes>& m, const Triple<FewLanes>& n)
             __attribute__((always_inline)) {
             add(d + e + m + n, 0.5 * s * s, diagonals);
             add(d + e - m - n, 0.5 * s * s, diagonals);
@@ -101,7 +101,7 @@ double most_distorted(const Aggregate& matter, const CellRun& run) {
         four_diagonals(c.x, c.y, c.zx, c.yz);
         four_diagonals(c.y, c.z, c.xy, c.zx);
         four_diagonals(c.z, c.x, c.yz, c.xy);
-        const Lanes about = kEdgeShare * edges + kDiagonalShare * diagonals;
+        const FewLanes about = kEdgeShare * edges + kDiagonalShare * diagonals;
         for (int l = 0; l < count; ++l) {
             if (!(squares[l] < kTenth)) return std::numeric_limits<double>::infinity();
             most = std::max(most, std::sqrt(about[l]) + 0.3 * std::sqrt(kShares) * squares[l]);

@@ -81,11 +81,12 @@ void strain_measures(const Aggregate& matter, const CellRun& run, std::vector<do
         rows.at[1][q] = x.y.data() + run.row[q];
         rows.at[2][q] = x.z.data() + run.row[q];
     }
-    measure.resize(static_cast<std::size_t>(run.count + kLanes));
+    measure.resize(static_cast<std::size_t>(run.count + kFewLanes));
     const int room = static_cast<int>(x.size()) - run.row[3];
-    for (int begin = 0; begin < run.count; begin += kLanes) {
-        const int count = std::min(kLanes, run.count - begin);
-        const Lanes m = strain_measure(gather<Lanes>(rows, begin, count, room), gram, kAnywhere);
+    for (int begin = 0; begin < run.count; begin += kFewLanes) {
+        const int count = std::min(kFewLanes, run.count - begin);
+        const FewLanes m =
+            strain_measure(gather<FewLanes>(rows, begin, count, room), gram, kAnywhere);
         std::memcpy(measure.data() + begin, &m, sizeof m);
     }
 }

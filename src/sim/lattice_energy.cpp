@@ -20,30 +20,34 @@ struct SpanPlaces {
     const float *weight, *plastic;  // kBlock of each, in order; no weight behind the last
 };
 
+double sum_of(const FewLanes (&sum)[kLanes / kFewLanes]) {
+    double all = 0;
+    for (int l = 0; l < kLanes; ++l) all += sum[l / kFewLanes][l % kFewLanes];
+    return all;
+}
+
 // Sum of weight times strain squared.
 SWAGE_VECTOR_CLONES
 double block_energy(const SpanPlaces& at, int count, int room, double length) {
-    Lanes sum{};
-    for (int n = 0; n < count; n += kLanes) {
-        double copy[6][kLanes];
-        Lanes square{};
+    FewLanes sum[kLanes / kFewLanes]{};
+    for (int n = 0; n < count; n += kFewLanes) {
+        double copy[6][kFewLanes];
+        FewLanes square{};
         for (int i = 0; i < 3; ++i) {
             const double *low = at.low[i] + n, *high = at.high[i] + n;
-            if (n + kLanes > room) [[unlikely]] {
-                std::fill_n(copy[i], kLanes, 0.0), std::fill_n(copy[3 + i], kLanes, 0.0);
+            if (n + kFewLanes > room) [[unlikely]] {
+                std::fill_n(copy[i], kFewLanes, 0.0), std::fill_n(copy[3 + i], kFewLanes, 0.0);
                 std::copy_n(low, count - n, copy[i]);
                 std::copy_n(high, count - n, copy[3 + i]);
                 low = copy[i], high = copy[3 + i];
             }
-            const Lanes reach = load<Lanes>(high) - load<Lanes>(low);
+            const FewLanes reach = load<FewLanes>(high) - load<FewLanes>(low);
             square += reach * reach;
         }
-        const Lanes strain = root(square) / length - 1.0 - load<Lanes>(at.plastic + n);
-        sum += load<Lanes>(at.weight + n) * (strain * strain);
+        const FewLanes strain = root(square) / length - 1.0 - load<FewLanes>(at.plastic + n);
+        sum[n % kLanes / kFewLanes] += load<FewLanes>(at.weight + n) * (strain * strain);
     }
-    double all = 0;
-    for (int l = 0; l < kLanes; ++l) all += sum[l];
-    return all;
+    return sum_of(sum);
 }
 
 // The branches of a slab.
@@ -60,23 +64,25 @@ SWAGE_VECTOR_CLONES
 double slab_energy(const BranchPlaces& own) {
     const float* strain = own.strain;
     const std::int32_t* batch = own.batch;
-    Lanes sum{};
+    FewLanes sum[kLanes / kFewLanes]{};
     for (const SpringRun* run = own.run; run != own.run_end; ++run) {
         for (int n = 0; n < run->count; n += kLanes, ++batch) {
-            for (int d = 0; d < kForwardCount; ++d) {
-                Lanes square{};
-                for (int j = 0; j < own.count; ++j, strain += kLanes) {
-                    const Lanes one = load<Lanes>(strain);
-                    square += own.inverse_share[j] * (one * one);
+            for (int d = 0; d < kForwardCount; ++d, strain += own.count * kLanes) {
+                for (int part = 0; part < kLanes; part += kFewLanes) {
+                    FewLanes square{};
+                    for (int j = 0; j < own.count; ++j) {
+                        const FewLanes one = load<FewLanes>(strain + j * kLanes + part);
+                        square += own.inverse_share[j] * (one * one);
+                    }
+                    if (*batch >= 0) {
+                        square *= load<FewLanes>(own.weight + *batch + d * kLanes + part);
+                    }
+                    sum[part / kFewLanes] += own.scale[d] * square;
                 }
-                if (*batch >= 0) square *= load<Lanes>(own.weight + *batch + d * kLanes);
-                sum += own.scale[d] * square;
             }
         }
     }
-    double all = 0;
-    for (int l = 0; l < kLanes; ++l) all += sum[l];
-    return all;
+    return sum_of(sum);
 }
 
 }  // namespace

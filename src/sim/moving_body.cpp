@@ -43,14 +43,14 @@ struct Movers {
 SWAGE_VECTOR_CLONES
 double move_block(const Movers& m, std::size_t begin, std::size_t end, double kick, double step,
                   const double* fall) {
-    Lanes fastest{}, wrong{};  // wrong: stays 0 while all is finite
+    FewLanes fastest{}, wrong{};  // wrong: stays 0 while all is finite
     const auto batch = [&](const Movers& at, std::size_t p) __attribute__((always_inline)) {
-        const Lanes push = kick / load<Lanes>(at.mass + p);
-        Lanes speed{};
+        const FewLanes push = kick / load<FewLanes>(at.mass + p);
+        FewLanes speed{};
         for (int i = 0; i < 3; ++i) {
-            const Lanes v =
-                load<Lanes>(at.v[i] + p) + (push * load<Lanes>(at.f[i] + p) + kick * fall[i]);
-            const Lanes x = load<Lanes>(at.x[i] + p) + step * v;
+            const FewLanes v =
+                load<FewLanes>(at.v[i] + p) + (push * load<FewLanes>(at.f[i] + p) + kick * fall[i]);
+            const FewLanes x = load<FewLanes>(at.x[i] + p) + step * v;
             std::memcpy(at.v[i] + p, &v, sizeof v);
             std::memcpy(at.x[i] + p, &x, sizeof x);
             speed += v * v;
@@ -59,13 +59,13 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
         fastest = larger(fastest, speed);
         wrong += speed - speed;
     };
-    for (; begin + kLanes <= end; begin += kLanes) batch(m, begin);
+    for (; begin + kFewLanes <= end; begin += kFewLanes) batch(m, begin);
     if (begin < end) {
-        double copy[10][kLanes];
+        double copy[10][kFewLanes];
         Movers last;
         const std::size_t count = end - begin;
         const auto take = [&](int n, const double* from, double fill) {
-            std::fill_n(copy[n], kLanes, fill);
+            std::fill_n(copy[n], kFewLanes, fill);
             std::copy_n(from + begin, count, copy[n]);
             return copy[n];
         };
@@ -81,7 +81,7 @@ double move_block(const Movers& m, std::size_t begin, std::size_t end, double ki
         }
     }
     double most = 0, sum = 0;
-    for (int l = 0; l < kLanes; ++l) most = std::max(most, fastest[l]), sum += wrong[l];
+    for (int l = 0; l < kFewLanes; ++l) most = std::max(most, fastest[l]), sum += wrong[l];
     return sum == 0 ? most : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -13,40 +13,41 @@ namespace swage {
 
 namespace {
 
-SWAGE_INLINE Lanes bounded(const Lanes& value, double most) {
-    const Lanes high = Lanes{} + most;
-    const Lanes below = value > high ? high : value;
+SWAGE_INLINE FewLanes bounded(const FewLanes& value, double most) {
+    const FewLanes high = FewLanes{} + most;
+    const FewLanes below = value > high ? high : value;
     return below < -high ? -high : below;
 }
 
-SWAGE_INLINE Lanes positive(const Lanes& value) { return larger(value, -value); }
-
-SWAGE_INLINE void put(const Lanes& value, double* to) { std::memcpy(to, &value, sizeof value); }
+SWAGE_INLINE FewLanes positive(const FewLanes& value) { return larger(value, -value); }
 
 // As many numbers as there are, the rest zero.
-SWAGE_INLINE Lanes some(const double* from, std::size_t count) {
-    Lanes value{};
-    if (count >= std::size_t(kLanes)) return load<Lanes>(from);
+SWAGE_INLINE FewLanes some(const double* from, std::size_t count) {
+    FewLanes value{};
+    if (count >= std::size_t(kFewLanes)) return load<FewLanes>(from);
     for (std::size_t l = 0; l < count; ++l) value[l] = from[l];
     return value;
 }
-SWAGE_INLINE void put_some(const Lanes& value, std::size_t count, double* to) {
-    if (count >= std::size_t(kLanes)) return put(value, to);
-    for (std::size_t l = 0; l < count; ++l) to[l] = value[l];
+SWAGE_INLINE void put_some(const FewLanes& value, std::size_t count, double* to) {
+    if (count >= std::size_t(kFewLanes)) {
+        std::memcpy(to, &value, sizeof value);
+    } else {
+        std::memcpy(to, &value, count * sizeof(double));
+    }
 }
 
-double sum_of(const Lanes& lanes) {
+double sum_of(const FewLanes& lanes) {
     double sum = 0;
-    for (int l = 0; l < kLanes; ++l) sum += lanes[l];
+    for (int l = 0; l < kFewLanes; ++l) sum += lanes[l];
     return sum;
 }
 
 SWAGE_VECTOR_CLONES
 void restrain(const double* x, const double* held, const double* drag, const double* mass,
               double share, double gravity, std::size_t count, double* force) {
-    for (std::size_t p = 0; p < count; p += kLanes) {
+    for (std::size_t p = 0; p < count; p += kFewLanes) {
         const std::size_t left = count - p;
-        const Lanes pull =
+        const FewLanes pull =
             share * some(drag + p, left) * (some(x + p, left) - some(held + p, left));
         put_some(some(force + p, left) + (some(mass + p, left) * gravity - pull), left, force + p);
     }
@@ -55,12 +56,12 @@ void restrain(const double* x, const double* held, const double* drag, const dou
 SWAGE_VECTOR_CLONES
 RelaxationSums chunk_sums(const double* const (&v)[3], const double* const (&f)[3],
                           const double* mass, std::size_t count) {
-    Lanes power{}, motion{};
-    for (std::size_t p = 0; p < count; p += kLanes) {
+    FewLanes power{}, motion{};
+    for (std::size_t p = 0; p < count; p += kFewLanes) {
         const std::size_t left = count - p;
-        Lanes along{}, speed{};
+        FewLanes along{}, speed{};
         for (int i = 0; i < 3; ++i) {
-            const Lanes vi = some(v[i] + p, left), fi = some(f[i] + p, left);
+            const FewLanes vi = some(v[i] + p, left), fi = some(f[i] + p, left);
             along += vi * fi, speed += vi * vi;
         }
         power += along;
@@ -72,18 +73,19 @@ RelaxationSums chunk_sums(const double* const (&v)[3], const double* const (&f)[
 SWAGE_VECTOR_CLONES
 double move_component(const RelaxationMove& move, const double* f, const double* inverse_mass,
                       const double* listed, std::size_t count, double* v, double* x) {
-    Lanes farthest{};
-    for (std::size_t p = 0; p < count; p += kLanes) {
-        const std::size_t left = count - p;
-        const Lanes speed = move.keep * some(v + p, left) +
-                            move.kick * some(f + p, left) * some(inverse_mass + p, left);
-        const Lanes now = some(x + p, left) + bounded(move.step * speed, move.longest);
-        put_some(speed, left, v + p);
-        put_some(now, left, x + p);
-        farthest = larger(farthest, positive(now - some(listed + p, left)));
+    FewLanes farthest{};
+    for (std::size_t p = 0; p < count; p += kFewLanes) {
+        const auto at = [&](const double* from) __attribute__((always_inline)) {
+            return some(from + p, count - p);
+        };
+        const FewLanes speed = move.keep * at(v) + move.kick * at(f) * at(inverse_mass);
+        const FewLanes now = at(x) + bounded(move.step * speed, move.longest);
+        put_some(speed, count - p, v + p);
+        put_some(now, count - p, x + p);
+        farthest = larger(farthest, positive(now - at(listed)));
     }
     double most = 0;
-    for (int l = 0; l < kLanes; ++l) most = std::max(most, farthest[l]);
+    for (int l = 0; l < kFewLanes; ++l) most = std::max(most, farthest[l]);
     return most;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole explicit steps with one thread and with two, taken in turns, by the clock on the wall: the
-// median of the ratios. With `busy` a third thread spins on the last core meanwhile.
+// Whole explicit steps with one thread and with two, four and so on, up to one a core, taken in
+// turns, by the clock on the wall: medians of the ratios. With `busy` one more thread spins on the
+// last core meanwhile.
 // usage: bench_threads [busy] [cells ...]
 #include <fmt/format.h>
 #include <pthread.h>
@@ -34,6 +35,20 @@ Aggregate bar(double cells, const Material& material) {
     return m;
 }
 
+// 1, 2, 4 and so on, the number of cores last; two at least.
+std::vector<int> thread_counts() {
+    const int cores = std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
+    std::vector<int> counts;
+    for (int n = 1; n < cores; n *= 2) counts.push_back(n);
+    counts.push_back(cores);
+    return counts;
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
 void compare(const char* name, double cells, const Material& material) {
     Aggregate m = bar(cells, material);
     const Apparatus nothing;
@@ -45,29 +60,30 @@ void compare(const char* name, double cells, const Material& material) {
     const int steps = std::max(64, static_cast<int>(4e6 / cells));
     const double frame = (steps - 0.5) * explicit_step(m, settings);
     Drive from, to;
-    std::vector<double> one, ratio;
+    const std::vector<int> counts = thread_counts();
+    std::vector<double> one;
+    std::vector<std::vector<double>> faster(counts.size());
     for (int n = 0; n < 9; ++n) {
-        double seconds[2];
-        for (int threads : {1, 2}) {
-            set_thread_count(threads);
+        double alone = 0;
+        for (std::size_t c = 0; c < counts.size(); ++c) {
+            set_thread_count(counts[c]);
             from.time = to.time;
             to.time += frame;
             const auto start = std::chrono::steady_clock::now();
             const long taken = solver.advance(from, to).steps;
             const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-            seconds[threads - 1] = took.count() / static_cast<double>(taken);
+            const double seconds = took.count() / static_cast<double>(taken);
+            if (c == 0) alone = seconds;
+            if (n > 0) faster[c].push_back(alone / seconds);  // the first round warms up
         }
-        if (n == 0) continue;  // warms up
-        one.push_back(seconds[0]);
-        ratio.push_back(seconds[0] / seconds[1]);
+        if (n > 0) one.push_back(alone);
     }
-    std::sort(one.begin(), one.end());
-    std::sort(ratio.begin(), ratio.end());
-    const std::size_t middle = ratio.size() / 2;
-    fmt::print(
-        "{:<18}{:>9} cells: {:9.3f} ms a step with one thread; {:.2f} times as fast with "
-        "two ({:.2f} to {:.2f})\n",
-        name, m.cell_fill.size(), 1e3 * one[middle], ratio[middle], ratio.front(), ratio.back());
+    fmt::print("{:<16}{:>9} cells: {:9.3f} ms a step with one thread; times as fast:", name,
+               m.cell_fill.size(), 1e3 * median(one));
+    for (std::size_t c = 1; c < counts.size(); ++c) {
+        fmt::print(" {:.2f} with {}{}", median(faster[c]), counts[c],
+                   c + 1 < counts.size() ? "," : "\n");
+    }
 }
 
 }  // namespace
