@@ -14,17 +14,25 @@ void set_thread_count(int count);
 int thread_count();
 
 // Calls body(0) ... body(count - 1), each exactly once, in no fixed order. Exceptions reach the
-// caller. With one thread, or one chunk, it is a plain loop.
+// caller. With one thread, or one chunk, it is a plain loop. Loops may hold others.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
+// The same where there is work for so many threads: fewer than there are chunks where these are
+// hardly worth handing over (some 20 us are), or more where they hold loops of their own.
+void parallel_for(std::size_t count, std::size_t threads,
+                  const std::function<void(std::size_t)>& body);
 
 // The sum over chunks of partial(chunk), added in the order of the chunks.
 template <typename Partial>
-double ordered_sum(std::size_t chunk_count, const Partial& partial) {
+double ordered_sum(std::size_t chunk_count, std::size_t threads, const Partial& partial) {
     std::vector<double> part(chunk_count, 0.0);
-    parallel_for(chunk_count, [&](std::size_t chunk) { part[chunk] = partial(chunk); });
+    parallel_for(chunk_count, threads, [&](std::size_t chunk) { part[chunk] = partial(chunk); });
     double sum = 0;
     for (double p : part) sum += p;
     return sum;
+}
+template <typename Partial>
+double ordered_sum(std::size_t chunk_count, const Partial& partial) {
+    return ordered_sum(chunk_count, chunk_count, partial);
 }
 
 }  // namespace swage

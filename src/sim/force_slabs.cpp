@@ -11,10 +11,12 @@ namespace swage {
 
 namespace {
 
-// Cells, or particles of springs, in a slab: the fewest take about twice as long as handing them
-// over (20 us). Each has a seam, so there are no more than keep a few threads busy unless all are
+// Cells, or particles of springs, in a slab: the fewest take about as long as handing them over (20
+// us). Each has a seam, so there are no more than keep a few threads busy unless all are
 // as large as the next.
-constexpr std::size_t kFewestCells = 2048, kFewSlabs = 8, kManyCells = 8192, kMostSlabs = 32;
+constexpr std::size_t kFewestCells = 1024, kFewSlabs = 8, kManyCells = 8192, kMostSlabs = 32;
+// Particles of which all seams take that long to add.
+constexpr std::size_t kSeamShare = 16384;
 std::size_t slab_count(std::size_t cells) {
     const std::size_t few = std::min(cells / kFewestCells, kFewSlabs);
     return std::clamp<std::size_t>(cells / kManyCells, std::max<std::size_t>(1, few), kMostSlabs);
@@ -142,7 +144,8 @@ ForceRows force_rows(RowSlab& slab, Vec3Array& force) {
 
 void add_seams(const std::vector<RowSlab>& slabs, Vec3Array& force) {
     if (slabs.size() <= 1) return;
-    parallel_for(slabs.size() - 1, [&](std::size_t index) {
+    const std::size_t share = static_cast<std::size_t>(slabs.back().end) / kSeamShare;
+    parallel_for(slabs.size() - 1, share, [&](std::size_t index) {
         const RowSlab& to = slabs[index + 1];
         for (std::size_t s = 0; s <= index; ++s) {
             const RowSlab& from = slabs[s];

@@ -63,14 +63,13 @@ void balance(const Aggregate& matter, const std::vector<int>& points, std::vecto
 
 Vec3 mass_moment(const Aggregate& matter) {
     const Vec3Array& x = matter.particle_position;
-    std::vector<Vec3> part(vector_chunks(x.size()), Vec3::Zero());
-    for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
+    const auto of_chunk = [&](std::size_t begin, std::size_t end) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t p = begin; p < end; ++p) sum += matter.particle_mass[p] * x.at(p);
-        part[begin / kVectorChunk] = sum;
-    });
+        return sum;
+    };
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& one : part) sum += one;
+    for (const Vec3& one : of_each_chunk(x.size(), of_chunk)) sum += one;
     return sum;
 }
 

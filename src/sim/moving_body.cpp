@@ -6,7 +6,6 @@
 #include <cstring>
 #include <limits>
 
-#include "base/parallel.h"
 #include "sim/cell_batch.h"
 #include "sim/crushed_cells.h"
 #include "sim/vector_clones.h"
@@ -32,7 +31,6 @@ double stable_step(const Aggregate& matter, double safety, const LatticeForces& 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCalm = 0.5;     // of the speed that crushed matter deforms by, in a stable step
 constexpr double kTurned = 0.05;  // spacings that particles go between looks at what is bent
-constexpr std::size_t kMoved = 8192;  // particles at a time: fewer take less than handing over
 
 struct Movers {
     double *x[3], *v[3];
@@ -168,13 +166,11 @@ double MovingBody::move(double kick, double step) {
                         {f.x.data(), f.y.data(), f.z.data()},
                         matter_.particle_mass.data()};
     const double fall[3] = {gravity_.x(), gravity_.y(), gravity_.z()};
-    std::vector<double> fastest((x.size() + kMoved - 1) / kMoved);
-    parallel_for(fastest.size(), [&](std::size_t chunk) {
-        fastest[chunk] = move_block(movers, chunk * kMoved,
-                                    std::min(x.size(), (chunk + 1) * kMoved), kick, step, fall);
-    });
+    const auto move_chunk = [&](std::size_t begin, std::size_t end) {
+        return move_block(movers, begin, end, kick, step, fall);
+    };
     double most = 0;
-    for (double one : fastest)
+    for (double one : of_each_chunk(x.size(), move_chunk))
         most = std::isnan(one) || std::isnan(most) ? kLost : std::max(one, most);
     return step * std::sqrt(most);
 }
@@ -307,16 +303,13 @@ double MovingBody::round_off(double step) const {
 
 double MovingBody::top_speed() const {
     const Vec3Array& v = matter_.particle_velocity;
-    std::vector<double> part(vector_chunks(v.size()), 0.0);
-    parallel_for(part.size(), [&](std::size_t chunk) {
-        const std::size_t begin = chunk * kVectorChunk,
-                          end = std::min(v.size(), begin + kVectorChunk);
-        for (std::size_t p = begin; p < end; ++p) {
-            part[chunk] = std::max(part[chunk], v.at(p).squaredNorm());
-        }
-    });
+    const auto of_chunk = [&](std::size_t begin, std::size_t end) {
+        double most = 0;
+        for (std::size_t p = begin; p < end; ++p) most = std::max(most, v.at(p).squaredNorm());
+        return most;
+    };
     double most = 0;
-    for (double one : part) most = std::max(most, one);
+    for (double one : of_each_chunk(v.size(), of_chunk)) most = std::max(most, one);
     return std::sqrt(most);
 }
 

@@ -107,16 +107,15 @@ void add_restraint(const Vec3Array& position, const Restraint& restraint, Vec3Ar
 
 RelaxationSums relaxation_sums(const Vec3Array& velocity, const Vec3Array& force,
                                const std::vector<double>& mass) {
-    std::vector<RelaxationSums> part(vector_chunks(velocity.size()));
-    for_each_chunk(velocity.size(), [&](std::size_t begin, std::size_t end) {
+    const auto of_chunk = [&](std::size_t begin, std::size_t end) {
         const double* const v[3] = {velocity.x.data() + begin, velocity.y.data() + begin,
                                     velocity.z.data() + begin};
         const double* const f[3] = {force.x.data() + begin, force.y.data() + begin,
                                     force.z.data() + begin};
-        part[begin / kVectorChunk] = chunk_sums(v, f, mass.data() + begin, end - begin);
-    });
+        return chunk_sums(v, f, mass.data() + begin, end - begin);
+    };
     RelaxationSums all;
-    for (const RelaxationSums& one : part) {
+    for (const RelaxationSums& one : of_each_chunk(velocity.size(), of_chunk)) {
         all.power += one.power, all.motion += one.motion;
     }
     return all;
@@ -125,21 +124,19 @@ RelaxationSums relaxation_sums(const Vec3Array& velocity, const Vec3Array& force
 double move_on(const RelaxationMove& move, const Vec3Array& force,
                const std::vector<double>& inverse_mass, const Vec3Array& listed,
                Vec3Array& velocity, Vec3Array& position) {
-    std::vector<double> farthest(vector_chunks(position.size()), 0.0);
-    for_each_chunk(position.size(), [&](std::size_t begin, std::size_t end) {
+    const auto move_chunk = [&](std::size_t begin, std::size_t end) {
         const auto component = [&](const std::vector<double>& f, const std::vector<double>& from,
                                    std::vector<double>& v, std::vector<double>& x) {
             return move_component(move, f.data() + begin, inverse_mass.data() + begin,
                                   from.data() + begin, end - begin, v.data() + begin,
                                   x.data() + begin);
         };
-        farthest[begin / kVectorChunk] =
-            std::max({component(force.x, listed.x, velocity.x, position.x),
-                      component(force.y, listed.y, velocity.y, position.y),
-                      component(force.z, listed.z, velocity.z, position.z)});
-    });
+        return std::max({component(force.x, listed.x, velocity.x, position.x),
+                         component(force.y, listed.y, velocity.y, position.y),
+                         component(force.z, listed.z, velocity.z, position.z)});
+    };
     double most = 0;
-    for (double one : farthest) most = std::max(most, one);
+    for (double one : of_each_chunk(position.size(), move_chunk)) most = std::max(most, one);
     return most;
 }
 

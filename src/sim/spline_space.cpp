@@ -9,7 +9,7 @@ namespace swage {
 
 namespace {
 
-constexpr int kChunkParticles = 8192;
+constexpr int kChunkParticles = 2048;
 
 using Places = std::array<std::vector<SplineSpace::Place>, 3>;
 

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/parallel.h"
 #include "matter/aggregate.h"
 
 namespace swage {
 
-inline constexpr std::size_t kVectorChunk = 8192;
+// Particles of a chunk, and of what a thread takes at least: 20 us or so.
+inline constexpr std::size_t kVectorChunk = 2048, kVectorShare = 4096;
 
 inline std::size_t vector_chunks(std::size_t count) {
     return (count + kVectorChunk - 1) / kVectorChunk;
@@ -20,9 +22,19 @@ inline std::size_t vector_chunks(std::size_t count) {
 // Calls act(begin, end) for each chunk.
 template <typename Act>
 void for_each_chunk(std::size_t count, const Act& act) {
-    parallel_for(vector_chunks(count), [&](std::size_t chunk) {
+    parallel_for(vector_chunks(count), count / kVectorShare, [&](std::size_t chunk) {
         act(chunk * kVectorChunk, std::min(count, (chunk + 1) * kVectorChunk));
     });
+}
+
+// What of(begin, end) gives for each chunk.
+template <typename Of>
+auto of_each_chunk(std::size_t count, const Of& of) {
+    std::vector<decltype(of(count, count))> part(vector_chunks(count));
+    for_each_chunk(count, [&](std::size_t begin, std::size_t end) {
+        part[begin / kVectorChunk] = of(begin, end);
+    });
+    return part;
 }
 
 // Sums of one chunk in four lanes: the order is fixed and the loop still vectorises.
@@ -39,7 +51,7 @@ double lane_sum(std::size_t begin, std::size_t end, const Term& term) {
 
 template <typename Term>
 double chunked_sum(std::size_t count, const Term& term) {
-    return ordered_sum(vector_chunks(count), [&](std::size_t chunk) {
+    return ordered_sum(vector_chunks(count), count / kVectorShare, [&](std::size_t chunk) {
         return lane_sum(chunk * kVectorChunk, std::min(count, (chunk + 1) * kVectorChunk), term);
     });
 }
