@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/parallel.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -20,7 +21,8 @@ constexpr int kPatience = 8;          // blocks until a halved step is doubled a
 constexpr double kFrameShare = 0.25;  // of a frame, in an implicit step
 constexpr double kRescueStep = 64;    // explicit steps in an implicit one that stands in for them
 constexpr int kRescueHalvings = 10;
-constexpr long kRescue = 4;  // blocks of these
+constexpr long kRescue = 4;                // blocks of these
+constexpr std::size_t kThreadShare = 512;  // particles that a thread is worth waking for
 
 // What was done, whether for or against.
 double turned_over(const std::vector<double>& before, const std::vector<double>& after) {
@@ -70,6 +72,16 @@ void ExplicitSolver::connections_changed(std::size_t body) {
     implicit_[body] = {};
     contact_.connections_changed(body);
     sleeping_.wake(body);
+}
+
+void ExplicitSolver::for_all_awake(const std::function<void(std::size_t)>& act) {
+    std::vector<std::size_t> awake;
+    std::size_t particles = 0;
+    for_each_awake([&](std::size_t b) {
+        awake.push_back(b);
+        particles += body_[b].matter().particle_count();
+    });
+    parallel_for(awake.size(), particles / kThreadShare, [&](std::size_t n) { act(awake[n]); });
 }
 
 void ExplicitSolver::meet(const Drive& now, double dt, bool again, MoveOutcome& outcome) {
@@ -158,7 +170,7 @@ double ExplicitSolver::longest_step(double frame) {
 }
 
 std::vector<Stored> ExplicitSolver::stored(const Drive& now, double dt) {
-    for_each_awake([&](std::size_t b) {
+    for_all_awake([&](std::size_t b) {
         held_[b] = body_[b].stored(now, dt);
         if (b < met_.size()) held_[b].contact += met_[b].stored;
     });
@@ -166,12 +178,12 @@ std::vector<Stored> ExplicitSolver::stored(const Drive& now, double dt) {
 }
 
 std::vector<Stored> ExplicitSolver::still_stored(double dt) {
-    for_each_awake([&](std::size_t b) { held_[b].kinetic = body_[b].kinetic_energy(dt); });
+    for_all_awake([&](std::size_t b) { held_[b].kinetic = body_[b].kinetic_energy(dt); });
     return held_;
 }
 
 double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
-                            MoveOutcome& outcome) {
+                            BodyOutcome& outcome) {
     MovingBody& body = body_[b];
     if (has_half_kicks()) return body.move(n == 1 ? 0.5 * dt : dt, dt);
     if (!is_implicit()) {
@@ -180,7 +192,7 @@ double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
         return gone;
     }
     const Vec3Array from = body.matter().particle_position;
-    if (!implicit_[b].move(body, now, dt, outcome.body[b])) {
+    if (!implicit_[b].move(body, now, dt, outcome)) {
         return std::numeric_limits<double>::quiet_NaN();
     }
     if (!body.meets_tools()) return 0;  // nothing that it could go through
@@ -214,7 +226,7 @@ void ExplicitSolver::start_books(const std::vector<Stored>& held, MoveOutcome& o
 Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& outcome) {
     const auto& [begin, end, dt, count] = block;
     in_block_ = true;
-    for_each_awake([&](std::size_t b) { body_[b].begin_block(outcome.body[b]); });
+    for_all_awake([&](std::size_t b) { body_[b].begin_block(outcome.body[b]); });
     Drive before = begin;
     for (MovingBody& body : body_) body.set_implicit(is_implicit());
     for (long n = 1; n <= count; ++n) {
@@ -224,28 +236,30 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
             time >= way.to.time ? way.to : drive_between(way.from, way.to, way.at(time));
         wake_stirred(before, now, dt, outcome);
         std::vector<double> gone(body_.size());
-        for_each_awake([&](std::size_t b) {
+        std::vector<Finding> found(body_.size());
+        for_all_awake([&](std::size_t b) {
             body_[b].begin_step(before);
-            gone[b] = move(b, now, dt, n, outcome);
+            gone[b] = move(b, now, dt, n, outcome.body[b]);
+            found[b] = look_at(body_[b], gone[b], std::numeric_limits<int>::max());
+            if (found[b]) return;
+            body_[b].find_forces(now, is_implicit() ? 0 : dt, outcome.body[b]);
+            found[b] = look_at(body_[b], gone[b], inside_out_[b]);
         });
         for (std::size_t b = 0; b < body_.size(); ++b) {
-            if (sleeping_.is_asleep(b)) continue;
-            Finding found = look_at(body_[b], gone[b], std::numeric_limits<int>::max());
-            if (!found) {
-                body_[b].find_forces(now, is_implicit() ? 0 : dt, outcome.body[b]);
-                found = look_at(body_[b], gone[b], inside_out_[b]);
-            }
-            if (!found) continue;
-            found.body = b;
-            found.step = steps_ + n;
-            found.time = time;
-            return found;
+            if (!found[b]) continue;
+            found[b].body = b;
+            found[b].step = steps_ + n;
+            found[b].time = time;
+            return found[b];
         }
-        for_each_awake([&](std::size_t b) {
-            const int broken = outcome.body[b].broken;
+        std::vector<int> broken(body_.size());
+        for_all_awake([&](std::size_t b) {
+            broken[b] = outcome.body[b].broken;
             body_[b].finish_step(before, now, dt, outcome.body[b]);
-            if (outcome.body[b].broken > broken) contact_.connections_changed(b);
             body_[b].renew_candidates(before, now, gone[b]);
+        });
+        for_each_awake([&](std::size_t b) {
+            if (outcome.body[b].broken > broken[b]) contact_.connections_changed(b);
         });
         if (contact_.acts()) {
             meet(now, dt, false, outcome);
@@ -254,7 +268,7 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
         }
         before = now;
     }
-    for_each_awake([&](std::size_t b) {
+    for_all_awake([&](std::size_t b) {
         if (has_half_kicks()) body_[b].kick(0.5 * dt);
         body_[b].end_block(outcome.body[b]);
     });
@@ -277,7 +291,7 @@ ExplicitSolver::Block ExplicitSolver::next_block(const Way& way, const Drive& be
 }
 
 void ExplicitSolver::save() {
-    for_each_awake([&](std::size_t b) {
+    for_all_awake([&](std::size_t b) {
         body_[b].save(state_[b]);
         const bool may =
             halvings_ >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);

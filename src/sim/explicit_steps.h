@@ -23,6 +23,7 @@
 // reach. Explicit steps that go wrong however short pass on to it too, where it can move the body.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -64,7 +65,7 @@ class ExplicitSolver {
     // That the speeds go on by from where places and speeds stand at one time [s].
     double first_step(double dt) const { return has_half_kicks() ? 0.5 * dt : dt; }
     // Moves one body on by step n of a block; returns the longest way of any particle [m].
-    double move(std::size_t body, const Drive& now, double dt, long n, MoveOutcome& outcome);
+    double move(std::size_t body, const Drive& now, double dt, long n, BodyOutcome& outcome);
     struct Block;
     Block next_block(const Way& way, const Drive& begin);
     void start_books(const std::vector<Stored>& held, MoveOutcome& outcome);
@@ -88,6 +89,8 @@ class ExplicitSolver {
             if (!sleeping_.is_asleep(b)) act(b);
         }
     }
+    // The same at once, where act(b) changes nothing but what is of body b.
+    void for_all_awake(const std::function<void(std::size_t)>& act);
     void wake(std::size_t body, MoveOutcome& outcome);
     void wake_neighbours(const Drive& now, MoveOutcome& outcome);
     void wake_stirred(const Drive& before, const Drive& now, double dt, MoveOutcome& outcome);
