@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/parallel.h"
 #include "geometry/box.h"
 #include "geometry/disjoint_sets.h"
 
@@ -13,8 +14,9 @@ namespace swage {
 
 namespace {
 
-constexpr double kWay = 0.45;         // spacings that anything may go between searches
-constexpr double kLeastShare = 1e-3;  // of a way, so that its points keep a stiffness
+constexpr double kWay = 0.45;              // spacings that anything may go between searches
+constexpr double kLeastShare = 1e-3;       // of a way, so that its points keep a stiffness
+constexpr std::size_t kThreadShare = 128;  // contacts that a thread is worth waking for
 
 // What of its own springs' doing a way has in that of both, from what either would hold alone.
 double share_of(double one, double other) {
@@ -177,7 +179,13 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
         if (acts[b]) side_[b].patch().read(*force[b]);
     }
     std::vector<ContactWay::Held> held(way_.size());
-    for (std::size_t w : awake) held[w] = way_[w].meet(step);
+    if (thread_count() == 1) {
+        for (std::size_t w : awake) held[w] = way_[w].find_and_press(step);
+    } else {
+        parallel_for(awake.size(), candidates() / kThreadShare,
+                     [&](std::size_t n) { way_[awake[n]].find(step); });
+        for (std::size_t w : awake) held[w] = way_[w].press();
+    }
     for (std::size_t w : awake) {
         const ContactWay::Held& own = held[w];
         if (pair_[w].back == w) {

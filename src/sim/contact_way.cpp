@@ -190,32 +190,46 @@ void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {
         patch.force(low + int(n)) += share * force[n].value;
 }
 
-// What one thread has just found it pushes at once, while it is near.
-ContactWay::Held ContactWay::meet(double step) {
+void ContactWay::begin_meeting() {
     meeting_.resize(list_.size());
     chunk_.resize(chunks(list_.size()));
     for (Pushed* pushed : {&point_push_, &cell_push_}) {
         pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
     }
-    Held held{0, std::exchange(gone_, 0)};
-    const std::size_t group = thread_count() == 1 ? 1 : chunk_.size();
-    for (std::size_t begin = 0; begin < chunk_.size(); begin += group) {
-        const std::size_t end = std::min(chunk_.size(), begin + group);
-        parallel_for(end - begin, [&](std::size_t n) { find_chunk(begin + n, step); });
-        for (std::size_t chunk = begin; chunk < end; ++chunk) {
-            for (int n : chunk_[chunk].moved) {
-                Contact& contact = list_.contact[n];
-                const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
-                for (int c = 0; c < 8; ++c) {
-                    const int slot = onto_->patch().slot_of(particle[c]);
-                    contact.corner[c] = slot;
-                    cell_push_.take(slot);
-                }
-            }
-            push_chunk(chunk);
-            held.now += chunk_[chunk].held.now;
-            held.gone += chunk_[chunk].held.gone;
+}
+
+void ContactWay::press_chunk(std::size_t chunk, Held& held) {
+    for (int n : chunk_[chunk].moved) {
+        Contact& contact = list_.contact[n];
+        const auto particle = onto_->matter().lattice.cell_corners(contact.cell);
+        for (int c = 0; c < 8; ++c) {
+            const int slot = onto_->patch().slot_of(particle[c]);
+            contact.corner[c] = slot;
+            cell_push_.take(slot);
         }
+    }
+    push_chunk(chunk);
+    held.now += chunk_[chunk].held.now;
+    held.gone += chunk_[chunk].held.gone;
+}
+
+void ContactWay::find(double step) {
+    begin_meeting();
+    parallel_for(chunk_.size(), [&](std::size_t chunk) { find_chunk(chunk, step); });
+}
+
+ContactWay::Held ContactWay::press() {
+    Held held{0, std::exchange(gone_, 0)};
+    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) press_chunk(chunk, held);
+    return held;
+}
+
+ContactWay::Held ContactWay::find_and_press(double step) {
+    begin_meeting();
+    Held held{0, std::exchange(gone_, 0)};
+    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
+        find_chunk(chunk, step);
+        press_chunk(chunk, held);
     }
     return held;
 }

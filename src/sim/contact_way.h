@@ -17,9 +17,9 @@
 // of the other body. All points together never make their carriers swing faster than half the way
 // to what steps can follow (stiffest_of_points()).
 //
-// In each step: resolve() where contacts have been found anew; then of all ways meet(), of all
-// push(), of all respond(); and commit() where the step is kept. Both sides' patches are read
-// before and written after.
+// In each step: resolve() where contacts have been found anew; then of all ways find() and press(),
+// of all push(), of all respond(); and commit() where the step is kept. Both sides' patches are
+// read before and written after.
 #pragma once
 
 #include <algorithm>
@@ -36,8 +36,8 @@ class ContactWay {
     // The sides, which may be one, must outlive it.
     ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& settings);
 
-    // The bodies have come near: what is asked of each point is found, for steps of this length [s].
-    // None of the rest may be called before, but for surfaces_changed() and commit().
+    // The bodies have come near: what is asked of each point is found, for steps of this length
+    // [s]. None of the rest may be called before, but for surfaces_changed() and commit().
     void come_near(double step);
     // They have gone from each other: nothing is kept.
     void part();
@@ -53,13 +53,16 @@ class ContactWay {
     // What is whole has changed on one side or both: the first too, whose points are others then.
     void surfaces_changed(bool points_too, double step);
 
-    // Finds how each point lies and moves now, for a step of this length [s], and what springs
-    // would do if this way were alone. What they would hold then, and what those held whose points
-    // or cells have broken since [J].
+    // How each point lies and moves now, for a step of this length [s]: of all ways at once.
+    void find(double step);
+    // What springs would do if this way were alone. What they would hold then, and what those held
+    // whose points or cells have broken since [J].
     struct Held {
         double now = 0, gone = 0;
     };
-    Held meet(double step);
+    Held press();
+    // Both, for one thread: what it has just found is pressed while it is near.
+    Held find_and_press(double step);
     // Adds this share of it. `lost`: what both ways hold less for what is gone [J].
     void push(double share, double lost);
     // Dashpots and friction, one contact after the other, given what all springs do. `again`: as
@@ -138,6 +141,8 @@ class ContactWay {
     // Where a chunk of contacts begins: a point's own stay together where several may end in one
     // cell.
     std::size_t begin_of(std::size_t chunk) const;
+    void begin_meeting();
+    void press_chunk(std::size_t chunk, Held& held);
     void find_chunk(std::size_t chunk, double step);
     void middle_find_chunk(std::size_t chunk, double step);
     void push_chunk(std::size_t chunk);
