@@ -9,11 +9,14 @@
 #include "laws/cell_forces.h"
 #include "laws/dual.h"
 #include "sim/cell_history.h"
+#include "sim/row_groups.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
 
 namespace {
+
+constexpr std::size_t kThreadRuns = 8;  // rows of cells that a thread is worth waking for
 
 // Where the arrays of a run begin.
 struct RunView {
@@ -354,16 +357,17 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
     const std::vector<Law> laws = laws_for(matter, kind.flow);
     const std::vector<CellRun>& all = runs(matter);
     std::vector<Mat3> own(matter.particle_count(), Mat3::Zero());
-    // Planes of cells share particles with the next ones only: every other plane at a time.
-    std::vector<std::size_t> plane(matter.lattice.cell_count.z() + 1, 0);
-    for (const CellRun& run : all) ++plane[run.k + 1];
-    for (std::size_t n = 1; n < plane.size(); ++n) plane[n] += plane[n - 1];
-    for (std::size_t odd = 0; odd < 2; ++odd) {
-        parallel_for(plane.size() / 2, [&](std::size_t half) {
-            const std::size_t index = 2 * half + odd;
-            if (index + 1 >= plane.size()) return;
+    // Rows of cells share particles with the next ones only: every other row of every other plane
+    // at a time.
+    const Vec3i& size = matter.lattice.cell_count;
+    const RowGroups rows(all, size, Vec3i::Ones());
+    for (int turn = 0; turn < 4; ++turn) {
+        const int j = turn & 1, k = turn >> 1, across = (size.y() - j + 1) / 2,
+                  up = (size.z() - k + 1) / 2;
+        parallel_for(std::size_t(across) * up, all.size() / kThreadRuns, [&](std::size_t n) {
+            const int row = static_cast<int>(n);
             Lanes block[8][6];
-            for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
+            for (std::size_t r : rows.of(2 * (row % across) + j, 2 * (row / across) + k)) {
                 const CellRun& run = all[r];
                 const Law& law = law_of(matter, laws, run);
                 const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
@@ -437,13 +441,10 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
     std::size_t count = 0;
     for (const CellRun& run : coarse.cell_run) count += run.count;
     std::vector<CellMatrix> sum(count);
-    // Each chunk is a plane of coarse cells.
-    std::vector<std::size_t> plane(coarse.cell_count.z() + 1, 0);
-    for (const CellRun& run : all) ++plane[run.k / ratio.z() + 1];
-    for (std::size_t n = 1; n < plane.size(); ++n) plane[n] += plane[n - 1];
-    parallel_for(plane.size() - 1, [&](std::size_t index) {
+    const RowGroups rows(all, coarse.cell_count, ratio);
+    parallel_for(rows.count(), all.size() / kThreadRuns, [&](std::size_t row) {
         Lanes matrix[std::tuple_size_v<decltype(CellMatrix::upper)>];
-        for (std::size_t r = plane[index]; r < plane[index + 1]; ++r) {
+        for (std::size_t r : rows.of(row)) {
             const CellRun& run = all[r];
             const Law& law = law_of(matter, laws, run);
             const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
