@@ -19,7 +19,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 4096;
-constexpr std::size_t kPairsPerChunk = 1024, kChunksAtOnce = 8;
+constexpr std::size_t kPairsPerChunk = 512, kChunksAtOnce = 16;
 // Of a tool's distance, what is surely left to go: that of a mesh, found between the points of a
 // grid, may change sqrt(3) times as fast as the place.
 constexpr double kSureShare = 0.5;
