@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <regex>
+#include <utility>
 
 #include "app/command.h"
 #include "app/scene_argument.h"
@@ -34,15 +34,10 @@ Json mistakes_json(const std::vector<Mistake>& mistakes) {
     return list;
 }
 
-// A line of an error: the place in front where it has one, else the scene as a whole.
-Mistake mistake_of(const std::string& line, const std::string& scene) {
-    static const std::regex placed("(.*?):([0-9]{1,9}):([0-9]{1,9}): (.*)");
-    std::smatch part;
-    if (!std::regex_match(line, part, placed)) return {.file = scene, .text = line};
-    return {.file = part.str(1),
-            .line = std::stoi(part.str(2)),
-            .column = std::stoi(part.str(3)),
-            .text = part.str(4)};
+// What came to light only now; of what has no place in the scene, the sentence.
+std::vector<Mistake> mistakes_of(const Error& error, const std::string& scene) {
+    if (const auto* placed = dynamic_cast<const SceneError*>(&error)) return placed->mistakes();
+    return {{.file = scene, .text = error.what()}};
 }
 
 // Of [mold], with which the work-piece's thinnest parts come within 1 %.
@@ -156,8 +151,8 @@ int check(const CheckArguments& given) {
     } catch (const Error& error) {
         if (!given.json) throw;
         std::vector<Mistake> mistakes = reading.mistakes;
-        for (const std::string& line : lines_of(error.what())) {
-            mistakes.push_back(mistake_of(line, given.scene.file));
+        for (Mistake& late : mistakes_of(error, given.scene.file)) {
+            mistakes.push_back(std::move(late));
         }
         json["mistakes"] = mistakes_json(mistakes);
         put_json(json);

@@ -2,7 +2,6 @@
 #include "pipeline/stage_machine.h"
 
 #include "base/error.h"
-#include "base/text.h"
 #include "machines/parameters.h"
 
 namespace swage {
@@ -11,16 +10,12 @@ namespace {
 
 constexpr double kLegSlack = 0.05;  // spacings
 
-std::string at(const std::string& place, const std::string& sentence) {
-    return place.empty() ? sentence : place + ": " + sentence;
-}
-
-std::vector<std::string> told(const StageSpec& stage, const ParameterError& error) {
-    std::vector<std::string> mistakes;
+std::vector<Mistake> placed(const StageSpec& stage, const ParameterError& error) {
+    std::vector<Mistake> mistakes;
     for (const auto& [parameter, sentence] : error.mistakes()) {
         const auto given = stage.parameter_place.find(parameter);
-        mistakes.push_back(
-            at(given != stage.parameter_place.end() ? given->second : stage.place, sentence));
+        mistakes.push_back(mistake_at(
+            given != stage.parameter_place.end() ? given->second : stage.place, sentence));
     }
     return mistakes;
 }
@@ -37,10 +32,10 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
         return build_machine(stage.machine, stage.parameter, work_frame(stage, work_piece),
                              work_piece, beside);
     } catch (const ParameterError& error) {
-        throw Error(error.code(), joined(told(stage, error), "\n"));
+        throw SceneError(placed(stage, error));
     } catch (const Error& error) {
         if (error.code() != ExitCode::scene) throw;
-        throw Error(error.code(), at(stage.place, error.what()));
+        throw SceneError({mistake_at(stage.place, error.what())});
     }
 }
 
@@ -53,8 +48,9 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
             resolve_parameters(stage.machine, stage.parameter,
                                work_piece_variables(work_piece, frame));
         } catch (const ParameterError& error) {
-            for (const std::string& mistake : told(stage, error)) {
-                mistakes.push_back(mistake + " (by the work-piece as it is at first)");
+            for (const Mistake& mistake : placed(stage, error)) {
+                mistakes.push_back(mistake_text(mistake) +
+                                   " (by the work-piece as it is at first)");
             }
         } catch (const Error&) {
             // An expression without a value here may have one at the work-piece of then.

@@ -81,8 +81,13 @@ Entry* Node::find(std::string_view key) {
     return const_cast<Entry*>(static_cast<const Node*>(this)->find(key));
 }
 
-std::string place_text(const Place& place) {
-    return place_text(place.source->file, place.line, place.column);
+Mistake mistake_at(const Place& place, const std::string& text, ExitCode code) {
+    return {place.source == nullptr ? std::filesystem::path() : place.source->file,
+            place.line,
+            place.column,
+            text,
+            false,
+            code};
 }
 
 Place place_inside(const Node& node, std::size_t at) {
@@ -132,7 +137,7 @@ void MistakeList::put(Mistake mistake) {
 }
 
 void MistakeList::add(const Place& place, const std::string& text, ExitCode code) {
-    put({place.source->file, place.line, place.column, text, false, code});
+    put(mistake_at(place, text, code));
 }
 
 void MistakeList::warn(const Place& place, const std::string& text) {

@@ -47,7 +47,8 @@ struct Entry {
     Node value;
 };
 
-std::string place_text(const Place& place);  // "bend.toml:14:3"
+// At a place that has no source: of no file.
+Mistake mistake_at(const Place& place, const std::string& text, ExitCode code = ExitCode::scene);
 
 // The place of byte `at` of a text's value: inside the quotes where the file has the text letter
 // by letter, else the text's own.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/mistake.h"
 
-#include <algorithm>
+#include <utility>
+
+#include "base/text.h"
 
 namespace swage {
 
@@ -10,9 +12,23 @@ std::string place_text(const std::filesystem::path& file, int line, int column) 
 }
 
 std::string mistake_text(const Mistake& mistake) {
+    if (mistake.file.empty()) return mistake.text;
     return place_text(mistake.file, mistake.line, mistake.column) +
            (mistake.warning ? ": warning: " : ": ") + mistake.text;
 }
+
+namespace {
+
+std::string lines_of(const std::vector<Mistake>& mistakes) {
+    std::vector<std::string> lines;
+    for (const Mistake& mistake : mistakes) lines.push_back(mistake_text(mistake));
+    return joined(lines, "\n");
+}
+
+}  // namespace
+
+SceneError::SceneError(std::vector<Mistake> mistakes)
+    : Error(exit_code(mistakes), lines_of(mistakes)), mistakes_(std::move(mistakes)) {}
 
 ExitCode exit_code(const std::vector<Mistake>& mistakes) {
     ExitCode code = ExitCode::done;

@@ -11,7 +11,8 @@
 namespace swage {
 
 struct Mistake {
-    std::filesystem::path file;       // as the user would write it; an override: "--set KEY=VALUE"
+    // As the user would write it; an override: "--set KEY=VALUE"; empty: of no file.
+    std::filesystem::path file;
     int line = 0, column = 0;         // from 1; 0: of the file as a whole
     std::string text;                 // one sentence, without a full stop
     bool warning = false;             // the scene can be run all the same
@@ -24,6 +25,16 @@ std::string place_text(const std::filesystem::path& file, int line, int column);
 // `bend.toml:14:3: unknown key "yeild" in [material], did you mean "yield_stress"?`; warnings have
 // "warning: " after the place.
 std::string mistake_text(const Mistake& mistake);
+
+// Mistakes that only come to light with what the scene makes. Its sentence has a line for each.
+class SceneError : public Error {
+  public:
+    explicit SceneError(std::vector<Mistake> mistakes);
+    const std::vector<Mistake>& mistakes() const { return mistakes_; }
+
+  private:
+    std::vector<Mistake> mistakes_;
+};
 
 // The exit code for all of them: the scene's own comes before a mesh's. `done` when there are only
 // warnings.

@@ -164,7 +164,7 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
         table.quantity(parameter.name, parameter.quantity, {}, value);
         if (std::isnan(value)) continue;
         stage.parameter[parameter.name] = value;
-        stage.parameter_place[parameter.name] = place_text(table.find(parameter.name)->place);
+        stage.parameter_place[parameter.name] = table.find(parameter.name)->place;
     }
     if (stage.parameter.empty()) return;
     const std::vector<Range> ranges = loaded.ranges->ranges(stage.parameter);
@@ -258,7 +258,7 @@ StageSpec StageReader::read(const Node& node) {
     std::string machine;
     const Loaded* loaded = find_machine(table, machine);
     const Node* named = table.find("machine");
-    stage.place = place_text(named != nullptr ? named->place : table.place());
+    stage.place = named != nullptr ? named->place : table.place();
     name_stage(table, machine, stage);
     if (table.whole("frames", 1, kMostFrames, stage.frames)) {
         frames_ += stage.frames;

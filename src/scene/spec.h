@@ -12,6 +12,7 @@
 #include "matter/material.h"
 #include "mold/mold.h"
 #include "render/settings.h"
+#include "scene/document.h"
 #include "sim/settings.h"
 #include "skin/settings.h"
 
@@ -61,9 +62,9 @@ struct StageSpec {
     std::string name;  // "1-bend": number and machine, or the user's own; a file name
     MachineSpec machine;
     std::map<std::string, double> parameter;  // only those that the scene gives, SI
-    // Where the scene names the machine, and where each of those parameters: "bend.toml:14:3".
-    std::string place;
-    std::map<std::string, std::string> parameter_place;
+    // Where the scene names the machine, and where each of those parameters.
+    Place place;
+    std::map<std::string, Place> parameter_place;
     std::string axis = "auto";  // work frame's x: "auto" (longest side of the box), "x", "y", "z"
     std::string up = "auto";    // work frame's y: "auto", or "x", "-x", "y", ...
     int frames = 60;            // >= 1
