@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
-#include "base/parallel.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -21,8 +20,14 @@ constexpr int kPatience = 8;          // blocks until a halved step is doubled a
 constexpr double kFrameShare = 0.25;  // of a frame, in an implicit step
 constexpr double kRescueStep = 64;    // explicit steps in an implicit one that stands in for them
 constexpr int kRescueHalvings = 10;
-constexpr long kRescue = 4;                // blocks of these
-constexpr std::size_t kThreadShare = 512;  // particles that a thread is worth waking for
+constexpr long kRescue = 4;  // blocks of these
+
+// Of a body in a step.
+struct Moved {
+    double way = 0;  // the longest of any particle [m]
+    Finding found;
+    bool broke = false;
+};
 
 // What was done, whether for or against.
 double turned_over(const std::vector<double>& before, const std::vector<double>& after) {
@@ -72,16 +77,6 @@ void ExplicitSolver::connections_changed(std::size_t body) {
     implicit_[body] = {};
     contact_.connections_changed(body);
     sleeping_.wake(body);
-}
-
-void ExplicitSolver::for_all_awake(const std::function<void(std::size_t)>& act) {
-    std::vector<std::size_t> awake;
-    std::size_t particles = 0;
-    for_each_awake([&](std::size_t b) {
-        awake.push_back(b);
-        particles += body_[b].matter().particle_count();
-    });
-    parallel_for(awake.size(), particles / kThreadShare, [&](std::size_t n) { act(awake[n]); });
 }
 
 void ExplicitSolver::meet(const Drive& now, double dt, bool again, MoveOutcome& outcome) {
@@ -235,32 +230,33 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
         const Drive now =
             time >= way.to.time ? way.to : drive_between(way.from, way.to, way.at(time));
         wake_stirred(before, now, dt, outcome);
-        std::vector<double> gone(body_.size());
-        std::vector<Finding> found(body_.size());
+        std::vector<Moved> moved(body_.size());
         for_all_awake([&](std::size_t b) {
+            Moved& one = moved[b];
             body_[b].begin_step(before);
-            gone[b] = move(b, now, dt, n, outcome.body[b]);
-            found[b] = look_at(body_[b], gone[b], std::numeric_limits<int>::max());
-            if (found[b]) return;
+            one.way = move(b, now, dt, n, outcome.body[b]);
+            one.found = look_at(body_[b], one.way, std::numeric_limits<int>::max());
+            if (one.found) return;
             body_[b].find_forces(now, is_implicit() ? 0 : dt, outcome.body[b]);
-            found[b] = look_at(body_[b], gone[b], inside_out_[b]);
+            one.found = look_at(body_[b], one.way, inside_out_[b]);
         });
         for (std::size_t b = 0; b < body_.size(); ++b) {
-            if (!found[b]) continue;
-            found[b].body = b;
-            found[b].step = steps_ + n;
-            found[b].time = time;
-            return found[b];
+            Finding& found = moved[b].found;
+            if (!found) continue;
+            found.body = b;
+            found.step = steps_ + n;
+            found.time = time;
+            return found;
         }
-        std::vector<int> broken(body_.size());
         for_all_awake([&](std::size_t b) {
-            broken[b] = outcome.body[b].broken;
+            const int broken = outcome.body[b].broken;
             body_[b].finish_step(before, now, dt, outcome.body[b]);
-            body_[b].renew_candidates(before, now, gone[b]);
+            body_[b].renew_candidates(before, now, moved[b].way);
+            moved[b].broke = outcome.body[b].broken > broken;
         });
-        for_each_awake([&](std::size_t b) {
-            if (outcome.body[b].broken > broken[b]) contact_.connections_changed(b);
-        });
+        for (std::size_t b = 0; b < body_.size(); ++b) {
+            if (moved[b].broke) contact_.connections_changed(b);
+        }
         if (contact_.acts()) {
             meet(now, dt, false, outcome);
             for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].met.add(met_[b], dt);

@@ -23,9 +23,9 @@
 // reach. Explicit steps that go wrong however short pass on to it too, where it can move the body.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "base/parallel.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/body_contact.h"
@@ -51,6 +51,8 @@ class ExplicitSolver {
     const LoadSet& pushes(std::size_t body) const { return body_[body].pushes(); }
 
   private:
+    static constexpr std::size_t kThreadShare = 512;  // particles that a thread is worth waking for
+
     struct Way {
         const Drive &from, &to;
         double at(double time) const { return (time - from.time) / (to.time - from.time); }
@@ -90,7 +92,17 @@ class ExplicitSolver {
         }
     }
     // The same at once, where act(b) changes nothing but what is of body b.
-    void for_all_awake(const std::function<void(std::size_t)>& act);
+    template <typename Act>
+    void for_all_awake(const Act& act) {
+        if (body_.size() == 1) return for_each_awake(act);
+        std::vector<std::size_t> awake;
+        std::size_t particles = 0;
+        for_each_awake([&](std::size_t b) {
+            awake.push_back(b);
+            particles += body_[b].matter().particle_count();
+        });
+        parallel_for(awake.size(), particles / kThreadShare, [&](std::size_t n) { act(awake[n]); });
+    }
     void wake(std::size_t body, MoveOutcome& outcome);
     void wake_neighbours(const Drive& now, MoveOutcome& outcome);
     void wake_stirred(const Drive& before, const Drive& now, double dt, MoveOutcome& outcome);
