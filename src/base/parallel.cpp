@@ -30,13 +30,13 @@ Arenas make_arenas() {
 }
 Arenas arena = make_arenas();
 
-tbb::task_arena& arena_for(std::size_t threads) {
+[[maybe_unused]] tbb::task_arena& arena_for(std::size_t threads) {
     std::size_t n = 0;
     while (n + 1 < arena.size() && (std::size_t{2} << n) < threads) ++n;
     return *arena[n];
 }
 
-bool is_in_arena() {
+[[maybe_unused]] bool is_in_arena() {
     return tbb::this_task_arena::current_thread_index() != tbb::task_arena::not_initialized;
 }
 }  // namespace
@@ -91,7 +91,8 @@ void parallel_for(std::size_t count, std::size_t threads,
             },
             tbb::simple_partitioner());
     };
-    is_in_arena() ? loop() : arena_for(threads).execute(loop);
+    // Who waits within a loop takes up nothing else of the loop around it: calls would pile up.
+    is_in_arena() ? tbb::this_task_arena::isolate(loop) : arena_for(threads).execute(loop);
 #endif
 }
 
