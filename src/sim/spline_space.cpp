@@ -9,7 +9,8 @@ namespace swage {
 
 namespace {
 
-constexpr int kChunkParticles = 2048;
+// Particles of a chunk, at the least: each has sums of its own, which one thread adds up.
+constexpr std::size_t kChunkParticles = 2048, kMostChunks = 32;
 
 using Places = std::array<std::vector<SplineSpace::Place>, 3>;
 
@@ -49,9 +50,11 @@ SplineSpace::SplineSpace(const Lattice& lattice,
     for (const SplineParts::Nodes& nodes : parts_.node) {
         plain.push_back(*std::max_element(nodes.begin(), nodes.end()) < grid_.prod());
     }
-    int filled = kChunkParticles;
+    const std::size_t share = parts_.of_particle.size() / kMostChunks;
+    const int most = static_cast<int>(std::max(kChunkParticles, share));
+    int filled = most;
     for (const ParticleRun& run : lattice.particle_run) {
-        if (filled >= kChunkParticles) {
+        if (filled >= most) {
             chunk_.push_back(row_.size());
             filled = 0;
         }
