@@ -3,6 +3,27 @@
 
 namespace swage {
 
+Vec3 Pose::operator*(const Vec3& point) const { return rotation * point + translation; }
+
+Pose Pose::operator*(const Pose& inner) const {
+    return {(rotation * inner.rotation).normalized(), rotation * inner.translation + translation};
+}
+
+Vec3 Pose::turn(const Vec3& direction) const { return rotation * direction; }
+
+Pose Pose::inverse() const {
+    const Quat back = rotation.conjugate();
+    return {back, -(back * translation)};
+}
+
+Mat3 cross_matrix(const Vec3& v) {
+    Mat3 m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+}
+
+Quat turn_onto(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to); }
+
 Vec3 turn_between(const Pose& from, const Pose& to) {
     const Eigen::AngleAxisd turn((to.rotation * from.rotation.conjugate()).normalized());
     return (turn.angle() > kPi ? turn.angle() - 2 * kPi : turn.angle()) * turn.axis();

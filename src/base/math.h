@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors, rotations and rigid poses used everywhere. SI units; radians.
+// Vectors, rotations and rigid poses used everywhere. SI units; radians. Read by nearly every
+// source, so what Eigen takes long to compile stands in math.cpp.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,23 +23,16 @@ struct Pose {
     Quat rotation = Quat::Identity();
     Vec3 translation = Vec3::Zero();
 
-    Vec3 operator*(const Vec3& point) const { return rotation * point + translation; }
-    Pose operator*(const Pose& inner) const {
-        return {(rotation * inner.rotation).normalized(),
-                rotation * inner.translation + translation};
-    }
-    Vec3 turn(const Vec3& direction) const { return rotation * direction; }
-    Pose inverse() const {
-        const Quat back = rotation.conjugate();
-        return {back, -(back * translation)};
-    }
+    Vec3 operator*(const Vec3& point) const;
+    Pose operator*(const Pose& inner) const;
+    Vec3 turn(const Vec3& direction) const;
+    Pose inverse() const;
 };
 
-inline Mat3 cross_matrix(const Vec3& v) {
-    Mat3 m;
-    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-    return m;
-}
+Mat3 cross_matrix(const Vec3& v);
+
+// The shortest turn that carries one direction onto another.
+Quat turn_onto(const Vec3& from, const Vec3& to);
 
 // Rotation vector [rad] in the world that turns one pose's axes into another's, the shorter way.
 Vec3 turn_between(const Pose& from, const Pose& to);

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -16,42 +17,33 @@
 namespace swage {
 
 namespace {
+// To ask is to read a file, which takes as long as many a loop.
+int core_count() {
+    static const int count = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    return count;
+}
+
 int configured_threads = 0;
 std::unique_ptr<tbb::global_control> limit;
+std::unique_ptr<tbb::task_arena> arena = std::make_unique<tbb::task_arena>(thread_count());
 
-// Of 2, 4, 8 ... threads, up to all: each that looks in vain for work costs those that have it.
-using Arenas = std::vector<std::unique_ptr<tbb::task_arena>>;
-Arenas make_arenas() {
-    Arenas made;
-    for (int size = 2; size < 2 * thread_count(); size *= 2) {
-        made.push_back(std::make_unique<tbb::task_arena>(std::min(size, thread_count())));
-    }
-    return made;
-}
-Arenas arena = make_arenas();
-
-[[maybe_unused]] tbb::task_arena& arena_for(std::size_t threads) {
-    std::size_t n = 0;
-    while (n + 1 < arena.size() && (std::size_t{2} << n) < threads) ++n;
-    return *arena[n];
-}
-
-[[maybe_unused]] bool is_in_arena() {
-    return tbb::this_task_arena::current_thread_index() != tbb::task_arena::not_initialized;
-}
+// That a thread is within a loop. TBB's own answer is no: it counts a thread in from its first
+// loop on.
+thread_local int loops_around = 0;
+struct WithinLoop {
+    WithinLoop() { ++loops_around; }
+    ~WithinLoop() { --loops_around; }
+};
 }  // namespace
 
 void set_thread_count(int count) {
-    configured_threads = std::max(0, count);
+    configured_threads = std::clamp(count, 0, std::max(16, core_count()));
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                   static_cast<std::size_t>(thread_count()));
-    arena = make_arenas();
+    arena = std::make_unique<tbb::task_arena>(thread_count());
 }
 
-int thread_count() {
-    if (configured_threads > 0) return configured_threads;
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
+int thread_count() { return configured_threads > 0 ? configured_threads : core_count(); }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
     parallel_for(count, count, body);
@@ -59,40 +51,49 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
 
 void parallel_for(std::size_t count, std::size_t threads,
                   const std::function<void(std::size_t)>& body) {
-    if (count <= 1 || threads <= 1 || thread_count() == 1) {
+    const std::size_t takers = std::min({count, threads, static_cast<std::size_t>(thread_count())});
+    if (takers <= 1) {
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
-#if defined(__SANITIZE_THREAD__)
-    // The sanitizer does not see into libtbb and would report its own hand-over of work.
     std::atomic<std::size_t> next = 0;
-    std::vector<std::exception_ptr> thrown(static_cast<std::size_t>(thread_count()));
-    const auto work = [&](std::exception_ptr& mine) {
+    const auto take = [&] {
+        const WithinLoop within;
         try {
             for (std::size_t i = next++; i < count; i = next++) body(i);
         } catch (...) {
-            mine = std::current_exception();
             next = count;
+            throw;
+        }
+    };
+#if defined(__SANITIZE_THREAD__)
+    // The sanitizer does not see into libtbb and would report its own hand-over of work.
+    std::vector<std::exception_ptr> thrown(takers);
+    const auto guarded = [&](std::exception_ptr& mine) {
+        try {
+            take();
+        } catch (...) {
+            mine = std::current_exception();
         }
     };
     std::vector<std::thread> helper;
-    for (std::size_t n = 1; n < thrown.size(); ++n) helper.emplace_back(work, std::ref(thrown[n]));
-    work(thrown[0]);
+    for (std::size_t n = 1; n < takers; ++n) helper.emplace_back(guarded, std::ref(thrown[n]));
+    guarded(thrown[0]);
     for (std::thread& thread : helper) thread.join();
     for (const std::exception_ptr& one : thrown) {
         if (one) std::rethrow_exception(one);
     }
 #else
+    // Isolated twice: a loop is not left half done where one beside it fails, both within a third;
+    // and who waits for it takes up nothing else of the loop around it, for calls would pile up.
+    tbb::task_group_context alone(tbb::task_group_context::isolated);
     const auto loop = [&] {
         tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, count, 1),
-            [&](const tbb::blocked_range<std::size_t>& range) {
-                for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-            },
-            tbb::simple_partitioner());
+            tbb::blocked_range<std::size_t>(0, takers, 1),
+            [&](const tbb::blocked_range<std::size_t>&) { take(); }, tbb::simple_partitioner(),
+            alone);
     };
-    // Who waits within a loop takes up nothing else of the loop around it: calls would pile up.
-    is_in_arena() ? tbb::this_task_arena::isolate(loop) : arena_for(threads).execute(loop);
+    loops_around > 0 ? tbb::this_task_arena::isolate(loop) : arena->execute(loop);
 #endif
 }
 

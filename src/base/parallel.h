@@ -9,15 +9,17 @@
 
 namespace swage {
 
-// Threads that later loops may use; 0 asks for as many as there are cores.
+// Threads that later loops may use; 0 asks for as many as there are cores. More than there are
+// cores may be asked for, up to 16.
 void set_thread_count(int count);
 int thread_count();
 
-// Calls body(0) ... body(count - 1), each exactly once, in no fixed order. Exceptions reach the
-// caller. With one thread, or one chunk, it is a plain loop. Loops may hold others.
+// Calls body(0) ... body(count - 1), each exactly once, in no fixed order. With one thread, or one
+// chunk, it is a plain loop. Loops may hold others. An exception reaches the caller, one of them
+// where there are several: none should be what a user reads.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
-// The same where there is work for so many threads: fewer than there are chunks where these are
-// hardly worth handing over (some 20 us are), or more where they hold loops of their own.
+// The same by no more than so many threads at once, where chunks are hardly worth handing over
+// (some 20 us are).
 void parallel_for(std::size_t count, std::size_t threads,
                   const std::function<void(std::size_t)>& body);
 

@@ -2,6 +2,7 @@
 // Axis-aligned boxes.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -13,12 +14,16 @@ struct Box {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
 
-    bool empty() const { return !(low.array() <= high.array()).all(); }
+    bool empty() const {
+        return !(low.x() <= high.x() && low.y() <= high.y() && low.z() <= high.z());
+    }
     Vec3 size() const { return high - low; }
     Vec3 center() const { return 0.5 * (low + high); }
     void grow(const Vec3& point) {
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
+        for (int i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], point[i]);
+            high[i] = std::max(high[i], point[i]);
+        }
     }
 };
 

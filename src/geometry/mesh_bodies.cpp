@@ -186,7 +186,7 @@ class Settler {
         if (count == 1) {  // by far the most frequent
             if (signed_volume(mesh_) < 0) {
                 for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) flip_triangle(mesh_, t);
-                account_.push_back("turned the whole surface: it was inside out");
+                account_.emplace_back("turned the whole surface: it was inside out");
             }
             return std::nullopt;
         }

@@ -102,7 +102,7 @@ void add_findings(MeshReport& report) {
     say(report.duplicate_triangles, "triangle", "triangles", " present more than once");
     say(report.unreferenced_vertices, "vertex", "vertices", " that no triangle uses");
     if (report.watertight && report.oriented && report.volume < 0)
-        report.finding.push_back("the surface is inside out");
+        report.finding.emplace_back("the surface is inside out");
     else
         say(static_cast<std::size_t>(report.inward_components), "closed surface", "closed surfaces",
             " facing inwards (a cavity, or inside out)");

@@ -429,7 +429,7 @@ RawMesh read_by_assimp(MeshSource& source) {
     if (!dropped.empty()) fail(ExitCode::mesh, "the file is damaged ({})", dropped);
     RawMesh mesh = SceneReader(source, *scene).read();
     if (source.format == MeshFormat::tmf) {  // assimp passes over the unit
-        source.finding.push_back("lengths were taken as millimetres, the usual unit of 3MF");
+        source.finding.emplace_back("lengths were taken as millimetres, the usual unit of 3MF");
         for (Vec3& p : mesh.position) p *= 1e-3;
     }
     return mesh;

@@ -74,7 +74,7 @@ class PlyReader {
             } else {
                 each(element, [](auto&&...) {});
                 if (element.count > 0)
-                    source_.finding.push_back(
+                    source_.finding.emplace_back(
                         fmt::format("{} of '{}' were left out", element.count, element.name));
             }
         }
@@ -283,12 +283,12 @@ class PlyReader {
             fail(ExitCode::mesh, "the faces have no list 'vertex_indices'");
         const int uv = element.find({"texcoord"}), texture = element.find({"texnumber"});
         if (texture_.size() > 1 && texture < 0)
-            source_.finding.push_back(
+            source_.finding.emplace_back(
                 fmt::format("{} textures are named, and no face says which is its own: the first "
                             "was taken",
                             texture_.size()));
         if (element.find({"red", "r", "diffuse_red"}) >= 0)
-            source_.finding.push_back(
+            source_.finding.emplace_back(
                 "colours of faces were left out (those of vertices are read)");
         each(element, [&](std::uint64_t item, const auto& value, const auto& list) {
             const auto& corner = list[indices];

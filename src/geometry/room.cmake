@@ -6,5 +6,6 @@ find_path(CGAL_HEADERS CGAL/version.h REQUIRED)
 find_library(GMP gmp REQUIRED)
 find_library(MPFR mpfr REQUIRED)
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/geometry/mesh_repair_cgal.cpp
-                            PROPERTIES COMPILE_OPTIONS -frounding-math)
+                            PROPERTIES COMPILE_OPTIONS -frounding-math
+                                       SKIP_PRECOMPILE_HEADERS ON)
 target_link_libraries(swage_geometry PRIVATE PkgConfig::ASSIMP ${GMP} ${MPFR})

@@ -114,7 +114,7 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     if (!(axis.norm() > 0)) {
         refuse(setting, fmt::format("the axis of tool {} has no length", spec.name));
     }
-    Pose work_from_tool{Quat::FromTwoVectors(Vec3::UnitZ(), axis).normalized(),
+    Pose work_from_tool{turn_onto(Vec3::UnitZ(), axis).normalized(),
                         evaluate(spec.at, setting.known)};
     const Vec3 touch = evaluate(spec.touch, setting.known);
     if (touch.norm() > 0) {

@@ -7,14 +7,11 @@
 
 namespace swage {
 
-std::string place_text(const std::filesystem::path& file, int line, int column) {
-    return line > 0 ? fmt::format("{}:{}:{}", file.string(), line, column) : file.string();
-}
-
 std::string mistake_text(const Mistake& mistake) {
     if (mistake.file.empty()) return mistake.text;
-    return place_text(mistake.file, mistake.line, mistake.column) +
-           (mistake.warning ? ": warning: " : ": ") + mistake.text;
+    std::string place = mistake.file.string();
+    if (mistake.line > 0) place += fmt::format(":{}:{}", mistake.line, mistake.column);
+    return place + (mistake.warning ? ": warning: " : ": ") + mistake.text;
 }
 
 namespace {

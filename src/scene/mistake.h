@@ -19,9 +19,6 @@ struct Mistake {
     ExitCode code = ExitCode::scene;  // what the program should return for this one alone
 };
 
-// "bend.toml:14:3"; line 0: the file as a whole.
-std::string place_text(const std::filesystem::path& file, int line, int column);
-
 // `bend.toml:14:3: unknown key "yeild" in [material], did you mean "yield_stress"?`; warnings have
 // "warning: " after the place.
 std::string mistake_text(const Mistake& mistake);

@@ -11,7 +11,7 @@ namespace swage {
 struct CellPlace {
     CellId cell;
     Vec3i site;
-    std::array<int, 8> corner;         // in the body's patch
+    std::array<int, 8> corner{};       // in the body's patch
     Vec3 place = Vec3::Constant(0.5);  // in the cell, 0 to 1
 };
 

@@ -15,8 +15,8 @@ struct Contact : CellPlace {
     int point;
     // What carries the point, in its body's patch; first those with a share.
     int carriers = 0;
-    std::array<int, 8> carrier;
-    std::array<float, 8> share;
+    std::array<int, 8> carrier{};
+    std::array<float, 8> share{};
     Vec3 dashed = Vec3::Zero();  // what its dashpots did when last found [N]
 };
 

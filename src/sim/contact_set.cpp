@@ -252,6 +252,14 @@ Distance ContactSet::distance_since_start(const Pair& pair, const Vec3& now,
     return distance_of(pair, pair.stuck ? now : start_of(pair), now, entry);
 }
 
+struct ContactSet::TouchNow {
+    std::size_t pair;
+    Vec3 place;
+    Distance distance;
+    double stiffness;  // [N/m]
+    ContactForce contact;
+};
+
 // Of pairs from `begin` on those that touch, in their order.
 void ContactSet::find_touches(const Aggregate& matter, const std::vector<ToolFrame>& frame,
                               double moved, std::size_t begin, std::size_t end,

@@ -25,7 +25,6 @@
 #include <string>
 #include <vector>
 
-#include "laws/contact.h"
 #include "laws/impact.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
@@ -168,14 +167,7 @@ class ContactSet {
                          ToolEntry& entry) const;
     // Of equilibria: on the way from where the move began.
     Distance distance_since_start(const Pair& pair, const Vec3& now, ToolEntry& entry) const;
-    // A pair that touches.
-    struct TouchNow {
-        std::size_t pair;
-        Vec3 place;
-        Distance distance;
-        double stiffness;  // [N/m]
-        ContactForce contact;
-    };
+    struct TouchNow;  // a pair that touches
     struct ToolFrame {
         Mat3 turn;  // world from tool
         Vec3 at;

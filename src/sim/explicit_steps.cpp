@@ -104,7 +104,7 @@ void ExplicitSolver::wake_neighbours(const Drive& now, MoveOutcome& outcome) {
 void ExplicitSolver::wake(std::size_t b, MoveOutcome& outcome) {
     sleeping_.wake(b);
     if (!in_block_) return;
-    body_[b].save(state_[b]);  // it lies as it did when the block began
+    save(b);  // it lies as it did when the block began
     body_[b].begin_block(outcome.body[b]);
 }
 
@@ -286,13 +286,15 @@ ExplicitSolver::Block ExplicitSolver::next_block(const Way& way, const Drive& be
             count};
 }
 
+void ExplicitSolver::save(std::size_t b) {
+    body_[b].save(state_[b]);
+    const bool may =
+        halvings_ >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);
+    inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
+}
+
 void ExplicitSolver::save() {
-    for_all_awake([&](std::size_t b) {
-        body_[b].save(state_[b]);
-        const bool may =
-            halvings_ >= kInsideOutHalvings || share_ <= std::ldexp(1.0, -kInsideOutHalvings);
-        inside_out_[b] = may ? std::numeric_limits<int>::max() : body_[b].inside_out();
-    });
+    for_all_awake([&](std::size_t b) { save(b); });
     contact_state_ = contact_.save();
 }
 

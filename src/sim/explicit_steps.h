@@ -72,6 +72,7 @@ class ExplicitSolver {
     Block next_block(const Way& way, const Drive& begin);
     void start_books(const std::vector<Stored>& held, MoveOutcome& outcome);
     void save();
+    void save(std::size_t body);
     Finding take(const Way& way, const Block& block, MoveOutcome& outcome);
     bool energy_holds(const Block& block, const std::vector<Stored>& held,
                       const std::vector<Stored>& after, const std::vector<BodyOutcome>& so_far,

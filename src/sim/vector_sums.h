@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "base/parallel.h"
@@ -30,7 +31,9 @@ void for_each_chunk(std::size_t count, const Act& act) {
 // What of(begin, end) gives for each chunk.
 template <typename Of>
 auto of_each_chunk(std::size_t count, const Of& of) {
-    std::vector<decltype(of(count, count))> part(vector_chunks(count));
+    using Part = decltype(of(count, count));
+    static_assert(!std::is_same_v<Part, bool>, "threads may not share a vector<bool>");
+    std::vector<Part> part(vector_chunks(count));
     for_each_chunk(count, [&](std::size_t begin, std::size_t end) {
         part[begin / kVectorChunk] = of(begin, end);
     });

@@ -63,7 +63,7 @@ void complete_rigidly(const Mat3& direction, int known, Mat3& image) {
         const double sign = direction.col(1).cross(direction.col(2)).dot(direction.col(0));
         if (normal.norm() > 0) image.col(0) = sign * normal.normalized();
     } else if (known == 1 && image.col(2).norm() > 0) {
-        const Quat turn = Quat::FromTwoVectors(direction.col(2), image.col(2));
+        const Quat turn = turn_onto(direction.col(2), image.col(2));
         image.col(0) = turn * direction.col(0);
         image.col(1) = turn * direction.col(1);
     }

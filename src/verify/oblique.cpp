@@ -68,7 +68,7 @@ void isotropy(bool, Values& values) {
     for (int n = 0; n < 27; ++n) {
         const Vec3 way(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
         if (way.isZero()) continue;
-        const Quat turn = Quat::FromTwoVectors(Vec3::UnitX(), way);
+        const Quat turn = turn_onto(Vec3::UnitX(), way);
         const Aggregate bar = unit_mold(turned(bar_mesh(4, 1), turn), kAcross, unit_material());
         const double modulus = stretch(bar, turn * Vec3::UnitX(), 1).young_modulus;
         low = std::min(low, modulus);

@@ -2,7 +2,9 @@
 #include "base/parallel.h"
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "tests/catch.h"
 
@@ -26,6 +28,49 @@ TEST_CASE("a loop calls each number once, and loops within it too") {
                 CHECK(once);
             }
         }
+    }
+    set_thread_count(0);
+}
+
+TEST_CASE("as many threads take part in each loop as there are, or as were said") {
+    set_thread_count(6);
+    for (int again = 0; again < 3; ++again) {
+        for (const int said : {6, 2}) {
+            std::atomic<int> within = 0, most = 0;
+            const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+            parallel_for(40, std::size_t(said), [&](std::size_t) {
+                const int now = ++within;
+                for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+                }
+                while (most < said && std::chrono::steady_clock::now() < deadline) {
+                    std::this_thread::yield();
+                }
+                std::this_thread::sleep_for(std::chrono::microseconds(100));
+                --within;
+            });
+            CHECK(most == said);
+        }
+    }
+    set_thread_count(0);
+}
+
+TEST_CASE("a loop within one that fails is done whole") {
+    set_thread_count(4);
+    for (int again = 0; again < 50; ++again) {
+        std::atomic<int> begun = 0, whole = 0;
+        CHECK_THROWS_WITH(parallel_for(4,
+                                       [&](std::size_t i) {
+                                           if (i == 3) throw std::runtime_error("3");
+                                           ++begun;
+                                           std::atomic<int> calls = 0;
+                                           parallel_for(200, [&](std::size_t) {
+                                               std::this_thread::yield();
+                                               ++calls;
+                                           });
+                                           whole += calls == 200;
+                                       }),
+                          "3");
+        CHECK(whole == begun);
     }
     set_thread_count(0);
 }

@@ -201,7 +201,7 @@ namespace {
 
 // Square rods along the diagonal of space, 4 mm from middle to middle and 2 mm wide.
 TriMesh oblique_rods(int count) {
-    const Mat3 turn = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::Ones()).toRotationMatrix();
+    const Mat3 turn = turn_onto(Vec3::UnitZ(), Vec3::Ones()).toRotationMatrix();
     TriMesh rods;
     for (int n = 0; n < count; ++n) {
         const Vec3 low(0.004 * (n % 11), 0.004 * (n / 11), 0);

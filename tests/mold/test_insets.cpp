@@ -20,7 +20,7 @@ Aggregate with_inset(const TriMesh& body, const TriMesh& solid, int across) {
 // All that lies before a plane through `point`, as far as `reach`.
 TriMesh half_space(const Vec3& point, const Vec3& normal, double reach) {
     const TriMesh box = box_mesh({-2 * reach, -reach, -reach}, {0, reach, reach});
-    return moved(box, {Quat::FromTwoVectors(Vec3::UnitX(), normal), point});
+    return moved(box, {turn_onto(Vec3::UnitX(), normal), point});
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST_CASE("scene files that cannot be files are refused without blocking") {
 
 TEST_CASE("long lines and deep nesting are read or refused, never fatal") {
     CHECK(mistakes_in(Parts().text() + "# " + std::string(1'000'000, 'x') + "\n") == "");
-    CHECK(mistakes_in("a = " + std::string(100'000, '[')).find("nested") != std::string::npos);
+    CHECK(mistakes_in(std::string("a = ").append(100'000, '[')).find("nested") != std::string::npos);
     const std::string wide = mistakes_in(Parts().text() + [] {
         std::string text = "[output]\n";
         for (int n = 0; n < 20000; ++n) text += fmt::format("key_{} = 1\n", n);

@@ -144,7 +144,7 @@ TEST_CASE("each point meets what has been pressed thin once, at its side as in i
 TEST_CASE("an edge and a corner are met as soon as they touch") {
     Aggregate floor = make_block(8, 2, 8, 0.1, kSpringy), die = make_block(3, 3, 3, 0.1, kSpringy);
     const Quat on_edge(Eigen::AngleAxisd(kPi / 4, Vec3::UnitX()));
-    const Quat on_corner = Quat::FromTwoVectors(Vec3(-1, -1, -1), Vec3(0, -1, 0));
+    const Quat on_corner = turn_onto(Vec3(-1, -1, -1), Vec3(0, -1, 0));
     for (const auto& [turn, half] :
          {std::pair(on_edge, std::sqrt(2.)), std::pair(on_corner, std::sqrt(3.))}) {
         for (double depth : {-0.001, 0.002}) {

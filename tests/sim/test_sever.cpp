@@ -14,7 +14,7 @@ namespace {
 
 // A blade wide enough for the block, edge along y', moving along z' of a frame whose x' is normal.
 void cut_along(Aggregate& m, const Vec3& point, const Vec3& normal, double reach, int sweeps) {
-    const Quat world_from_plane = Quat::FromTwoVectors(Vec3::UnitX(), normal.normalized());
+    const Quat world_from_plane = turn_onto(Vec3::UnitX(), normal.normalized());
     const Blade blade{"blade", {Vec3(0, -reach, 0), Vec3(0, reach, 0)}, {}};
     for (int s = 0; s < sweeps; ++s) {
         const auto pose = [&](int step) {
