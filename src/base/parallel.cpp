@@ -51,34 +51,25 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
 
 void parallel_for(std::size_t count, std::size_t threads,
                   const std::function<void(std::size_t)>& body) {
-    const std::size_t takers = std::min({count, threads, static_cast<std::size_t>(thread_count())});
-    if (takers <= 1) {
+    if (count <= 1 || threads <= 1 || thread_count() == 1) {
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
+#if defined(__SANITIZE_THREAD__)
+    // The sanitizer does not see into libtbb and would report its own hand-over of work.
     std::atomic<std::size_t> next = 0;
-    const auto take = [&] {
-        const WithinLoop within;
+    std::vector<std::exception_ptr> thrown(static_cast<std::size_t>(thread_count()));
+    const auto work = [&](std::exception_ptr& mine) {
         try {
             for (std::size_t i = next++; i < count; i = next++) body(i);
         } catch (...) {
-            next = count;
-            throw;
-        }
-    };
-#if defined(__SANITIZE_THREAD__)
-    // The sanitizer does not see into libtbb and would report its own hand-over of work.
-    std::vector<std::exception_ptr> thrown(takers);
-    const auto guarded = [&](std::exception_ptr& mine) {
-        try {
-            take();
-        } catch (...) {
             mine = std::current_exception();
+            next = count;
         }
     };
     std::vector<std::thread> helper;
-    for (std::size_t n = 1; n < takers; ++n) helper.emplace_back(guarded, std::ref(thrown[n]));
-    guarded(thrown[0]);
+    for (std::size_t n = 1; n < thrown.size(); ++n) helper.emplace_back(work, std::ref(thrown[n]));
+    work(thrown[0]);
     for (std::thread& thread : helper) thread.join();
     for (const std::exception_ptr& one : thrown) {
         if (one) std::rethrow_exception(one);
@@ -89,9 +80,12 @@ void parallel_for(std::size_t count, std::size_t threads,
     tbb::task_group_context alone(tbb::task_group_context::isolated);
     const auto loop = [&] {
         tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, takers, 1),
-            [&](const tbb::blocked_range<std::size_t>&) { take(); }, tbb::simple_partitioner(),
-            alone);
+            tbb::blocked_range<std::size_t>(0, count, 1),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                const WithinLoop within;
+                for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+            },
+            tbb::simple_partitioner(), alone);
     };
     loops_around > 0 ? tbb::this_task_arena::isolate(loop) : arena->execute(loop);
 #endif

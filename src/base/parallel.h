@@ -18,8 +18,8 @@ int thread_count();
 // chunk, it is a plain loop. Loops may hold others. An exception reaches the caller, one of them
 // where there are several: none should be what a user reads.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
-// The same by no more than so many threads at once, where chunks are hardly worth handing over
-// (some 20 us are).
+// The same where there is work for so many threads, a plain loop where that is one: chunks may be
+// hardly worth handing over (some 20 us are), or hold loops of their own.
 void parallel_for(std::size_t count, std::size_t threads,
                   const std::function<void(std::size_t)>& body);
 
