@@ -30,7 +30,9 @@ int parse_whole(const std::string& text, const std::string& of) {
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
                       const std::string& examples, Action& chosen, Action act) {
     CLI::App* command = app.add_subcommand(name, description);
-    command->add_option("--threads", common.threads, "threads to use (default: one a core)")
+    command
+        ->add_option("--threads", common.threads,
+                     "threads to use (default, and beyond 16 at most: one a core)")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
     auto* quiet = command->add_flag("-q,--quiet", common.quiet, "say only what is wrong");
