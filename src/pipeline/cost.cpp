@@ -39,6 +39,7 @@ constexpr double kImplicitWork = 250;                     // of such a step: 50 
 constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
 constexpr double kBytesPerVertex = 600;
 constexpr double kVerticesPerFace = 6;  // of a boundary, a cell's face: four, and its steps
+constexpr double kDividedVerticesPerFace = 2.5;  // of a face that is divided to follow the matter
 constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and their buffers
 constexpr double kStillBytesPerPixel = 0.7;
 constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two triangles
@@ -53,6 +54,19 @@ double lattice_steps_per_second(const BodySpec& body, double spacing, const SimS
         wave_speed = std::max(wave_speed, std::sqrt(m->young_modulus / m->density));
     }
     return 2.5 * wave_speed / spacing / sim.step_safety;
+}
+
+// Of a mesh as it is mounted, divided where its edges are long.
+double mounted_vertices(const TriMesh& mesh, const SkinSettings& skin, double spacing) {
+    double vertices = static_cast<double>(mesh.position.size());
+    for (std::size_t t = 0; skin.divide && t < mesh.triangle.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangle[t];
+        const Vec3 u = mesh.position[b] - mesh.position[a], v = mesh.position[c] - mesh.position[a];
+        const double longest = std::max({u.norm(), v.norm(), (v - u).norm()});
+        if (longest <= kLongestSkinEdge * spacing) continue;
+        vertices += kDividedVerticesPerFace * 0.5 * u.cross(v).norm() / (spacing * spacing);
+    }
+    return vertices;
 }
 
 double least_damping(const SceneSpec& scene) {
@@ -154,7 +168,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
         vertices += scene.skin.kind == SkinKind::boundary
                         ? kVerticesPerFace * surface_area(input[b].to_mold()) /
                               (cost.spacing[b] * cost.spacing[b])
-                        : static_cast<double>(input[b].mesh.position.size());
+                        : mounted_vertices(input[b].mesh, scene.skin, cost.spacing[b]);
     }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;

@@ -66,7 +66,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (std::size_t b = 0; b < input.size(); ++b) {
         {
             const auto lap = watch.lap("mold");
-            bodies.push_back(make_work_piece(input[b], scene.body[b], scene.skin.kind));
+            bodies.push_back(make_work_piece(input[b], scene.body[b], scene.skin));
         }
         const Aggregate& matter = bodies[b].matter;
         record["bodies"][b]["matter"] = matter_json(matter);

@@ -267,7 +267,7 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
         const auto lap = context.watch.lap("mold");
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             throw_if_interrupted();
-            bodies[b] = mold_anew(bodies[b], context.scene.body[b], context.scene.skin.kind);
+            bodies[b] = mold_anew(bodies[b], context.scene.body[b], context.scene.skin);
         }
         log_info("{}: molded anew: {} particles", stage.name, particle_count(bodies));
     }

@@ -15,6 +15,7 @@
 #include "mold/mold.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
+#include "skin/divided_mesh.h"
 
 namespace swage {
 
@@ -57,6 +58,15 @@ void make_solid(InputMesh& input, MoldKind kind) {
 TriMesh block_mesh(const TriMesh& mesh) {
     const Box box = box_of(mesh.position);
     return box_mesh(box.low, box.high);
+}
+
+TriMesh divided_skin(const TriMesh& mesh, const Aggregate& matter) {
+    TriMesh skin = divide_edges(mesh, kLongestSkinEdge * matter.lattice.spacing);
+    if (skin.triangle.size() != mesh.triangle.size()) {
+        log_info("skin: {} triangles divided into {}, with no edge above {} cells",
+                 mesh.triangle.size(), skin.triangle.size(), kLongestSkinEdge);
+    }
+    return skin;
 }
 
 // One colour all over.
@@ -162,28 +172,28 @@ void place_at_start(const StartSpec& start, Aggregate& matter) {
     }
 }
 
-WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, SkinKind skin) {
+WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin) {
     WorkPiece piece;
     piece.name = body.name;
     piece.matter = mold(input.to_mold(), body.material, body.mold, insets_for(input, body));
-    if (skin == SkinKind::boundary) {
+    if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         if (body.color) paint(like, *body.color, body.metal);
         piece.look = std::make_shared<const NewLook>(like);
     } else {
-        piece.skin = input.mesh;
+        piece.skin = skin.divide ? divided_skin(input.mesh, piece.matter) : input.mesh;
         if (body.color) paint(piece.skin, *body.color, body.metal);
-        piece.position = input.mesh.position;
-        piece.mount = mount_mesh(input.mesh.position, piece.matter, skin);
+        piece.position = piece.skin.position;
+        piece.mount = mount_mesh(piece.position, piece.matter, skin.kind);
     }
     const StartSpec& start = body.start;
     const bool stands = !start.at && start.turn == Vec3::Zero();
     if (!stands || start.moves()) place_at_start(start, piece.matter);
-    if (!stands || skin == SkinKind::boundary) follow_matter(piece, skin);
+    if (!stands || skin.kind == SkinKind::boundary) follow_matter(piece, skin.kind);
     return piece;
 }
 
-WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, SkinKind skin) {
+WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin) {
     InputMesh input;
     input.mesh = piece.deformed();
     input.report = check_mesh(input.mesh);

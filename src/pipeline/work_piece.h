@@ -48,10 +48,10 @@ std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body);
 struct WorkPiece {
     std::string name;
     Aggregate matter;
-    TriMesh skin;                // its positions: as mounted
-    Mount mount;                 // unless the skin is a boundary
+    TriMesh skin;                         // its positions: as mounted
+    Mount mount;                          // unless the skin is a boundary
     std::shared_ptr<const NewLook> look;  // where it is
-    std::vector<Vec3> position;  // of the skin now [m]
+    std::vector<Vec3> position;           // of the skin now [m]
     // Once matter broke by load: what skin and mount were made from since.
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;
@@ -62,14 +62,14 @@ struct WorkPiece {
 
 // At its start: molded as its mesh stands in its file, then turned, moved and set in motion, so
 // that how it stands has no effect on how well it is resolved.
-WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, SkinKind skin);
+WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin);
 
 // Turns about the middle of the surface's box, moves and sets in motion. For a body as molded.
 void place_at_start(const StartSpec& start, Aggregate& matter);
 
 // A new representation of the work-piece as it is now, at rest, of cells of the same size, as hard
 // as it has become.
-WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, SkinKind skin);
+WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin);
 
 // Of one body its own; of several, of all.
 std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);

@@ -68,6 +68,9 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[skin]", "kind",
          "mount: smooth, follows half frames; frame4: the paper's frames of four "
          "particles; boundary: made anew from voxels"},
+        {"[skin]", "divide",
+         "halve the edges of the mesh that are longer than a cell and a half, so that its faces "
+         "can bend; false: its own vertices and no others"},
 
         {"[[stage]]", "machine",
          "one that `swage machines` lists, or a file of your own; its "

@@ -39,6 +39,7 @@ void read_skin(TableReader& table, SkinSettings& skin) {
                             {"frame4", SkinKind::frame4},
                             {"boundary", SkinKind::boundary}},
                            skin.kind);
+    table.truth("divide", skin.divide);
     table.finish();
 }
 

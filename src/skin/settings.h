@@ -9,8 +9,12 @@ enum class SkinKind {
     boundary,  // made anew from voxels over the particles (S1.12, S1.13)
 };
 
+// Of a mesh that is divided, over a cell's.
+inline constexpr double kLongestSkinEdge = 1.5;
+
 struct SkinSettings {
     SkinKind kind = SkinKind::mount;
+    bool divide = true;  // a mesh with edges too long to follow the matter, before it is mounted
 };
 
 }  // namespace swage

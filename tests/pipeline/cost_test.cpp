@@ -3,9 +3,11 @@
 
 #include <limits>
 
+#include "geometry/box_mesh.h"
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
 #include "skin/boundary.h"
+#include "skin/divided_mesh.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -75,6 +77,21 @@ TEST_CASE("what a boundary's meshes take is told by its cells, not by the mesh t
         CHECK(vertices > 0.7 * static_cast<double>(skin.position.size()));
         CHECK(vertices < 2 * static_cast<double>(skin.position.size()));
     }
+}
+
+TEST_CASE("what a mesh of few triangles takes is told as it is once it is divided") {
+    const auto disk = [](const TriMesh& mesh, bool divide) {
+        BarScene bar(6);
+        bar.input.mesh = mesh;
+        bar.scene.skin.divide = divide;
+        bar.scene.output.meshes_per_frame = true;
+        return bar.cost().disk_bytes;
+    };
+    const TriMesh coarse = box_mesh({0, 0, 0}, {0.2, 0.02, 0.02});
+    const TriMesh divided = divide_edges(coarse, kLongestSkinEdge * 0.02 / 6);
+    CHECK(disk(coarse, true) == Approx(disk(divided, true)).epsilon(0.2));
+    CHECK(disk(divided, true) == disk(divided, false));
+    CHECK(disk(coarse, false) < 0.1 * disk(coarse, true));
 }
 
 TEST_CASE("a step that damps, or of matter that yields, is told to take longer") {

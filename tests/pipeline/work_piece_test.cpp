@@ -23,7 +23,7 @@ WorkPiece block(const StartSpec& start, SkinKind skin) {
     body.start = start;
     body.mold.across = 3;
     body.color = Vec3(0.5, 0, 0);
-    return make_work_piece(input, body, skin);
+    return make_work_piece(input, body, {skin});
 }
 
 // What a run makes of a file that holds this mesh.
@@ -32,6 +32,15 @@ InputMesh read_from_file(const TriMesh& mesh) {
     const std::filesystem::path file = scratch.path() / "mesh.obj";
     write_obj(file, mesh);
     return read_input_mesh({file, {}}, MoldKind::shape);
+}
+
+// Round a quarter of a ring: the box is as high as it is long then.
+void bend_round(Aggregate& m) {
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p);
+        const double turn = x.x() / 0.4 * kPi / 2, radius = 0.4 / (kPi / 2) + x.y();
+        m.particle_position.set(p, {radius * std::sin(turn), radius * std::cos(turn), x.z()});
+    }
 }
 
 struct Sums {
@@ -92,19 +101,31 @@ TEST_CASE("a body that is told no start is left as it was molded") {
 
 TEST_CASE("matter molded anew keeps the size of its cells, whatever its box has become") {
     WorkPiece piece = block({}, SkinKind::mount);
-    // Round a quarter of a ring: the box is as high as it is long then.
-    Aggregate& m = piece.matter;
-    for (std::size_t p = 0; p < m.particle_count(); ++p) {
-        const Vec3 x = m.particle_reference.at(p);
-        const double turn = x.x() / 0.4 * kPi / 2, radius = 0.4 / (kPi / 2) + x.y();
-        m.particle_position.set(p, {radius * std::sin(turn), radius * std::cos(turn), x.z()});
-    }
+    bend_round(piece.matter);
     follow_matter(piece, SkinKind::mount);
     BodySpec body;
     body.mold.across = 3;
-    const WorkPiece anew = mold_anew(piece, body, SkinKind::mount);
-    CHECK(anew.matter.lattice.spacing == m.lattice.spacing);
+    const WorkPiece anew = mold_anew(piece, body, {});
+    CHECK(anew.matter.lattice.spacing == piece.matter.lattice.spacing);
     CHECK(anew.matter.volume() == Approx(0.008).epsilon(0.05));
+}
+
+TEST_CASE("a mesh of twelve triangles bends with its matter, and so does what is molded of it") {
+    InputMesh input;
+    input.mesh = box_mesh({-0.2, -0.05, -0.1}, {0.2, 0.05, 0.1});
+    BodySpec body;
+    body.mold.across = 3;
+    for (SkinKind kind : {SkinKind::mount, SkinKind::frame4}) {
+        WorkPiece piece = make_work_piece(input, body, {kind});
+        CHECK(signed_volume(piece.deformed()) == Approx(0.008));
+        bend_round(piece.matter);
+        follow_matter(piece, kind);
+        CHECK(signed_volume(piece.deformed()) == Approx(0.008).epsilon(0.02));
+        CHECK(mold_anew(piece, body, {kind}).matter.volume() == Approx(0.008).epsilon(0.02));
+    }
+    // Its own triangles and no others, where that is asked for.
+    const WorkPiece own = make_work_piece(input, body, {SkinKind::mount, false});
+    CHECK(own.skin.triangle == input.mesh.triangle);
 }
 
 TEST_CASE("velocity and spin at the start are those of the body's centre of mass") {
@@ -126,7 +147,7 @@ TEST_CASE("a mesh with one body inside out is molded whole") {
     CHECK(input.repair[0] == "turned 1 of 2 bodies: inside out");
     BodySpec body;
     body.mold.across = 3;
-    CHECK(make_work_piece(input, body, SkinKind::mount).matter.volume() == Approx(3));
+    CHECK(make_work_piece(input, body, {}).matter.volume() == Approx(3));
 }
 
 TEST_CASE("what two bodies of a mesh share is molded once") {
@@ -140,7 +161,7 @@ TEST_CASE("what two bodies of a mesh share is molded once") {
     const double common = 2 * kPi * cap * cap * (3 - cap) / 3;
     BodySpec body;
     body.mold.across = 12;
-    const double volume = make_work_piece(crossing, body, SkinKind::mount).matter.volume();
+    const double volume = make_work_piece(crossing, body, {}).matter.volume();
     CHECK(volume == Approx(2 * 4 * kPi / 3 - common).epsilon(0.01));
 
     const InputMesh inside =

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/divided_mesh.h"
+
+#include <algorithm>
+
+#include "geometry/edges.h"
+#include "skin/split_attributes.h"
+
+namespace swage {
+
+namespace {
+
+// Of the longest edge: those above are halved at once. A triangle's longest is halved before its
+// others then, as its halves' are no longer than it.
+constexpr double kNearLongest = 0.7;
+
+using Middles = std::vector<Corners>;  // a triangle each: the new vertex on each side, or -1
+
+// Into four, three or two.
+void split_triangle(const TriMesh& mesh, int t, const Corners& middle,
+                    const std::vector<Vec3>& position, SurfaceSplit& split) {
+    const auto add = [&](const Corners& c) { split.triangle.push_back({c, c, t, true, 0}); };
+    const Corners& own = mesh.triangle[t];
+    const auto count = 3 - std::count(middle.begin(), middle.end(), -1);
+    if (count == 0) {
+        split.triangle.push_back({own, own, t, false, 0});
+        return;
+    }
+    int k = 0;  // the side that is split alone, or alone not
+    while ((middle[k] >= 0) != (count != 2)) ++k;
+    const int a = own[k], b = own[(k + 1) % 3], c = own[(k + 2) % 3];
+    const int ab = middle[k], bc = middle[(k + 1) % 3], ca = middle[(k + 2) % 3];
+    if (count == 1) {
+        add({a, ab, c}), add({ab, b, c});
+    } else if (count == 2) {
+        add({c, ca, bc});
+        const double from_a = (position[bc] - position[a]).squaredNorm();
+        const double from_b = (position[ca] - position[b]).squaredNorm();
+        if (from_a <= from_b) {
+            add({a, b, bc}), add({a, bc, ca});
+        } else {
+            add({a, b, ca}), add({b, bc, ca});
+        }
+    } else {
+        add({a, ab, ca}), add({ab, b, bc}), add({ca, bc, c}), add({ab, bc, ca});
+    }
+}
+
+TriMesh halve_edges(const TriMesh& mesh, const std::vector<EdgeUse>& uses, double above) {
+    const int old = static_cast<int>(mesh.position.size());
+    SurfaceSplit split;
+    std::vector<Vec3> reference, position = mesh.position;
+    Middles middle(mesh.triangle.size(), Corners{-1, -1, -1});
+    for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+        const auto [low, high] = std::pair(edge[0].low, edge[0].high);
+        const Vec3 &from = mesh.position[low], &to = mesh.position[high];
+        if ((to - from).norm() <= above) return;
+        const int at = old + static_cast<int>(split.cut.size());
+        split.cut.push_back({low, high, 0.5});
+        split.added.push_back({at, 0});
+        reference.push_back(0.5 * (from + to));
+        for (const EdgeUse& use : edge) middle[use.triangle][use.side] = at;
+    });
+    position.insert(position.end(), reference.begin(), reference.end());
+    for (std::size_t t = 0; t < middle.size(); ++t) {
+        split_triangle(mesh, static_cast<int>(t), middle[t], position, split);
+    }
+    return apply_split(mesh, split, reference, std::vector<double>(reference.size(), 0.5));
+}
+
+}  // namespace
+
+TriMesh divide_edges(const TriMesh& mesh, double longest) {
+    TriMesh divided = mesh;
+    for (;;) {
+        const std::vector<EdgeUse> uses = edge_uses(divided.triangle, divided.position.size());
+        double most = 0;
+        for (const EdgeUse& use : uses) {
+            most = std::max(most, (divided.position[use.high] - divided.position[use.low]).norm());
+        }
+        if (!(most > longest)) return divided;
+        divided = halve_edges(divided, uses, std::max(longest, kNearLongest * most));
+    }
+}
+
+}  // namespace swage

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A skin bends only at its vertices: a mesh of few and long edges, as a CAD program writes flat
+// faces, could not follow its matter.
+#pragma once
+
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+// The mesh with no edge above `longest` [m]: edges are halved, the longest first, so that triangles
+// do not grow thinner. The surface is the same and as closed as it was; what it carries (texture
+// coordinates, smoothing, colours, materials, parts) goes on linearly. Old vertices keep their
+// numbers, and a mesh without such edges is left as it is.
+TriMesh divide_edges(const TriMesh& mesh, double longest);
+
+}  // namespace swage
