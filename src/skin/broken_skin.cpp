@@ -66,7 +66,7 @@ class Breaker {
         TriMesh& mesh = skin_.mesh;
         const std::size_t count = mesh.triangle.size();
         mesh.triangle_material.resize(count, 0);
-        material_ = cut_material(mesh);
+        material_ = cut_material(mesh, whole_);
         polygon_ = mesh.triangle_polygon.empty() ? 0 : mesh.triangle_polygon.back() + 1;
     }
 

@@ -38,8 +38,6 @@ SurfaceMaterial main_look(const TriMesh& mesh) {
     return mesh.material[std::max_element(area.begin(), area.end()) - area.begin()];
 }
 
-// Of what a blade or a break has laid open: metal is metal inside, and a plain colour goes through,
-// paler; what a texture hides is pale.
 SurfaceMaterial cut_look(const TriMesh& mesh) {
     const SurfaceMaterial outside = main_look(mesh);
     SurfaceMaterial look;
@@ -76,13 +74,13 @@ std::vector<int> charts_of(const TriMesh& mesh) {
 
 }  // namespace
 
-int cut_material(TriMesh& mesh) {
+int cut_material(TriMesh& mesh, const TriMesh& like) {
     if (mesh.material.empty()) mesh.material.emplace_back();
     const auto known =
         std::find_if(mesh.material.begin(), mesh.material.end(),
                      [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
     const auto number = static_cast<int>(known - mesh.material.begin());
-    if (known == mesh.material.end()) mesh.material.push_back(cut_look(mesh));
+    if (known == mesh.material.end()) mesh.material.push_back(cut_look(like));
     return number;
 }
 
@@ -157,7 +155,10 @@ void NewLook::paint(const std::vector<Vec3>& place, TriMesh& mesh) const {
     const std::size_t count = mesh.triangle.size() / 2;
     std::vector<Face> face(count);
     for_each(count, [&](std::size_t f) {
-        if (mesh.triangle_material[2 * f] == 1) return;
+        if (mesh.triangle_material[2 * f] == 1) {
+            face[f].like = near[mesh.triangle[2 * f][0]].triangle;
+            return;
+        }
         const Corners &one = mesh.triangle[2 * f], &other = mesh.triangle[2 * f + 1];
         const auto of = [&](const auto& all) {
             return std::array{all[one[0]], all[one[1]], all[one[2]], all[other[2]]};
@@ -167,12 +168,18 @@ void NewLook::paint(const std::vector<Vec3>& place, TriMesh& mesh) const {
     mesh.material = mesh_.material;
     const bool has_cut = std::find(mesh.triangle_material.begin(), mesh.triangle_material.end(),
                                    1) != mesh.triangle_material.end();
-    const int cut = has_cut ? cut_material(mesh) : -1;
+    const int cut = has_cut ? cut_material(mesh, mesh_) : -1;
+    mesh.part_name = mesh_.part_name;
+    if (!mesh_.triangle_part.empty()) mesh.triangle_part.resize(2 * count);
     if (!mesh_.triangle_uv.empty()) mesh.triangle_uv.assign(2 * count, {-1, -1, -1});
     for (std::size_t f = 0; f < count; ++f) {
         const bool is_cut = mesh.triangle_material[2 * f] == 1;
         const int own = mesh_.triangle_material.empty() ? 0 : mesh_.triangle_material[face[f].like];
         mesh.triangle_material[2 * f] = mesh.triangle_material[2 * f + 1] = is_cut ? cut : own;
+        if (!mesh.triangle_part.empty()) {
+            mesh.triangle_part[2 * f] = mesh.triangle_part[2 * f + 1] =
+                mesh_.triangle_part[face[f].like];
+        }
         if (!face[f].textured) continue;
         const int at = static_cast<int>(mesh.uv.size());
         mesh.uv.insert(mesh.uv.end(), face[f].uv.begin(), face[f].uv.end());

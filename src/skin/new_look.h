@@ -13,13 +13,13 @@ namespace swage {
 // Of faces that a blade or a break has laid open.
 inline constexpr const char* kCutMaterial = "cut";
 
-// The number of that material, which is added where it is not there; so is the mesh's own where it
-// has none. Metal is metal inside, and a plain colour goes through, paler; what a texture hides is
-// pale.
-int cut_material(TriMesh& mesh);
+// The number of that material in `mesh`, a part or a new surface of `like`. It is added where it is
+// not there; so is the mesh's own where it has none. Metal is metal inside, and a plain colour goes
+// through, paler; what a texture hides is pale.
+int cut_material(TriMesh& mesh, const TriMesh& like);
 
 // The look of a mesh for surfaces that are made anew from the same matter: each face has material,
-// texture and colours of where the mesh is nearest at molding.
+// part, texture and colours of where the mesh is nearest at molding.
 class NewLook {
   public:
     // The mesh as it was molded, not empty.

@@ -132,7 +132,7 @@ void carry_polygons(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& out
 void carry_materials(const TriMesh& mesh, const SurfaceSplit& split, TriMesh& out) {
     const bool has_cap = !split.triangle.empty() && split.triangle.back().parent < 0;
     if (!has_cap && mesh.triangle_material.empty()) return;
-    const int cut = has_cap ? cut_material(out) : -1;
+    const int cut = has_cap ? cut_material(out, mesh) : -1;
     for (const SplitTriangle& triangle : split.triangle) {
         int material = cut;
         if (triangle.parent >= 0) {

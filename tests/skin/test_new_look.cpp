@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "skin/new_look.h"
 
+#include <algorithm>
+#include <memory>
+
 #include "geometry/box_mesh.h"
 #include "skin/boundary.h"
+#include "skin/cut_mesh.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -43,7 +47,9 @@ TriMesh textured_box(const Aggregate& block) {
         for (int v : triangle) mesh.uv.push_back(texture_of(side, mesh.position[v]));
         mesh.triangle_uv.push_back({at, at + 1, at + 2});
         mesh.triangle_material.push_back(side);
+        mesh.triangle_part.push_back(side % 2);
     }
+    mesh.part_name = {"low", "high"};
     for (const Vec3& p : mesh.position) mesh.position_color.push_back(p.cast<float>());
     return mesh;
 }
@@ -55,10 +61,12 @@ TEST_CASE("a boundary made anew keeps the mesh's texture, materials and colours,
     const NewLook look(textured_box(block));
     const TriMesh mesh = boundary_skin(block, &look);
     REQUIRE(mesh.material.size() == 6);
+    REQUIRE(mesh.part_name.size() == 2);
     double worst = 0, off = 0;
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         const int side = side_of(mesh, mesh.triangle[t]);
         REQUIRE(mesh.triangle_material[t] == side);
+        REQUIRE(mesh.triangle_part[t] == side % 2);
         for (int c = 0; c < 3; ++c) {
             const int at = mesh.triangle_uv[t][c];
             REQUIRE(at >= 0);
@@ -106,11 +114,50 @@ TEST_CASE("faces of a cut have a material of their own and no texture") {
     CHECK(area == Approx(2 * 0.4 * 0.4).epsilon(0.01));
 }
 
+TEST_CASE("a cut face looks as most of the mesh does, whichever material comes first") {
+    // A small badge of red metal, the first material, on a body of blue plastic.
+    Aggregate block = test::make_block(8, 4, 4, 0.1, Material{});
+    TriMesh mesh = textured_box(block);
+    mesh.uv.clear(), mesh.triangle_uv.clear(), mesh.position_color.clear();
+    mesh.material.assign(2, {});
+    mesh.material[0].metallic = 1;
+    mesh.material[0].color = {1, 0, 0};
+    mesh.material[1].color = {0, 0, 1};
+    mesh.triangle_material.assign(mesh.triangle.size(), 1);
+    mesh.triangle_material[0] = 0;
+    const auto is_plastic = [](const TriMesh& cut) {
+        const SurfaceMaterial& look = cut.material[cut.triangle_material.back()];
+        return look.name == kCutMaterial && look.metallic == 0 && look.color.z() > look.color.x();
+    };
+
+    Mount mount = mount_mesh(mesh.position, block, SkinKind::mount);
+    TriMesh mounted = mesh;
+    const std::vector<std::array<Vec3, 3>> blade = {
+        {Vec3(0.03, -9, -9), Vec3(0.03, 9, -9), Vec3(0.03, 0, 9)}};
+    cut_skin(mounted, mesh.position, mount, block, blade);
+    CHECK(is_plastic(mounted));
+
+    test::sever_plane(block, {0.03, 0, 0}, Vec3::UnitX());
+    const NewLook look(mesh);
+    TriMesh anew = boundary_skin(block, &look);
+    std::stable_sort(anew.triangle_material.begin(), anew.triangle_material.end());
+    CHECK(is_plastic(anew));
+
+    // Of a mesh of one material, and of none.
+    for (int materials : {1, 0}) {
+        mesh.material.resize(materials);
+        mesh.triangle_material.clear();
+        const TriMesh plain = boundary_skin(block, std::make_unique<NewLook>(mesh).get());
+        CHECK(plain.material.size() == 2);
+        CHECK(plain.material[1].name == kCutMaterial);
+    }
+}
+
 TEST_CASE("metal is metal inside, a plain colour goes through, what a texture hides is pale") {
     TriMesh mesh = box_mesh(Vec3::Zero(), Vec3::Ones());
     mesh.material.resize(1);
     SurfaceMaterial& look = mesh.material[0];
-    const auto cut = [](TriMesh of) { return of.material[cut_material(of)]; };
+    const auto cut = [](TriMesh of) { return of.material[cut_material(of, of)]; };
     look.color = {0.8, 0.4, 0.2};
     CHECK(cut(mesh).metallic == 0);
     CHECK(cut(mesh).color.x() > 1.5 * cut(mesh).color.z());
@@ -126,6 +173,6 @@ TEST_CASE("metal is metal inside, a plain colour goes through, what a texture hi
     look.color = {0.1, 0.1, 0.8};
     CHECK(cut(mesh).color == pale);
     TriMesh again = mesh;
-    CHECK(cut_material(again) == cut_material(again));
+    CHECK(cut_material(again, mesh) == cut_material(again, mesh));
     CHECK(again.material.size() == 2);
 }
