@@ -16,7 +16,7 @@ in vec3 color;
 uniform sampler2D surface_texture;
 #endif
 uniform vec4 material_color;
-uniform vec4 material_finish;  // roughness, metallic
+uniform vec4 material_finish;  // roughness, metallic, whether the mesh's colours count
 uniform vec4 endless;          // middle and radius of what fades out; a radius of 0: does not
 layout(location = 0) out vec4 pixel_color;
 
@@ -28,7 +28,7 @@ vec3 environment_share(vec3 f0, float roughness, float nv) {
 }
 
 void main() {
-    vec3 base = material_color.rgb * color;
+    vec3 base = material_color.rgb * mix(vec3(1.0), color, material_finish.z);
 #ifdef TEXTURED
     base *= texture(surface_texture, uv).rgb;
 #endif

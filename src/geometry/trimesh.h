@@ -23,6 +23,7 @@ struct SurfaceMaterial {
     Vec3 color = {0.8, 0.8, 0.8};
     double roughness = 0.55;
     double metallic = 0.0;
+    bool takes_colors = true;            // a mesh's position_color multiplies `color`
     std::filesystem::path texture = {};  // absolute; empty for none. Multiplies `color`.
     // The image itself (a PNG or JPEG file's bytes) when it came inside the mesh file, as in GLB;
     // `texture` is empty then.
@@ -39,8 +40,8 @@ struct TriMesh {
     std::vector<Corners> triangle_uv;             // one a triangle; -1 where a corner has none
     int smooth_group_count = 0;                   // corners of one group share a shading normal
     std::vector<Corners> triangle_smooth;         // one a triangle: ids of smooth groups
-    std::vector<int> triangle_polygon;  // one a triangle: triangles of one polygon (a quad, say) are
-                                        // consecutive and share the number
+    std::vector<int> triangle_polygon;  // one a triangle: triangles of one polygon (a quad, say)
+                                        // are consecutive and share the number
     std::vector<int> triangle_material;  // one a triangle, into material
     std::vector<int> triangle_part;      // one a triangle, into part_name
     std::vector<SurfaceMaterial> material;

@@ -67,12 +67,12 @@ constexpr double kReach = 0.2;   // of the action's size, that tools near it may
 constexpr double kDeep = 1;      // of that size, that tools may reach below it and stand on ground
 
 // Which pieces the picture frames: all but the farthest from the middle.
-std::vector<char> framed(const SkinPieces& pieces, const std::vector<Eigen::Vector3f>& position) {
+std::vector<char> framed(const SkinPieces& pieces, const std::vector<Vec3>& position) {
     const std::size_t count = pieces.area.size();
     std::vector<Vec3> middle(count, Vec3::Zero());
     std::vector<int> vertices(count, 0);
     for (std::size_t v = 0; v < position.size(); ++v) {
-        middle[pieces.of_vertex[v]] += position[v].cast<double>();
+        middle[pieces.of_vertex[v]] += position[v];
         ++vertices[pieces.of_vertex[v]];
     }
     for (std::size_t p = 0; p < count; ++p) middle[p] /= vertices[p];
@@ -103,7 +103,7 @@ std::vector<char> framed(const SkinPieces& pieces, const std::vector<Eigen::Vect
     // What stays close is shown all the same.
     Box kept;
     for (std::size_t v = 0; v < position.size(); ++v) {
-        if (is_framed[pieces.of_vertex[v]]) kept.grow(position[v].cast<double>());
+        if (is_framed[pieces.of_vertex[v]]) kept.grow(position[v]);
     }
     const Vec3 reach = Vec3::Constant(kClose * kept.size().maxCoeff());
     for (std::size_t p = 0; p < count; ++p) {
@@ -136,7 +136,7 @@ class FramedSkin {
             const std::vector<char> is_framed =
                 broke ? framed(own, body.position) : std::vector<char>();
             for (std::size_t v = 0; v < body.position.size(); ++v) {
-                if (!broke || is_framed[own.of_vertex[v]]) use(body.position[v].cast<double>());
+                if (!broke || is_framed[own.of_vertex[v]]) use(body.position[v]);
             }
         }
     }

@@ -30,7 +30,7 @@ class FrameSource {
         : store_(store), tools_(tools), drawn_from_world_{drawn_from_world, Vec3::Zero()} {}
 
     Picture picture(int frame) {
-        const StoredFrame stored = store_.frame(frame - 1);
+        StoredFrame stored = store_.frame(frame - 1);
         body_.resize(stored.body.size());
         if (tools_ && stored.machine != machine_id_) {
             machine_ = store_.machine(stored.machine);
@@ -43,10 +43,7 @@ class FrameSource {
                 body.skin = store_.skin(stored.body[b].skin);
                 body.skin_id = stored.body[b].skin;
             }
-            body.position.clear();
-            for (const Eigen::Vector3f& p : stored.body[b].position) {
-                body.position.push_back(p.cast<double>());
-            }
+            body.position = std::move(stored.body[b].position);
             picture.item.push_back(
                 {&body.skin, &body.position, drawn_from_world_, std::nullopt, false});
         }

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -19,9 +20,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3330'6567'6177'7300;  // "\0swage03" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3430'6567'6177'7300;  // "\0swage04" on a little-endian machine
 
-enum RecordKind : std::uint32_t { kSkin = 1, kMachine = 2, kFrame = 3, kEnd = 4 };
+enum RecordKind : std::uint32_t { kSkin = 1, kMachine, kFrame, kImage, kEnd };
 
 struct RecordHead {
     std::uint32_t kind;
@@ -57,6 +58,20 @@ bool read_all(int handle, std::uint64_t offset, void* data, std::size_t size) {
     return true;
 }
 
+// By axis. What flies off leaves it with the rest.
+Vec3 median(const std::vector<Vec3>& position) {
+    Vec3 middle = Vec3::Zero();
+    std::vector<double> along;
+    for (int d = 0; d < 3 && !position.empty(); ++d) {
+        along.clear();
+        for (const Vec3& p : position) along.push_back(p[d]);
+        const auto at = along.begin() + static_cast<std::ptrdiff_t>((along.size() - 1) / 2);
+        std::nth_element(along.begin(), at, along.end());
+        middle[d] = *at;
+    }
+    return middle;
+}
+
 }  // namespace
 
 FrameStoreWriter::FrameStoreWriter(const fs::path& file)
@@ -88,7 +103,19 @@ void FrameStoreWriter::put(std::uint32_t kind, const std::string& bytes) {
     size_ += sizeof head + bytes.size();
 }
 
+// Once each: a skin may be another in every frame, its texture is the same.
+void FrameStoreWriter::put_images(const TriMesh& mesh) {
+    for (const SurfaceMaterial& material : mesh.material) {
+        if (!material.embedded_texture) continue;
+        const std::uint64_t hash = hash_of(*material.embedded_texture);
+        if (image_.contains(hash)) continue;
+        put(kImage, *material.embedded_texture);
+        image_.insert(hash);
+    }
+}
+
 int FrameStoreWriter::add_skin(const TriMesh& skin) {
+    put_images(skin);
     ByteWriter out;
     put_mesh(out, skin);
     put(kSkin, out.bytes());
@@ -100,6 +127,7 @@ int FrameStoreWriter::add_machine(const std::vector<DrawnPart>& parts) {
     out.put<std::uint64_t>(parts.size());
     for (const DrawnPart& part : parts) {
         out.put_text(part.name);
+        put_images(part.surface);
         put_mesh(out, part.surface);
         out.put(part.color);
         out.put(part.finish);
@@ -114,7 +142,12 @@ void FrameStoreWriter::add_frame(const StoredFrame& frame) {
     out.put<std::uint64_t>(frame.body.size());
     for (const StoredBody& body : frame.body) {
         out.put(body.skin);
-        out.put_array(body.position);
+        const Vec3 middle = median(body.position);
+        std::vector<Eigen::Vector3f> away;
+        away.reserve(body.position.size());
+        for (const Vec3& p : body.position) away.push_back((p - middle).cast<float>());
+        out.put(middle);
+        out.put_array(away);
     }
     out.put<std::uint64_t>(frame.pose.size());
     for (const Pose& pose : frame.pose) {
@@ -157,6 +190,8 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
             machine_.push_back(place);
         else if (head.kind == kFrame)
             frame_.push_back(place);
+        else if (head.kind == kImage)
+            image_.emplace(head.hash, place);
         else if (head.kind == kEnd)
             break;
         else
@@ -184,7 +219,10 @@ StoredFrame FrameStore::frame(int index) const {
     frame.body.resize(in.get<std::uint64_t>());
     for (StoredBody& body : frame.body) {
         body.skin = in.get<int>();
-        body.position = in.get_array<Eigen::Vector3f>();
+        const auto middle = in.get<Vec3>();
+        for (const Eigen::Vector3f& away : in.get_array<Eigen::Vector3f>()) {
+            body.position.push_back(middle + away.cast<double>());
+        }
     }
     frame.pose.resize(in.get<std::uint64_t>());
     for (Pose& pose : frame.pose) {
@@ -194,10 +232,18 @@ StoredFrame FrameStore::frame(int index) const {
     return frame;
 }
 
+TriMesh FrameStore::mesh_from(ByteReader& in) const {
+    return get_mesh(in, [&](std::uint64_t hash) {
+        const auto known = image_.find(hash);
+        if (known == image_.end()) fail(ExitCode::output, "{}: is damaged", file_.string());
+        return std::make_shared<const std::string>(bytes_at(known->second));
+    });
+}
+
 TriMesh FrameStore::skin(int index) const {
     const std::string bytes = bytes_at(skin_.at(static_cast<std::size_t>(index)));
     ByteReader in(bytes);
-    return get_mesh(in);
+    return mesh_from(in);
 }
 
 std::vector<DrawnPart> FrameStore::machine(int index) const {
@@ -206,7 +252,7 @@ std::vector<DrawnPart> FrameStore::machine(int index) const {
     std::vector<DrawnPart> parts(in.get<std::uint64_t>());
     for (DrawnPart& part : parts) {
         part.name = in.get_text();
-        part.surface = get_mesh(in);
+        part.surface = mesh_from(in);
         part.color = in.get<Vec3>();
         part.finish = in.get<Finish>();
     }

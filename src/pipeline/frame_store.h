@@ -6,6 +6,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,8 +28,8 @@ struct DrawnPart {
 };
 
 struct StoredBody {
-    int skin = 0;                           // which skin
-    std::vector<Eigen::Vector3f> position;  // of the skin's vertices [m]
+    int skin = 0;                // which skin
+    std::vector<Vec3> position;  // of the skin's vertices [m]; kept to 1e-7 of the body's size
 };
 
 struct StoredFrame {
@@ -34,6 +37,8 @@ struct StoredFrame {
     int machine = 0;         // which machine
     std::vector<Pose> pose;  // world from part, of the machine's parts
 };
+
+class ByteReader;
 
 class FrameStoreWriter {
   public:
@@ -52,11 +57,13 @@ class FrameStoreWriter {
   private:
     // All of it or nothing: a full disk leaves what came before.
     void put(std::uint32_t kind, const std::string& bytes);
+    void put_images(const TriMesh& mesh);
 
     std::filesystem::path file_, temporary_;
     int handle_ = -1;
     std::uint64_t size_ = 0;  // of what is whole
     int skins_ = 0, machines_ = 0;
+    std::set<std::uint64_t> image_;  // that the file holds, by hash
 };
 
 class FrameStore {
@@ -79,10 +86,12 @@ class FrameStore {
         std::uint64_t offset, size, hash;
     };
     std::string bytes_at(const Place& place) const;
+    TriMesh mesh_from(ByteReader& in) const;
 
     std::filesystem::path file_;
     int handle_ = -1;
     std::vector<Place> skin_, machine_, frame_;
+    std::map<std::uint64_t, Place> image_;  // by hash
 };
 
 }  // namespace swage

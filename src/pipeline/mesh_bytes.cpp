@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/mesh_bytes.h"
 
+#include "base/hash.h"
+
 namespace swage {
 
 void put_mesh(ByteWriter& out, const TriMesh& mesh) {
@@ -21,13 +23,15 @@ void put_mesh(ByteWriter& out, const TriMesh& mesh) {
         out.put(material.roughness);
         out.put(material.metallic);
         out.put_text(material.texture.string());
-        out.put_text(material.embedded_texture ? *material.embedded_texture : std::string());
+        out.put(material.takes_colors);
+        out.put<bool>(material.embedded_texture != nullptr);
+        if (material.embedded_texture) out.put(hash_of(*material.embedded_texture));
     }
     out.put<std::uint64_t>(mesh.part_name.size());
     for (const std::string& name : mesh.part_name) out.put_text(name);
 }
 
-TriMesh get_mesh(ByteReader& in) {
+TriMesh get_mesh(ByteReader& in, const FindImage& find_image) {
     TriMesh mesh;
     mesh.position = in.get_array<Vec3>();
     mesh.triangle = in.get_array<Corners>();
@@ -47,10 +51,8 @@ TriMesh get_mesh(ByteReader& in) {
         material.roughness = in.get<double>();
         material.metallic = in.get<double>();
         material.texture = in.get_text();
-        std::string embedded = in.get_text();
-        if (!embedded.empty()) {
-            material.embedded_texture = std::make_shared<const std::string>(std::move(embedded));
-        }
+        material.takes_colors = in.get<bool>();
+        if (in.get<bool>()) material.embedded_texture = find_image(in.get<std::uint64_t>());
         mesh.material.push_back(std::move(material));
     }
     const auto parts = in.get<std::uint64_t>();

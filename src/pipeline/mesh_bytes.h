@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -79,7 +81,9 @@ class ByteReader {
     std::size_t at_ = 0;
 };
 
+// Images within it are told by their hash alone.
 void put_mesh(ByteWriter& out, const TriMesh& mesh);
-TriMesh get_mesh(ByteReader& in);
+using FindImage = std::function<std::shared_ptr<const std::string>(std::uint64_t hash)>;
+TriMesh get_mesh(ByteReader& in, const FindImage& find_image);
 
 }  // namespace swage

@@ -40,10 +40,7 @@ void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive
             stored.mesh = piece.skin;
             stored.id = writer_.add_skin(stored.mesh);
         }
-        StoredBody body{stored.id, {}};
-        body.position.reserve(piece.position.size());
-        for (const Vec3& p : piece.position) body.position.push_back(p.cast<float>());
-        frame.body.push_back(std::move(body));
+        frame.body.push_back({stored.id, piece.position});
     }
     frame.machine = machine_id_;
     frame.pose = part_poses(drive);

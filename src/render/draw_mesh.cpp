@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace swage {
 
@@ -12,21 +14,25 @@ DrawMesh split_corners(const TriMesh& mesh) {
     const bool has_uv = !mesh.triangle_uv.empty();
     const bool has_material = !mesh.triangle_material.empty();
 
+    // Material, and whether it is textured.
+    std::vector<std::pair<int, bool>> look(triangles, {-1, has_uv});
+    for (std::size_t t = 0; t < triangles; ++t) {
+        if (has_material) look[t].first = mesh.triangle_material[t];
+        if (has_uv) look[t].second = std::ranges::min(mesh.triangle_uv[t]) >= 0;
+    }
     std::vector<std::uint32_t> order(triangles);
     std::iota(order.begin(), order.end(), 0u);
-    if (has_material) {
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return mesh.triangle_material[a] < mesh.triangle_material[b];
-        });
-    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return look[a] < look[b]; });
 
     // A chain of the vertices made so far at each position; nearly always one or two long.
     std::vector<std::int32_t> first(mesh.position.size(), -1), next;
     out.index.reserve(3 * triangles);
     for (const std::uint32_t t : order) {
-        const int material = has_material ? mesh.triangle_material[t] : -1;
-        if (out.range.empty() || out.range.back().material != material) {
-            out.range.push_back({material, static_cast<std::uint32_t>(out.index.size()), 0});
+        if (out.range.empty() ||
+            std::pair(out.range.back().material, out.range.back().textured) != look[t]) {
+            out.range.push_back(
+                {look[t].first, look[t].second, static_cast<std::uint32_t>(out.index.size()), 0});
         }
         out.range.back().count += 3;
         for (std::size_t c = 0; c < 3; ++c) {

@@ -13,6 +13,7 @@ namespace swage {
 struct DrawMesh {
     struct Range {                   // triangles of one material
         int material;                // into TriMesh::material, -1 for none
+        bool textured;               // all corners have texture coordinates
         std::uint32_t first, count;  // of index
     };
     // One a vertex.

@@ -102,9 +102,6 @@ std::unique_ptr<GpuMesh> MeshCache::made(const TriMesh& mesh) const {
         gpu->split = split_corners(mesh);
     }
     gpu->closed = is_closed(mesh);
-    const Box box = box_of(mesh.position);
-    if (!box.empty()) gpu->origin = box.center();
-
     const DrawMesh& split = gpu->split;
     std::vector<FixedVertex> fixed(split.vertex_position.size());
     for (std::size_t v = 0; v < fixed.size(); ++v) {
@@ -142,6 +139,8 @@ std::unique_ptr<GpuMesh> MeshCache::made(const TriMesh& mesh) const {
 
 void MeshCache::send(GpuMesh& gpu, const TriMesh& mesh, const std::vector<Vec3>& position) const {
     const Gl& gl = *gl_;
+    const Box box = box_of(position);
+    if (!box.empty()) gpu.origin = box.center();
     const std::vector<Vec3> normal = smooth_normals(mesh, position);
     std::vector<MovingVertex> moving(gpu.split.vertex_position.size());
     for (std::size_t v = 0; v < moving.size(); ++v) {

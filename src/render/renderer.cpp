@@ -152,7 +152,7 @@ struct Renderer::Parts {
             shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));
             const Culling culling(gl, d.mesh->closed && eye_is_outside);
             const auto count = static_cast<std::uint32_t>(d.mesh->split.index.size());
-            d.mesh->draw(gl, {-1, 0, count});
+            d.mesh->draw(gl, {-1, false, 0, count});
         }
     }
 
@@ -243,8 +243,9 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
                 : mesh.material.size() == 1 ? mesh.material.front()
                                             : plain_material;
             const glm::vec4 color(to_glm(material.color), 1);
-            const glm::vec4 finish(material.roughness, material.metallic, 0, 0);
-            const GLuint texture = mesh.uv.empty() ? 0 : textures.texture(material);
+            const glm::vec4 finish(material.roughness, material.metallic,
+                                   material.takes_colors ? 1 : 0, 0);
+            const GLuint texture = range.textured ? textures.texture(material) : 0;
             const Shader& shader = texture != 0 ? textured_shader : surface_shader;
             shader.use();
             shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));

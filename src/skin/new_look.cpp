@@ -42,6 +42,7 @@ SurfaceMaterial cut_look(const TriMesh& mesh) {
     const SurfaceMaterial outside = main_look(mesh);
     SurfaceMaterial look;
     look.name = kCutMaterial;
+    look.takes_colors = false;  // those of its rim are the outside's
     const bool hides = !outside.texture.empty() || outside.embedded_texture != nullptr ||
                        !mesh.position_color.empty();
     if (outside.metallic > 0.5) {

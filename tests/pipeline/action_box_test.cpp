@@ -28,7 +28,7 @@ ActionBox action_of(double size, double away, bool broken_off,
         stored.body.push_back({skin, {}});
         for (std::size_t v = 0; v < (skin == 0 ? 8u : 16u); ++v) {
             const Vec3 p = both.position[v] + (v < 8 ? Vec3(0, 0, 0) : Vec3(at, -0.1 * at, 0));
-            stored.body[0].position.push_back(p.cast<float>());
+            stored.body[0].position.push_back(p);
         }
         return stored;
     };

@@ -95,6 +95,38 @@ TEST_CASE("a motion file gives back what was put in") {
     CHECK(machine[0].color == Vec3(1, 0, 0));
 }
 
+TEST_CASE("an image within meshes is stored once, for however many skins") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    FrameStoreWriter writer(file);
+    TriMesh mesh = tetrahedron();
+    const auto image = std::make_shared<const std::string>(100'000, 'x');
+    mesh.material[0].embedded_texture = image;
+    for (int skin = 0; skin < 10; ++skin) {
+        mesh.material[0].embedded_texture = std::make_shared<const std::string>(*image);
+        writer.add_skin(mesh);
+    }
+    writer.finish();
+    CHECK(fs::file_size(file) < 120'000);
+    const FrameStore store(file);
+    for (int skin : {0, 9}) CHECK(*store.skin(skin).material[0].embedded_texture == *image);
+}
+
+TEST_CASE("where a body is far away its frame is as exact as near by") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    FrameStoreWriter writer(file);
+    StoredFrame frame;
+    frame.body.push_back(
+        {0, {{1e6, 0, -1e6}, {1e6 + 0.1, 0.03, -1e6}, {1e6 + 0.2, 0, -1e6 + 0.07}}});
+    writer.add_frame(frame);
+    writer.finish();
+    const StoredFrame back = FrameStore(file).frame(0);
+    for (int v = 0; v < 3; ++v) {
+        CHECK((back.body[0].position[v] - frame.body[0].position[v]).norm() < 1e-7 * 0.2);
+    }
+}
+
 TEST_CASE("a motion file appears only when it is whole") {
     const Scratch scratch;
     const fs::path file = scratch.path() / "motion.bin";

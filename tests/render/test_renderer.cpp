@@ -286,6 +286,29 @@ TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {
     CHECK((drawn(small_picture(), {{&mesh, nullptr, {}, inside}}).rgb == b.rgb));
 }
 
+TEST_CASE("faces without texture coordinates have the plain colour", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    RenderSettings settings = small_picture();
+    settings.camera[0].azimuth = settings.camera[0].elevation = 0;
+    const Box action = {{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.1}};
+    TriMesh mesh = square(1);
+    Image texture{16, 16, {}};
+    for (int i = 0; i < 256; ++i) texture.rgb.insert(texture.rgb.end(), {220, 20, 20});
+    SurfaceMaterial textured = colored({0.1, 0.6, 0.1});
+    textured.embedded_texture = std::make_shared<const std::string>(encode_png(texture));
+    mesh.material = {textured};
+    const Image whole = drawn(settings, {{&mesh, nullptr, {}, std::nullopt}}, -0.5, action);
+    mesh.triangle_uv[1] = {-1, -1, -1};  // left and above the diagonal
+    const Image half = drawn(settings, {{&mesh, nullptr, {}, std::nullopt}}, -0.5, action);
+    const TriMesh bare = square(1);
+    const Image plain =
+        drawn(settings, {{&bare, nullptr, {}, colored({0.1, 0.6, 0.1})}}, -0.5, action);
+    for (int c = 0; c < 3; ++c) {
+        CHECK(std::abs(half.pixel(60, 40)[c] - plain.pixel(60, 40)[c]) <= 1);
+        CHECK(std::abs(half.pixel(100, 80)[c] - whole.pixel(100, 80)[c]) <= 1);
+    }
+}
+
 TEST_CASE("both sides of a surface are lit", "[renderer]") {
     if (!can_draw(GlProviderKind::automatic)) return;
     TriMesh front = square(1), back = front;
@@ -311,6 +334,11 @@ TEST_CASE("colours of positions are shown", "[renderer]") {
     mesh.position_color.clear();
     const Image b = drawn(small_picture(), {{&mesh, nullptr, {}, colored({0.1f, 0.6f, 0.2f})}});
     CHECK(mean_difference(a, b) < 0.05);
+    // A cut face has its rim's colours and does not show them.
+    SurfaceMaterial cut = colored({0.1f, 0.6f, 0.2f});
+    cut.takes_colors = false;
+    mesh.position_color.assign(4, Eigen::Vector3f(1, 0, 0));
+    CHECK(mean_difference(b, drawn(small_picture(), {{&mesh, nullptr, {}, cut}})) < 0.05);
 }
 
 TEST_CASE("given positions are drawn instead of the mesh's own, picture after picture",
@@ -350,6 +378,14 @@ TEST_CASE("size and place in the world do not change the picture", "[renderer]")
     CHECK(mean_difference(a, picture(1e-4, Vec3::Zero())) < 0.2);
     CHECK(mean_difference(a, picture(1e4, Vec3::Zero())) < 0.2);
     CHECK(mean_difference(a, picture(1, {1e5, -1e5, 3e4})) < 0.2);
+    // Also where a mesh from near the origin has gone there.
+    const Vec3 at(1e6, -1e6, 3e5);
+    const TriMesh mesh = box_mesh(0.8);
+    std::vector<Vec3> there;
+    for (const Vec3& p : mesh.position) there.push_back(p + at + Vec3(0, 0.45, 0));
+    const Box action = {at + kAction.low, at + kAction.high};
+    CHECK(mean_difference(a, drawn(small_picture(), {{&mesh, &there, {}, {}}}, at.y(), action)) <
+          0.2);
 }
 
 TEST_CASE("the camera's keys move the picture", "[renderer]") {
@@ -394,9 +430,15 @@ TEST_CASE("corners that differ become vertices of their own, others are shared",
     const DrawMesh split = split_corners(mesh);
     CHECK(split.vertex_position.size() == 6);
     CHECK(split.index.size() == 6);
-    for (std::size_t i = 0; i < 6; ++i) {
-        CHECK(split.vertex_position[split.index[i]] == mesh.triangle[i / 3][i % 3]);
-        CHECK(split.vertex_uv[split.index[i]] == mesh.triangle_uv[i / 3][i % 3]);
+    REQUIRE(split.range.size() == 2);
+    for (const DrawMesh::Range& range : split.range) {
+        const std::size_t t = range.textured ? 0 : 1;
+        REQUIRE(range.count == 3);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto v = split.index[range.first + c];
+            CHECK(split.vertex_position[v] == mesh.triangle[t][c]);
+            CHECK(split.vertex_uv[v] == mesh.triangle_uv[t][c]);
+        }
     }
     mesh.triangle_material = {1, 0};
     const DrawMesh sorted = split_corners(mesh);
