@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
+#include <functional>
 #include <numeric>
 #include <optional>
+#include <queue>
+#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -15,7 +16,7 @@
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair_cgal.h"
-#include "geometry/triangle_tree.h"
+#include "geometry/mesh_shells.h"
 
 namespace swage {
 
@@ -24,6 +25,7 @@ namespace {
 constexpr std::size_t kMostClose = 1'000'000;    // pairs of shells with overlapping boxes
 constexpr std::size_t kMostMeeting = 5000;       // pairs of shells that cross or touch
 constexpr std::size_t kMostLooked = 50'000'000;  // pairs of triangles with overlapping boxes
+constexpr double kOnSurface = 1e-6;              // of a shell's size: no further from it
 constexpr double kCreaseAngle = 40 * kPi / 180;
 
 std::string counted(std::size_t count, const char* one, const char* many) {
@@ -34,145 +36,37 @@ bool overlap(const Box& a, const Box& b) {
     return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
-struct Shell {
-    TriMesh mesh;
-    Box box;
-    double volume = 0;
-    std::unique_ptr<TriangleTree> tree;  // made when first asked for
-    int inside = -1;                     // the smallest shell around this one
-
-    double winding(const Vec3& point) {
-        if (tree == nullptr) tree = std::make_unique<TriangleTree>(mesh);
-        return tree->winding_number(point);
-    }
-};
-
-std::vector<Shell> split(const TriMesh& mesh, const std::vector<int>& shell, int count) {
-    std::vector<Shell> shells(count);
-    std::vector<std::vector<std::size_t>> triangles(count);
-    for (std::size_t t = 0; t < shell.size(); ++t) triangles[shell[t]].push_back(t);
-    std::vector<int> place(mesh.position.size(), -1);
-    for (int s = 0; s < count; ++s) {
-        // Attributes keep their numbers; only positions are made few, so that many shells are
-        // cheap.
-        TriMesh& part = shells[s].mesh;
-        const auto pick = [&](const auto& from, auto& to) {
-            if (from.empty()) return;
-            for (const std::size_t t : triangles[s]) to.push_back(from[t]);
-        };
-        pick(mesh.triangle, part.triangle);
-        pick(mesh.triangle_uv, part.triangle_uv);
-        pick(mesh.triangle_smooth, part.triangle_smooth);
-        pick(mesh.triangle_polygon, part.triangle_polygon);
-        pick(mesh.triangle_material, part.triangle_material);
-        pick(mesh.triangle_part, part.triangle_part);
-        std::vector<int> used;
-        for (Corners& c : part.triangle)
-            for (int& i : c) {
-                if (place[i] < 0) {
-                    place[i] = static_cast<int>(used.size());
-                    used.push_back(i);
-                }
-                i = place[i];
-            }
-        for (const int i : used) {
-            part.position.push_back(mesh.position[i]);
-            if (!mesh.position_color.empty()) part.position_color.push_back(mesh.position_color[i]);
-            place[i] = -1;
-        }
-        shells[s].box = box_of(part.position);
-        shells[s].volume = signed_volume(part);
-    }
-    return shells;
-}
-
-// Puts shells together again. Their attributes still count in the whole mesh's lists.
-TriMesh join(const TriMesh& whole, const std::vector<const TriMesh*>& parts) {
-    TriMesh mesh;
-    mesh.uv = whole.uv;
-    mesh.material = whole.material;
-    mesh.part_name = whole.part_name;
-    mesh.smooth_group_count = whole.smooth_group_count;
-    for (const TriMesh* part : parts) {
-        const int base = static_cast<int>(mesh.position.size());
-        const auto add = [](const auto& from, auto& to) {
-            to.insert(to.end(), from.begin(), from.end());
-        };
-        add(part->position, mesh.position);
-        add(part->position_color, mesh.position_color);
-        for (Corners c : part->triangle) {
-            for (int& i : c) i += base;
-            mesh.triangle.push_back(c);
-        }
-        add(part->triangle_uv, mesh.triangle_uv);
-        add(part->triangle_smooth, mesh.triangle_smooth);
-        add(part->triangle_polygon, mesh.triangle_polygon);
-        add(part->triangle_material, mesh.triangle_material);
-        add(part->triangle_part, mesh.triangle_part);
-    }
-    return mesh;
-}
-
-// Gives the pieces of a union what the triangles they come from had. `uv` is the list of the whole
-// mesh; new entries go there.
-TriMesh dress(TriMesh pieces, const std::vector<int>& origin, const TriMesh& a, const TriMesh& b,
-              std::vector<Vec2>& uv) {
-    const int in_a = static_cast<int>(a.triangle.size());
-    if (!a.position_color.empty())
-        pieces.position_color.assign(pieces.position.size(), Eigen::Vector3f::Ones());
-    for (std::size_t t = 0; t < pieces.triangle.size(); ++t) {
-        const TriMesh& from = origin[t] < in_a ? a : b;
-        const int o = origin[t] < in_a ? origin[t] : origin[t] - in_a;
-        if (!from.triangle_material.empty())
-            pieces.triangle_material.push_back(from.triangle_material[o]);
-        if (!from.triangle_part.empty()) pieces.triangle_part.push_back(from.triangle_part[o]);
-        const Corners& c = from.triangle[o];
-        const Vec3 &p0 = from.position[c[0]], &p1 = from.position[c[1]], &p2 = from.position[c[2]];
-        const Vec3 normal = (p1 - p0).cross(p2 - p0);
-        const double whole = normal.squaredNorm();
-        Corners corner_uv = {-1, -1, -1};
-        for (int k = 0; k < 3; ++k) {
-            const int place = pieces.triangle[t][k];
-            const Vec3& p = pieces.position[place];
-            Vec3 share = Vec3(1, 1, 1) / 3;  // barycentric
-            if (whole > 0)
-                share =
-                    Vec3((p2 - p1).cross(p - p1).dot(normal), (p0 - p2).cross(p - p2).dot(normal),
-                         (p1 - p0).cross(p - p0).dot(normal)) /
-                    whole;
-            for (int j = 0; j < 3; ++j)
-                if (p == from.position[c[j]]) share = Vec3::Unit(j);
-            if (!pieces.position_color.empty())
-                pieces.position_color[place] =
-                    static_cast<float>(share[0]) * from.position_color[c[0]] +
-                    static_cast<float>(share[1]) * from.position_color[c[1]] +
-                    static_cast<float>(share[2]) * from.position_color[c[2]];
-            if (from.triangle_uv.empty()) continue;
-            const Corners& old = from.triangle_uv[o];
-            for (int j = 0; j < 3; ++j)
-                if (share[j] == 1) corner_uv[k] = old[j];
-            if (corner_uv[k] < 0 && std::min({old[0], old[1], old[2]}) >= 0) {
-                corner_uv[k] = static_cast<int>(uv.size());
-                uv.push_back(share[0] * uv[old[0]] + share[1] * uv[old[1]] + share[2] * uv[old[2]]);
-            }
-        }
-        if (!from.triangle_uv.empty()) pieces.triangle_uv.push_back(corner_uv);
-    }
-    return pieces;
-}
-
-void turn_over(Shell& shell) {
-    for (std::size_t t = 0; t < shell.mesh.triangle.size(); ++t) flip_triangle(shell.mesh, t);
-    shell.volume = -shell.volume;
-    shell.tree.reset();
-}
-
 // Whether any of a few vertices of a lies well inside b.
 bool enters(const Shell& a, Shell& b) {
     const std::size_t step = std::max<std::size_t>(1, a.mesh.position.size() / 200);
     for (std::size_t i = 0; i < a.mesh.position.size(); i += step)
         if (std::abs(b.winding(a.mesh.position[i])) > 0.75) return true;
     return false;
+}
+
+bool lies_in(const Box& in, const Box& out, double gap) {
+    return (in.low.array() >= out.low.array() - gap).all() &&
+           (in.high.array() <= out.high.array() + gap).all();
+}
+
+// Whether a, which meets b, lies in it all the same: a part of it within, none without.
+bool touches_from_within(const Shell& a, Shell& b) {
+    const double gap = kOnSurface * b.box.size().norm();
+    if (!lies_in(a.box, b.box, gap)) return false;
+    bool within = false;
+    const auto look = [&](const Vec3& point) {
+        const bool inside = std::abs(b.winding(point)) > 0.5;
+        if (inside && within) return true;
+        const bool on_surface = b.tree->distance(point) <= gap;
+        within = within || (inside && !on_surface);
+        return inside || on_surface;
+    };
+    for (const Vec3& p : a.mesh.position)
+        if (!look(p)) return false;
+    for (const Corners& t : a.mesh.triangle)
+        if (!look((a.mesh.position[t[0]] + a.mesh.position[t[1]] + a.mesh.position[t[2]]) / 3))
+            return false;
+    return within;
 }
 
 class Settler {
@@ -190,7 +84,7 @@ class Settler {
             }
             return std::nullopt;
         }
-        shells_ = split(mesh_, shell, count);
+        shells_ = split_shells(mesh_, shell, count);
         drop_flat();
         if (auto reason = find_pairs()) return reason;
         find_nesting();
@@ -201,7 +95,7 @@ class Settler {
         std::vector<const TriMesh*> parts;
         for (const Shell& s : shells_)
             if (!s.mesh.triangle.empty()) parts.push_back(&s.mesh);
-        mesh_ = join(mesh_, parts);
+        mesh_ = join_shells(mesh_, parts);
         if (united_) {
             mesh_.triangle_polygon.clear();
             smooth_by_crease_angle(mesh_, kCreaseAngle);
@@ -294,24 +188,31 @@ class Settler {
     }
 
     void find_nesting() {
+        around_.resize(shells_.size());
+        const auto size = [&](int s) { return std::abs(shells_[s].volume); };
         const auto consider = [&](int inner, int outer) {
-            const Box &in = shells_[inner].box, &out = shells_[outer].box;
-            if (!((in.low.array() >= out.low.array()).all() &&
-                  (in.high.array() <= out.high.array()).all()))
-                return;
-            if (std::abs(shells_[outer].winding(shells_[inner].mesh.position[0])) < 0.5) return;
-            int& known = shells_[inner].inside;
-            if (known < 0 || std::abs(shells_[outer].volume) < std::abs(shells_[known].volume))
-                known = outer;
+            if (lies_in(shells_[inner].box, shells_[outer].box, 0) &&
+                std::abs(shells_[outer].winding(shells_[inner].mesh.position[0])) >= 0.5)
+                around_[inner].push_back(outer);
         };
         for (const auto& [a, b] : apart_) {
             consider(a, b);
             consider(b, a);
         }
+        // A cavity may touch the wall it is in.
+        for (const auto& [a, b] : meeting_) {
+            if ((shells_[a].volume > 0) == (shells_[b].volume > 0) || size(a) == size(b)) continue;
+            const int inner = size(a) < size(b) ? a : b, outer = a + b - inner;
+            if (touches_from_within(shells_[inner], shells_[outer]))
+                around_[inner].push_back(outer);
+        }
+        for (std::vector<int>& around : around_)
+            std::sort(around.begin(), around.end(),
+                      [&](int a, int b) { return size(a) != size(b) ? size(a) < size(b) : a < b; });
     }
 
     int root_of(int s) const {
-        while (shells_[s].inside >= 0) s = shells_[s].inside;
+        while (!around_[s].empty()) s = around_[s].front();
         return s;
     }
 
@@ -320,7 +221,7 @@ class Settler {
         const int count = static_cast<int>(shells_.size());
         std::vector<char> turn(count, 0);
         for (int s = 0; s < count; ++s)
-            if (shells_[s].inside < 0) {
+            if (around_[s].empty()) {
                 ++bodies;
                 turn[s] = shells_[s].volume < 0;
                 turned += turn[s];
@@ -335,24 +236,26 @@ class Settler {
                                              counted(bodies, "body", "bodies")));
     }
 
-    // Only where the sense alternates with depth is a shell inside another a cavity (or an island
-    // in one).
+    bool outward(int s) const { return shells_[s].volume > 0; }
+
+    // A cavity is an inward shell where there is matter once; what is outward in matter is there
+    // twice, unless a cavity's wall goes through it.
     void drop_contained() {
         std::size_t dropped = 0;
         double volume = 0;
         const int count = static_cast<int>(shells_.size());
-        std::vector<char> drop(count, 0);
-        for (int s = 0; s < count; ++s) {
-            // Of the shells around, those that stay decide; walk up past dropped ones is not
-            // needed: what is inside a dropped body is inside the one that swallowed it.
-            int sum = 0;
-            for (int up = shells_[s].inside; up >= 0; up = shells_[up].inside)
-                sum += shells_[up].volume > 0 ? 1 : -1;
-            const bool outward = shells_[s].volume > 0;
-            drop[s] = (outward && sum >= 1) || (!outward && sum != 1);
+        std::vector<int> matter(count, 0);
+        for (int s = 0; s < count; ++s)
+            for (const int up : around_[s]) matter[s] += outward(up) ? 1 : -1;
+        dropped_.assign(count, 0);
+        for (int s = 0; s < count; ++s) dropped_[s] = !outward(s) && matter[s] != 1;
+        for (const auto& [a, b] : meeting_) {
+            if (outward(a) && !outward(b) && !dropped_[b]) --matter[a];
+            if (outward(b) && !outward(a) && !dropped_[a]) --matter[b];
         }
         for (int s = 0; s < count; ++s) {
-            if (!drop[s]) continue;
+            if (outward(s)) dropped_[s] = matter[s] >= 1;
+            if (!dropped_[s]) continue;
             ++dropped;
             volume += std::abs(shells_[s].volume);
             shells_[s].mesh.triangle.clear();
@@ -365,76 +268,135 @@ class Settler {
                         counted(dropped, "surface", "surfaces"), volume_text(volume)));
     }
 
+    // The body that an inward shell is a cavity of; an outward one is its own.
+    int body_of(int s) const {
+        if (outward(s)) return s;
+        for (const int up : around_[s])
+            if (outward(up) && !dropped_[up]) return up;
+        return s;
+    }
+
+    int merged(int s) const {
+        while (merged_[s] != s) s = merged_[s];
+        return s;
+    }
+
     bool unite_crossing() {
-        // Bodies: a root with its cavities.
         const int count = static_cast<int>(shells_.size());
-        std::vector<int> body(count);
-        for (int s = 0; s < count; ++s) body[s] = root_of(s);
-        std::size_t unions = 0;
-        double before = 0;
+        merged_.resize(count);
+        std::iota(merged_.begin(), merged_.end(), 0);
+        std::vector<std::pair<int, int>> cavities, bodies;
         for (const auto& [a, b] : meeting_) {
-            if (shells_[a].mesh.triangle.empty() || shells_[b].mesh.triangle.empty()) continue;
-            const auto current = [&](int s) {
-                while (body[s] != s) s = body[s];
-                return s;
-            };
-            const int x = current(body[a]), y = current(body[b]);
-            if (x == y) continue;
-            gather(x, body);
-            gather(y, body);
-            TriMesh united;
-            std::vector<int> origin;
-            const double sum = shells_[x].volume + shells_[y].volume;
-            if (unite(shells_[x].mesh, shells_[y].mesh, united, origin)) {
-                const double volume = signed_volume(united);
-                // Nothing in common: they only touch, and stay as they are.
-                if (std::abs(volume - sum) <= 1e-9 * std::abs(sum)) continue;
-                shells_[x].mesh =
-                    dress(std::move(united), origin, shells_[x].mesh, shells_[y].mesh, mesh_.uv);
-                shells_[x].volume = volume;
-                shells_[x].box.grow(shells_[y].box.low);
-                shells_[x].box.grow(shells_[y].box.high);
-                shells_[x].tree.reset();
-                shells_[y].mesh.triangle.clear();
-                body[y] = x;
-                ++unions;
-                before += sum - volume;
-                changed_ = united_ = true;
-            } else if (enters(shells_[x], shells_[y]) || enters(shells_[y], shells_[x])) {
-                return false;
+            if (dropped_[a] || dropped_[b]) continue;
+            if (body_of(a) != body_of(b)) {
+                bodies.emplace_back(a, b);
+            } else if (!outward(a) && !outward(b)) {
+                cavities.emplace_back(a, b);
             }
         }
-        if (unions > 0)
+        // As bodies in the place of matter.
+        std::vector<int> turned;
+        for (const auto& [a, b] : cavities)
+            for (const int s : {a, b})
+                if (!outward(s)) {
+                    turned.push_back(s);
+                    turn_over(shells_[s]);
+                }
+        if (!unite_along(cavities, "crossing cavity", "crossing cavities")) return false;
+        for (const int s : turned) turn_over(shells_[s]);
+
+        gather_cavities(bodies);
+        return unite_along(bodies, "crossing body", "crossing bodies");
+    }
+
+    // Into the meshes of the bodies they are in, where those meet others.
+    void gather_cavities(const std::vector<std::pair<int, int>>& bodies) {
+        const int count = static_cast<int>(shells_.size());
+        std::vector<char> meets(count, 0);
+        for (const auto& [a, b] : bodies) meets[body_of(a)] = meets[body_of(b)] = 1;
+        std::vector<std::vector<int>> cavities(count);
+        for (int s = 0; s < count; ++s) {
+            const int body = body_of(s);
+            if (body != s && meets[body] && !dropped_[s] && merged_[s] == s)
+                cavities[body].push_back(s);
+        }
+        for (int body = 0; body < count; ++body) {
+            if (cavities[body].empty()) continue;
+            Shell& whole = shells_[body];
+            std::vector<const TriMesh*> parts = {&whole.mesh};
+            for (const int s : cavities[body]) parts.push_back(&shells_[s].mesh);
+            whole.mesh = join_shells(mesh_, parts);
+            whole.tree.reset();
+            for (const int s : cavities[body]) {
+                whole.volume += shells_[s].volume;
+                shells_[s].mesh.triangle.clear();
+                merged_[s] = body;
+            }
+        }
+    }
+
+    // Small ones first, so that what has grown is cut anew as seldom as can be.
+    bool unite_along(const std::vector<std::pair<int, int>>& pairs, const char* one,
+                     const char* many) {
+        using Next = std::tuple<std::size_t, int, int>;  // how many triangles, of which two
+        std::priority_queue<Next, std::vector<Next>, std::greater<>> queue;
+        const auto next_of = [&](int a, int b) {
+            const auto [x, y] = std::minmax({merged(a), merged(b)});
+            return Next(shells_[x].mesh.triangle.size() + shells_[y].mesh.triangle.size(), x, y);
+        };
+        for (const auto& [a, b] : pairs) queue.push(next_of(a, b));
+        std::vector<char> took_part(shells_.size(), 0);
+        double shared = 0;
+        while (!queue.empty()) {
+            const auto next = queue.top();
+            queue.pop();
+            const auto [size, x, y] = next;
+            if (merged(x) == merged(y)) continue;
+            if (const Next now = next_of(x, y); now != next) {
+                queue.push(now);
+                continue;
+            }
+            const double sum = shells_[x].volume + shells_[y].volume;
+            if (!unite_two(x, y)) return false;
+            if (merged_[y] != x) continue;
+            took_part[x] = took_part[y] = 1;
+            shared += sum - shells_[x].volume;
+        }
+        const auto count =
+            static_cast<std::size_t>(std::count(took_part.begin(), took_part.end(), 1));
+        if (count > 0)
             account_.push_back(fmt::format("united {}: a volume of {} was counted more than once",
-                                           counted(unions + 1, "crossing body", "crossing bodies"),
-                                           volume_text(before)));
+                                           counted(count, one, many), volume_text(shared)));
         return true;
     }
 
-    // Moves the cavities of body x into its own mesh.
-    void gather(int x, std::vector<int>& body) {
-        std::vector<const TriMesh*> parts = {&shells_[x].mesh};
-        std::vector<int> cavities;
-        for (int s = 0; s < static_cast<int>(shells_.size()); ++s)
-            if (s != x && root_of(s) == x && !shells_[s].mesh.triangle.empty()) {
-                parts.push_back(&shells_[s].mesh);
-                cavities.push_back(s);
-            }
-        if (cavities.empty()) return;
-        shells_[x].mesh = join(mesh_, parts);
-        for (const int s : cavities) {
-            shells_[x].volume += shells_[s].volume;
-            shells_[s].mesh.triangle.clear();
-            body[s] = x;
-        }
-        shells_[x].tree.reset();
-        changed_ = true;
+    // False where they cross and cannot be united.
+    bool unite_two(int x, int y) {
+        Shell &a = shells_[x], &b = shells_[y];
+        TriMesh united;
+        std::vector<int> origin;
+        if (!unite(a.mesh, b.mesh, united, origin)) return !enters(a, b) && !enters(b, a);
+        const double sum = a.volume + b.volume, volume = signed_volume(united);
+        // Nothing in common: they only touch, and stay as they are.
+        if (std::abs(volume - sum) <= 1e-9 * std::abs(sum)) return true;
+        a.mesh = dress_pieces(std::move(united), origin, a.mesh, b.mesh, mesh_.uv);
+        a.volume = volume;
+        a.box.grow(b.box.low);
+        a.box.grow(b.box.high);
+        a.tree.reset();
+        b.mesh.triangle.clear();
+        merged_[y] = x;
+        changed_ = united_ = true;
+        return true;
     }
 
     TriMesh& mesh_;
     std::vector<std::string>& account_;
     std::vector<Shell> shells_;
     std::vector<std::pair<int, int>> meeting_, apart_;
+    std::vector<std::vector<int>> around_;  // the shells around each, the smallest first
+    std::vector<char> dropped_;
+    std::vector<int> merged_;  // the shell that each is a part of now, or itself
     bool changed_ = false, united_ = false;
 };
 

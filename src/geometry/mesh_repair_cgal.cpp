@@ -68,18 +68,23 @@ TriMesh from_surface(const Surface& surface) {
 
 // Follows each face through cuts and copies back to the face it came from.
 struct OriginVisitor : CGAL::Polygon_mesh_processing::Corefinement::Default_visitor<Surface> {
-    using Origin = std::map<std::pair<const Surface*, Face>, int>;
+    using Origin = std::map<const Surface*, std::vector<int>>;  // of each face, -1: not known
     std::shared_ptr<Origin> origin = std::make_shared<Origin>();
     int cut = -1;  // origin of the face being cut
 
-    void before_subface_creations(Face face, const Surface& surface) {
-        cut = origin->at({&surface, face});
+    void put(const Surface& surface, Face face, int from) {
+        std::vector<int>& known = (*origin)[&surface];
+        if (known.size() <= face.idx()) known.resize(face.idx() + 1, -1);
+        known[face.idx()] = from;
     }
-    void after_subface_created(Face face, const Surface& surface) {
-        (*origin)[{&surface, face}] = cut;
+    int get(const Surface& surface, Face face) const {
+        const std::vector<int>& known = (*origin)[&surface];
+        return face.idx() < known.size() ? known[face.idx()] : -1;
     }
+    void before_subface_creations(Face face, const Surface& surface) { cut = get(surface, face); }
+    void after_subface_created(Face face, const Surface& surface) { put(surface, face, cut); }
     void after_face_copy(Face from, const Surface& source, Face to, const Surface& target) {
-        (*origin)[{&target, to}] = origin->at({&source, from});
+        put(target, to, get(source, from));
     }
 };
 
@@ -122,10 +127,9 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
     Surface first, second, both;
     if (!to_surface(a, first) || !to_surface(b, second)) return false;
     OriginVisitor visitor;
-    for (const Face f : first.faces()) (*visitor.origin)[{&first, f}] = static_cast<int>(f.idx());
+    for (const Face f : first.faces()) visitor.put(first, f, static_cast<int>(f.idx()));
     for (const Face f : second.faces())
-        (*visitor.origin)[{&second, f}] =
-            static_cast<int>(a.triangle.size()) + static_cast<int>(f.idx());
+        visitor.put(second, f, static_cast<int>(a.triangle.size() + f.idx()));
     try {
         if (!pmp::corefine_and_compute_union(
                 first, second, both,
@@ -137,9 +141,8 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
     result = from_surface(both);
     origin.clear();
     for (const Face f : both.faces()) {
-        const auto at = visitor.origin->find({&both, f});
-        if (at == visitor.origin->end()) return false;
-        origin.push_back(at->second);
+        origin.push_back(visitor.get(both, f));
+        if (origin.back() < 0) return false;
     }
     return true;
 }
