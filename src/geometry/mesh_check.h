@@ -36,8 +36,11 @@ struct MeshReport {
     std::vector<std::string> finding;  // a sentence for each thing that is not as it should be
 
     bool bounds_a_volume() const { return watertight && oriented && volume > 0; }
-    // There is nothing to repair: of several bodies one may be inside out or inside another.
-    bool is_one_body() const { return bounds_a_volume() && components == 1; }
+    // There is nothing to repair: of several bodies one may be inside out or inside another, and
+    // one body may be given twice.
+    bool is_one_body() const {
+        return bounds_a_volume() && components == 1 && duplicate_triangles == 0;
+    }
 };
 
 MeshReport check_mesh(const TriMesh& mesh);

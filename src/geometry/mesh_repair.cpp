@@ -7,13 +7,12 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "geometry/close_points.h"
-#include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
 #include "geometry/mesh_bodies.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair_cgal.h"
+#include "geometry/mesh_stitch.h"
 
 namespace swage {
 
@@ -61,6 +60,7 @@ class Repairer {
         const double volume = signed_volume(mesh_);
         const bool encloses =
             count_edges(mesh_).unbalanced == 0 && std::abs(volume) > 1e-12 * size * size * size;
+        if (encloses) drop_copies();
         if (encloses && volume > 0) return settled();
         drop_repeated_corners();
         if (!encloses) {
@@ -88,14 +88,15 @@ class Repairer {
     // is there anything to repair.
     Repair settled() {
         TriMesh input = mesh_;
+        std::vector<std::string> told = account_;
         const double volume = signed_volume(input);
         drop_repeated_corners();
         if (const auto reason = settle_bodies(mesh_, account_)) {
             log_warning("repair: the mesh is left as it is, for {}", *reason);
-            return {std::move(input), {}};
+            return {std::move(input), std::move(told)};
         }
         if (std::abs(signed_volume(mesh_) - volume) <= 1e-9 * volume) {
-            return {std::move(input), {}};
+            return {std::move(input), std::move(told)};
         }
         drop_unused_positions(mesh_);
         return {std::move(mesh_), std::move(account_)};
@@ -115,9 +116,8 @@ class Repairer {
         if (mesh_.triangle.empty()) fail(ExitCode::mesh, "all triangles have repeated corners");
     }
 
-    // Of triangles on the same corners one stays; a pair facing both ways is an inner wall and
-    // goes, unless that takes most of the mesh: then every face was given twice.
-    void drop_duplicates() {
+    // Triangles on the same corners stand together, the first of the mesh first.
+    std::vector<std::pair<Corners, int>> by_corners() const {
         std::vector<std::pair<Corners, int>> sorted;
         for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
             Corners c = mesh_.triangle[t];
@@ -125,10 +125,55 @@ class Repairer {
             sorted.emplace_back(c, static_cast<int>(t));
         }
         std::sort(sorted.begin(), sorted.end());
-        const auto even = [&](int t) {  // the cyclic order of its corners is ascending
-            const Corners& c = mesh_.triangle[t];
-            return (c[0] < c[1]) + (c[1] < c[2]) + (c[2] < c[0]) == 2;
-        };
+        return sorted;
+    }
+
+    // The cyclic order of its corners is ascending: of two on the same corners, those that are
+    // alike in this face the same way.
+    bool even(int t) const {
+        const Corners& c = mesh_.triangle[t];
+        return (c[0] < c[1]) + (c[1] < c[2]) + (c[2] < c[0]) == 2;
+    }
+
+    // Of a closed surface that was given more than once each triangle stays once.
+    void drop_copies() {
+        const auto sorted = by_corners();
+        std::vector<char> keep(mesh_.triangle.size(), 1);
+        for (std::size_t begin = 0, end; begin < sorted.size(); begin = end) {
+            int facing = 0;  // more times this way than the other
+            for (end = begin; end < sorted.size() && sorted[end].first == sorted[begin].first;
+                 ++end)
+                facing += even(sorted[end].second) ? 1 : -1;
+            if (std::abs(facing) < 2) continue;
+            bool one = false;
+            for (std::size_t i = begin; i < end; ++i) {
+                const int t = sorted[i].second;
+                keep[t] = !one && even(t) == (facing > 0);
+                one = one || keep[t];
+            }
+        }
+        if (std::count(keep.begin(), keep.end(), 0) == 0) return;
+        // Where that would open a shell its copies stay: two bodies share those triangles.
+        const std::vector<int> shell = shells_of(mesh_);
+        std::vector<char> opens(mesh_.triangle.size(), 0);
+        for_each_edge(edge_uses(mesh_.triangle, mesh_.position.size()), [&](auto uses) {
+            int sum = 0;
+            for (const EdgeUse& use : uses)
+                if (keep[use.triangle]) sum += use.forward ? 1 : -1;
+            if (sum != 0) opens[shell[uses[0].triangle]] = 1;
+        });
+        for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = keep[t] || opens[shell[t]];
+        const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
+        if (dropped == 0) return;
+        keep_triangles(mesh_, keep);
+        say(fmt::format("left out {}: closed surfaces were given more than once",
+                        counted(dropped, "duplicate triangle", "duplicate triangles")));
+    }
+
+    // Of triangles on the same corners one stays; a pair facing both ways is an inner wall and
+    // goes, unless that takes most of the mesh: then every face was given twice.
+    void drop_duplicates() {
+        const auto sorted = by_corners();
         std::vector<char> without_walls(mesh_.triangle.size(), 1),
             one_each(mesh_.triangle.size(), 1);
         std::size_t walls = 0, copies = 0;
@@ -157,64 +202,12 @@ class Repairer {
                             counted(walls + copies - walls / 2, "triangle", "triangles")));
     }
 
-    // Merges border vertices that all but coincide.
     void stitch() {
-        const double diagonal = box_of(mesh_.position).size().norm();
-        std::size_t best_odd = count_edges(mesh_).odd;
-        const std::size_t odd_before = best_odd;
-        TriMesh best;
-        double best_gap = 0;
-        std::size_t best_merged = 0;
-        for (const double share : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
-            TriMesh trial = mesh_;
-            const std::size_t merged = merge_borders(trial, share * diagonal);
-            const std::size_t odd = merged > 0 ? count_edges(trial).odd : best_odd;
-            if (odd >= best_odd) continue;
-            best_odd = odd;
-            best = std::move(trial);
-            best_gap = share * diagonal;
-            best_merged = merged;
-            if (odd == 0) break;
-        }
-        if (best_merged == 0) return;
-        mesh_ = std::move(best);
+        const Stitching done = stitch_borders(mesh_);
+        if (done.merged == 0) return;
         say(fmt::format("stitched {} within {} of another: {} border edges became {}",
-                        counted(best_merged, "vertex", "vertices"), length_text(best_gap),
-                        odd_before, best_odd));
-    }
-
-    static std::size_t merge_borders(TriMesh& mesh, double gap) {
-        std::vector<char> at_border(mesh.position.size(), 0);
-        double shortest = std::numeric_limits<double>::infinity();
-        for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-            const EdgeUse& e = uses[0];
-            if (uses.size() % 2 == 0) return;
-            at_border[e.low] = at_border[e.high] = 1;
-            const double length = (mesh.position[e.low] - mesh.position[e.high]).norm();
-            if (length > gap) shortest = std::min(shortest, length);
-        });
-        if (gap > 0.2 * shortest) return 0;  // would eat detail
-        std::vector<int> border;
-        std::vector<Vec3> place;
-        for (std::size_t i = 0; i < at_border.size(); ++i) {
-            if (!at_border[i]) continue;
-            border.push_back(static_cast<int>(i));
-            place.push_back(mesh.position[i]);
-        }
-        DisjointSets same(mesh.position.size());
-        std::size_t merged = 0;
-        for_each_close_pair(place, gap, [&](int a, int b) {
-            if (same.root(border[a]) == same.root(border[b])) return;
-            same.unite(border[a], border[b]);
-            ++merged;
-        });
-        std::vector<char> keep;
-        for (Corners& t : mesh.triangle) {
-            for (int& i : t) i = same.root(i);
-            keep.push_back(t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
-        }
-        keep_triangles(mesh, keep);
-        return merged;
+                        counted(done.merged, "vertex", "vertices"), length_text(done.gap),
+                        done.odd_before, done.odd_after));
     }
 
     // Turns triangles so that neighbours agree, in each sheet the smaller number of them.

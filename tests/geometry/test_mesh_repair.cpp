@@ -130,6 +130,116 @@ TEST_CASE("a soup of unwelded, slightly jittered triangles is stitched") {
     CHECK(signed_volume(repair.mesh) == Approx(signed_volume(ball)));
 }
 
+TEST_CASE("a surface given twice in the same places, facing the same way, counts once") {
+    TriMesh ball = ball_mesh(10, 0.3);
+    const TriMesh once = ball;
+    append(ball, box_mesh({1, 0, 0}, {2, 1, 1}));
+    ball.triangle_uv.clear();
+    ball.triangle_material.clear();
+    for (const bool inside_out : {false, true}) {
+        TriMesh mesh = ball;
+        mesh.triangle.insert(mesh.triangle.end(), once.triangle.begin(), once.triangle.end());
+        if (inside_out)
+            for (Corners& t : mesh.triangle) std::swap(t[0], t[1]);
+        CHECK(!check_mesh(mesh).is_one_body());
+        const Repair repair = repair_mesh(mesh);
+        CHECK(told(repair, "given more than once"));
+        CHECK(repair.mesh.triangle.size() == ball.triangle.size());
+        CHECK(signed_volume(repair.mesh) == Approx(1 + signed_volume(once)));
+    }
+    TriMesh alone = once;
+    alone.triangle.insert(alone.triangle.end(), once.triangle.begin(), once.triangle.end());
+    alone.triangle_uv.clear();
+    alone.triangle_material.clear();
+    CHECK(!check_mesh(alone).is_one_body());
+    CHECK(signed_volume(repair_mesh(alone).mesh) == Approx(signed_volume(once)));
+}
+
+namespace {
+
+// Along x, of quads; open at both ends.
+TriMesh tube_mesh(double length, double radius, int around, int rings) {
+    TriMesh mesh;
+    for (int r = 0; r <= rings; ++r)
+        for (int a = 0; a < around; ++a) {
+            const double turn = 2 * kPi * a / around;
+            mesh.position.emplace_back(length * r / rings, radius * std::cos(turn),
+                                       radius * std::sin(turn));
+        }
+    for (int r = 0; r < rings; ++r)
+        for (int a = 0; a < around; ++a) {
+            const int i = around * r + a, j = around * r + (a + 1) % around;
+            mesh.triangle.push_back({i, i + around, j});
+            mesh.triangle.push_back({j, i + around, j + around});
+        }
+    return mesh;
+}
+
+double tube_volume(double length, double radius, int around) {
+    return length * 0.5 * around * radius * radius * std::sin(2 * kPi / around);
+}
+
+}  // namespace
+
+TEST_CASE("a rim of edges shorter than any gap keeps its width") {
+    for (const int around : {8, 48, 200}) {
+        const TriMesh wire = tube_mesh(1, 5e-4, around, 10);
+        const Repair repair = repair_mesh(wire);
+        CHECK(told(repair, "closed 2 holes"));
+        CHECK(signed_volume(repair.mesh) == Approx(tube_volume(1, 5e-4, around)));
+        CHECK(repair.mesh.position.size() == wire.position.size());
+    }
+    // One thinner than the widest gap.
+    CHECK(signed_volume(repair_mesh(tube_mesh(1, 4e-5, 6, 4)).mesh) ==
+          Approx(tube_volume(1, 4e-5, 6)));
+    // A wide one, finely divided.
+    CHECK(signed_volume(repair_mesh(tube_mesh(1, 0.5, 12000, 1)).mesh) ==
+          Approx(tube_volume(1, 0.5, 12000)));
+}
+
+TEST_CASE("fine rims that face each other across a crack are stitched, corner to corner") {
+    TriMesh wire = tube_mesh(1, 5e-4, 48, 10);
+    append(wire, tube_mesh(1, 5e-4, 48, 10));
+    const std::size_t half = wire.position.size() / 2;
+    for (std::size_t i = half; i < wire.position.size(); ++i)
+        wire.position[i] += Vec3(1 + 3e-6, 1e-6 * std::sin(i), 0);
+    const Repair repair = repair_mesh(wire);
+    CHECK(told(repair, "stitched 48 vertices"));
+    CHECK(told(repair, "closed 2 holes"));
+    CHECK(check_mesh(repair.mesh).components == 1);
+    CHECK(check_mesh(repair.mesh).manifold);
+    CHECK(signed_volume(repair.mesh) == Approx(tube_volume(2, 5e-4, 48)).epsilon(1e-4));
+}
+
+TEST_CASE("a slit, whose two sides are one border, is stitched to its ends") {
+    TriMesh ball = ball_mesh(16, 1);
+    const std::size_t triangles = ball.triangle.size();
+    const double volume = signed_volume(ball);
+    // Down a meridian: triangles on one side get corners of their own.
+    const int around = 32;
+    std::vector<int> other(ball.position.size(), -1);
+    for (int r = 4; r < 13; ++r) {
+        const int i = 1 + (r - 1) * around;
+        other[i] = static_cast<int>(ball.position.size());
+        ball.position.push_back(ball.position[i] + Vec3(1e-6, 2e-6, 1e-6 * r));
+    }
+    for (Corners& t : ball.triangle) {
+        double aside = 0;
+        for (const int i : t) aside += ball.position[i].y();
+        if (aside < 0)
+            for (int& i : t)
+                if (i < static_cast<int>(other.size()) && other[i] >= 0) i = other[i];
+    }
+    ball.uv.clear();
+    ball.triangle_uv.clear();
+    REQUIRE(check_mesh(ball).boundary_edges == 20);
+    const Repair repair = repair_mesh(ball);
+    CHECK(told(repair, "stitched 9 vertices"));
+    CHECK(told(repair, "20 border edges became 0"));
+    CHECK(repair.mesh.triangle.size() == triangles);
+    CHECK(signed_volume(repair.mesh) == Approx(volume).epsilon(1e-4));
+}
+
 TEST_CASE("an inside-out body is turned, and said") {
     const Repair repair = repair_mesh(box_mesh({0, 0, 0}, {1, 1, 1}, true));
     CHECK(told(repair, "inside out"));
