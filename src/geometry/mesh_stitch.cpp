@@ -17,53 +17,67 @@ namespace swage {
 namespace {
 
 constexpr double kMostOfEdge = 0.2;  // of the shortest border edge at either of two that are merged
+constexpr double kWidest = 2;        // gaps, of what becomes one vertex
 
 struct Border {
-    std::vector<EdgeUse> edge;
     std::vector<int> vertex;
-    std::vector<Vec3> place;          // of each vertex
-    std::vector<double> edge_length;  // the shortest at each vertex that has a length at all
+    std::vector<Vec3> place;    // of each vertex
+    std::vector<double> reach;  // of each: the shortest border edge there that counts
 };
 
-Border border_of(const TriMesh& mesh) {
-    Border border;
-    std::vector<double> shortest(mesh.position.size(), 0);
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+// An edge no longer than the gap counts only among its like, as on a fine rim: by itself it may go,
+// and so may a lone triangle of such.
+Border border_of(const TriMesh& mesh, double gap) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    const auto uses_of_edges = edge_uses(mesh.triangle, mesh.position.size());
+    std::vector<signed char> sides(mesh.triangle.size(), 0);
+    for_each_edge(uses_of_edges, [&](auto uses) {
+        if (uses.size() == 1) ++sides[uses[0].triangle];
+    });
+    std::vector<char> at_border(mesh.position.size(), 0);
+    std::vector<double> longer(mesh.position.size(), kNone), shorter(mesh.position.size(), kNone);
+    for_each_edge(uses_of_edges, [&](auto uses) {
         if (uses.size() % 2 == 0) return;
         const EdgeUse& e = uses[0];
-        border.edge.push_back(e);
         const double length = (mesh.position[e.low] - mesh.position[e.high]).norm();
+        const bool lone = uses.size() == 1 && sides[e.triangle] == 3;
         for (const int i : {e.low, e.high}) {
-            if (shortest[i] == 0) shortest[i] = std::numeric_limits<double>::infinity();
-            if (length > 0) shortest[i] = std::min(shortest[i], length);
+            at_border[i] = 1;
+            if (length > gap)
+                longer[i] = std::min(longer[i], length);
+            else if (!lone && length > 0)
+                shorter[i] = std::min(shorter[i], length);
         }
     });
-    for (std::size_t i = 0; i < shortest.size(); ++i) {
-        if (shortest[i] == 0) continue;
+    Border border;
+    for (std::size_t i = 0; i < at_border.size(); ++i) {
+        if (!at_border[i]) continue;
         border.vertex.push_back(static_cast<int>(i));
         border.place.push_back(mesh.position[i]);
-        border.edge_length.push_back(shortest[i]);
+        border.reach.push_back(longer[i] < kNone ? longer[i] : shorter[i]);
     }
     return border;
 }
 
-// How many were merged; 0: none, or a rim would have shrunk.
-std::size_t merge_within(TriMesh& mesh, const Border& border, double gap) {
+// How many were merged; 0: none, or detail would have been lost.
+std::size_t merge_within(TriMesh& mesh, double gap) {
+    const Border border = border_of(mesh, gap);
     DisjointSets same(mesh.position.size());
     std::size_t merged = 0;
     for_each_close_pair(border.place, gap, [&](int a, int b) {
-        if ((border.place[a] - border.place[b]).norm() >
-            kMostOfEdge * std::min(border.edge_length[a], border.edge_length[b]))
-            return;
+        const double distance = (border.place[a] - border.place[b]).norm();
+        if (distance > kMostOfEdge * std::min(border.reach[a], border.reach[b])) return;
         const int i = border.vertex[a], j = border.vertex[b];
         if (same.root(i) == same.root(j)) return;
         same.unite(i, j);
         ++merged;
     });
-    // From one to the next, and so along the border after all.
-    for (const EdgeUse& e : border.edge)
-        if (same.root(e.low) == same.root(e.high) && mesh.position[e.low] != mesh.position[e.high])
-            return 0;
+    if (merged == 0) return 0;
+    // From one to the next they may have run along a row of many.
+    std::vector<Box> extent(mesh.position.size());
+    for (const int i : border.vertex) extent[same.root(i)].grow(mesh.position[i]);
+    for (const int i : border.vertex)
+        if (same.root(i) == i && extent[i].size().norm() > kWidest * gap) return 0;
     std::vector<char> keep;
     for (Corners& t : mesh.triangle) {
         for (int& i : t) i = same.root(i);
@@ -84,23 +98,21 @@ std::size_t odd_edges(const TriMesh& mesh) {
 
 Stitching stitch_borders(TriMesh& mesh) {
     const double diagonal = box_of(mesh.position).size().norm();
-    const Border border = border_of(mesh);
-    Stitching best;
-    best.odd_before = best.odd_after = border.edge.size();
-    TriMesh stitched;
+    Stitching done;
+    done.odd_before = done.odd_after = odd_edges(mesh);
+    // What is nearest first: of a fine part that is whole by then only rims are left to look at.
     for (const double share : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
+        if (done.odd_after == 0) break;
         TriMesh trial = mesh;
-        const std::size_t merged = merge_within(trial, border, share * diagonal);
-        const std::size_t odd = merged > 0 ? odd_edges(trial) : best.odd_after;
-        if (odd >= best.odd_after) continue;
-        best.merged = merged;
-        best.gap = share * diagonal;
-        best.odd_after = odd;
-        stitched = std::move(trial);
-        if (odd == 0) break;
+        const std::size_t merged = merge_within(trial, share * diagonal);
+        const std::size_t odd = merged > 0 ? odd_edges(trial) : done.odd_after;
+        if (odd >= done.odd_after) continue;
+        done.merged += merged;
+        done.gap = share * diagonal;
+        done.odd_after = odd;
+        mesh = std::move(trial);
     }
-    if (best.merged > 0) mesh = std::move(stitched);
-    return best;
+    return done;
 }
 
 }  // namespace swage

@@ -14,9 +14,9 @@ struct Stitching {
     std::size_t odd_before = 0, odd_after = 0;  // edges with an odd number of triangles
 };
 
-// Merges vertices at borders by the smallest of a few gaps that closes most edges. What is merged
-// is nearer to each other than to the next vertices along the border, by far: so both sides of a
-// crack are, on one loop or on two, and no rim shrinks, however fine it is.
+// Merges vertices at borders, within one gap after the other, where that closes edges. What is
+// merged is nearer to each other than to the next vertices along the border, by far: so both sides
+// of a crack are, on one loop or on two, and no rim shrinks, however fine it is.
 Stitching stitch_borders(TriMesh& mesh);
 
 }  // namespace swage

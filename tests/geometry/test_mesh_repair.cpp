@@ -113,21 +113,57 @@ TEST_CASE("triangles turned at random are turned back") {
         CHECK(repair.mesh.triangle[t] == repair.mesh.triangle_uv[t]);
 }
 
-TEST_CASE("a soup of unwelded, slightly jittered triangles is stitched") {
-    const TriMesh ball = ball_mesh(8, 1);
+namespace {
+
+// Each triangle with corners of its own, moved by up to half of `jitter`.
+TriMesh soup_of(const TriMesh& mesh, double jitter) {
     TriMesh soup;
     std::mt19937 random(3);
-    const auto jitter = [&] { return 1e-7 * (random() / 4294967296.0 - 0.5); };
-    for (const Corners& t : ball.triangle) {
+    const auto moved = [&] { return jitter * (random() / 4294967296.0 - 0.5); };
+    for (const Corners& t : mesh.triangle) {
         const int base = static_cast<int>(soup.position.size());
         for (const int i : t)
-            soup.position.push_back(ball.position[i] + Vec3(jitter(), jitter(), jitter()));
+            soup.position.push_back(mesh.position[i] + Vec3(moved(), moved(), moved()));
         soup.triangle.push_back({base, base + 1, base + 2});
     }
-    const Repair repair = repair_mesh(soup);
+    return soup;
+}
+
+}  // namespace
+
+TEST_CASE("a soup of unwelded, slightly jittered triangles is stitched") {
+    TriMesh ball = ball_mesh(8, 1);
+    const double volume = signed_volume(ball);
+    const Repair repair = repair_mesh(soup_of(ball, 1e-7));
     CHECK(told(repair, "stitched"));
     CHECK(check_mesh(repair.mesh).manifold);
-    CHECK(signed_volume(repair.mesh) == Approx(signed_volume(ball)));
+    CHECK(signed_volume(repair.mesh) == Approx(volume));
+
+    // Triangles as thin as the jitter, and much thinner and thicker ones.
+    for (const double thin : {1e-9, 1e-7, 3e-6}) {
+        TriMesh cut = ball_mesh(8, 1);
+        for (const std::size_t t : {7, 40, 41, 90}) {
+            // A corner close to one of the edge's ends, in both triangles at the edge.
+            const int a = cut.triangle[t][0], b = cut.triangle[t][1];
+            const int m = static_cast<int>(cut.position.size());
+            const Vec3 along = cut.position[b] - cut.position[a];
+            cut.position.push_back(cut.position[a] + thin * along.normalized());
+            for (std::size_t n = 0, count = cut.triangle.size(); n < count; ++n)
+                for (int k = 0; k < 3; ++k) {
+                    const Corners c = cut.triangle[n];
+                    const int from = c[k], to = c[(k + 1) % 3], apex = c[(k + 2) % 3];
+                    if (std::minmax(from, to) != std::minmax(a, b)) continue;
+                    cut.triangle[n] = {from, m, apex};
+                    cut.triangle.push_back({m, to, apex});
+                    break;
+                }
+        }
+        const Repair mended = repair_mesh(soup_of(cut, 1e-7));
+        CHECK(told(mended, "became 0"));
+        CHECK(!told(mended, "wrapped"));
+        CHECK(check_mesh(mended.mesh).bounds_a_volume());
+        CHECK(signed_volume(mended.mesh) == Approx(volume));
+    }
 }
 
 TEST_CASE("a surface given twice in the same places, facing the same way, counts once") {
@@ -192,6 +228,8 @@ TEST_CASE("a rim of edges shorter than any gap keeps its width") {
     // One thinner than the widest gap.
     CHECK(signed_volume(repair_mesh(tube_mesh(1, 4e-5, 6, 4)).mesh) ==
           Approx(tube_volume(1, 4e-5, 6)));
+    CHECK(signed_volume(repair_mesh(soup_of(tube_mesh(1, 4e-5, 6, 4), 1e-9)).mesh) ==
+          Approx(tube_volume(1, 4e-5, 6)).epsilon(1e-3));
     // A wide one, finely divided.
     CHECK(signed_volume(repair_mesh(tube_mesh(1, 0.5, 12000, 1)).mesh) ==
           Approx(tube_volume(1, 0.5, 12000)));
