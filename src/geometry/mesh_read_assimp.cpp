@@ -16,6 +16,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 
@@ -186,6 +187,15 @@ class SceneReader {
         return at->second;
     }
 
+    // glTF's colours are light itself. A 3MF file's are sRGB, says its specification; a DAE, 3DS or
+    // STL file's are what a screen showed to who chose them, and so are an OFF file's.
+    Vec3 light_of(double red, double green, double blue) const {
+        Vec3 color = Vec3(red, green, blue).cwiseMax(0.0).cwiseMin(1.0);
+        if (source_.format == MeshFormat::gltf || source_.format == MeshFormat::glb) return color;
+        for (double& c : color) c = linear_from_srgb(c);
+        return color;
+    }
+
     void add_mesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& m) {
         if (mesh.mNumFaces == 0 || mesh.mVertices == nullptr) return;
         // Points and lines alone are no part.
@@ -230,7 +240,7 @@ class SceneReader {
                 mesh_.uv.emplace_back(mesh.mTextureCoords[0][v].x, mesh.mTextureCoords[0][v].y);
             if (mesh.HasVertexColors(0)) {
                 const aiColor4D& c = mesh.mColors[0][v];
-                mesh_.color.emplace_back(c.r, c.g, c.b);
+                mesh_.color.push_back(light_of(c.r, c.g, c.b).cast<float>());
             }
         }
         if (!mesh_.color.empty())
@@ -286,7 +296,7 @@ class SceneReader {
         aiColor4D color;
         if (from.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS ||
             from.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS)
-            to.color = Vec3(color.r, color.g, color.b).cwiseMax(0.0).cwiseMin(1.0);
+            to.color = light_of(color.r, color.g, color.b);
         const bool has_surface_map =
             from.GetTextureCount(aiTextureType_METALNESS) > 0 ||
             from.GetTextureCount(aiTextureType_DIFFUSE_ROUGHNESS) > 0 ||
@@ -312,6 +322,8 @@ class SceneReader {
                  transform.mTranslation != aiVector2D(0, 0) || transform.mRotation != 0))
                 source_.finding.push_back(fmt::format(
                     "material '{}': the shift and scale of its texture were left out", to.name));
+            // An image stands in the place of a colour there, and assimp makes one up.
+            if (source_.format == MeshFormat::dae) to.color = Vec3::Ones();
             take_texture(to);
             break;
         }

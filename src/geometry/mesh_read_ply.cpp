@@ -252,16 +252,18 @@ class PlyReader {
         has_vertex_uv_ = has_uv;
     }
 
-    // Whole numbers are for display (sRGB), fractions are linear light.
+    // Whole numbers are for display (sRGB), fractions are linear light. What is wider than a colour
+    // needs holds a byte all the same: so do those who write `int`.
     static float color_of(const Element& element, int channel, const std::vector<double>& value) {
         const double c = value[channel];
         switch (element.property[channel].type) {
-            case Number::uint8:
-                return static_cast<float>(linear_from_srgb(c / 255));
+            case Number::float32:
+            case Number::float64:
+                return static_cast<float>(std::clamp(c, 0.0, 1.0));
             case Number::uint16:
                 return static_cast<float>(linear_from_srgb(c / 65535));
             default:
-                return static_cast<float>(std::clamp(c, 0.0, 1.0));
+                return static_cast<float>(linear_from_srgb(std::clamp(c / 255, 0.0, 1.0)));
         }
     }
 
@@ -290,6 +292,8 @@ class PlyReader {
         if (element.find({"red", "r", "diffuse_red"}) >= 0)
             source_.finding.emplace_back(
                 "colours of faces were left out (those of vertices are read)");
+        // Where some faces have coordinates, one without has no place in an image.
+        const bool some_have_uv = uv >= 0 || has_vertex_uv_;
         each(element, [&](std::uint64_t item, const auto& value, const auto& list) {
             const auto& corner = list[indices];
             const bool has_uv = uv >= 0 && list[uv].size() == 2 * corner.size();
@@ -302,7 +306,8 @@ class PlyReader {
                 add_corner(vertex_index(element, item, corner[k]), corner_uv);
             }
             const double number = texture >= 0 ? value[texture] : 0;
-            const bool has_texture = number >= 0 && number < static_cast<double>(texture_.size());
+            const bool has_texture = number >= 0 && number < static_cast<double>(texture_.size()) &&
+                                     (has_uv || has_vertex_uv_ || !some_have_uv);
             polygons_.end_polygon(has_texture ? static_cast<int>(number) : -1, -1, 0);
         });
     }

@@ -256,7 +256,23 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
         image_of.push_back(image.empty() ? -1 : images++);
         if (!image.empty()) bytes += "comment TextureFile " + image + "\n";
     }
-    const bool several = images > 1 && !mesh.triangle_material.empty();
+    const auto has_uv = [&](std::size_t polygon) {
+        bool all = true;
+        for (std::size_t i = polygons.first[polygon]; i < polygons.first[polygon + 1]; ++i) {
+            const int corner = polygons.corner[i];
+            all = all && mesh.triangle_uv[corner / 3][corner % 3] >= 0;
+        }
+        return all;
+    };
+    // What has no coordinates among those that do has no place in an image.
+    std::vector<int> face_image(polygons.count(), -1);
+    for (std::size_t p = 0; p < polygons.count() && images > 0; ++p) {
+        if (corner_uv && !has_uv(p)) continue;
+        const int t = polygons.corner[polygons.first[p]] / 3;
+        face_image[p] = mesh.triangle_material.empty() ? 0 : image_of[mesh.triangle_material[t]];
+    }
+    const bool chosen =
+        images > 1 || (images == 1 && std::count(face_image.begin(), face_image.end(), -1) > 0);
     bytes +=
         fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
                     mesh.position.size());
@@ -267,7 +283,7 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     bytes += fmt::format("element face {}\nproperty list {} int vertex_indices\n", polygons.count(),
                          count_type);
     if (corner_uv) bytes += fmt::format("property list {} double texcoord\n", count_type);
-    if (several) bytes += "property int texnumber\n";
+    if (chosen) bytes += "property int texnumber\n";
     bytes += "end_header\n";
 
     bytes.reserve(bytes.size() + 43 * mesh.position.size() + 8 * polygons.count() +
@@ -295,21 +311,17 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
         for (std::size_t i = begin; i < end; ++i)
             pack(bytes, static_cast<std::int32_t>(
                             mesh.triangle[polygons.corner[i] / 3][polygons.corner[i] % 3]));
-        const auto uv_at = [&](std::size_t i) {
-            return mesh.triangle_uv[polygons.corner[i] / 3][polygons.corner[i] % 3];
-        };
         if (corner_uv) {
-            bool has_uv = true;
-            for (std::size_t i = begin; i < end; ++i) has_uv = has_uv && uv_at(i) >= 0;
-            put_count(has_uv ? 2 * (end - begin) : 0);
-            for (std::size_t i = begin; i < end && has_uv; ++i) {
-                pack(bytes, mesh.uv[uv_at(i)].x());
-                pack(bytes, mesh.uv[uv_at(i)].y());
+            const bool given = has_uv(p);
+            put_count(given ? 2 * (end - begin) : 0);
+            for (std::size_t i = begin; i < end && given; ++i) {
+                const Vec2& at =
+                    mesh.uv[mesh.triangle_uv[polygons.corner[i] / 3][polygons.corner[i] % 3]];
+                pack(bytes, at.x());
+                pack(bytes, at.y());
             }
         }
-        if (several) {
-            pack(bytes, std::int32_t(image_of[mesh.triangle_material[polygons.corner[begin] / 3]]));
-        }
+        if (chosen) pack(bytes, std::int32_t{face_image[p]});
     }
     write_file_whole(file, bytes);
 }

@@ -136,6 +136,44 @@ TEST_CASE("each face of a PLY keeps its texture, and those without have none") {
     }
 }
 
+TEST_CASE("a face without coordinates among those that have them has no texture in a PLY") {
+    const Folder folder;
+    TriMesh cut = read_quietly(folder.write("in.obj", fixtures::cube_obj()));
+    cut.material.assign(2, {});
+    cut.material[0].texture = folder.write("image.png", "image");
+    cut.triangle_material.assign(cut.triangle.size(), 0);
+    for (const std::size_t t : {4u, 5u}) cut.triangle_uv[t] = {-1, -1, -1};
+    for (const std::size_t t : {8u, 9u}) cut.triangle_material[t] = 1;
+    std::filesystem::create_directory(folder / "out");
+    write_ply(folder / "out/cut.ply", cut);
+    const std::string bytes = fixtures::bytes_of(folder / "out/cut.ply");
+    CHECK(bytes.find("property int texnumber\n") != std::string::npos);
+    // The same from one who names an image and leaves the choice to the coordinates.
+    const auto file =
+        folder.write("out/other.ply",
+                     "ply\nformat ascii 1.0\ncomment TextureFile image.png\nelement vertex 4\n"
+                     "property float x\nproperty float y\nproperty float z\nelement face 2\n"
+                     "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+                     "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2 6 0 0 1 0 0 1\n3 0 3 1 0\n");
+    const auto textured = [](const TriMesh& mesh, std::size_t t) {
+        return !mesh.material[mesh.triangle_material[t]].texture.empty();
+    };
+    const TriMesh again = read_quietly(folder / "out/cut.ply");
+    REQUIRE(again.triangle_material.size() == cut.triangle.size());
+    for (std::size_t t = 0; t < cut.triangle.size(); ++t)
+        CHECK(textured(again, t) == (t / 2 != 2 && t / 2 != 4));
+    const TriMesh other = read_quietly(file);
+    CHECK(textured(other, 0));
+    CHECK(!textured(other, 1));
+
+    // Where all have theirs, nothing is to be chosen.
+    cut.triangle_uv = read_quietly(folder / "in.obj").triangle_uv;
+    cut.triangle_material.assign(cut.triangle.size(), 0);
+    write_ply(folder / "out/whole.ply", cut);
+    CHECK(fixtures::bytes_of(folder / "out/whole.ply").find("texnumber") == std::string::npos);
+    CHECK(textured(read_quietly(folder / "out/whole.ply"), 4));
+}
+
 TEST_CASE("of several textures of a PLY whose faces choose none the first is taken, and said") {
     const Folder folder;
     for (const char* name : {"a.png", "b.png"}) folder.write(name, name);

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Colours of a file arrive as the light they stand for.
+#include <cstring>
+
+#include "base/srgb.h"
+#include "geometry/mesh_read.h"
+#include "tests/catch.h"
+#include "tests/geometry/mesh_fixtures.h"
+
+using namespace swage;
+using fixtures::Folder;
+
+namespace {
+
+template <typename T>
+std::string raw(T value) {
+    std::string bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    return bytes;
+}
+
+TriMesh read_quietly(const std::filesystem::path& file) {
+    std::vector<std::string> finding;
+    return read_mesh(file, {}, &finding);
+}
+
+std::uint32_t crc32(const std::string& bytes) {
+    std::uint32_t crc = ~0u;
+    for (const char c : bytes) {
+        crc ^= static_cast<unsigned char>(c);
+        for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320u : 0u);
+    }
+    return ~crc;
+}
+
+// A ZIP file of files that are stored as they are.
+std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files) {
+    std::string bytes, directory;
+    for (const auto& [name, content] : files) {
+        const auto size = static_cast<std::uint32_t>(content.size());
+        const std::string common =
+            raw<std::uint16_t>(20) + raw<std::uint16_t>(0) + raw<std::uint16_t>(0) +
+            raw<std::uint32_t>(0x21) + raw(crc32(content)) + raw(size) + raw(size) +
+            raw(static_cast<std::uint16_t>(name.size())) + raw<std::uint16_t>(0);
+        directory += raw<std::uint32_t>(0x02014b50) + raw<std::uint16_t>(20) + common +
+                     std::string(10, '\0') + raw(static_cast<std::uint32_t>(bytes.size())) + name;
+        bytes += raw<std::uint32_t>(0x04034b50) + common + name + content;
+    }
+    const auto count = static_cast<std::uint16_t>(files.size());
+    return bytes + directory + raw<std::uint32_t>(0x06054b50) + raw<std::uint32_t>(0) + raw(count) +
+           raw(count) + raw(static_cast<std::uint32_t>(directory.size())) +
+           raw(static_cast<std::uint32_t>(bytes.size())) + raw<std::uint16_t>(0);
+}
+
+std::string cube_3mf(const std::string& color) {
+    std::string vertices, triangles;
+    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {10, 10, 10});
+    for (const Vec3& p : cube.position)
+        vertices += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", p.x(), p.y(), p.z());
+    for (const Corners& t : cube.triangle)
+        triangles +=
+            fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}" pid="5" p1="0"/>)", t[0], t[1], t[2]);
+    const std::string relations = "http://schemas.openxmlformats.org/package/2006/relationships";
+    return zip_of(
+        {{"[Content_Types].xml",
+          R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)"},
+         {"_rels/.rels",
+          R"(<?xml version="1.0"?><Relationships xmlns=")" + relations +
+              R"("><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)"},
+         {"3D/3dmodel.model",
+          R"(<?xml version="1.0"?><model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><basematerials id="5"><base name="paint" displaycolor=")" +
+              color +
+              R"("/></basematerials><object id="1" type="model" pid="5" pindex="0"><mesh><vertices>)" +
+              vertices + "</vertices><triangles>" + triangles +
+              R"(</triangles></mesh></object></resources><build><item objectid="1"/></build></model>)"}});
+}
+
+// A tetrahedron with one material; `diffuse` is what stands in its <diffuse>.
+std::string tetrahedron_dae(const std::string& diffuse) {
+    return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<library_images><image id="i"><init_from>wood.png</init_from></image></library_images>
+<library_effects><effect id="e"><profile_COMMON>
+<newparam sid="s"><surface type="2D"><init_from>i</init_from></surface></newparam>
+<newparam sid="t"><sampler2D><source>s</source></sampler2D></newparam>
+<technique sid="c"><lambert><diffuse>)" +
+           diffuse + R"(</diffuse></lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m" name="paint"><instance_effect url="#e"/></material>
+</library_materials><library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<source id="u"><float_array id="ua" count="2">0.5 0.5</float_array>
+<technique_common><accessor source="#ua" count="1" stride="2"><param name="S" type="float"/>
+<param name="T" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="4" material="m"><input semantic="VERTEX" source="#v" offset="0"/>
+<input semantic="TEXCOORD" source="#u" offset="1" set="0"/><vcount>3 3 3 3</vcount>
+<p>0 0 2 0 1 0 0 0 1 0 3 0 0 0 3 0 2 0 1 0 2 0 3 0</p></polylist></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node id="n">
+<instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="m" target="#m"/></technique_common></bind_material></instance_geometry>
+</node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+}  // namespace
+
+TEST_CASE("colours that a file gives as screens show them arrive as light") {
+    const Folder folder;
+    const auto color = [](const TriMesh& mesh) {
+        REQUIRE(mesh.material.size() == 1);
+        return mesh.material[0].color;
+    };
+    const Vec3 grey = Vec3::Constant(linear_from_srgb(128 / 255.0));
+    REQUIRE(grey.x() == Approx(0.2159).epsilon(1e-3));
+    CHECK((color(read_quietly(folder.write("a.3mf", cube_3mf("#808080FF")))) - grey).norm() < 1e-6);
+    const Vec3 mixed(linear_from_srgb(0.5), linear_from_srgb(0.25), 1);
+    const TriMesh painted =
+        read_quietly(folder.write("a.dae", tetrahedron_dae("<color>0.5 0.25 1 1</color>")));
+    CHECK((color(painted) - mixed).norm() < 1e-6);
+
+    // A binary STL file's facets hold 5 bits a colour: blue, green, red, and that it is there.
+    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    std::string bytes(80, ' ');
+    bytes += raw<std::uint32_t>(12);
+    for (const Corners& t : cube.triangle) {
+        bytes += std::string(12, '\0');
+        for (const int i : t) bytes += raw<Eigen::Vector3f>(cube.position[i].cast<float>());
+        bytes += raw<std::uint16_t>(0x8000 | (31 << 10) | (16 << 5));
+    }
+    const TriMesh facets = read_quietly(folder.write("a.stl", bytes));
+    REQUIRE(facets.position_color.size() == 8);
+    for (const Eigen::Vector3f& c : facets.position_color)
+        CHECK((c - Eigen::Vector3f(1, static_cast<float>(linear_from_srgb(16 / 31.0)), 0)).norm() <
+              1e-6f);
+}
+
+TEST_CASE("an image in a DAE is not darkened by a colour that stands nowhere") {
+    const Folder folder;
+    folder.write("wood.png", "png");
+    const TriMesh mesh = read_quietly(
+        folder.write("a.dae", tetrahedron_dae(R"(<texture texture="t" texcoord="UV"/>)")));
+    REQUIRE(mesh.material.size() == 1);
+    CHECK(mesh.material[0].texture.filename() == "wood.png");
+    CHECK(mesh.material[0].color == Vec3::Ones());
+}
+
+TEST_CASE("a PLY's colours are bytes whatever whole numbers hold them") {
+    const Folder folder;
+    const auto red_of = [&](const std::string& type, const std::string& value) {
+        std::string text = "ply\nformat ascii 1.0\nelement vertex 3\n";
+        for (const char* name : {"x", "y", "z"}) text += fmt::format("property float {}\n", name);
+        for (const char* name : {"red", "green", "blue"})
+            text += fmt::format("property {} {}\n", type, name);
+        text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+        for (const char* place : {"0 0 0", "1 0 0", "0 1 0"})
+            text += fmt::format("{} {} 0 0\n", place, value);
+        const TriMesh mesh = read_quietly(folder.write("a.ply", text + "3 0 1 2\n"));
+        REQUIRE(mesh.position_color.size() == 3);
+        return mesh.position_color[0].x();
+    };
+    const double light = linear_from_srgb(200 / 255.0);
+    for (const char* type : {"uchar", "short", "int", "uint"}) {
+        CAPTURE(type);
+        CHECK(red_of(type, "200") == Approx(light));
+    }
+    CHECK(red_of("int", "-3") == 0);
+    CHECK(red_of("ushort", "51400") == Approx(light));
+    CHECK(red_of("float", "0.25") == 0.25f);
+}
