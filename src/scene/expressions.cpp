@@ -85,12 +85,17 @@ void ExpressionReader::read_item(TableReader& table, const std::string& key, con
 
 void ExpressionReader::expect_unit(TableReader& table, const std::string& key, const Node& node,
                                    Quantity quantity) {
+    const bool is_number = node.kind == Node::Kind::whole || node.kind == Node::Kind::real;
+    if (is_number && quantity == Quantity::angle) table.warn_of_turns(key, node, node.number);
     if (node.kind != Node::Kind::text) return;
     try {
         const auto number = leading_number(node.text);
         if (!number) return;
         std::size_t at = number->size;
         while (at < node.text.size() && node.text[at] == ' ') ++at;
+        if (at == node.text.size() && quantity == Quantity::angle) {
+            table.warn_of_turns(key, node, number->value);
+        }
         const auto unit = leading_unit(std::string_view(node.text).substr(at));
         if (!unit || at + unit->size != node.text.size()) return;
     } catch (const TextError&) {
@@ -114,9 +119,15 @@ bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity
 bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity quantity,
                             Expression3& into) {
     table.describe(key, fmt::format("[x, y, z] of {} or expression", quantity_name(quantity)));
-    if (!read(table, key, into)) return false;
-    for (const Node& item : table.find(key)->item) expect_unit(table, key, item, quantity);
-    return true;
+    const Node* node = table.find(key);
+    if (node != nullptr) read_item(table, key, *node, quantity, into);
+    return node != nullptr;
+}
+
+void ExpressionReader::read_item(TableReader& table, const std::string& key, const Node& item,
+                                 Quantity quantity, Expression3& into) {
+    read_item(table, key, item, into);
+    for (const Node& one : item.item) expect_unit(table, key, one, quantity);
 }
 
 void ExpressionReader::expect_positive(TableReader& table, const std::string& key,

@@ -31,9 +31,11 @@ class ExpressionReader {
     bool read(TableReader& table, const std::string& key, Expression3& into);
     void read_item(TableReader& table, const std::string& key, const Node& item, Expression3& into);
     // The same for one that has to be of a quantity; what is no more than a number and a unit is
-    // refused when its unit is another's.
+    // refused when its unit is another's, and an angle of more than a turn without one warned of.
     bool read(TableReader& table, const std::string& key, Quantity quantity, Expression& into);
     bool read(TableReader& table, const std::string& key, Quantity quantity, Expression3& into);
+    void read_item(TableReader& table, const std::string& key, const Node& item, Quantity quantity,
+                   Expression3& into);
 
     // Reports unless the expression, when its value is already certain, is more than 0.
     void expect_positive(TableReader& table, const std::string& key, const Expression& text);

@@ -15,7 +15,10 @@ std::vector<std::string> parts_of(const std::string& path) {
     std::vector<std::string> parts;
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
-        parts.push_back(path.substr(begin, end - begin));
+        std::string_view part = std::string_view(path).substr(begin, end - begin);
+        while (!part.empty() && part.front() == ' ') part.remove_prefix(1);
+        while (!part.empty() && part.back() == ' ') part.remove_suffix(1);
+        parts.emplace_back(part);
         begin = end + 1;
     }
     return parts;

@@ -22,6 +22,8 @@ std::string read_part_name(TableReader& table, std::set<std::string>& names) {
         table.mistake("name", fmt::format("\"{}\" has to be letters, digits and _, beginning "
                                           "with a letter",
                                           name));
+    } else if (name == "gravity") {
+        table.mistake("name", "\"gravity\" is what pulls at everything; choose another name");
     } else if (!names.insert(name).second) {
         table.mistake("name", fmt::format("two parts are called \"{}\"", name));
     }

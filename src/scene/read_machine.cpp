@@ -90,11 +90,18 @@ class MachineReader {
             if (!table.choice("quantity", quantities, parameter.quantity)) {
                 table.missing("quantity", joined(quantity_names(), ", "));
             }
-            if (!expression_.read(table, "default", parameter.default_value)) {
+            const Node* quantity = table.find("quantity");
+            const bool is_known = quantity != nullptr && quantity->kind == Node::Kind::text &&
+                                  quantity_named(quantity->text);
+            const auto read = [&](const char* key, Expression& into) {
+                return is_known ? expression_.read(table, key, parameter.quantity, into)
+                                : expression_.read(table, key, into);
+            };
+            if (!read("default", parameter.default_value)) {
                 table.missing("default", "the value when the scene gives none");
             }
-            expression_.read(table, "low", parameter.low);
-            expression_.read(table, "high", parameter.high);
+            read("low", parameter.low);
+            read("high", parameter.high);
             check_range(table, parameter);
             table.text("help", parameter.help);
             table.finish();
@@ -150,6 +157,15 @@ class MachineReader {
         TableReader table(node, "[[tool]]", reading_);
         ToolSpec tool;
         tool.name = read_part_name(table, part_names_);
+        for (const ParameterSpec& parameter : machine.parameter) {
+            for (const char* axis : {"_x", "_y", "_z"}) {
+                if (parameter.name != tool.name + axis) continue;
+                table.mistake("name",
+                              fmt::format("\"{}\" would be the place of the tool \"{}\" and "
+                                          "is a parameter; choose another name",
+                                          parameter.name, tool.name));
+            }
+        }
         const std::vector<std::pair<std::string, std::string>> shapes = {
             {"cylinder", "cylinder"}, {"box", "box"}, {"sphere", "sphere"}, {"mesh", "mesh"}};
         if (!table.choice("shape", shapes, tool.shape)) {
@@ -160,26 +176,27 @@ class MachineReader {
         read_size(table, "radius", is_round, tool.radius);
         read_size(table, "length", is_long, tool.length);
         if (tool.shape == "box") {
-            if (!expression_.read(table, "size", tool.size)) {
+            if (!expression_.read(table, "size", Quantity::length, tool.size)) {
                 table.missing("size", "three lengths along x, y and z");
             }
             for (const Expression& side : tool.size)
                 expression_.expect_positive(table, "size", side);
-            expression_.read(table, "rounding", tool.rounding);
+            expression_.read(table, "rounding", Quantity::length, tool.rounding);
         }
         if (tool.shape == "mesh") read_tool_mesh(table, tool.mesh);
-        if (expression_.read(table, "axis", tool.axis) && tool.axis == Expression3{"0", "0", "0"}) {
+        if (expression_.read(table, "axis", Quantity::number, tool.axis) &&
+            tool.axis == Expression3{"0", "0", "0"}) {
             table.mistake("axis", kNoDirection);
         }
-        if (!expression_.read(table, "at", tool.at)) {
+        if (!expression_.read(table, "at", Quantity::length, tool.at)) {
             table.missing("at", "where its centre is, such as [0, \"-height\", 0]");
         }
-        expression_.read(table, "touch", tool.touch);
-        expression_.read(table, "gap", tool.gap);
+        expression_.read(table, "touch", Quantity::number, tool.touch);
+        expression_.read(table, "gap", Quantity::length, tool.gap);
         if (table.find("gap") != nullptr && table.find("touch") == nullptr) {
             table.warn("gap", "gap has no effect without touch");
         }
-        expression_.read(table, "friction", tool.friction);
+        expression_.read(table, "friction", Quantity::number, tool.friction);
         table.quantity("contact_stiffness", Quantity::number, between(0.5, 100),
                        tool.contact_stiffness);
         read_color(table, tool.color);
@@ -196,7 +213,7 @@ class MachineReader {
 
     void read_size(TableReader& table, const std::string& key, bool is_wanted, Expression& into) {
         if (!is_wanted) return;  // and then an unknown key where it stands
-        if (expression_.read(table, key, into)) {
+        if (expression_.read(table, key, Quantity::length, into)) {
             expression_.expect_positive(table, key, into);
         } else {
             table.missing(key, "a length");
@@ -221,11 +238,11 @@ class MachineReader {
         TableReader table(part.table("motion"), section, reading_);
         ExpressionReader timed = expression_;
         timed.add_name("t");
-        timed.read(table, "move", motion.move);
-        const bool turns = timed.read(table, "turn", motion.turn);
+        timed.read(table, "move", Quantity::length, motion.move);
+        const bool turns = timed.read(table, "turn", Quantity::angle, motion.turn);
         const bool has_axis = table.vector("axis", Quantity::number, motion.axis);
         if (has_axis && !(motion.axis.norm() > 0)) table.mistake("axis", kNoDirection);
-        const bool has_pivot = timed.read(table, "pivot", motion.pivot);
+        const bool has_pivot = timed.read(table, "pivot", Quantity::length, motion.pivot);
         if (!turns && (has_axis || has_pivot)) {
             table.warn(has_axis ? "axis" : "pivot", "axis and pivot have no effect without turn");
         }
@@ -237,8 +254,12 @@ class MachineReader {
         TableReader table(node, "[[grip]]", reading_);
         GripSpec grip;
         grip.name = read_part_name(table, part_names_);
-        if (!expression_.read(table, "from", grip.from)) table.missing("from", "a corner of a box");
-        if (!expression_.read(table, "to", grip.to)) table.missing("to", "the opposite corner");
+        if (!expression_.read(table, "from", Quantity::length, grip.from)) {
+            table.missing("from", "a corner of a box");
+        }
+        if (!expression_.read(table, "to", Quantity::length, grip.to)) {
+            table.missing("to", "the opposite corner");
+        }
         read_along(table, grip.along);
         read_motion(table, "[grip.motion]", grip.motion);
         table.finish();
@@ -284,13 +305,13 @@ class MachineReader {
         } else {
             for (const Node& point : edge->item) {
                 blade.edge.emplace_back();
-                expression_.read_item(table, "edge", point, blade.edge.back());
+                expression_.read_item(table, "edge", point, Quantity::length, blade.edge.back());
             }
             if (mistakes_.is_clean() && blade.edge.front() == blade.edge.back()) {
                 table.mistake("edge", "edge begins and ends at the same point");
             }
         }
-        if (expression_.read(table, "thickness", blade.thickness)) {
+        if (expression_.read(table, "thickness", Quantity::length, blade.thickness)) {
             expression_.expect_positive(table, "thickness", blade.thickness);
         }
         read_motion(table, "[blade.motion]", blade.motion);

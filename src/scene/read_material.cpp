@@ -119,17 +119,21 @@ void read_material(TableReader& table, const AssetPaths& assets,
     const bool is_named = table.text("name", name);
     bool is_custom = !is_named;
     if (!name.empty()) {
-        MaterialCatalogue catalogue = material_catalogue(assets, scene_folder);
-        inputs.insert(inputs.end(), catalogue.files.begin(), catalogue.files.end());
+        Reading& reading = table.reading();
+        if (!reading.materials) {
+            MaterialCatalogue found = material_catalogue(assets, scene_folder);
+            inputs.insert(inputs.end(), found.files.begin(), found.files.end());
+            reading.mistakes.add(std::move(found.mistakes));
+            reading.materials = std::make_shared<const MaterialCatalogue>(std::move(found));
+        }
         std::vector<std::string> known;
         bool is_known = false;
-        for (const Material& one : catalogue.material) {
+        for (const Material& one : reading.materials->material) {
             known.push_back(one.name);
             if (is_known || one.name != name) continue;
             material = one;
             is_known = true;
         }
-        table.reading().mistakes.add(std::move(catalogue.mistakes));
         if (!is_known) {
             const std::string hint = did_you_mean(name, known);
             const std::string all = known.empty()  ? "; no file of materials was found"

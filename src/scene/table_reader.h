@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -40,6 +41,8 @@ struct KeyForm {
     std::string usual;  // empty: nothing worth telling
 };
 
+struct MaterialCatalogue;
+
 // What all tables of a file share.
 struct Reading {
     explicit Reading(MistakeList& list) : mistakes(list) {}
@@ -58,6 +61,9 @@ struct Reading {
     // asked.
     bool describes = false;
     std::vector<std::pair<std::string, std::vector<KeyForm>>> forms;
+
+    // Once a material was looked for by its name.
+    std::shared_ptr<const MaterialCatalogue> materials;
 
     // Once, after everything was read.
     void report_unknown();
@@ -105,6 +111,8 @@ class TableReader {
     void mistake(const std::string& key, const std::string& text,
                  ExitCode code = ExitCode::scene);  // at the value, or at the table
     void warn(const std::string& key, const std::string& text);
+    // Where an angle without a unit was meant in degrees.
+    void warn_of_turns(const std::string& key, const Node& node, double angle);
 
     // Reports keys that nothing asked for.
     void finish();
@@ -125,7 +133,6 @@ class TableReader {
     int chosen_name(const std::string& key, const std::vector<std::string>& names,
                     const std::string& usual);
     bool number(const std::string& key, const Node& node, Quantity quantity, double& into);
-    void warn_of_turns(const std::string& key, const Node& node, double angle);  // without a unit
 
     const Node& node_;
     std::string section_;

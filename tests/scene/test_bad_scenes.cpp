@@ -301,6 +301,9 @@ TEST_CASE("mistakes in loads are found at their place") {
         {"nothing falls",
          with(&Parts::stage, "[[stage]]\nmachine = \"floor\"\n"),
          {"8:11: warning: nothing moves: there is no gravity"}},
+        {"nothing happens",
+         with(&Parts::stage, "[[stage]]\nmachine = \"hold\"\n"),
+         {"8:11: warning: nothing happens: there is no gravity"}},
         {"drag without motion",
          stage("medium_density = 1.2\ndirectional_drag = \"3 Pa s/m\""),
          {"9:18: warning: medium_density has no effect with solver = \"quasistatic\"",
@@ -468,4 +471,24 @@ TEST_CASE("a solver that cannot move the scene's matter is refused where it is n
          solver("", "solver = \"explicit\"\nretry_limit = 21\n"),
          {"10:15: retry_limit = 21"}},
     });
+}
+
+TEST_CASE("a mistake among the materials is told once, however many bodies name one") {
+    const Scratch scratch;
+    scratch.write("materials.toml", "[jelly]\nyoung_modulus = 1e3\ndensity = 1000\ncolour = 3\n");
+    std::string text = Parts().text();
+    for (const char* name : {"a", "b"}) {
+        text += std::string("[[body]]\nname = \"") + name +
+                "\"\nfile = \"bar.obj\"\nmaterial = \"jelly\"\n";
+    }
+    const SceneReading reading = read_scene(scratch.write("s.toml", text), {}, shipped());
+    const std::string all = told(reading.mistakes, scratch.folder());
+    INFO(all);
+    const std::size_t first = all.find("unknown key \"colour\"");
+    REQUIRE(first != std::string::npos);
+    CHECK(all.find("unknown key \"colour\"", first + 1) == std::string::npos);
+}
+
+TEST_CASE("blanks around the parts of an override's key are not of it") {
+    CHECK(mistakes_in(Parts().text(), {" mold . across = 3", "stage.1.angle =45 deg"}) == "");
 }

@@ -8,7 +8,9 @@ using namespace swage::test;
 
 namespace {
 
-const std::string kGrip = "[[grip]]\nname = \"hold\"\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\n";
+const std::string kGrip =
+    "[[grip]]\nname = \"hold\"\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\n"
+    "[grip.motion]\nmove = [\"t\", 0, 0]\n";
 
 // A stage with a machine of those words; what was told instead where the scene was refused.
 struct Read {

@@ -241,7 +241,8 @@ TEST_CASE("the cutter parts a rod however its cells lie in it, and however they 
                 body.particle_position.set(p, turn * body.particle_position.at(p));
             }
             const Machine machine = at_bar("cut", {}, body);
-            sever(body, swept_triangles(machine.apparatus, drives_of(machine, legs_of(machine, 40, 1).leg, 1, 1)));
+            sever(body, swept_triangles(machine.apparatus,
+                                        drives_of(machine, legs_of(machine, 40, 1).leg, 1, 1)));
             CHECK(find_pieces(body).count == 2);
         }
     }
@@ -307,5 +308,15 @@ TEST_CASE("the jaws of the wringer press in at first, turn with the bar and open
               Approx(-squeeze).margin(1e-8));
         CHECK(nearest_distance(jaw, drive_at(machine, 1, 1).world_from_tool[n], turned_bar) ==
               Approx(0.03 - squeeze).margin(1e-8));
+    }
+}
+
+TEST_CASE("the bender's pushers stand on the bar wherever its support does") {
+    for (const double place : {-0.4, -0.35, 0.0, 0.3, 0.4}) {
+        const Machine machine = at_bar("bend", {{"place", place}});
+        for (const Pose& tool : machine.work_from_tool) {
+            INFO(place << ": " << tool.translation.x());
+            CHECK(std::abs(tool.translation.x()) <= 0.5 + 1e-9);
+        }
     }
 }
