@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/legs.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace swage {
@@ -10,14 +11,21 @@ namespace {
 constexpr int kHalvings = 6;             // of a frame
 constexpr int kJumps = 4;                // legs of a frame that may stay bent: what jumps is one
 constexpr double kMostTurn = 0.5 * kPi;  // of a leg
-constexpr double kStrengthSlack = 0.01;
+constexpr double kStrengthSlack = 0.01;  // of a load's full strength
 // Where a leg is asked whether it is straight; not where what comes back to itself does so.
 constexpr double kAsked[] = {0.2113, 0.5, 0.8090};
 
 class Straightness {
   public:
-    Straightness(const Machine& machine, double slack)
-        : machine_(machine), slack_(slack), reach_(0.5 * machine.frame.size.norm()) {}
+    Straightness(const Machine& machine, int frames, double slack)
+        : machine_(machine), slack_(slack), reach_(0.5 * machine.frame.size.norm()) {
+        full_.resize(machine.load_strength.size(), 0.0);
+        for (int n = 0; n < frames; ++n) {
+            for (double s : kAsked) note(drive_at(machine, (n + s) / frames, 1));
+            note(drive_at(machine, static_cast<double>(n + 1) / frames, 1));
+        }
+        note(drive_at(machine, 0, 1));
+    }
 
     bool of(double begin, double end) const {
         const Drive from = drive_at(machine_, begin, 1), to = drive_at(machine_, end, 1);
@@ -32,18 +40,26 @@ class Straightness {
             if (!are_near(told.world_from_tool, is.world_from_tool) ||
                 !are_near(told.world_from_grip, is.world_from_grip) ||
                 !are_near(told.world_from_blade, is.world_from_blade) ||
-                !is_near(told.gravity_strength, is.gravity_strength)) {
+                !is_near(told.gravity_strength, is.gravity_strength, full_gravity_)) {
                 return false;
             }
             for (std::size_t n = 0; n < is.load_strength.size(); ++n) {
-                if (!is_near(told.load_strength[n], is.load_strength[n])) return false;
+                if (!is_near(told.load_strength[n], is.load_strength[n], full_[n])) return false;
             }
         }
         return true;
     }
 
   private:
-    static bool is_near(double a, double b) { return std::abs(a - b) <= kStrengthSlack; }
+    void note(const Drive& drive) {
+        for (std::size_t n = 0; n < full_.size(); ++n) {
+            full_[n] = std::max(full_[n], std::abs(drive.load_strength[n]));
+        }
+        full_gravity_ = std::max(full_gravity_, std::abs(drive.gravity_strength));
+    }
+    static bool is_near(double a, double b, double full) {
+        return std::abs(a - b) <= kStrengthSlack * full;
+    }
     static bool turns_far(const std::vector<Pose>& a, const std::vector<Pose>& b) {
         for (std::size_t n = 0; n < a.size(); ++n) {
             if (a[n].rotation.angularDistance(b[n].rotation) > kMostTurn) return true;
@@ -61,12 +77,14 @@ class Straightness {
 
     const Machine& machine_;
     double slack_, reach_;
+    std::vector<double> full_;  // the largest strength of each load, by samples
+    double full_gravity_ = 0;
 };
 
 }  // namespace
 
 Legs legs_of(const Machine& machine, int frames, double slack) {
-    const Straightness straight(machine, slack);
+    const Straightness straight(machine, frames, slack);
     Legs legs;
     int bent = 0;
     const auto divide = [&](const auto& again, const Leg& leg, int halvings) -> void {

@@ -254,11 +254,26 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
     machine.load_strength.emplace_back(spec.strength, setting.known);
 }
 
-std::vector<Pose> placed(const Pose& world_from_work, const std::vector<Pose>& work_from_part,
-                         const std::vector<Motion>& motion, double t) {
+// What `value` gives; where an expression in it has none, with whose it is and when.
+template <typename Value>
+auto told_at(const Machine& machine, const std::string& whose, double t, const Value& value) {
+    try {
+        return value();
+    } catch (const TextError& error) {
+        fail(ExitCode::scene, "machine {}: {} at t = {:.4g}: {}", machine.spec.name, whose, t,
+             error.what());
+    }
+}
+
+template <typename Part>
+std::vector<Pose> placed(const Machine& machine, const char* kind, const std::vector<Part>& part,
+                         const std::vector<Pose>& work_from_part, const std::vector<Motion>& motion,
+                         double t) {
     std::vector<Pose> world_from_part;
     for (std::size_t n = 0; n < motion.size(); ++n) {
-        world_from_part.push_back(world_from_work * motion[n].at(t) * work_from_part[n]);
+        const Pose moved = told_at(machine, fmt::format("the motion of {} {}", kind, part[n].name),
+                                   t, [&] { return motion[n].at(t); });
+        world_from_part.push_back(machine.frame.world_from_work * moved * work_from_part[n]);
     }
     return world_from_part;
 }
@@ -333,15 +348,22 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
 }
 
 Drive drive_at(const Machine& machine, double t, double duration) {
-    const Pose& world_from_work = machine.frame.world_from_work;
+    const Apparatus& apparatus = machine.apparatus;
     std::vector<double> strength;
-    for (const Timed& load : machine.load_strength) strength.push_back(load.at(t));
-    return {t * duration,
-            placed(world_from_work, machine.work_from_tool, machine.tool_motion, t),
-            placed(world_from_work, machine.work_from_grip, machine.grip_motion, t),
-            placed(world_from_work, machine.work_from_blade, machine.blade_motion, t),
-            std::move(strength),
-            machine.gravity_strength ? machine.gravity_strength->at(t) : 1};
+    for (std::size_t n = 0; n < machine.load_strength.size(); ++n) {
+        strength.push_back(told_at(machine, "the strength of load " + apparatus.load[n].name, t,
+                                   [&] { return machine.load_strength[n].at(t); }));
+    }
+    const double gravity = told_at(machine, "gravity_strength", t, [&] {
+        return machine.gravity_strength ? machine.gravity_strength->at(t) : 1.0;
+    });
+    return {
+        t * duration,
+        placed(machine, "tool", apparatus.tool, machine.work_from_tool, machine.tool_motion, t),
+        placed(machine, "grip", apparatus.grip, machine.work_from_grip, machine.grip_motion, t),
+        placed(machine, "blade", apparatus.blade, machine.work_from_blade, machine.blade_motion, t),
+        std::move(strength),
+        gravity};
 }
 
 }  // namespace swage

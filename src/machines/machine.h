@@ -61,7 +61,8 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
                       const WorkFrame& frame, const Aggregate& matter,
                       const std::vector<Material>& beside = {});
 
-// Poses at `t` (0 to 1) of a stage of `duration` [s].
+// Poses at `t` (0 to 1) of a stage of `duration` [s]. Throws Error(scene) naming machine and part
+// where an expression has no value then.
 Drive drive_at(const Machine& machine, double t, double duration);
 
 }  // namespace swage

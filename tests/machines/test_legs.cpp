@@ -93,3 +93,17 @@ TEST_CASE("a jump or a kink takes few legs, and is where it is to within a 64th 
 TEST_CASE("what no leg can follow is told") {
     CHECK(legs_of(vice("0", "0", "sin(2*pi*1000*t)"), 4, kSlack).lost == 4);
 }
+
+TEST_CASE("how far a load may be off its way goes by its own full strength") {
+    // A small pressure times large numbers, and the other way round.
+    CHECK(legs_of(vice("0", "0", "2e5*ramp(t, 0, 1)"), 6, kSlack).leg.size() ==
+          legs_of(vice("0", "0", "ramp(t, 0, 1)"), 6, kSlack).leg.size());
+    const std::size_t swings = legs_of(vice("0", "0", "sin(2*pi*6*t)^2"), 6, kSlack).leg.size();
+    CHECK(swings > 50);
+    for (const char* strength : {"0.002*sin(2*pi*6*t)^2", "-7e3*sin(2*pi*6*t)^2"}) {
+        const Legs legs = legs_of(vice("0", "0", strength), 6, kSlack);
+        CHECK(legs.leg.size() == swings);
+        CHECK(legs.lost == 0);
+    }
+    CHECK(legs_of(vice("0", "0", "0"), 6, kSlack).leg.size() == 6);
+}
