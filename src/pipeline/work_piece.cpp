@@ -12,6 +12,7 @@
 #include "geometry/mesh_read.h"
 #include "geometry/mesh_repair.h"
 #include "mold/carry_hardening.h"
+#include "mold/carry_motion.h"
 #include "mold/mold.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
@@ -206,6 +207,7 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     as_it_stands.mold.spacing = piece.matter.lattice.spacing;
     WorkPiece anew = make_work_piece(input, as_it_stands, skin);
     carry_hardening(piece.matter, anew.matter);
+    carry_motion(piece.matter, anew.matter);
     return anew;
 }
 

@@ -67,8 +67,8 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
 // Turns about the middle of the surface's box, moves and sets in motion. For a body as molded.
 void place_at_start(const StartSpec& start, Aggregate& matter);
 
-// A new representation of the work-piece as it is now, at rest, of cells of the same size, as hard
-// as it has become.
+// A new representation of the work-piece as it is now, without strain, of cells of the same size,
+// as hard as it has become and as fast as it goes.
 WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin);
 
 // Of one body its own; of several, of all.

@@ -179,3 +179,16 @@ TEST_CASE("a mesh whose bodies are sound is taken as it is") {
     CHECK(input.mesh.position == mesh.position);
     CHECK(input.mesh.triangle == mesh.triangle);
 }
+
+TEST_CASE("a body in motion is molded anew in motion") {
+    StartSpec start;
+    start.velocity = Vec3(3, -1, 2);
+    start.spin = Vec3(1, 4, -2);
+    const WorkPiece piece = block(start, SkinKind::mount);
+    BodySpec body;
+    body.mold.across = 3;
+    const Sums before = sums_of(piece.matter),
+               after = sums_of(mold_anew(piece, body, {}).matter);
+    CHECK((after.momentum - before.momentum).norm() < 1e-9 * before.momentum.norm());
+    CHECK((after.turning - before.turning).norm() < 1e-9 * before.turning.norm());
+}
