@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "base/text.h"
@@ -33,8 +34,12 @@ void begin_row(LoadCurve& load, const Pose& pose) {
 
 }  // namespace
 
-StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start)
-    : stage_(std::move(stage)), frame_{first_frame}, report_(1) {
+StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
+                         FrameReport bodies, std::size_t parts)
+    : stage_(std::move(stage)),
+      frame_{first_frame},
+      report_{std::move(bodies)},
+      parts_(std::min(parts, start.size())) {
     for (std::size_t n = 0; n < start.size(); ++n) {
         load_.emplace_back();
         load_.back().name = start[n].name;
@@ -107,12 +112,15 @@ std::string csv_text(const StageCurves& curves) {
             cells.push_back(number(load.penetration[row]));
             cells.push_back(std::to_string(load.contacts[row]));
         }
+        const std::size_t contact_at = cells.size() + 2;
         for (double energy :
              {report.kinetic, report.elastic, report.contact, report.plastic, report.damped,
               report.friction, report.drag, report.work, report.load_work, report.gravity_work,
               report.severed_energy, report.fracture, report.set_free, report.remainder}) {
             cells.push_back(number(energy));
         }
+        // Contacts are not looked for before the first frame.
+        if (row == 0) cells[contact_at] = "";
         for (long count : {long(report.severed), long(report.broken), long(report.pieces),
                            long(report.iterations), long(report.increments), long(report.halvings),
                            report.steps, report.rejected}) {
@@ -129,7 +137,8 @@ PlotAxis plot_axis(const StageCurves& curves) {
     PlotAxis axis;
     const LoadCurve *turns = nullptr, *travels = nullptr;
     double most_turn = kPi / 180, most_travel = 1e-12;
-    for (const LoadCurve& load : curves.load()) {
+    for (std::size_t n = 0; n < curves.parts(); ++n) {
+        const LoadCurve& load = curves.load()[n];
         if (std::abs(load.turn.back()) > most_turn) {
             most_turn = std::abs(load.turn.back());
             turns = &load;

@@ -25,8 +25,11 @@ struct LoadCurve {
 
 class StageCurves {
   public:
-    // The first row is the start of the stage, where nothing is felt yet: names and poses.
-    StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start);
+    // The first row is the start of the stage, where nothing is felt yet: names and poses, and what
+    // is known of the bodies (Simulation::start). The first `parts` of the loads, if not all, are
+    // of the machine, and go where they are driven.
+    StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
+                FrameReport bodies = {}, std::size_t parts = static_cast<std::size_t>(-1));
     void add(int frame, const FrameReport& report);
     // Where the loads are within a frame, so that no turn between its ends is missed.
     void pass(const std::vector<ToolLoad>& loads);
@@ -36,12 +39,14 @@ class StageCurves {
     const std::vector<int>& frame() const { return frame_; }
     const std::vector<FrameReport>& report() const { return report_; }  // `load` is left out
     const std::vector<LoadCurve>& load() const { return load_; }
+    std::size_t parts() const { return parts_; }
 
   private:
     std::string stage_;
     std::vector<int> frame_;
     std::vector<FrameReport> report_;
     std::vector<LoadCurve> load_;
+    std::size_t parts_;
     struct Way {
         Pose pose;
         Vec3 turn_axis = Vec3::Zero();  // of its first turn
@@ -53,8 +58,8 @@ class StageCurves {
 // Comma separated; the first line names each column and its unit, as in "pusher force x [N]".
 std::string csv_text(const StageCurves& curves);
 
-// What to plot the loads against: the turn of the load that turns most (when any turns by more
-// than a degree), else the travel of the one that travels most, else time.
+// What to plot the loads against: the turn of the machine's part that turns most (when any turns by
+// more than a degree), else the travel of the one that travels most, else time.
 struct PlotAxis {
     std::string label;  // with the unit
     std::vector<double> value;

@@ -297,6 +297,24 @@ std::vector<ToolLoad> Simulation::loads(const Drive& now) const {
     return loads;
 }
 
+FrameReport Simulation::start() const {
+    FrameReport report;
+    report.pieces = 0;
+    for (std::size_t b = 0; b < rooms_->body.size(); ++b) {
+        const Aggregate& matter = *rooms_->body[b].matter;
+        Books books;
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            books.kinetic +=
+                0.5 * matter.particle_mass[p] * matter.particle_velocity.at(p).squaredNorm();
+        }
+        books.elastic = rooms_->elastic(b);
+        report.pieces += rooms_->body[b].pieces;
+        report.body.push_back(books);
+        report.add(books);
+    }
+    return report;
+}
+
 void FrameReport::go_on(FrameReport next) {
     next.iterations += iterations;
     next.increments += increments;
@@ -310,6 +328,7 @@ void FrameReport::go_on(FrameReport next) {
     next.broken += broken;
     for (std::size_t n = 0; n < load.size(); ++n) {
         next.load[n].touched = next.load[n].touched || load[n].touched;
+        next.load[n].penetration = std::max(next.load[n].penetration, load[n].penetration);
     }
     next.warning.insert(next.warning.begin(), warning.begin(), warning.end());
     *this = std::move(next);

@@ -21,7 +21,7 @@ struct ToolLoad {
     Vec3 force = Vec3::Zero();   // that it exerts on the matter [N]
     Vec3 torque = Vec3::Zero();  // about the pose's origin [N m]
     double work = 0;             // done by it since the stage began [J]
-    double penetration = 0;      // of the deepest point [m]
+    double penetration = 0;      // of the deepest point [m], at the end of any leg of the frame
     int contacts = 0;
     bool touched = false;  // there were some in this frame
 };
@@ -88,6 +88,10 @@ class Simulation {
     // Everything that may act on the bodies, in the order of FrameReport::load, without what it
     // does.
     std::vector<ToolLoad> loads(const Drive& now) const;
+
+    // How the bodies are before the first frame: what moves, what holds strain, their pieces. What
+    // contacts hold is not among it.
+    FrameReport start() const;
 
     // Moves the matter on while the apparatus goes from one drive to another. What the blades
     // sweep in this frame is severed first. Throws Error(stopped) with a sentence that names what

@@ -97,4 +97,10 @@ TEST_CASE("loads are plotted against what moves most") {
     const PlotAxis travel = plot_axis(press);
     CHECK(travel.label == "travel of ram [mm]");
     CHECK(travel.value.back() == Approx(20.0));
+
+    // What falls takes gravity with it, which is driven nowhere.
+    StageCurves fall("3-floor", 1, {{"floor", Pose{}}, {"gravity", Pose{}}}, {}, 1);
+    report.load = {{"floor", Pose{}}, {"gravity", {Quat::Identity(), {0, -0.02, 0}}}};
+    fall.add(2, report);
+    CHECK(plot_axis(fall).label == "time [s]");
 }
