@@ -40,20 +40,23 @@ std::vector<Mistake> mistakes_of(const Error& error, const std::string& scene) {
     return {{.file = scene, .text = error.what()}};
 }
 
-// Of [mold], with which the work-piece's thinnest parts come within 1 %.
-int across_for_percent(const RunCost& cost) {
-    return static_cast<int>(std::ceil(accuracy_at(cost.thickness).cells_for_percent *
-                                      cost.mold.cell_count.minCoeff() / cost.thickness));
+// With which the body's thinnest parts come within 1 %.
+int across_for_percent(const BodyCost& body) {
+    return static_cast<int>(
+        std::ceil(accuracy_at(body.thickness).cells_for_percent * body.across / body.thickness));
 }
 
-std::string accuracy_text(const RunCost& cost) {
-    const Accuracy accuracy = accuracy_at(cost.thickness);
-    const int enough = across_for_percent(cost);
+std::string accuracy_text(const BodySpec& spec, const BodyCost& body) {
+    if (spec.material.mechanics != Mechanics::cells) {
+        return "springs: stretch alone is right; bending and torsion are too stiff";
+    }
+    const Accuracy accuracy = accuracy_at(body.thickness);
+    const int enough = across_for_percent(body);
     const std::string part =
-        cost.has_thin_parts()
-            ? fmt::format("its thin parts, about {:.2g} cells thick", cost.thickness)
-            : fmt::format("a part {:g} cells thick", cost.thickness);
-    if (cost.thickness < kLeastCells) {
+        body.has_thin_parts()
+            ? fmt::format("its thin parts, about {:.2g} cells thick", body.thickness)
+            : fmt::format("a part {:g} cells thick", body.thickness);
+    if (body.thickness < kLeastCells) {
         return fmt::format("{}: too few for its bending and torsion; 1 % at across = {}", part,
                            enough);
     }
@@ -62,41 +65,51 @@ std::string accuracy_text(const RunCost& cost) {
         100 * accuracy.bending, 100 * accuracy.torsion, enough);
 }
 
+Json accuracy_json(const BodyCost& body) {
+    const Accuracy accuracy = accuracy_at(body.thickness);
+    return {{"bending", accuracy.bending},
+            {"torsion", accuracy.torsion},
+            {"across_for_percent", across_for_percent(body)}};
+}
+
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
                       const RunCost& cost) {
-    const Material& material = scene.work_piece().material;
     std::string text = scene.name + ": no mistakes\n";
     const auto line = [&](const char* name, const std::string& value) {
         text += fmt::format("  {:<12} {}\n", name, value);
     };
     const char* about = cost.counted ? "" : "about ";
-    for (std::size_t b = 0; b < input.size(); ++b) {
-        line("mesh", (b == 0 ? "" : scene.body[b].name + ": ") + summary_line(input[b].report));
-    }
-    line("cells", fmt::format("{}{} of {}", about, count_text(cost.mold.active_cells),
-                              length_text(cost.mold.spacing)));
+    const auto each = [&](const char* name, const auto& value) {
+        for (std::size_t b = 0; b < scene.body.size(); ++b) {
+            line(name, (b == 0 ? "" : scene.body[b].name + ": ") + value(b));
+        }
+    };
+    each("mesh", [&](std::size_t b) { return summary_line(input[b].report); });
+    each("cells", [&](std::size_t b) {
+        return fmt::format("{}{} of {}", about, count_text(cost.body[b].cells),
+                           length_text(cost.body[b].spacing));
+    });
     line("particles", about + count_text(cost.mold.particles));
     line("connections", about + count_text(cost.mold.connections));
-    if (material.mechanics == Mechanics::cells) {
-        line("accuracy", accuracy_text(cost));
-    } else {
-        line("accuracy", "springs: stretch alone is right; bending and torsion are too stiff");
-    }
+    each("accuracy", [&](std::size_t b) { return accuracy_text(scene.body[b], cost.body[b]); });
     if (cost.tool_give > 0) {
+        const double thickness = cost.work_piece().thickness;
         line("tools",
              fmt::format("each gives way as up to {:.2g} cells would: as {:.2g} % of a part "
                          "{:.3g} cells thick",
-                         cost.tool_give, 100 * cost.tool_give / cost.thickness, cost.thickness));
+                         cost.tool_give, 100 * cost.tool_give / thickness, thickness));
     }
     std::vector<std::string> told;  // insets may be of one material
-    for (const Material* of : scene.work_piece().materials()) {
-        const std::string strength =
-            strength_warning(*of, cost.mold.spacing, cost.mold.cell_count.minCoeff());
-        if (strength.empty() || std::find(told.begin(), told.end(), strength) != told.end()) {
-            continue;
+    for (std::size_t b = 0; b < scene.body.size(); ++b) {
+        for (const Material* of : scene.body[b].materials()) {
+            const std::string strength = strength_warning(
+                *of, cost.body[b].spacing, cost.body[b].across, fineness_section(scene, b));
+            if (strength.empty() || std::find(told.begin(), told.end(), strength) != told.end()) {
+                continue;
+            }
+            line("strength", strength);
+            told.push_back(strength);
         }
-        line("strength", strength);
-        told.push_back(strength);
     }
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));
@@ -108,6 +121,28 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
                      (cost.slow.empty() ? "" : "; " + cost.slow + " may take ten times that"));
     for (const std::string& note : cost.note) line("note", note);
     return text;
+}
+
+// Of the work-piece as "accuracy", of bodies beside it in their list; strengths of all in one.
+void add_accuracy(const SceneSpec& scene, const RunCost& cost, Json& json) {
+    for (std::size_t b = 0; b < scene.body.size(); ++b) {
+        const BodySpec& spec = scene.body[b];
+        const BodyCost& body = cost.body[b];
+        if (spec.material.mechanics == Mechanics::cells) {
+            Json& whole = b == 0 ? json : json["bodies"][spec.name];
+            whole["accuracy"] = accuracy_json(body);
+        }
+        for (const Material* of : spec.materials()) {
+            const Resolved strength = resolved_strength(*of, body.spacing, body.across);
+            if (strength.whole()) continue;
+            const Json one = {{"body", spec.name},
+                              {"material", of->name},
+                              {"resolved_Pa", strength.strength},
+                              {"across_for_whole", strength.cells_for_whole}};
+            Json& told = json["strength"];
+            if (std::find(told.begin(), told.end(), one) == told.end()) told.push_back(one);
+        }
+    }
 }
 
 int check(const CheckArguments& given) {
@@ -124,25 +159,9 @@ int check(const CheckArguments& given) {
     try {
         const std::vector<InputMesh> input = read_input_meshes(*reading.scene);
         const RunCost cost = count_cost(*reading.scene, input, options);
-        const Material& material = reading.scene->work_piece().material;
         for (const InputMesh& one : input) json["meshes"].push_back(mesh_json(one));
         json["cost"] = cost_json(cost);
-        if (material.mechanics == Mechanics::cells) {
-            const Accuracy accuracy = accuracy_at(cost.thickness);
-            json["accuracy"] = {{"bending", accuracy.bending},
-                                {"torsion", accuracy.torsion},
-                                {"across_for_percent", across_for_percent(cost)}};
-        }
-        for (const Material* of : reading.scene->work_piece().materials()) {
-            const Resolved strength =
-                resolved_strength(*of, cost.mold.spacing, cost.mold.cell_count.minCoeff());
-            if (strength.whole()) continue;
-            const Json one = {{"material", of->name},
-                              {"resolved_Pa", strength.strength},
-                              {"across_for_whole", strength.cells_for_whole}};
-            Json& told = json["strength"];
-            if (std::find(told.begin(), told.end(), one) == told.end()) told.push_back(one);
-        }
+        add_accuracy(*reading.scene, cost, json);
         if (!given.json) {
             for (const std::string& warning : cost.warning) log_warning("{}", warning);
             if (log_level() != LogLevel::quiet) put_out(cost_text(*reading.scene, input, cost));

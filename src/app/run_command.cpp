@@ -47,8 +47,9 @@ void add_run_command(CLI::App& app, Action& chosen) {
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command->add_flag("--no-render", given.no_render, "no pictures; needs no OpenGL");
-    command->add_flag("--fresh", given.fresh,
-                      "throw away what an earlier run left in the directory");
+    command->add_flag(
+        "--fresh", given.fresh,
+        "throw away what an earlier run left in the directory, once this one is set up");
     command->add_flag("--force", given.force,
                       "run even if it seems to need more memory, disk or time than there is");
     command->add_flag("--json", given.json, "print the run's record on stdout");

@@ -46,15 +46,16 @@ Resolved resolved_strength(const Material& material, double spacing, double cell
             static_cast<int>(std::ceil(cells * spacing / needed))};
 }
 
-std::string strength_warning(const Material& material, double spacing, double cells) {
+std::string strength_warning(const Material& material, double spacing, double cells,
+                             const std::string& section) {
     const Resolved resolved = resolved_strength(material, spacing, cells);
     if (resolved.whole()) return "";
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
-        "breaks at {} instead of {}; [mold] across = {} would do, or at this one a toughness of {}",
+        "breaks at {} instead of {}; {} across = {} would do, or at this one a toughness of {}",
         length_text(spacing), material.name == Material{}.name ? "the material" : material.name,
         quantity_text(told(resolved.strength), Quantity::stress),
-        quantity_text(material.strength, Quantity::stress), resolved.cells_for_whole,
+        quantity_text(material.strength, Quantity::stress), section, resolved.cells_for_whole,
         quantity_text(told(toughness_for(material, spacing), std::ceil), Quantity::toughness));
 }
 

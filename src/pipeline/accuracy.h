@@ -25,7 +25,8 @@ struct Resolved {
     bool whole() const { return cells_for_whole == 0; }
 };
 Resolved resolved_strength(const Material& material, double spacing, double cells);
-// Empty where it is resolved, or nothing breaks.
-std::string strength_warning(const Material& material, double spacing, double cells);
+// Empty where it is resolved, or nothing breaks. `section`: of the scene, that says how fine.
+std::string strength_warning(const Material& material, double spacing, double cells,
+                             const std::string& section = "[mold]");
 
 }  // namespace swage

@@ -104,17 +104,17 @@ double steps_per_second(const SceneSpec& scene, const RunCost& cost,
         most = std::max(most, explicit_steps_per_second(body, sim));
     if (matter.empty()) {
         for (std::size_t b = 0; b < scene.body.size(); ++b) {
-            most = std::max(most, lattice_steps_per_second(scene.body[b], cost.spacing[b], sim));
+            most =
+                std::max(most, lattice_steps_per_second(scene.body[b], cost.body[b].spacing, sim));
         }
     }
     return most;
 }
 
 // Of walls 2 V / A; of a bar or ball half of how thick it is, or a third.
-void find_thickness(RunCost& cost, const TriMesh& mesh) {
-    const double across = cost.mold.cell_count.minCoeff();
-    const double mean = 2 * std::abs(signed_volume(mesh)) / surface_area(mesh) / cost.mold.spacing;
-    cost.thickness = mean < kThin * across ? mean : across;
+double thickness_of(const TriMesh& mesh, double spacing, int across) {
+    const double mean = 2 * std::abs(signed_volume(mesh)) / surface_area(mesh) / spacing;
+    return mean < kThin * across ? mean : across;
 }
 
 // As much as this many cells of the work-piece pressed as tools do.
@@ -167,8 +167,8 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     for (std::size_t b = 0; b < input.size(); ++b) {
         vertices += scene.skin.kind == SkinKind::boundary
                         ? kVerticesPerFace * surface_area(input[b].to_mold()) /
-                              (cost.spacing[b] * cost.spacing[b])
-                        : mounted_vertices(input[b].mesh, scene.skin, cost.spacing[b]);
+                              (cost.body[b].spacing * cost.body[b].spacing)
+                        : mounted_vertices(input[b].mesh, scene.skin, cost.body[b].spacing);
     }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
@@ -226,7 +226,9 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     RunCost cost;
     for (std::size_t b = 0; b < input.size(); ++b) {
         const MoldEstimate mold = estimate_mold(input[b].to_mold(), scene.body[b].mold);
-        cost.spacing.push_back(mold.spacing);
+        const int across = mold.cell_count.minCoeff();
+        cost.body.push_back({mold.spacing, mold.active_cells, across,
+                             thickness_of(input[b].to_mold(), mold.spacing, across)});
         if (b == 0) {
             cost.mold = mold;
             continue;
@@ -236,7 +238,6 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         cost.mold.connections += mold.connections;
         cost.mold.bytes += mold.bytes;
     }
-    find_thickness(cost, input.front().to_mold());
     add_up(cost, scene, input, options, {}, 0);
     return cost;
 }
@@ -253,7 +254,8 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         matter.push_back(
             mold(input[b].to_mold(), body.material, body.mold, insets_for(input[b], body)));
         place_at_start(body.start, matter[b]);
-        cost.mold.active_cells += static_cast<double>(matter[b].cell_fill.size());
+        cost.body[b].cells = static_cast<double>(matter[b].cell_fill.size());
+        cost.mold.active_cells += cost.body[b].cells;
         cost.mold.particles += static_cast<double>(matter[b].particle_count());
         cost.mold.connections += static_cast<double>(matter[b].connection_count());
         cost.mold.bytes += static_cast<double>(matter[b].bytes());
@@ -270,17 +272,25 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
     const Machine machine = stage_machine(first, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
+    for (std::string& amiss : tool_overlaps(machine, named)) {
+        cost.warning.push_back(std::move(amiss));
+    }
     const std::vector<std::string> mistakes = foreseen_mistakes(scene, matter[0]);
     cost.warning.insert(cost.warning.end(), mistakes.begin(), mistakes.end());
-    const Legs legs = stage_legs(machine, std::min(first.frames, kSampledFrames), matter[0]);
+    const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), matter[0]);
     const long equilibria =
         first.sim.solver == Solver::quasistatic
-            ? std::max<long>(first.frames, equilibria_along(matter[0], machine.apparatus, first.sim,
-                                                            drives_of(machine, legs.leg, 1,
-                                                                      scene.duration_of(first))))
+            ? std::max<long>(first.frames,
+                             equilibria_along(matter[0], machine.apparatus, first.sim,
+                                              stage_drives(first, machine, legs.leg, 1,
+                                                           scene.duration_of(first))))
             : 0;
     add_up(cost, scene, input, options, matter, equilibria);
     return cost;
+}
+
+std::string fineness_section(const SceneSpec& scene, std::size_t body) {
+    return body == 0 ? "[mold]" : fmt::format("[[body]] \"{}\"", scene.body[body].name);
 }
 
 std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
@@ -308,6 +318,12 @@ std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matt
 }
 
 Json cost_json(const RunCost& cost) {
+    Json bodies = Json::array();
+    for (const BodyCost& body : cost.body) {
+        bodies.push_back({{"spacing_m", body.spacing},
+                          {"cells", body.cells},
+                          {"thickness_cells", body.thickness}});
+    }
     return {{"counted", cost.counted},
             {"spacing_m", cost.mold.spacing},
             {"cells", cost.mold.active_cells},
@@ -320,7 +336,8 @@ Json cost_json(const RunCost& cost) {
             {"steps", cost.steps},
             {"seconds", cost.seconds},
             {"slow", cost.slow},
-            {"thickness_cells", cost.thickness},
+            {"thickness_cells", cost.work_piece().thickness},
+            {"bodies", bodies},
             {"tool_give_cells", cost.tool_give},
             {"notes", cost.note},
             {"warnings", cost.warning}};

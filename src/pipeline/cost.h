@@ -13,11 +13,20 @@
 
 namespace swage {
 
+struct BodyCost {
+    double spacing = 0;    // [m]
+    double cells = 0;      // that hold matter
+    int across = 0;        // cells over the thinnest side of its box
+    double thickness = 0;  // of it, or of its thin parts, in cells: about
+
+    // Most of it is far thinner than its box.
+    bool has_thin_parts() const { return thickness < across; }
+};
+
 struct RunCost {
     MoldEstimate mold;  // sums over all bodies; spacing and cell_count are the work-piece's
-    std::vector<double> spacing;       // of each body [m]
+    std::vector<BodyCost> body;
     bool counted = false;              // the mold was made, so its numbers are no estimate
-    double thickness = 0;              // of the work-piece, or of its thin parts, in cells: about
     double tool_give = 0;              // what the softest tool gives way by, in cells; 0: no tools
     int frames = 0;                    // stills, the start included
     double steps = 0;                  // relaxation iterations and steps of motion, about
@@ -28,8 +37,7 @@ struct RunCost {
     std::vector<std::string> note;     // of the first machine at the work-piece; of steps
     std::vector<std::string> warning;  // what a run warns of before its first stage
 
-    // Most of it is far thinner than its box.
-    bool has_thin_parts() const { return thickness < mold.cell_count.minCoeff(); }
+    const BodyCost& work_piece() const { return body.front(); }
 };
 
 int frame_count(const SceneSpec& scene);
@@ -42,6 +50,9 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
 // finds the mistakes that only show there. Throws what these throw.
 RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
                    const RunOptions& options);
+
+// Where a scene says how fine a body is molded: "[mold]", or `[[body]] "name"`.
+std::string fineness_section(const SceneSpec& scene, std::size_t body);
 
 // Which of several bodies makes explicit steps far shorter than others need; empty: none does.
 std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter);

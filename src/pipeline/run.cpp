@@ -51,10 +51,8 @@ struct Ended {
 };
 
 // All stages; the motion file and run.json stand when it returns.
-Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
-               const RunDirectory& directory, Json& record, Stopwatch& watch) {
-    make_folder(directory.root() / "meshes");
-    make_folder(directory.root() / "curves");
+Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, RunDirectory& directory,
+               Json& record, Stopwatch& watch) {
     const bool can_plot = gnuplot_is_present();
     if (!can_plot) {
         log_warning(
@@ -76,8 +74,9 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
                  matter.mass());
         warnings.insert(warnings.end(), input[b].finding.begin(), input[b].finding.end());
         for (const Material* material : scene.body[b].materials()) {
-            const std::string strength = strength_warning(*material, matter.lattice.spacing,
-                                                          matter.lattice.cell_count.minCoeff());
+            const std::string strength =
+                strength_warning(*material, matter.lattice.spacing,
+                                 matter.lattice.cell_count.minCoeff(), fineness_section(scene, b));
             // Bodies and insets may be of one material.
             if (strength.empty() ||
                 std::find(warnings.begin(), warnings.end(), strength) != warnings.end()) {
@@ -103,15 +102,20 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input,
     Progress progress("simulate", frame_count(scene) - 1);
     Ended ended;
     long steps = 0;
+    const auto begin = [&] {
+        directory.begin();
+        make_folder(directory.root() / "meshes");
+        make_folder(directory.root() / "curves");
+    };
     for (const StageSpec& stage : scene.stage) {
-        const StageContext context{scene, directory.root(), recorder, watch, progress, can_plot};
+        const StageContext context{scene, directory.root(), recorder, watch, progress,
+                                   begin, can_plot};
         try {
             throw_if_interrupted();
             StageOutcome outcome = run_stage(stage, recorder.frame_count(), bodies, context);
             record["stages"].push_back(outcome.record);
             steps += outcome.steps;
             warnings.insert(warnings.end(), outcome.warning.begin(), outcome.warning.end());
-            for (const std::string& warning : outcome.warning) log_warning("{}", warning);
             ended = {outcome.stopped, outcome.interrupted};
         } catch (const Interrupted& interrupted) {
             // While the stage was set up.
@@ -152,13 +156,14 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
         if (options.draw) check_drawing(scene.render);
     };
     // Where nothing can have been done yet, nothing is made before it is known to be worth it.
-    const bool may_be_done = std::filesystem::exists(options.out / "run.json");
+    const bool may_be_done = !options.fresh && std::filesystem::exists(options.out / "run.json");
     if (!may_be_done) refuse_early();
-    const RunDirectory directory(options.out, identity, options.fresh);
+    RunDirectory directory(options.out, identity, options.fresh);
     const DrawnFiles files{directory.root()};
 
     RunOutcome outcome;
-    const std::optional<Json> earlier = read_record(directory.record());
+    const std::optional<Json> earlier =
+        may_be_done ? read_record(directory.record()) : std::nullopt;
     const bool simulated = earlier && is_simulated(*earlier, directory);
     if (simulated && (!options.draw || is_drawn(*earlier, files, wanted, scene.render.film))) {
         log_info("{}: already complete", directory.root().string());

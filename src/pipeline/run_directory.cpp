@@ -86,6 +86,18 @@ void remove_products(const fs::path& root) {
     }
 }
 
+// A run that ended before its first frame leaves no file but these two.
+bool holds_products(const fs::path& root) {
+    std::error_code error;
+    for (fs::recursive_directory_iterator it(root, error), end; !error && it != end;
+         it.increment(error)) {
+        const fs::path name = it->path().filename();
+        if (it->is_directory(error) || name == kIdentityName || name == kLockName) continue;
+        return true;
+    }
+    return static_cast<bool>(error);
+}
+
 }  // namespace
 
 std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here) {
@@ -122,7 +134,9 @@ void make_folder(const fs::path& folder) {
 }
 
 RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bool fresh)
-    : root_(root.has_filename() ? root : root.parent_path()) {
+    : root_(root.has_filename() ? root : root.parent_path()),
+      identity_text_(identity_text(identity)),
+      anew_(fresh) {
     make_folder(root_);
     bool empty = true;
     std::error_code error;
@@ -136,7 +150,8 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
     }
     lock();
     try {
-        claim(identity, fresh);
+        remove_temporaries(root_, 0);
+        if (!anew_) claim(identity);
     } catch (...) {
         ::unlink((root_ / kLockName).c_str());
         ::close(lock_);
@@ -185,21 +200,26 @@ void RunDirectory::lock() {
     }
 }
 
-void RunDirectory::claim(const RunIdentity& identity, bool fresh) {
-    remove_temporaries(root_, 0);
+void RunDirectory::claim(const RunIdentity& identity) {
     const fs::path file = root_ / kIdentityName;
-    if (fresh) remove_products(root_);
-    if (fs::exists(file)) {
-        const std::vector<std::string> found = differences(read_identity(file), identity);
-        if (!found.empty()) {
-            fail(ExitCode::foreign,
-                 "{}: belongs to another run: {}; choose another --out, or "
-                 "--fresh to throw that run away",
-                 root_.string(), joined(found, "; "));
-        }
-    } else {
-        write_file_whole(file, identity_text(identity));
+    if (!fs::exists(file) || !holds_products(root_)) {
+        write_file_whole(file, identity_text_);
+        return;
     }
+    const std::vector<std::string> found = differences(read_identity(file), identity);
+    if (!found.empty()) {
+        fail(ExitCode::foreign,
+             "{}: belongs to another run: {}; choose another --out, or "
+             "--fresh to throw that run away",
+             root_.string(), joined(found, "; "));
+    }
+}
+
+void RunDirectory::begin() {
+    if (!anew_) return;
+    remove_products(root_);
+    write_file_whole(root_ / kIdentityName, identity_text_);
+    anew_ = false;
 }
 
 RunDirectory::~RunDirectory() {

@@ -29,21 +29,26 @@ class RunDirectory {
   public:
     // Creates the directory, and those that it is to lie in, or enters it. Throws Error(output)
     // when it cannot be written, Error(foreign) when it holds anything but this run, or while
-    // another process writes in it. `fresh` removes what an earlier run of swage left.
+    // another process writes in it. `fresh`: whatever run it holds, that is to make room in
+    // begin(). One that ended before its first frame always does.
     RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh);
     ~RunDirectory();  // lets others in
     RunDirectory(const RunDirectory&) = delete;
     RunDirectory& operator=(const RunDirectory&) = delete;
 
     const std::filesystem::path& root() const { return root_; }
+    // The run is about to write its first frame: now what makes room for it is removed.
+    void begin();
     std::filesystem::path record() const { return root_ / "run.json"; }
     std::filesystem::path store() const { return root_ / "motion.bin"; }
 
   private:
     void lock();
-    void claim(const RunIdentity& identity, bool fresh);
+    void claim(const RunIdentity& identity);
 
     std::filesystem::path root_;
+    std::string identity_text_;
+    bool anew_;
     int lock_ = -1;
 };
 

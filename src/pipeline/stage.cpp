@@ -16,6 +16,7 @@
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/stage_verdict.h"
+#include "pipeline/start_overlap.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
@@ -34,7 +35,8 @@ class WarningBook {
     void add(int frame, const std::string& sentence) {
         auto [at, is_new] = frames_.try_emplace(sentence);
         if (is_new) order_.push_back(sentence);
-        at->second.push_back(frame);
+        // It may come in several legs of a frame.
+        if (is_new || at->second.back() != frame) at->second.push_back(frame);
     }
     std::vector<std::string> told(const std::string& stage) const {
         std::vector<std::string> lines;
@@ -106,30 +108,41 @@ class StageRun {
           connections_before_(connection_count(bodies)),
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(bodies))),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
-          legs_(stage_legs(machine_, stage.frames, bodies.front().matter)),
+          legs_(stage_legs(stage, machine_, stage.frames, bodies.front().matter)),
           steps_(cuts_any() ? blade_steps(legs_.leg) : 1),
-          way_(drives_of(machine_, legs_.leg, steps_, context.scene.duration_of(stage))),
+          way_(stage_drives(stage, machine_, legs_.leg, steps_, context.scene.duration_of(stage))),
           ahead_(way_),
           cuts_(bodies.size(), 0) {
         for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
+        std::vector<NamedMatter> named;
+        for (const WorkPiece& body : bodies) named.push_back({body.name, &body.matter});
+        for (const std::string& warning : tool_overlaps(machine_, named)) {
+            outcome_.warning.push_back(fmt::format("{}: {}", stage.name, warning));
+            log_warning("{}", outcome_.warning.back());
+        }
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             meshes_.push_back(mesh_stem(context.root, stage.name, bodies, b));
         }
     }
 
     StageOutcome run(int last_frame) {
-        context_.recorder.set_machine(machine_.apparatus);
-        if (last_frame == 0) {
-            context_.recorder.add_frame(bodies_, way_.front());
-            last_frame = 1;
-        }
         std::vector<Aggregate*> matter;
         for (WorkPiece& body : bodies_) matter.push_back(&body.matter);
         Simulation simulation(matter, machine_.apparatus, stage_.sim);
-        StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()));
-        if (context_.scene.output.meshes_per_frame) {
+        if (last_frame == 0) context_.begin();
+        if (each_frame()) {
             for (const fs::path& folder : meshes_) make_folder(folder);
         }
+        context_.recorder.set_machine(machine_.apparatus);
+        if (last_frame == 0) {
+            last_frame = 1;
+            context_.recorder.add_frame(bodies_, way_.front());
+            if (each_frame()) write_meshes_of(last_frame);
+        }
+        const Apparatus& apparatus = machine_.apparatus;
+        StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()),
+                           simulation.start(),
+                           apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size());
         for (int n = 1; n <= stage_.frames && work(simulation, n, last_frame + n, curves); ++n) {
             dress(last_frame + n);
             record(last_frame + n, curves);
@@ -148,6 +161,12 @@ class StageRun {
         std::vector<Material> beside;
         for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter.material);
         return beside;
+    }
+    bool each_frame() const { return context_.scene.output.meshes_per_frame; }
+    void write_meshes_of(int frame) const {
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            write_meshes(bodies_[b].deformed(), meshes_[b] / fmt::format("frame_{:04d}", frame));
+        }
     }
     bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
 
@@ -204,9 +223,7 @@ class StageRun {
         curves.add(number, last_);
         totals_.add(last_, machine_.apparatus.tool.size());
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
-        for (std::size_t b = 0; b < bodies_.size() && context_.scene.output.meshes_per_frame; ++b) {
-            write_meshes(bodies_[b].deformed(), meshes_[b] / fmt::format("frame_{:04d}", number));
-        }
+        if (each_frame()) write_meshes_of(number);
         context_.progress.advance(number - 1, stage_.name);
     }
 
@@ -225,7 +242,10 @@ class StageRun {
                                            outcome_.interrupted ? StageEnded::interrupted
                                            : outcome_.stopped   ? StageEnded::stopped
                                                                 : StageEnded::wholly);
-        outcome_.warning = warnings_.told(stage_.name);
+        const std::size_t known = outcome_.warning.size();
+        for (std::string& line : warnings_.told(stage_.name)) {
+            outcome_.warning.push_back(std::move(line));
+        }
         if (legs_.lost > 0) {
             outcome_.warning.push_back(fmt::format(
                 "{}: in {} of its frames the machine does what 64 steps do not follow; more frames "
@@ -234,6 +254,9 @@ class StageRun {
         }
         std::move(verdict.warning.begin(), verdict.warning.end(),
                   std::back_inserter(outcome_.warning));
+        for (std::size_t n = known; n < outcome_.warning.size(); ++n) {
+            log_warning("{}", outcome_.warning[n]);
+        }
         outcome_.steps = totals_.iterations + totals_.steps;
         outcome_.record = stage_record(end, verdict.overlap, outcome_.warning);
     }

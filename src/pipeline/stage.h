@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,13 +26,14 @@ struct StageContext {
     MotionRecorder& recorder;
     Stopwatch& watch;
     Progress& progress;
+    std::function<void()> begin;  // called once the first stage is set up, before its first frame
     bool can_plot = false;
 };
 
 struct StageOutcome {
     Json record;  // for run.json
     long steps = 0;
-    std::vector<std::string> warning;
+    std::vector<std::string> warning;  // all told already
     // The simulation gave up, or somebody asked for it; what was reached is kept.
     std::optional<Error> stopped;
     std::optional<Interrupted> interrupted;

@@ -20,6 +20,19 @@ std::vector<Mistake> placed(const StageSpec& stage, const ParameterError& error)
     return mistakes;
 }
 
+// What a machine says of its own is a mistake of the stage that names it.
+template <typename Act>
+auto at_stage(const StageSpec& stage, const Act& act) {
+    try {
+        return act();
+    } catch (const ParameterError& error) {
+        throw SceneError(placed(stage, error));
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::scene) throw;
+        throw SceneError({mistake_at(stage.place, error.what())});
+    }
+}
+
 WorkFrame work_frame(const StageSpec& stage, const Aggregate& work_piece) {
     return place_work_frame(work_piece, stage.axis, stage.up, stage.machine.upright);
 }
@@ -28,15 +41,10 @@ WorkFrame work_frame(const StageSpec& stage, const Aggregate& work_piece) {
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside) {
-    try {
+    return at_stage(stage, [&] {
         return build_machine(stage.machine, stage.parameter, work_frame(stage, work_piece),
                              work_piece, beside);
-    } catch (const ParameterError& error) {
-        throw SceneError(placed(stage, error));
-    } catch (const Error& error) {
-        if (error.code() != ExitCode::scene) throw;
-        throw SceneError({mistake_at(stage.place, error.what())});
-    }
+    });
 }
 
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece) {
@@ -59,8 +67,15 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
     return mistakes;
 }
 
-Legs stage_legs(const Machine& machine, int frames, const Aggregate& work_piece) {
-    return legs_of(machine, frames, kLegSlack * work_piece.lattice.spacing);
+Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
+                const Aggregate& work_piece) {
+    return at_stage(
+        stage, [&] { return legs_of(machine, frames, kLegSlack * work_piece.lattice.spacing); });
+}
+
+std::vector<Drive> stage_drives(const StageSpec& stage, const Machine& machine,
+                                const std::vector<Leg>& legs, int steps, double duration) {
+    return at_stage(stage, [&] { return drives_of(machine, legs, steps, duration); });
 }
 
 }  // namespace swage

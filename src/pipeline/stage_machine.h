@@ -18,7 +18,11 @@ Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
 // work-piece as it is before the first.
 std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece);
 
-// Its way over so many frames, as straight as that matter's spacing asks for.
-Legs stage_legs(const Machine& machine, int frames, const Aggregate& work_piece);
+// Its way over so many frames, as straight as that matter's spacing asks for, and its drives along
+// it (machines/legs.h). Throw SceneError where an expression has no value at some time.
+Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
+                const Aggregate& work_piece);
+std::vector<Drive> stage_drives(const StageSpec& stage, const Machine& machine,
+                                const std::vector<Leg>& legs, int steps, double duration);
 
 }  // namespace swage

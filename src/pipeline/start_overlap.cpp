@@ -7,7 +7,9 @@
 
 #include "base/units.h"
 #include "geometry/near_pairs.h"
+#include "machines/touch.h"
 #include "matter/cell_middle.h"
+#include "matter/touch_points.h"
 
 namespace swage {
 
@@ -16,6 +18,8 @@ namespace {
 // Middles of cells that lie on each other are half of both cells apart; these are nearer.
 constexpr double kNearer = 0.45;
 constexpr float kSolid = 0.5f;  // share of a cell, that its middle is in the body
+// Bodies that lie on a tool do so a little deep [spacings].
+constexpr double kDeep = 0.25;
 
 std::vector<Vec3> solid_middles(const Aggregate& matter) {
     std::vector<Vec3> middles;
@@ -24,6 +28,49 @@ std::vector<Vec3> solid_middles(const Aggregate& matter) {
         middles.push_back(cell_middle(matter, static_cast<CellId>(c)));
     }
     return middles;
+}
+
+std::vector<Vec3> touching_points(const Aggregate& matter) {
+    const TouchPoints touch(matter);
+    std::vector<Vec3> points;
+    for (int p = 0; p < static_cast<int>(touch.size()); ++p) {
+        if (!touch.meets(p)) continue;
+        points.push_back(
+            touch.points().position(static_cast<std::size_t>(p), matter.particle_position));
+    }
+    return points;
+}
+
+// How a body stands to a plate that is drawn endless. The work-piece's middle says which of its
+// sides is the right one; what lies on the other, or past the edge, has nothing to lie on.
+struct Standing {
+    std::string astray;  // empty: the body's middle is neither past the edge nor behind
+    double deep = 0;     // [m] that the body reaches into the plate and beyond
+};
+
+Standing standing_at(const BoxShape& plate, const Pose& plate_from_world, const Vec3& work_piece,
+                     const Vec3& middle, const std::vector<Vec3>& points) {
+    int thin = 0;
+    const double half = 0.5 * plate.size.minCoeff(&thin);
+    const double side = (plate_from_world * work_piece)[thin] < 0 ? -1 : 1;
+    const auto is_over = [&](const Vec3& at) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (axis != thin && std::abs(at[axis]) > 0.5 * plate.size[axis]) return false;
+        }
+        return true;
+    };
+    Standing standing;
+    const Vec3 centre = plate_from_world * middle;
+    if (!is_over(centre)) {
+        standing.astray = "past the edge of";
+    } else if (side * centre[thin] < -half) {
+        standing.astray = "on the far side of";
+    }
+    for (const Vec3& point : points) {
+        const Vec3 at = plate_from_world * point;
+        if (is_over(at)) standing.deep = std::max(standing.deep, half - side * at[thin]);
+    }
+    return standing;
 }
 
 }  // namespace
@@ -53,6 +100,44 @@ std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) 
                 "\"{}\" and \"{}\" lie in each other at the start, by about {} cells of {}: they "
                 "will burst apart; put them further apart with `at`",
                 bodies[a].name, bodies[b].name, cells, quantity_text(side_a, Quantity::length)));
+        }
+    }
+    return told;
+}
+
+std::vector<std::string> tool_overlaps(const Machine& machine,
+                                       const std::vector<NamedMatter>& bodies) {
+    std::vector<std::string> told;
+    if (bodies.size() < 2 || machine.apparatus.tool.empty()) return told;
+    const std::vector<Pose> world_from_tool = drive_at(machine, 0, 1).world_from_tool;
+    const Vec3 work_piece = machine.frame.world_from_work.translation;
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+        const std::vector<Vec3> points = touching_points(*bodies[b].matter);
+        const Vec3 middle = box_of(points).center();
+        for (std::size_t n = 0; n < world_from_tool.size(); ++n) {
+            const Tool& tool = machine.apparatus.tool[n];
+            const auto* plate = std::get_if<BoxShape>(&tool.shape);
+            Standing standing;
+            if (tool.finish == Finish::endless && plate != nullptr) {
+                standing =
+                    standing_at(*plate, world_from_tool[n].inverse(), work_piece, middle, points);
+            } else {
+                standing.deep = -nearest_distance(tool.shape, world_from_tool[n], points);
+            }
+            const std::string start = fmt::format("\"{}\" starts", bodies[b].name),
+                              which = fmt::format(
+                                  "the tool {} of the machine {}, which is set up "
+                                  "by the work-piece alone",
+                                  tool.name, machine.spec.name);
+            if (!standing.astray.empty()) {
+                told.push_back(fmt::format(
+                    "{} {} {} and ends somewhere, although it is drawn endless: put the body "
+                    "elsewhere with `at`, or make the tool larger or set it lower",
+                    start, standing.astray, which));
+            } else if (standing.deep > kDeep * bodies[b].matter->lattice.spacing) {
+                told.push_back(fmt::format("{} {} deep in {}: put it elsewhere with `at`", start,
+                                           quantity_text(standing.deep, Quantity::length), which));
+            }
         }
     }
     return told;

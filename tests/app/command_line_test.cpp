@@ -434,3 +434,28 @@ TEST_CASE("data goes to stdout alone, and --quiet leaves stderr empty") {
     CHECK(info.err.empty());
     CHECK_NOTHROW(Json::parse(info.out));
 }
+
+TEST_CASE("check tells of every body how fine it is, and what it would need") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "two.toml";
+    run_swage({"make", "bar", "--length", "20 cm", "--out", "bar.obj"}, scratch.path());
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 3\n"
+             "[[body]]\nname = \"pane\"\nfile = \"bar.obj\"\nat = [0, \"10 cm\", 0]\n"
+             "material = \"glass\"\nacross = 2\n[[stage]]\nmachine = \"floor\"\n"
+             "gravity = \"9.81 m/s2\"\nframes = 1\nduration = \"1 us\"\n");
+    const Outcome text = run_swage({"check", scene.string()});
+    INFO(text.out << text.err);
+    REQUIRE(text.code == 0);
+    CHECK(text.out.find("  cells        pane: ") != std::string::npos);
+    CHECK(text.out.find("  accuracy     pane: stiffness of a part 2 cells thick") !=
+          std::string::npos);
+    CHECK(text.out.find("[[body]] \"pane\" across = ") != std::string::npos);
+    CHECK(text.out.find("[mold] across = ") == std::string::npos);
+    const Json json = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    CHECK(json.at("strength").at(0).at("body") == "pane");
+    CHECK(json.at("bodies").at("pane").at("accuracy").contains("bending"));
+    CHECK(json.at("cost").at("bodies").size() == 2);
+    const Outcome run = run_swage({"run", scene.string(), "--no-render"}, scratch.path());
+    CHECK(run.err.find("[[body]] \"pane\" across = ") != std::string::npos);
+}

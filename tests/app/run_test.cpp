@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <sstream>
 
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
@@ -257,6 +258,7 @@ TEST_CASE("meshes are written for every frame when the scene asks for it") {
         run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
+    CHECK(fs::exists(run / "meshes/1-bend/frame_0001.obj"));
     CHECK(fs::exists(run / "meshes/1-bend/frame_0002.obj"));
     CHECK(bytes_of(run / "meshes/1-bend/frame_0003.ply") == bytes_of(run / "meshes/1-bend.ply"));
 }
@@ -392,4 +394,88 @@ TEST_CASE("what is amiss with the file of an inset is told as that of a body") {
     INFO(check.err);
     CHECK(check.err.find("core.obj: the material file 'core.mtl' cannot be read") !=
           std::string::npos);
+}
+
+TEST_CASE("a fresh run that cannot start leaves the run that was there, one that can replaces it") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 2), run = scratch.path() / "run";
+    const auto go = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"run", scene.string(), "--out", run.string(), "--no-render"});
+        return run_swage(more).code;
+    };
+    REQUIRE(go({}) == 0);
+    const auto before = files_below(run);
+    CHECK(go({"--fresh", "--set", "stage.1.frames=100000000"}) == 7);
+    CHECK(files_below(run) == before);
+    CHECK(go({"--fresh", "--set", "stage.1.radius=1 um"}) == 3);
+    CHECK(files_below(run) == before);
+    CHECK(go({"--fresh", "--set", "stage.1.frames=1"}) == 0);
+    CHECK(Json::parse(bytes_of(run / "run.json")).at("frames") == 2);
+}
+
+TEST_CASE("a run that failed before its first frame does not keep the mended one out") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 2), run = scratch.path() / "run";
+    const auto go = [&](const char* radius) {
+        return run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--set",
+                          std::string("stage.1.radius=") + radius})
+            .code;
+    };
+    CHECK(go("1 um") == 3);
+    CHECK(go("2 cm") == 0);
+    CHECK(go("3 cm") == 8);
+}
+
+TEST_CASE("what comes in several legs of a frame is told of that frame once") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "drag.toml", run = scratch.path() / "run";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\nvelocity = [\"10 m/s\", 0, 0]\n[material]\n"
+             "name = \"rubber\"\n[mold]\nacross = 2\n[[stage]]\nmachine = \"floor\"\n"
+             "drop = \"1 m\"\nmedium_density = 1e9\ngravity = \"9.81 m/s2\"\n"
+             "gravity_strength = \"cos(2*pi*4*t)\"\nframes = 4\nduration = \"0.01 s\"\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("legs") > 8);
+    CHECK(outcome.err.find("1-floor, 4 frames from 2 on: the drag is so strong") !=
+          std::string::npos);
+}
+
+TEST_CASE("the first row of the curves is the start, with what is known of it") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "thrown.toml", run = scratch.path() / "run";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\nvelocity = [\"2 m/s\", 0, 0]\n[material]\n"
+             "name = \"rubber\"\n[mold]\nacross = 2\n[[body]]\nname = \"other\"\n"
+             "file = \"bar.obj\"\nat = [0, \"8 cm\", 0]\n[[stage]]\nmachine = \"floor\"\n"
+             "drop = \"10 cm\"\nframes = 1\nduration = \"1 ms\"\ngravity = \"9.81 m/s2\"\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    std::istringstream table(bytes_of(run / "curves/1-floor.csv"));
+    const auto cells = [&] {
+        std::string line, cell;
+        std::getline(table, line);
+        std::vector<std::string> row;
+        for (std::istringstream in(line); std::getline(in, cell, ',');) row.push_back(cell);
+        return row;
+    };
+    const std::vector<std::string> names = cells(), start = cells();
+    const auto at_start = [&](const char* name) {
+        return start.at(std::size_t(std::find(names.begin(), names.end(), name) - names.begin()));
+    };
+    const double mass = Json::parse(bytes_of(run / "run.json"))
+                            .at("bodies")
+                            .at(0)
+                            .at("matter")
+                            .at("mass_kg")
+                            .get<double>();
+    CHECK(std::stod(at_start("kinetic energy [J]")) == Approx(0.5 * mass * 4).epsilon(1e-6));
+    CHECK(at_start("pieces") == "2");
+    CHECK(at_start("contact energy [J]") == "");
 }

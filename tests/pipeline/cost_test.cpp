@@ -45,13 +45,13 @@ struct BarScene {
 
 TEST_CASE("a body's thin parts are told in cells, and a solid one has none") {
     const RunCost tube = cost_of("tube", {{"length", 0.3}, {"diameter", 0.06}, {"wall", 0.005}});
-    CHECK(tube.has_thin_parts());
-    CHECK(tube.thickness == Approx(0.5).epsilon(0.05));  // cells of 1 cm
+    CHECK(tube.work_piece().has_thin_parts());
+    CHECK(tube.work_piece().thickness == Approx(0.5).epsilon(0.05));  // cells of 1 cm
     for (const char* solid : {"bar", "rod", "sphere", "sheet"}) {
         const RunCost cost = cost_of(solid, {});
         INFO(solid);
-        CHECK_FALSE(cost.has_thin_parts());
-        CHECK(cost.thickness == Approx(6));
+        CHECK_FALSE(cost.work_piece().has_thin_parts());
+        CHECK(cost.work_piece().thickness == Approx(6));
     }
 }
 

@@ -104,3 +104,14 @@ TEST_CASE("loads are plotted against what moves most") {
     fall.add(2, report);
     CHECK(plot_axis(fall).label == "time [s]");
 }
+
+TEST_CASE("a frame of several legs keeps the deepest that a tool went in") {
+    FrameReport frame;
+    for (double depth : {1e-4, 3e-4, 2e-4}) {
+        FrameReport leg;
+        leg.load = {{"ram", Pose{}}};
+        leg.load[0].penetration = depth;
+        frame.go_on(leg);
+    }
+    CHECK(frame.load.at(0).penetration == 3e-4);
+}

@@ -48,6 +48,9 @@ TEST_CASE("another run's directory is refused and left as it is") {
     const fs::path root = scratch.path() / "run";
     { const RunDirectory first(root, identity_of("1"), false); }
     put_text(root / "run.json", "{}");
+    // A fresh run that comes to nothing leaves it, too.
+    { const RunDirectory fresh(root, identity_of("2"), true); }
+    CHECK(fs::exists(root / "run.json"));
     std::string told;
     try {
         const RunDirectory other(root, identity_of("2"), false);
@@ -60,8 +63,14 @@ TEST_CASE("another run's directory is refused and left as it is") {
     CHECK(fs::exists(root / "run.json"));
     CHECK_FALSE(fs::exists(root / ".swage-lock"));
 
-    { const RunDirectory fresh(root, identity_of("2"), true); }
+    {
+        RunDirectory fresh(root, identity_of("2"), true);
+        fresh.begin();
+    }
     CHECK_FALSE(fs::exists(root / "run.json"));
+    put_text(root / "run.json", "{}");
+    CHECK(code_of([&] { const RunDirectory then(root, identity_of("1"), false); }) ==
+          ExitCode::foreign);
     CHECK(code_of([&] { const RunDirectory now(root, identity_of("2"), false); }) ==
           ExitCode::done);
 }
@@ -128,4 +137,18 @@ TEST_CASE("what differs between two runs is told item by item") {
     there.input.push_back({"texture", "a.png", "5"});
     there.version = "0.0.1";
     CHECK(differences(there, here).size() == 4);
+}
+
+TEST_CASE("a directory in which nothing was recorded belongs to nobody") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    const auto enter = [&](const char* scene) {
+        return code_of([&] { const RunDirectory run(root, identity_of(scene), false); });
+    };
+    CHECK(enter("1") == ExitCode::done);
+    fs::create_directories(root / "meshes" / "1-bend");
+    CHECK(enter("2") == ExitCode::done);
+    put_text(root / "meshes" / "1-bend.obj", "");
+    CHECK(enter("2") == ExitCode::done);
+    CHECK(enter("1") == ExitCode::foreign);
 }

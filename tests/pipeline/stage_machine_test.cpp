@@ -33,3 +33,37 @@ TEST_CASE("a lone gravity points against what the machine calls up, however the 
         }
     }
 }
+
+TEST_CASE("an expression that has no value at some time is told at its stage, with its part") {
+    const test::Scratch scratch;
+    scratch.write("machines/slide.toml",
+                  "[[grip]]\nname = \"jaw\"\nfrom = [-9, -9, -9]\nto = [9, 9, 9]\n"
+                  "[grip.motion]\nmove = [\"t < 0.5 ? 0 : log(t - 1)\", 0, 0]\n");
+    const auto [stage, part] =
+        GENERATE(std::pair("machine = \"shelf\"\n[[stage.load]]\npressure = 1\nname = \"wind\"\n"
+                           "strength = \"1/(t - 0.5)\"\n",
+                           "the strength of load wind at t = 0.5"),
+                 std::pair("machine = \"shelf\"\ngravity = 9.81\ngravity_strength = \"log(t)\"\n",
+                           "gravity_strength at t = 0"),
+                 std::pair("machine = \"slide\"\n", "the motion of grip jaw at t = "));
+    const SceneReading reading =
+        read_scene(scratch.write("s.toml",
+                                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
+                                 "[[stage]]\n" +
+                                     std::string(stage)),
+                   {}, test::shipped());
+    INFO(test::told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    const StageSpec& spec = reading.scene->stage[0];
+    const Aggregate body = test::make_block(16, 4, 4, 0.1, reading.scene->work_piece().material);
+    const Machine machine = stage_machine(spec, body, {});
+    try {
+        stage_legs(spec, machine, 4, body);
+        FAIL("it has none");
+    } catch (const SceneError& error) {
+        REQUIRE(error.mistakes().size() == 1);
+        CHECK(error.mistakes()[0].line == 6);
+        INFO(error.what());
+        CHECK(error.mistakes()[0].text.find(part) != std::string::npos);
+    }
+}

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/start_overlap.h"
 
+#include "scene/find.h"
+#include "scene/read_machine.h"
 #include "tests/catch.h"
+#include "tests/scene/scratch.h"
 #include "tests/shared/block.h"
 
 using namespace swage;
@@ -21,4 +24,37 @@ TEST_CASE("bodies that lie in each other at the start are told, those that touch
     CHECK(told(0.1, 4, 0.3)[0].find("16 cells") != std::string::npos);
     CHECK(told(0.04, 5, 0.1).size() == 1);
     CHECK(told(0.04, 5, 0.03).size() == 1);  // wholly inside
+}
+
+TEST_CASE("a body beside the work-piece that starts in, beyond or under the floor is told") {
+    const Aggregate work_piece = test::make_block(2, 2, 2, 0.1, Material{});
+    const MachineReading floor =
+        read_machine(std::filesystem::path(SWAGE_SOURCE_DIR) / "machines/floor.toml");
+    REQUIRE(floor.machine);
+    // Its top at y = -0.3, 4 m by 4 m, 0.2 m thick.
+    const Machine machine =
+        build_machine(*floor.machine, {}, place_work_frame(work_piece, "x", "y", true), work_piece);
+    int other_cells = 4;
+    const auto told = [&](const Vec3& at) {
+        const double side = other_cells == 1 ? 0.8 : 0.05;
+        Aggregate other = test::make_block(other_cells, other_cells, other_cells, side, Material{});
+        for (std::size_t p = 0; p < other.particle_count(); ++p) {
+            other.particle_position.set(p, other.particle_position.at(p) + at);
+        }
+        const std::vector<std::string> all =
+            tool_overlaps(machine, {{"cube", &work_piece}, {"other", &other}});
+        CHECK(all.size() <= 1);
+        return all.empty() ? "" : all[0];
+    };
+    CHECK(told({1, 0, 0}) == "");
+    CHECK(told({1.95, -0.2, 0}) == "");
+    CHECK(told({0, -0.205, 0}) == "");  // as deep as what lies on it
+    CHECK(told({0, -0.25, 0}).find("\"other\" starts 5 cm deep in the tool floor") == 0);
+    CHECK(told({0, -0.45, 0}).find("deep in the tool floor") != std::string::npos);
+    // Its points stride over the floor.
+    other_cells = 1;
+    CHECK(told({0, -0.35, 0}).find("deep in the tool floor") != std::string::npos);
+    other_cells = 4;
+    CHECK(told({0, -0.9, 0}).find("starts on the far side of the tool floor") != std::string::npos);
+    CHECK(told({0, 0.1, 2.1}).find("starts past the edge of the tool floor") != std::string::npos);
 }
