@@ -112,15 +112,12 @@ std::string csv_text(const StageCurves& curves) {
             cells.push_back(number(load.penetration[row]));
             cells.push_back(std::to_string(load.contacts[row]));
         }
-        const std::size_t contact_at = cells.size() + 2;
         for (double energy :
              {report.kinetic, report.elastic, report.contact, report.plastic, report.damped,
               report.friction, report.drag, report.work, report.load_work, report.gravity_work,
               report.severed_energy, report.fracture, report.set_free, report.remainder}) {
             cells.push_back(number(energy));
         }
-        // Contacts are not looked for before the first frame.
-        if (row == 0) cells[contact_at] = "";
         for (long count : {long(report.severed), long(report.broken), long(report.pieces),
                            long(report.iterations), long(report.increments), long(report.halvings),
                            report.steps, report.rejected}) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
 #include <utility>
 #include <variant>
@@ -312,6 +313,7 @@ FrameReport Simulation::start() const {
         report.body.push_back(books);
         report.add(books);
     }
+    report.contact = std::numeric_limits<double>::quiet_NaN();
     return report;
 }
 
