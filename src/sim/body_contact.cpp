@@ -73,23 +73,22 @@ void BodyContact::connections_changed(std::size_t body) {
 }
 
 struct BodyContact::State {
-    std::vector<std::pair<std::size_t, ContactList>> contacts;  // of ways that were near
+    std::vector<std::size_t> near;
+    std::vector<ContactWay::State> way;
 };
 
 std::shared_ptr<const BodyContact::State> BodyContact::save() const {
     State state;
-    for (std::size_t w : near_) state.contacts.emplace_back(w, way_[w].contacts());
+    state.near = near_;
+    state.way.reserve(way_.size());
+    for (const ContactWay& way : way_) state.way.push_back(way.save());
     return std::make_shared<const State>(std::move(state));
 }
 
 void BodyContact::restore(const State& state) {
-    for (std::size_t w : near_) way_[w].set_contacts({});
-    near_.clear();
-    for (const auto& [w, contacts] : state.contacts) {
-        way_[w].come_near(step_);
-        way_[w].set_contacts(contacts);
-        near_.push_back(w);
-    }
+    near_ = state.near;
+    for (std::size_t w : near_) way_[w].come_near(step_);
+    for (std::size_t w = 0; w < way_.size(); ++w) way_[w].restore(state.way[w]);
     allowance_ = -1;
 }
 
@@ -135,7 +134,7 @@ void BodyContact::renew_all(const std::vector<char>& asleep) {
         allowance_ = std::min(allowance_, near ? step : 0.5 * gap);
         const bool was_near = std::binary_search(were.begin(), were.end(), w);
         // What they are to each other stands, also for when they wake.
-        const bool stands = asleep[from] && asleep[onto];
+        const bool stands = pair_[w].sleeps(asleep);
         if (stands ? was_near : near) {
             near_.push_back(w);
             way_[w].come_near(step_);
@@ -168,7 +167,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     std::vector<std::size_t> awake;
     sums.assign(side_.size(), {});
     for (std::size_t w : near_) {
-        if (asleep[pair_[w].from] && asleep[pair_[w].onto]) {
+        if (pair_[w].sleeps(asleep)) {
             way_[w].freeze();
             continue;
         }
@@ -227,8 +226,10 @@ void BodyContact::meet_anew() {
     for (std::size_t w : near_) way_[w].meet_anew();
 }
 
-void BodyContact::commit() {
-    for (ContactWay& way : way_) way.commit();
+void BodyContact::commit(const std::vector<char>& asleep) {
+    for (std::size_t w = 0; w < way_.size(); ++w) {
+        if (!pair_[w].sleeps(asleep)) way_[w].commit();
+    }
 }
 
 }  // namespace swage

@@ -57,8 +57,8 @@ class BodyContact {
     void add_forces(const std::vector<Vec3Array*>& force, const Vec3& gravity, double step,
                     const std::vector<char>& asleep, std::vector<ContactSums>& sums,
                     bool again = false);
-    // The step is kept: remembers where points stick and how they met.
-    void commit();
+    // The step is kept: remembers where points stick and how they met. What sleeps has made none.
+    void commit(const std::vector<char>& asleep);
 
     // All that a step changes.
     struct State;
@@ -81,6 +81,7 @@ class BodyContact {
     struct Pair {
         std::size_t from, onto;
         std::size_t back;  // the way from `onto` to `from`
+        bool sleeps(const std::vector<char>& asleep) const { return asleep[from] && asleep[onto]; }
     };
 
     std::vector<ContactSide> side_;

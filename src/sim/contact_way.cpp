@@ -101,10 +101,12 @@ void ContactWay::leave_out_let_be() {
     keep_contacts([&](int point) { return !is_let_be_[point]; });
 }
 
-void ContactWay::set_contacts(const ContactList& contacts) {
-    list_ = contacts;
+void ContactWay::restore(const State& state) {
+    list_ = state.contacts;
     leave_out_let_be();
-    gone_ = 0;
+    gone_ = state.gone;
+    has_changed_ = state.has_changed;
+    begins_ = state.begins;
     is_found_ = false;
     if (is_static()) meet_anew();
 }

@@ -43,7 +43,14 @@ class ContactWay {
     void part();
 
     const ContactList& contacts() const { return list_; }
-    void set_contacts(const ContactList& contacts);
+    // All that a step changes, but for points that are let be.
+    struct State {
+        ContactList contacts;
+        double gone = 0;  // held by what is gone and not yet booked [J]
+        bool has_changed = false, begins = true;
+    };
+    State save() const { return {list_, gone_, has_changed_, begins_}; }
+    void restore(const State& state);
     // Finds what is nearer than `margin` [m]; what touches stays.
     void search(double margin);
     // Takes what its contacts touch into both sides' patches, which have been cleared.

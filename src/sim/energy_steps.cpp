@@ -204,7 +204,7 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
         meet(group, t.step, false);
         swap_speeds();
         for (std::size_t b : group) outcome.body[b].met.add(met_[b], t.step);
-        contact_.commit();
+        contact_.commit(all_but(group));
     }
     t.after = stored(group, now);
     for (std::size_t n = 0; n < group.size(); ++n) {

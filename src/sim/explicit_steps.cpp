@@ -260,7 +260,7 @@ Finding ExplicitSolver::take(const Way& way, const Block& block, MoveOutcome& ou
         if (contact_.acts()) {
             meet(now, dt, false, outcome);
             for (std::size_t b = 0; b < body_.size(); ++b) outcome.body[b].met.add(met_[b], dt);
-            contact_.commit();
+            contact_.commit(sleeping_.asleep());
         }
         before = now;
     }

@@ -43,7 +43,7 @@ bool SelfContact::meet_anew() {
 double SelfContact::commit() {
     if (contact_ == nullptr) return 0;
     find();
-    contact_->commit();
+    contact_->commit(kAwake);
     return sums_.friction;
 }
 
@@ -51,7 +51,7 @@ void SelfContact::connections_changed() {
     if (contact_ == nullptr) return;
     contact_->connections_changed(0);
     find();
-    contact_->commit();
+    contact_->commit(kAwake);
 }
 
 void SelfContact::add_forces(Vec3Array& force) {

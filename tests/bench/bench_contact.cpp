@@ -47,7 +47,7 @@ int main() {
     std::vector<ContactSums> sums;
     const double step = least_ms(9, [&] {
         contact.add_forces({&force[0], &force[1]}, Vec3::Zero(), 1e-5, asleep, sums);
-        contact.commit();
+        contact.commit(asleep);
         contact.renew(asleep);
     });
     fmt::print("{} points in contact: {:.1f} ms a step (bar 15), {:.1f} ms a search\n",

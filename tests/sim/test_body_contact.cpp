@@ -200,6 +200,27 @@ TEST_CASE("what slept is looked at again soon after it wakes, however far all el
     CHECK(contact.candidates() > 0);
 }
 
+TEST_CASE("what lies pressed at the start presses as much after its first step is taken back") {
+    Aggregate a = make_block(3, 3, 3, 0.1, kSpringy), b = a;
+    place(b, {Quat::Identity(), Vec3(0.29, 0.02, 0.01)});
+    BodyContact contact({&a, &b}, motion_settings());
+    const std::vector<char> asleep(2, 0);
+    const auto push = [&] {
+        std::vector<Vec3Array> force(2);
+        for (Vec3Array& f : force) f.x = f.y = f.z = std::vector<double>(a.particle_count(), 0.0);
+        std::vector<ContactSums> sums;
+        contact.renew(asleep);
+        contact.add_forces({&force[0], &force[1]}, Vec3::Zero(), 1e-6, asleep, sums);
+        return std::pair{sums[0].stored, force[1].x};
+    };
+    const auto start = contact.save();
+    const auto first = push();
+    REQUIRE(first.first > 0);
+    contact.commit(asleep);
+    contact.restore(*start);
+    CHECK(push() == first);
+}
+
 TEST_CASE("a block slides over another's lattice without rattling") {
     // The lower body's lattice stands along the surface, then obliquely to it.
     for (double turn : {0.0, 0.35}) {

@@ -241,6 +241,27 @@ TEST_CASE("steps that energy chooses let bodies meet as explicit ones do") {
         Approx(fixed.last.body[0].passed + fixed.last.body[1].passed).margin(0.03 * chosen.start));
 }
 
+TEST_CASE("steps that energy chooses part all that a stage begins with pressed") {
+    Aggregate a = make_block(3, 3, 3, 0.1, kSpringy);
+    std::vector<Aggregate> body(4, a);  // two pairs, far from each other
+    for (int n = 1; n < 4; ++n) {
+        place(body[n], {Quat::Identity(), Vec3(n % 2 * 0.29, n % 2 * 0.02, n / 2 * 64)});
+    }
+    const Apparatus nothing;
+    Simulation simulation({&body[0], &body[1], &body[2], &body[3]}, nothing,
+                          motion_settings(Solver::energy_stepped));
+    const FrameReport r = simulation.advance(still(0), still(0.02));
+    const auto apart = [&](int n) {
+        return (body[n + 1].mean_velocity() - body[n].mean_velocity()).x();
+    };
+    double moving = 0;
+    for (const Books& books : r.body) moving += books.kinetic;
+    CHECK(r.rejected > 0);
+    CHECK(apart(0) > 0.1);
+    CHECK(apart(2) == Approx(apart(0)).epsilon(1e-3));
+    CHECK(std::abs(r.remainder) < 1e-3 * moving);
+}
+
 TEST_CASE("steps that energy chooses go on where they take back what has broken") {
     Material brittle = kSpringy;
     brittle.restitution = 0.5;
