@@ -17,7 +17,8 @@ namespace {
 constexpr double kTolerance = 1e-9;  // of all energy that was put in, that a step may gain
 constexpr double kMistake = 1e-6;    // likewise, that it may lose where no book says so
 constexpr double kFinest = 1e-6;     // of the stable step; shorter ones may lose more
-constexpr double kWay = 0.3;         // spacings that the fastest particle may go in a step
+constexpr double kWay = 0.3;         // spacings that the fastest particle, or tool, goes in a step
+constexpr double kDriven = 2;        // stable steps, while what acts on a body changes
 constexpr double kShortest = 1e-9;   // of the stable step of explicit steps
 
 double acceleration_of(const MovingBody& body) {
@@ -28,16 +29,13 @@ double acceleration_of(const MovingBody& body) {
     return std::sqrt(most);
 }
 
-// Of all particles, grown by how far they may get in a time.
-Box reach_of(const MovingBody& body, double time) {
-    const Aggregate& m = body.matter();
-    Box box;
-    for (std::size_t p = 0; p < m.particle_count(); ++p) box.grow(m.particle_position.at(p));
-    const double far =
-        m.lattice.spacing + 1.5 * time * body.top_speed() + time * time * acceleration_of(body);
-    box.low.array() -= far;
-    box.high.array() += far;
-    return box;
+// How far any of its particles may get while the drive does this: what a tool or a grip strikes
+// leaves it twice as fast.
+double reach_of(const MovingBody& body, const Drive& from, const Drive& to) {
+    const double time = to.time - from.time;
+    return body.matter().lattice.spacing + 1.5 * time * body.top_speed() +
+           time * time * (acceleration_of(body) + body.push_change(from, to)) +
+           2 * body.drive_travel(from, to);
 }
 
 Vec3Array mean_speed(const Vec3Array& from, const Vec3Array& to, double step) {
@@ -47,8 +45,11 @@ Vec3Array mean_speed(const Vec3Array& from, const Vec3Array& to, double step) {
     return speed;
 }
 
-bool overlap(const Box& a, const Box& b) {
-    return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+// Whether they may meet when each has gone so far.
+bool may_meet(const Box& a, double far_a, const Box& b, double far_b) {
+    const double far = far_a + far_b;
+    return (a.low.array() - far <= b.high.array()).all() &&
+           (b.low.array() - far <= a.high.array()).all();
 }
 
 }  // namespace
@@ -92,19 +93,34 @@ void EnergySteps::connections_changed(std::size_t body) {
     contact_.connections_changed(body);
 }
 
-// Bodies whose boxes may meet within the frame, in the order of their first.
+// Bodies whose boxes may meet within the frame, in the order of their first. What one of a group
+// strikes may go as far as it.
 std::vector<EnergySteps::Group> EnergySteps::groups(const Drive& from, const Drive& to) const {
-    std::vector<Box> reach;
-    for (const Mover& mover : mover_) reach.push_back(reach_of(mover.body, to.time - from.time));
+    std::vector<Box> box(mover_.size());
+    std::vector<double> far;  // of the group that begins with it
     std::vector<std::size_t> first(mover_.size());
-    for (std::size_t b = 0; b < first.size(); ++b) first[b] = b;
-    for (std::size_t a = 0; a < first.size(); ++a) {
-        for (std::size_t b = a + 1; b < first.size(); ++b) {
-            if (first[a] == first[b] || !overlap(reach[a], reach[b])) continue;
-            const std::size_t low = std::min(first[a], first[b]),
-                              high = std::max(first[a], first[b]);
-            for (std::size_t& f : first) f = f == high ? low : f;
+    for (std::size_t b = 0; b < first.size(); ++b) {
+        const Vec3Array& x = mover_[b].body.matter().particle_position;
+        for (std::size_t p = 0; p < x.size(); ++p) box[b].grow(x.at(p));
+        far.push_back(reach_of(mover_[b].body, from, to));
+        first[b] = b;
+    }
+    const auto unite_some = [&] {
+        bool any = false;
+        for (std::size_t a = 0; a < first.size(); ++a) {
+            for (std::size_t b = a + 1; b < first.size(); ++b) {
+                const std::size_t low = std::min(first[a], first[b]),
+                                  high = std::max(first[a], first[b]);
+                if (low == high || !may_meet(box[a], far[first[a]], box[b], far[first[b]]))
+                    continue;
+                far[low] = std::max(far[low], far[high]);
+                for (std::size_t& f : first) f = f == high ? low : f;
+                any = true;
+            }
         }
+        return any;
+    };
+    while (unite_some()) {
     }
     std::vector<Group> found;
     for (std::size_t b = 0; b < first.size(); ++b) {
@@ -117,16 +133,20 @@ std::vector<EnergySteps::Group> EnergySteps::groups(const Drive& from, const Dri
     return found;
 }
 
-double EnergySteps::step_to_try(const Group& group, double left) const {
+double EnergySteps::step_to_try(const Group& group, const Drive& begin, const Drive& to) const {
+    const double left = to.time - begin.time;
     double step = left;
     for (std::size_t b : group) {
         const Mover& m = mover_[b];
-        if (m.step > 0) step = std::min(step, m.step);
+        const double stable = m.body.stable_step();
+        step = std::min(step, m.step > 0 ? m.step : stable);
+        if (m.body.is_stirred(begin, to)) step = std::min(step, kDriven * stable);
         // v t + a t^2 <= far
         const double far = kWay * m.body.matter().lattice.spacing, v = m.body.top_speed(),
-                     a = acceleration_of(m.body);
+                     a = acceleration_of(m.body), travel = m.body.drive_travel(begin, to);
         const double root = v + std::sqrt(v * v + 4 * a * far);
         if (root > 0) step = std::min(step, 2 * far / root);
+        if (travel > far) step = std::min(step, left * far / travel);
     }
     return left / std::max(1.0, std::ceil(left / step * (1 - 1e-9)));
 }
@@ -293,7 +313,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
     }
     for (Drive begin = from; begin.time < to.time;) {
         throw_if_interrupted();
-        const double left = to.time - begin.time, step = step_to_try(group, left);
+        const double left = to.time - begin.time, step = step_to_try(group, begin, to);
         const double end = begin.time + step;
         const Drive now = step >= left || end >= to.time
                               ? to

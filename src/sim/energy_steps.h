@@ -10,6 +10,11 @@
 // halved; else the next is half as long again. Groups that nothing can bring together within the
 // frame take their own steps.
 //
+// NOTE: what a drive does to a body that has not moved yet costs no energy: a grip's spring that is
+// drawn out over a step holds just the work that drew it, and a load moves nothing until the next
+// step. So while anything that acts on a body changes, no step is longer than a few stable ones,
+// nor takes what comes near on by more than a part of a spacing; the first is a stable one.
+//
 // Stability: for one undamped swing of angular frequency w the energy grows by (w dt)^4 / 4 of
 // itself a step (the Adams-Bashforth formula of second order), so steps that keep it have
 // w dt < (4e-9)^(1/4) = 0.008; damping lengthens them, and a body that does not swing takes any.
@@ -75,7 +80,7 @@ class EnergySteps {
     struct Try;
     std::vector<Group> groups(const Drive& from, const Drive& to) const;
     void advance(const Group& group, const Drive& from, const Drive& to, MoveOutcome& outcome);
-    double step_to_try(const Group& group, double left) const;
+    double step_to_try(const Group& group, const Drive& begin, const Drive& to) const;
     double stable_step(const Group& group) const;
     Try take(const Group& group, const Drive& begin, const Drive& now, double step,
              const std::vector<Stored>& held, MoveOutcome& outcome);

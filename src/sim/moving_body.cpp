@@ -261,6 +261,23 @@ bool MovingBody::is_stirred(const Drive& since, const Drive& now) const {
     return contacts_.is_stirred(since, now) || pushes_.is_stirred(since, now);
 }
 
+double MovingBody::push_change(const Drive& from, const Drive& to) const {
+    if (!pushes_.is_stirred(from, to)) return 0;
+    const std::size_t count = matter_.particle_count();
+    Vec3Array before, after;
+    set_zero(count, before);
+    set_zero(count, after);
+    pushes_.add_forces(matter_, from, before);
+    pushes_.add_forces(matter_, to, after);
+    const Vec3 fall = pushes_.gravity(to) - pushes_.gravity(from);
+    double most = 0;
+    for (std::size_t p = 0; p < count; ++p) {
+        const Vec3 push = after.at(p) - before.at(p);
+        most = std::max(most, (push / matter_.particle_mass[p] + fall).squaredNorm());
+    }
+    return std::sqrt(most);
+}
+
 void MovingBody::stop() { set_zero(matter_.particle_count(), matter_.particle_velocity); }
 
 double MovingBody::kinetic_energy(double step) const {
@@ -353,6 +370,7 @@ void MovingBody::save(State& state) const {
     if (saves_branches_) state.damping.assign(1, damping_);
     state.load = load_;
     state.gone = gone_;
+    state.turned = turned_;
 }
 
 void MovingBody::restore(const State& state, BodyOutcome& outcome) {
@@ -385,6 +403,7 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
         outcome.damped_work += block_energy_;
     }
     load_ = state.load;
+    turned_ = state.turned;
     gone_ = state.gone;  // as long ago as the candidates that it goes back to
 }
 

@@ -59,6 +59,12 @@ class MovingBody {
 
     // Whether anything that acts on it has changed or moved since then.
     bool is_stirred(const Drive& since, const Drive& now) const;
+    // The farthest that what holds it, or may come to touch it, moves [m].
+    double drive_travel(const Drive& from, const Drive& to) const {
+        return contacts_.travel(matter_, from, to);
+    }
+    // The most that loads and gravity come to change the acceleration of any particle by [m/s2].
+    double push_change(const Drive& from, const Drive& to) const;
     void stop();
 
     // What it holds at the present positions and forces, between steps of this length [s]. The
@@ -124,7 +130,7 @@ class MovingBody {
         std::vector<LoadSet> pushes;           // one
         std::vector<InternalDamping> damping;  // one, or none
         std::vector<LoadSum> load;
-        double gone;
+        double gone, turned;
     };
     void save(State& state) const;
     // NOTE: but for energy-stepped ones, which are often taken back, no copy is kept of what the

@@ -218,6 +218,86 @@ TEST_CASE("bodies far apart take their own steps, those that may meet the same")
     CHECK(steps(10) != steps(0.35));
 }
 
+TEST_CASE("steps that energy chooses follow what a drive does within a frame, also after a pause") {
+    Aggregate start = make_block(3, 3, 3, 0.01, kSpringy);
+    Apparatus pull;
+    for (int side : {-1, 1}) {
+        Grip& grip = pull.grip.emplace_back();
+        grip.point = points_where(start, [&](const Vec3& x) { return side * x.x() > 0.0149; });
+        for (int p : grip.point) grip.anchor.push_back(start.surface_reference(p));
+    }
+    Apparatus push;
+    push.load.push_back(push_below(start, 4));
+    const double pause = GENERATE(0.0, 0.01);
+    const auto drive = [&](double time) {
+        const double s = std::max(0.0, time - pause) / 0.01;
+        Drive d = still(time);
+        d.world_from_grip.assign(2, {Quat::Identity(), Vec3::Zero()});
+        d.world_from_grip[1].translation.x() = 0.003 * s;
+        d.load_strength = {s};
+        return d;
+    };
+    const auto moved = [&](const Apparatus& apparatus, Solver solver, int frames) {
+        Aggregate m = start;
+        SimSettings settings = motion_settings(solver);
+        settings.step_safety = 0.1;
+        Simulation simulation(m, apparatus, settings);
+        FrameReport r;
+        const double end = pause + 0.01;
+        for (int n = 0; n < frames; ++n) {
+            r = simulation.advance(drive(end / frames * n), drive(end / frames * (n + 1)));
+        }
+        return std::pair{m, r};
+    };
+    const auto [far, put_in] = moved(push, Solver::explicit_steps, 2);
+    const int few = pause > 0 ? 2 : 1;
+    for (const int frames : {few, 40}) {
+        const auto [pushed, r] = moved(push, Solver::energy_stepped, frames);
+        CHECK(r.load_work == Approx(put_in.load_work).epsilon(0.01));
+        CHECK(pushed.mean_velocity().x() == Approx(far.mean_velocity().x()).epsilon(0.01));
+    }
+    const FrameReport coarse = moved(pull, Solver::energy_stepped, few).second,
+                      fine = moved(pull, Solver::energy_stepped, 40).second;
+    CHECK(coarse.work == Approx(fine.work).epsilon(0.02));
+    CHECK(coarse.elastic == Approx(fine.elastic).epsilon(0.02));
+    CHECK(coarse.kinetic < 0.2 * coarse.elastic);
+}
+
+TEST_CASE("steps that energy chooses see what a tool or a load sends into another body") {
+    Material smooth = kSpringy;
+    smooth.young_modulus = 1e5;
+    smooth.friction = 0;
+    const Aggregate block = make_block(2, 2, 2, 0.01, smooth);
+    const auto passed = [&](int frames, bool by_tool) {
+        std::vector<Aggregate> body(3, block);
+        place(body[1], {Quat::Identity(), Vec3(0.04, 0.002, 0.001)});
+        place(body[2], {Quat::Identity(), Vec3(0.08, 0.001, 0.002)});
+        Apparatus apparatus;
+        if (by_tool) {
+            apparatus.tool.push_back({"ram", BoxShape{Vec3(0.02, 0.06, 0.06), 0}, 0});
+        } else {
+            apparatus.load.push_back(push_below(block, 5));
+        }
+        const auto drive = [&](double time) {
+            Drive d = still(time);
+            if (by_tool) d.world_from_tool = {{Quat::Identity(), Vec3(time - 0.03, 0, 0)}};
+            if (!by_tool) d.load_strength = {time / 0.05};
+            return d;
+        };
+        Simulation simulation({&body[0], &body[1], &body[2]}, apparatus,
+                              motion_settings(Solver::energy_stepped));
+        const double frame = (by_tool ? 0.045 : 0.055) / frames;
+        for (int n = 0; n < frames; ++n)
+            simulation.advance(drive(frame * n), drive(frame * (n + 1)));
+        return body[1].mean_velocity().x() + body[2].mean_velocity().x();
+    };
+    for (const bool by_tool : {true, false}) {
+        const double one = passed(1, by_tool), many = passed(20, by_tool);
+        CHECK(many > 0.5);
+        CHECK(one == Approx(many).epsilon(0.03));
+    }
+}
+
 TEST_CASE("every integrator gives the same bytes with one thread and two") {
     for (const Solver solver :
          {Solver::explicit_steps, Solver::euler, Solver::energy_stepped, Solver::implicit_steps}) {
