@@ -13,15 +13,14 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;
 
-Vec3 centre_of(const Aggregate& matter, const std::vector<int>& points,
-               const std::vector<Vec3>& position) {
+Vec3 centre_of(const std::vector<double>& area, const std::vector<Vec3>& position) {
     Vec3 sum = Vec3::Zero();
-    double area = 0;
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        sum += matter.surface.area(points[n]) * position[n];
-        area += matter.surface.area(points[n]);
+    double all = 0;
+    for (std::size_t n = 0; n < area.size(); ++n) {
+        sum += area[n] * position[n];
+        all += area[n];
     }
-    return area > 0 ? Vec3(sum / area) : sum;
+    return all > 0 ? Vec3(sum / all) : sum;
 }
 
 std::vector<Vec3> positions_of(const Aggregate& matter, const std::vector<int>& points) {
@@ -31,11 +30,11 @@ std::vector<Vec3> positions_of(const Aggregate& matter, const std::vector<int>& 
     return position;
 }
 
-PushSum sum_of(const Aggregate& matter, const std::vector<int>& points,
-               const std::vector<Vec3>& position, const std::vector<Vec3>& force) {
+PushSum sum_of(const std::vector<double>& area, const std::vector<Vec3>& position,
+               const std::vector<Vec3>& force) {
     PushSum sum;
-    sum.centre = centre_of(matter, points, position);
-    for (std::size_t n = 0; n < points.size(); ++n) {
+    sum.centre = centre_of(area, position);
+    for (std::size_t n = 0; n < area.size(); ++n) {
         sum.force += force[n];
         sum.torque += (position[n] - sum.centre).cross(force[n]);
     }
@@ -44,20 +43,20 @@ PushSum sum_of(const Aggregate& matter, const std::vector<int>& points,
 
 // NOTE: the points sample a closed surface, and their area vectors sum to nothing only nearly. What
 // is left would drive a free body for ever, so it is taken off: evenly by area, and by a turn.
-void balance(const Aggregate& matter, const std::vector<int>& points, std::vector<Vec3>& force) {
-    const std::vector<Vec3> position = positions_of(matter, points);
-    const PushSum sum = sum_of(matter, points, position, force);
-    double area = 0;
+void balance(const std::vector<double>& area, const std::vector<Vec3>& position,
+             std::vector<Vec3>& force) {
+    const PushSum sum = sum_of(area, position, force);
+    double all = 0;
     Mat3 inertia = Mat3::Zero();
-    for (std::size_t n = 0; n < points.size(); ++n) {
+    for (std::size_t n = 0; n < area.size(); ++n) {
         const Vec3 r = position[n] - sum.centre;
-        const double a = matter.surface.area(points[n]);
-        area += a;
-        inertia += a * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+        all += area[n];
+        inertia += area[n] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
     }
-    const Vec3 push = sum.force / area, turn = inertia.ldlt().solve(sum.torque);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        force[n] -= matter.surface.area(points[n]) * (push + turn.cross(position[n] - sum.centre));
+    if (!(all > 0)) return;
+    const Vec3 push = sum.force / all, turn = inertia.ldlt().solve(sum.torque);
+    for (std::size_t n = 0; n < area.size(); ++n) {
+        force[n] -= area[n] * (push + turn.cross(position[n] - sum.centre));
     }
 }
 
@@ -78,6 +77,34 @@ Vec3 mass_moment(const Aggregate& matter) {
 LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings, int body)
     : apparatus_(&apparatus), body_(body), gravity_(settings.gravity) {}
 
+void LoadSet::connections_changed(const Aggregate& matter) {
+    parted_ = nullptr;
+    const bool presses =
+        std::any_of(apparatus_->load.begin(), apparatus_->load.end(),
+                    [&](const Load& load) { return pushes(load) && load.force.empty(); });
+    if (!presses) return;
+    std::vector<char> parted(matter.surface.size());
+    parallel_for((parted.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(parted.size(), (chunk + 1) * kChunk);
+        for (std::size_t p = chunk * kChunk; p < end; ++p) {
+            parted[p] = is_parted(matter, p);
+        }
+    });
+    if (std::find(parted.begin(), parted.end(), 1) == parted.end()) return;
+    parted_ = std::make_shared<const std::vector<char>>(std::move(parted));
+}
+
+std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter) const {
+    std::vector<double> area;
+    area.reserve(load.point.size());
+    const bool presses = load.force.empty();
+    for (int p : load.point) {
+        const bool is_off = presses && parted_ != nullptr && (*parted_)[p];
+        area.push_back(is_off ? 0 : matter.surface.area(p));
+    }
+    return area;
+}
+
 std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
                                      const Aggregate& matter) const {
     std::vector<Vec3> force(load.point.size());
@@ -90,13 +117,16 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
         std::fill(force.begin(), force.end(), Vec3::Zero());
         return force;
     }
+    const std::vector<double> area = areas_of(load, matter);
     parallel_for((force.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
         const std::size_t end = std::min(force.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            force[n] = pressure_force(pressure, surface_area_vector(matter, load.point[n]));
+            force[n] = area[n] > 0
+                           ? pressure_force(pressure, surface_area_vector(matter, load.point[n]))
+                           : Vec3(Vec3::Zero());
         }
     });
-    if (load.closed) balance(matter, load.point, force);
+    if (load.closed) balance(area, positions_of(matter, load.point), force);
     return force;
 }
 
@@ -119,7 +149,7 @@ double LoadSet::size(const Aggregate& matter, const Drive& now) const {
         double sum = 0;
         for (const Vec3& force : load.force) sum += force.norm();
         if (load.force.empty()) {
-            for (int p : load.point) sum += std::abs(load.pressure) * matter.surface.area(p);
+            for (double area : areas_of(load, matter)) sum += std::abs(load.pressure) * area;
         }
         largest = std::max(largest, std::abs(now.load_strength[l]) * sum);
     }
@@ -166,6 +196,7 @@ LoadSet::Settled LoadSet::settled(const Aggregate& matter, const Drive& now) con
 
 void LoadSet::start(const Aggregate& matter, const Drive& now) {
     if (started_ || count() == 0) return;
+    connections_changed(matter);
     last_ = settled(matter, now);
     started_ = true;
 }
@@ -193,7 +224,7 @@ std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) co
             sums.emplace_back();
             continue;
         }
-        sums.push_back(sum_of(matter, load.point, positions_of(matter, load.point),
+        sums.push_back(sum_of(areas_of(load, matter), positions_of(matter, load.point),
                               forces_of(load, now.load_strength[l], matter)));
     }
     if (has_gravity()) {

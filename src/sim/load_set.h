@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What pushes the work-piece without being a body: the apparatus' loads, and gravity; and the work
-// that they do. Forces on the surface keep their direction; a pressure follows the surface.
+// that they do. Forces on the surface keep their direction; a pressure follows the surface, but for
+// that of cells no longer whole, cut or broken, whose corners belong to different sides: it presses
+// on them no more, nor on new surface.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -37,6 +40,9 @@ class LoadSet {
     // Whether any of them, or gravity, has changed.
     bool is_stirred(const Drive& since, const Drive& now) const;
 
+    // A blade or a crack has changed which cells are whole.
+    void connections_changed(const Aggregate& matter);
+
     // The stage begins here; only the first call counts.
     void start(const Aggregate& matter, const Drive& now);
     // The state is settled. Adds to `work` [J], by load and then gravity, what each did on the way
@@ -50,6 +56,9 @@ class LoadSet {
   private:
     // On each point of a load [N].
     std::vector<Vec3> forces_of(const Load& load, double strength, const Aggregate& matter) const;
+
+    // Of each of a load's points that it acts on; 0: it does not [m2].
+    std::vector<double> areas_of(const Load& load, const Aggregate& matter) const;
 
     bool pushes(const Load& load) const { return load.body == body_; }
 
@@ -65,6 +74,7 @@ class LoadSet {
     Settled settled(const Aggregate& matter, const Drive& now) const;
 
     bool started_ = false;
+    std::shared_ptr<const std::vector<char>> parted_;  // of each point of the surface; null: none
     Settled last_;
 };
 

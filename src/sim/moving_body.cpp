@@ -146,6 +146,8 @@ void MovingBody::find_candidates(const Drive& now) {
 }
 
 void MovingBody::surface_changed() {
+    pushes_.connections_changed(matter_);
+    drag_.connections_changed(matter_);
     if (!touches_) return;
     contacts_.connections_changed(matter_);
     gone_ = std::numeric_limits<double>::infinity();
@@ -395,6 +397,7 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
     }
     contacts_ = state.contacts[0];
     pushes_ = state.pushes[0];
+    if (breaks_) drag_.connections_changed(matter_);
     if (saves_branches_) {
         damping_ = state.damping[0];
         branch_energy_ = -1;

@@ -85,6 +85,7 @@ void QuasistaticSolver::connections_changed(std::size_t) {
 void QuasistaticSolver::connections_renewed() {
     lattice_.connections_changed(matter_);
     contacts_.connections_changed(matter_);
+    pushes_.connections_changed(matter_);
     self_.connections_changed();
     free_.connections_changed();
     find_bounds();

@@ -32,8 +32,13 @@ SurfaceDrag::SurfaceDrag(const Aggregate& matter, const SimSettings& settings, d
         patch.area = vec4(surface.area(p) / (a * a) * surface.normal(p));
         patch.weight = by.weight;
     }
+    connections_changed(matter);
     push_.resize(cell_.size());
     chunk_.resize((cell_.size() + kChunk - 1) / kChunk);
+}
+
+void SurfaceDrag::connections_changed(const Aggregate& matter) {
+    for (Cell& cell : cell_) cell.parted = is_parted(matter, cell.first);
 }
 
 struct SurfaceDrag::Kernel {
@@ -60,6 +65,10 @@ struct SurfaceDrag::Kernel {
         const Vec3Array &place = matter.particle_position, &speed = matter.particle_velocity;
         for (std::size_t n = chunk * kChunk; n < stop; ++n) {
             const Cell& cell = drag.cell_[n];
+            if (cell.parted) {
+                drag.push_[n] = {};
+                continue;
+            }
             const auto of = [&](const Vec3Array& all, int c) __attribute__((always_inline)) {
                 const ParticleId p = cell.corner[c];
                 return Vec4{all.x[p], all.y[p], all.z[p], 0};

@@ -22,6 +22,9 @@ class SurfaceDrag {
 
     bool acts() const { return ambient_.density * ambient_.coefficient > 0 || facing_.drag > 0; }
 
+    // A blade or a crack has changed which cells are whole: the medium flows past the others only.
+    void connections_changed(const Aggregate& matter);
+
     // Adds the forces; returns the power that they take [W].
     double add_forces(const Aggregate& matter, Vec3Array& force);
     bool is_held() const { return held_; }  // whether any drag ever was
@@ -35,6 +38,7 @@ class SurfaceDrag {
     struct Cell {
         std::array<ParticleId, 8> corner;
         std::size_t first, end;  // patches
+        bool parted = false;
     };
     struct Chunk {
         double power = 0;

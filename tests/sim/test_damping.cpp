@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "sim/advance.h"
+#include "sim/surface_drag.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/sim/motion.h"
@@ -182,6 +183,30 @@ Aggregate plate(double tilt) {
 }
 
 }  // namespace
+
+TEST_CASE("drag does not grow as the gap of a crack or a cut opens") {
+    Aggregate m = make_block(2, 3, 2, 0.1, kSpringy);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_velocity.set(p, Vec3(1, 0.5, 0));
+    }
+    SimSettings settings = motion_settings();
+    settings.medium_density = 1;
+    settings.directional_drag = 1;
+    SurfaceDrag drag(m, settings, 1e-4);
+    break_layer(m, 1);
+    drag.connections_changed(m);
+    const auto power = [&] {
+        Vec3Array force;
+        force.x = force.y = force.z = std::vector<double>(m.particle_count(), 0.0);
+        return drag.add_forces(m, force);
+    };
+    const double before = power();
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        if (m.particle_reference.at(p).y() > 0) m.particle_position.y[p] += 0.5;
+    }
+    CHECK(before > 0);
+    CHECK(power() == Approx(before));
+}
 
 TEST_CASE("a plate sinks flat as fast as its weight over drag and area, and slower than on edge") {
     constexpr double kDrag = 5000, kSide = 0.4, kHeight = 0.05;

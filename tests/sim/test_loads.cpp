@@ -5,6 +5,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/motion.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -111,6 +112,35 @@ TEST_CASE("pressure all round a body neither pushes nor turns it, however it is 
         // What had to be taken off for that is little.
         apparatus.load[0].closed = false;
         CHECK(LoadSet(apparatus, {}).sums(matter, now).at(0).force.norm() < 0.02 * size);
+    }
+}
+
+TEST_CASE("pressure does not grow as the gap of a crack or a cut opens") {
+    for (const bool closed : {false, true}) {
+        Aggregate m = make_block(2, 3, 2, 0.1, kSoft);
+        Apparatus apparatus;
+        apparatus.load = {pressure_on(m, 100)};
+        apparatus.load[0].closed = closed;
+        LoadSet loads(apparatus, {});
+        const Drive now = drive_of(apparatus, 0, 1);
+        const auto force = [&] {
+            Vec3Array f;
+            f.x = f.y = f.z = std::vector<double>(m.particle_count(), 0.0);
+            loads.add_forces(m, now, f);
+            return f;
+        };
+        const double whole = loads.size(m, now);
+        break_layer(m, 1);
+        loads.connections_changed(m);
+        CHECK(loads.size(m, now) == Approx(whole * 24 / 32));  // of the faces of cells
+        const Vec3Array before = force();
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            if (m.particle_reference.at(p).y() > 0) m.particle_position.y[p] += 0.5;
+        }
+        const Vec3Array after = force();
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            CHECK((after.at(p) - before.at(p)).norm() < 1e-12);
+        }
     }
 }
 
