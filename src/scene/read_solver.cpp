@@ -38,6 +38,32 @@ void refuse(TableReader& table, const BodySpec& body, Solver solver) {
     }
 }
 
+// The stage whose blade has cut the matter of the next, or will; null: none.
+const StageSpec* cut_in(const SceneSpec& scene) {
+    for (auto stage = scene.stage.rbegin(); stage != scene.stage.rend(); ++stage) {
+        if (!stage->machine.blade.empty()) return &*stage;
+        if (stage->remold) break;
+    }
+    return nullptr;
+}
+
+void refuse_cut(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
+                bool remolds) {
+    if (machine != nullptr && !machine->blade.empty()) {
+        table.mistake(
+            "solver",
+            "solver = \"implicit\" does not follow cuts, and the machine has a blade: use "
+            "solver = \"explicit\"");
+        return;
+    }
+    const StageSpec* cut = remolds ? nullptr : cut_in(scene);
+    if (cut == nullptr) return;
+    table.mistake("solver",
+                  fmt::format("solver = \"implicit\" cannot move matter that is cut, as stage "
+                              "\"{}\" leaves it: use solver = \"explicit\", or remold = true",
+                              cut->name));
+}
+
 // "x", "-x", "y", ...; y for "auto".
 Vec3 upward(const std::string& up) {
     if (up == "auto") return Vec3::UnitY();
@@ -48,7 +74,7 @@ Vec3 upward(const std::string& up) {
 }  // namespace
 
 void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
-                 const std::string& up, SimSettings& sim) {
+                 const std::string& up, bool remolds, SimSettings& sim) {
     const bool machine_moves = machine != nullptr && machine->moves;
     const bool several = scene.body.size() > 1;
     const bool starts = std::any_of(scene.body.begin(), scene.body.end(),
@@ -67,6 +93,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
                                   several ? "one body" : "no velocity and no spin"));
     }
     for (const BodySpec& body : scene.body) refuse(table, body, sim.solver);
+    if (sim.solver == Solver::implicit_steps) refuse_cut(table, scene, machine, remolds);
     if (sim.solver == Solver::implicit_steps && several) {
         table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
     }

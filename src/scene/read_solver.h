@@ -11,7 +11,8 @@ namespace swage {
 // `machine`: null where there is none. With one for bodies in motion the solver left out is
 // explicit, as it is for several bodies and for one that has a speed at the start; else
 // quasi-static. `up`: against which gravity points that is a single number, as a stage has it.
+// `remolds`: the stage's matter is molded anew.
 void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
-                 const std::string& up, SimSettings& sim);
+                 const std::string& up, bool remolds, SimSettings& sim);
 
 }  // namespace swage

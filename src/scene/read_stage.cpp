@@ -274,7 +274,8 @@ StageSpec StageReader::read(const Node& node) {
     const bool has_machine = loaded != nullptr && loaded->machine;
     if (has_machine) fall_back(table, *loaded->machine, stage);
     read_solver(table, scene_, has_machine ? &*loaded->machine : nullptr,
-                has_machine && loaded->machine->upright ? stage.up : "auto", stage.sim);
+                has_machine && loaded->machine->upright ? stage.up : "auto", stage.remold,
+                stage.sim);
     if (has_machine) {
         stage.machine = *loaded->machine;
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));

@@ -170,6 +170,10 @@ TEST_CASE("implicit steps refuse what they cannot move") {
     CHECK(ImplicitStep::cannot(m) != nullptr);
     CHECK(ImplicitStep::cannot(make_block(2, 1, 1, 0.1, kSpringy)) == nullptr);
     CHECK_THROWS_AS(Simulation(m, kNothing, motion_settings(Solver::implicit_steps)), Error);
+    Aggregate cut = make_block(3, 3, 1, 0.1, kSpringy);
+    break_layer(cut, 1);
+    REQUIRE(ImplicitStep::cannot(cut) != nullptr);
+    CHECK(std::string(ImplicitStep::cannot(cut)) == "matter that is cut has no exact tangent");
 }
 
 TEST_CASE("steps that energy chooses never gain any, lose none either, and few are taken back") {
