@@ -86,10 +86,14 @@ double ContactSet::pair_stiffness(const Pair& pair) const {
 void ContactSet::limit_stiffness(const Aggregate& matter, double step) {
     limit_step_ = last_step_ = step;
     grips_.limit_stiffness(matter, step);
-    if (touch_ == nullptr) return;
+    if (touch_ != nullptr) find_limits(matter);
+}
+
+void ContactSet::find_limits(const Aggregate& matter) {
     std::vector<double> stiffness;
     for (std::size_t p = 0; p < points().size(); ++p) stiffness.push_back(point_stiffness(p, 0));
-    stiffness_limit_ = stiffest_of_points(matter, points(), stiffness, kTouchShare / (step * step));
+    stiffness_limit_ =
+        stiffest_of_points(matter, points(), stiffness, kTouchShare / (limit_step_ * limit_step_));
 }
 
 void ContactSet::connections_changed(const Aggregate& matter) {
@@ -100,7 +104,7 @@ void ContactSet::connections_changed(const Aggregate& matter) {
     for (Pair& pair : pair_) pair.gone = pair.gone || !touch_->meets(pair.point);
     if (touch_->size() == before) return;
     point_modulus_ = surface_moduli(matter, points(), settings_.solver);
-    if (!stiffness_limit_.empty()) limit_stiffness(matter, limit_step_);
+    if (!stiffness_limit_.empty()) find_limits(matter);
     for (std::size_t p = start_position_.size(); p < points().size(); ++p) {
         start_position_.push_back(points().position(std::size_t(p), matter.particle_position));
     }

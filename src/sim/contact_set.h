@@ -157,6 +157,7 @@ class ContactSet {
     std::vector<Meeting> find_meetings(const Aggregate& matter, const Drive& now, bool anew);
     void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
               Vec3Array& force);
+    void find_limits(const Aggregate& matter);
     double point_stiffness(std::size_t point, double tool_says) const;
     double pair_stiffness(const Pair& pair) const;
     const SurfacePoints& points() const { return touch_->points(); }
