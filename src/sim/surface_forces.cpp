@@ -11,7 +11,7 @@ std::vector<double> stiffest_of_points(const Aggregate& matter, const SurfacePoi
     for (std::size_t p = 0; p < points.size(); ++p) {
         const SurfacePoints::Carriers by = points.carriers(p);
         for (int c = 0; c < 8; ++c) {
-            carried[by.corner[c]] += std::sqrt(stiffness[p]) * by.weight[c];
+            carried[by.corner[c]] += std::sqrt(stiffness[p]) * std::abs(by.weight[c]);
         }
     }
     std::vector<double> stiffest;
@@ -19,7 +19,8 @@ std::vector<double> stiffest_of_points(const Aggregate& matter, const SurfacePoi
         const SurfacePoints::Carriers by = points.carriers(p);
         double row = 0;  // over the root of the point's own stiffness
         for (int c = 0; c < 8; ++c) {
-            row += by.weight[c] * carried[by.corner[c]] / matter.particle_mass[by.corner[c]];
+            row +=
+                std::abs(by.weight[c]) * carried[by.corner[c]] / matter.particle_mass[by.corner[c]];
         }
         stiffest.push_back(row > 0 ? std::sqrt(stiffness[p]) * most / row
                                    : std::numeric_limits<double>::infinity());

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tools, and blocks that meet, in explicit steps: restitution, static and kinetic friction,
 // stickiness, and their books.
+#include <Eigen/Eigenvalues>
+
 #include "base/parallel.h"
 #include "sim/moving_body.h"
+#include "sim/surface_forces.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
 
@@ -413,4 +416,55 @@ TEST_CASE("a body that is taken back again and again does not lose sight of its 
     double push = 0;
     for (double y : body.force().y) push += y;
     CHECK(push > 1);  // [N]; what is left of inner forces is round-off
+}
+
+TEST_CASE("points together never make a layer between two cracks swing faster than asked") {
+    Aggregate block = make_block(3, 3, 2, 0.1, kSpringy);
+    break_layer(block, 0);
+    break_layer(block, 2);
+    const TouchPoints touch(block);  // before both sides of the layer, which carries them
+    const SurfacePoints& points = touch.points();
+    REQUIRE(points.size() > touch.own());
+    const double stiffness = 1e5, most = 1e4;
+    const std::vector<double> stiffest =
+        stiffest_of_points(block, points, std::vector<double>(points.size(), stiffness), most);
+    Eigen::MatrixXd shape =
+        Eigen::MatrixXd::Zero(Eigen::Index(points.size()), Eigen::Index(block.particle_count()));
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const SurfacePoints::Carriers by = points.carriers(p);
+        for (int c = 0; c < 8; ++c) {
+            shape(Eigen::Index(p), by.corner[c]) +=
+                by.weight[c] * std::sqrt(stiffest[p] / block.particle_mass[by.corner[c]]);
+        }
+    }
+    const double swing = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(shape * shape.transpose(),
+                                                                        Eigen::EigenvaluesOnly)
+                             .eigenvalues()
+                             .maxCoeff();
+    CHECK(swing < most * (1 + 1e-9));
+    CHECK(swing > 0.1 * most);
+}
+
+TEST_CASE("a crack elsewhere changes nothing of what a step's contacts do") {
+    Aggregate block = make_block(3, 6, 3, 0.1, kSpringy);
+    for (std::size_t p = 0; p < block.particle_count(); ++p) {
+        block.particle_position.y[p] += 0.299;
+        block.particle_velocity.set(p, Vec3(0.3, -0.5, 0));
+    }
+    const Apparatus apparatus = floor_with(0.5);
+    ContactSet contacts(block, apparatus, motion_settings());
+    contacts.limit_stiffness(block, 1e-3);
+    contacts.find_candidates(block, floor_at(0));
+    contacts.begin_step(floor_at(0));
+    const auto push = [&](double step) {
+        Vec3Array force;
+        force.x = force.y = force.z = std::vector<double>(block.particle_count(), 0.0);
+        contacts.add_motion_forces(block, floor_at(1e-4), step, Vec3::Zero(), force);
+        return force.y;
+    };
+    const std::vector<double> whole = push(1e-4);
+    CHECK(push(0) == whole);
+    break_layer(block, 4);
+    contacts.connections_changed(block);
+    CHECK(push(0) == whole);
 }
