@@ -196,7 +196,7 @@ double ExplicitSolver::move(std::size_t b, const Drive& now, double dt, long n,
 
 bool ExplicitSolver::can_be_rescued() const {
     return settings_.solver == Solver::explicit_steps && rescued_blocks_ == 0 &&
-           body_.size() == 1 && !contact_.acts() &&
+           body_.size() == 1 && !contact_.acts() && !body_[0].drags() &&
            ImplicitStep::cannot(body_[0].matter()) == nullptr && body_[0].cells_alone() != nullptr;
 }
 

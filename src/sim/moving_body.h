@@ -113,6 +113,7 @@ class MovingBody {
     }
     const LoadSet& pushes() const { return pushes_; }
     const std::vector<LoadSum>& load() const { return load_; }  // by tool, then grip
+    bool drags() const { return drag_.acts(); }  // a medium does, which implicit steps have none of
     bool drag_is_held() const { return drag_.is_held(); }
 
     // All that a step changes.

@@ -307,6 +307,7 @@ TEST_CASE("extremes: explicit steps that nothing helps pass on to implicit ones"
         start += 0.5 * m.particle_mass[p] * v.squaredNorm();
     }
     SimSettings settings = motion_settings();
+    const Vec3Array moves = m.particle_velocity;
     settings.step_safety = 3;
     settings.retry_limit = 0;
     const Apparatus nothing;
@@ -318,6 +319,12 @@ TEST_CASE("extremes: explicit steps that nothing helps pass on to implicit ones"
         moving += 0.5 * m.particle_mass[p] * m.particle_velocity.at(p).squaredNorm();
     }
     CHECK(moving < 1.05 * start);
+    // Which know no drag.
+    Aggregate wet = block(0);
+    wet.particle_velocity = moves;
+    settings.medium_density = 1000;
+    Simulation hopeless(wet, nothing, settings);
+    CHECK_THROWS_AS(hopeless.advance(still(0), still(2 * crossing())), Error);
 }
 
 TEST_CASE("extremes: ten thousand contacts at once") {
