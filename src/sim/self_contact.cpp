@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/self_contact.h"
 
+#include "sim/vector_sums.h"
+
 namespace swage {
 
 namespace {
@@ -24,7 +26,10 @@ void SelfContact::take_back() {
 }
 
 // Forces were last found anywhere: a try of another way, a step back.
-void SelfContact::find() { add_forces(unused_); }
+void SelfContact::find() {
+    set_zero(unused_.size(), unused_);
+    add_forces(unused_);
+}
 
 bool SelfContact::presses() {
     if (contact_ == nullptr) return false;
