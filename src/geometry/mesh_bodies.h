@@ -14,9 +14,9 @@ namespace swage {
 std::vector<int> shells_of(const TriMesh& mesh);
 
 // For closed, oriented shells: turns bodies outward (with all that is inside them, so that a cavity
-// stays one), leaves out a body inside another of the same sense, unites bodies that cross. Adds a
-// sentence to `account` for each kind of change. Where that cannot be done, the mesh stays as it is
-// and the reason is returned.
+// stays one), leaves out a body inside another of the same sense, unites bodies that cross (each
+// less its cavities) and cavities that do. Adds a sentence to `account` for each kind of change.
+// Where that cannot be done, the mesh stays as it is and the reason is returned.
 std::optional<std::string> settle_bodies(TriMesh& mesh, std::vector<std::string>& account);
 
 }  // namespace swage

@@ -69,6 +69,9 @@ class Repairer {
             orient();
             if (count_edges(mesh_).odd > 0) close_holes();
         }
+        if (mesh_.triangle.empty())
+            fail(ExitCode::mesh,
+                 "no volume can be made of this mesh: all of it is as thin as a gap");
         if (count_edges(mesh_).unbalanced > 0) {
             wrap("its surface cannot be oriented, or more than two triangles meet at an edge");
         } else if (const auto reason = settle_bodies(mesh_, account_)) {

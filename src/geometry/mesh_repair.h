@@ -20,8 +20,9 @@ struct Repair {
 // united. What that cannot mend is wrapped anew, without its attributes. Attributes stay with every
 // triangle that stays. Throws Error(mesh) when no volume can be made of it, such as for an open
 // sheet.
-// Of a mesh that already bounds a volume only the bodies are put right; if they are, or cannot be,
-// it comes back as it is, cavities included (closed surfaces inside another that face inwards).
+// Of a mesh that already bounds a volume only surfaces given more than once and the bodies are put
+// right; if they are, or cannot be, it comes back as it is, cavities included (closed surfaces
+// inside another that face inwards).
 Repair repair_mesh(const TriMesh& mesh);
 
 }  // namespace swage

@@ -446,6 +446,10 @@ TEST_CASE("an open sheet is refused with what to do; beside a body it is left ou
     }
     CHECK(refusal(double_sided).find("thickness") != std::string::npos);
     CHECK(!refusal(TriMesh{}).empty());
+    TriMesh needle;  // its ends are within the widest gap
+    needle.position = {{0, 0, 0}, {1, 0, 0}, {1, 1e-5, 0}};
+    needle.triangle = {{0, 1, 2}};
+    CHECK(refusal(needle).find("no volume") != std::string::npos);
 }
 
 TEST_CASE("what cannot be oriented is wrapped as a last resort, and its losses named") {
