@@ -18,7 +18,8 @@ void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 
 // Binary little-endian PLY in double precision: polygons, colours (8 bit sRGB), texture
 // coordinates at vertices (s, t) when no seam forbids it, else at face corners (texcoord, an empty
-// list where a face has none), names of textures and, where there are several, texnumber.
+// list where a face has none), names of textures and, where not all faces have the one there is,
+// texnumber (-1: none).
 void write_ply(const std::filesystem::path& file, const TriMesh& mesh);
 
 // A file of these bytes in the folder, under the wanted name or, where something else has that,
