@@ -62,9 +62,9 @@ Standing standing_at(const BoxShape& plate, const Pose& plate_from_world, const 
     Standing standing;
     const Vec3 centre = plate_from_world * middle;
     if (!is_over(centre)) {
-        standing.astray = "past the edge of";
+        standing.astray = "with its middle past the edge of";
     } else if (side * centre[thin] < -half) {
-        standing.astray = "on the far side of";
+        standing.astray = "with its middle on the far side of";
     }
     for (const Vec3& point : points) {
         const Vec3 at = plate_from_world * point;

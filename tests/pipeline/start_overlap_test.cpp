@@ -55,6 +55,8 @@ TEST_CASE("a body beside the work-piece that starts in, beyond or under the floo
     other_cells = 1;
     CHECK(told({0, -0.35, 0}).find("deep in the tool floor") != std::string::npos);
     other_cells = 4;
-    CHECK(told({0, -0.9, 0}).find("starts on the far side of the tool floor") != std::string::npos);
-    CHECK(told({0, 0.1, 2.1}).find("starts past the edge of the tool floor") != std::string::npos);
+    CHECK(told({0, -0.9, 0}).find("starts with its middle on the far side of the tool floor") !=
+          std::string::npos);
+    CHECK(told({0, 0.1, 2.1}).find("starts with its middle past the edge of the tool floor") !=
+          std::string::npos);
 }
