@@ -18,7 +18,7 @@ constexpr double kTolerance = 1e-9;  // of all energy that was put in, that a st
 constexpr double kMistake = 1e-6;    // likewise, that it may lose where no book says so
 constexpr double kFinest = 1e-6;     // of the stable step; shorter ones may lose more
 constexpr double kWay = 0.3;         // spacings that the fastest particle, or tool, goes in a step
-constexpr double kDriven = 2;        // stable steps, while what acts on a body changes
+constexpr double kDriven = 0.5;      // stable steps, while what acts on a body changes
 constexpr double kShortest = 1e-9;   // of the stable step of explicit steps
 
 double acceleration_of(const MovingBody& body) {

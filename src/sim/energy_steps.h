@@ -12,7 +12,7 @@
 //
 // NOTE: what a drive does to a body that has not moved yet costs no energy: a grip's spring that is
 // drawn out over a step holds just the work that drew it, and a load moves nothing until the next
-// step. So while anything that acts on a body changes, no step is longer than a few stable ones,
+// step. So while anything that acts on a body changes, no step is longer than half a stable one,
 // nor takes what comes near on by more than a part of a spacing; the first is a stable one.
 //
 // Stability: for one undamped swing of angular frequency w the energy grows by (w dt)^4 / 4 of
