@@ -2,6 +2,7 @@
 #include "skin/divided_mesh.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "geometry/edges.h"
 #include "skin/split_attributes.h"
@@ -13,6 +14,9 @@ namespace {
 // Of the longest edge: those above are halved at once. A triangle's longest is halved before its
 // others then, as its halves' are no longer than it.
 constexpr double kNearLongest = 0.7;
+// A halved triangle's new edges are at most 0.87 of its longest: where the longest does not become
+// so much shorter, numbers have no places left for its middle.
+constexpr double kShorter = 0.9;
 
 using Middles = std::vector<Corners>;  // a triangle each: the new vertex on each side, or -1
 
@@ -46,21 +50,31 @@ void split_triangle(const TriMesh& mesh, int t, const Corners& middle,
     }
 }
 
-TriMesh halve_edges(const TriMesh& mesh, const std::vector<EdgeUse>& uses, double above) {
+double longest_edge(const TriMesh& mesh) {
+    double longest = 0;
+    for (const auto& [a, b, c] : mesh.triangle) {
+        const Vec3 &p = mesh.position[a], &q = mesh.position[b], &r = mesh.position[c];
+        longest = std::max({longest, (q - p).norm(), (r - q).norm(), (p - r).norm()});
+    }
+    return longest;
+}
+
+TriMesh halve_edges(const TriMesh& mesh, double above) {
     const int old = static_cast<int>(mesh.position.size());
     SurfaceSplit split;
     std::vector<Vec3> reference, position = mesh.position;
     Middles middle(mesh.triangle.size(), Corners{-1, -1, -1});
-    for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-        const auto [low, high] = std::pair(edge[0].low, edge[0].high);
-        const Vec3 &from = mesh.position[low], &to = mesh.position[high];
-        if ((to - from).norm() <= above) return;
-        const int at = old + static_cast<int>(split.cut.size());
-        split.cut.push_back({low, high, 0.5});
-        split.added.push_back({at, 0});
-        reference.push_back(0.5 * (from + to));
-        for (const EdgeUse& use : edge) middle[use.triangle][use.side] = at;
-    });
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
+                  [&](std::span<const EdgeUse> edge) {
+                      const auto [low, high] = std::pair(edge[0].low, edge[0].high);
+                      const Vec3 &from = mesh.position[low], &to = mesh.position[high];
+                      if ((to - from).norm() <= above) return;
+                      const int at = old + static_cast<int>(split.cut.size());
+                      split.cut.push_back({low, high, 0.5});
+                      split.added.push_back({at, 0});
+                      reference.push_back(0.5 * (from + to));
+                      for (const EdgeUse& use : edge) middle[use.triangle][use.side] = at;
+                  });
     position.insert(position.end(), reference.begin(), reference.end());
     for (std::size_t t = 0; t < middle.size(); ++t) {
         split_triangle(mesh, static_cast<int>(t), middle[t], position, split);
@@ -72,15 +86,13 @@ TriMesh halve_edges(const TriMesh& mesh, const std::vector<EdgeUse>& uses, doubl
 
 TriMesh divide_edges(const TriMesh& mesh, double longest) {
     TriMesh divided = mesh;
-    for (;;) {
-        const std::vector<EdgeUse> uses = edge_uses(divided.triangle, divided.position.size());
-        double most = 0;
-        for (const EdgeUse& use : uses) {
-            most = std::max(most, (divided.position[use.high] - divided.position[use.low]).norm());
-        }
-        if (!(most > longest)) return divided;
-        divided = halve_edges(divided, uses, std::max(longest, kNearLongest * most));
+    double before = std::numeric_limits<double>::infinity();
+    for (double most = longest_edge(divided); most > longest && most < kShorter * before;
+         most = longest_edge(divided)) {
+        divided = halve_edges(divided, std::max(longest, kNearLongest * most));
+        before = most;
     }
+    return divided;
 }
 
 }  // namespace swage

@@ -118,6 +118,14 @@ TEST_CASE("what a mesh carries goes on over the parts of its triangles") {
     }
 }
 
+TEST_CASE("edges so far from the origin that they have no middle are left") {
+    TriMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+    for (Vec3& p : mesh.position) p += Vec3::Constant(1e15);
+    const TriMesh divided = divide_edges(mesh, 1e-3);
+    CHECK(longest_edge(divided) < 1);
+    CHECK(divided.triangle.size() < 10'000);
+}
+
 TEST_CASE("a mesh of short edges is not touched, nor one of none") {
     const TriMesh ball = fixtures::sphere_mesh(1, 3);
     const TriMesh same = divide_edges(ball, longest_edge(ball));
