@@ -88,6 +88,15 @@ inline DampingBranches damping_branches(double ratio, double low, double high) {
     return branches;
 }
 
+// (1 - exp(-x)) / x for x >= 0. Not by expm1: its last bit is another from one C library to the
+// next.
+inline double mean_decay(double x) {
+    if (x > 0.5) return (1 - std::exp(-x)) / x;
+    double sum = 0;
+    for (int n = 16; n > 0; --n) sum = 1 - x * sum / (n + 1);
+    return sum;
+}
+
 // One branch over a step, in shares of the connection's stiffness and length l: m = q / (k l), with
 // the strain v step / l that the step added. Exact for a steady rate.
 struct DampingStep {
@@ -95,8 +104,7 @@ struct DampingStep {
 };
 inline DampingStep damping_step(const DampingBranches& branches, int j, double step) {
     const double share = step / branches.time[j];
-    const double grown = share > 0 ? -std::expm1(-share) / share : 1;
-    return {std::exp(-share), branches.share[j] * grown};
+    return {std::exp(-share), branches.share[j] * mean_decay(share)};
 }
 
 }  // namespace swage

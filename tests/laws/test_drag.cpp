@@ -92,3 +92,12 @@ TEST_CASE("a branch that is stepped loses and stores what its differential equat
         CHECK(m == Approx(branches.share[j] * strain / 1.7 * (1 - std::exp(-1.7))));
     }
 }
+
+TEST_CASE("the mean of a decay is what expm1 gives, to round-off, wherever it is taken") {
+    CHECK(mean_decay(0) == 1);
+    double worst = 0;
+    for (double x = 1e-14; x < 100; x *= 1.07) {
+        worst = std::max(worst, std::abs(mean_decay(x) * x / -std::expm1(-x) - 1));
+    }
+    CHECK(worst < 1e-15);
+}
