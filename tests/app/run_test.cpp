@@ -426,17 +426,27 @@ TEST_CASE("a run that failed before its first frame does not keep the mended one
     CHECK(go("3 cm") == 8);
 }
 
+namespace {
+
+// Runs a scene with a bar of 10 cm, bar.obj, into run/.
+Outcome run_with_bar(const fs::path& folder, const std::string& text) {
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, folder);
+    put_text(folder / "scene.toml", text);
+    return run_swage({"run", (folder / "scene.toml").string(), "--out", (folder / "run").string(),
+                      "--no-render"});
+}
+
+}  // namespace
+
 TEST_CASE("what comes in several legs of a frame is told of that frame once") {
     const Scratch scratch;
-    const fs::path scene = scratch.path() / "drag.toml", run = scratch.path() / "run";
-    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
-    put_text(scene,
-             "[mesh]\nfile = \"bar.obj\"\nvelocity = [\"10 m/s\", 0, 0]\n[material]\n"
-             "name = \"rubber\"\n[mold]\nacross = 2\n[[stage]]\nmachine = \"floor\"\n"
-             "drop = \"1 m\"\nmedium_density = 1e9\ngravity = \"9.81 m/s2\"\n"
-             "gravity_strength = \"cos(2*pi*4*t)\"\nframes = 4\nduration = \"0.01 s\"\n");
+    const fs::path run = scratch.path() / "run";
     const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+        run_with_bar(scratch.path(),
+                     "[mesh]\nfile = \"bar.obj\"\nvelocity = [\"10 m/s\", 0, 0]\n[material]\n"
+                     "name = \"rubber\"\n[mold]\nacross = 2\n[[stage]]\nmachine = \"floor\"\n"
+                     "drop = \"1 m\"\nmedium_density = 1e9\ngravity = \"9.81 m/s2\"\n"
+                     "gravity_strength = \"cos(2*pi*4*t)\"\nframes = 4\nduration = \"0.01 s\"\n");
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     CHECK(Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("legs") > 8);
@@ -446,15 +456,13 @@ TEST_CASE("what comes in several legs of a frame is told of that frame once") {
 
 TEST_CASE("the first row of the curves is the start, with what is known of it") {
     const Scratch scratch;
-    const fs::path scene = scratch.path() / "thrown.toml", run = scratch.path() / "run";
-    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
-    put_text(scene,
-             "[mesh]\nfile = \"bar.obj\"\nvelocity = [\"2 m/s\", 0, 0]\n[material]\n"
-             "name = \"rubber\"\n[mold]\nacross = 2\n[[body]]\nname = \"other\"\n"
-             "file = \"bar.obj\"\nat = [0, \"8 cm\", 0]\n[[stage]]\nmachine = \"floor\"\n"
-             "drop = \"10 cm\"\nframes = 1\nduration = \"1 ms\"\ngravity = \"9.81 m/s2\"\n");
-    const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    const fs::path run = scratch.path() / "run";
+    const Outcome outcome = run_with_bar(
+        scratch.path(),
+        "[mesh]\nfile = \"bar.obj\"\nvelocity = [\"2 m/s\", 0, 0]\n[material]\n"
+        "name = \"rubber\"\n[mold]\nacross = 2\n[[body]]\nname = \"other\"\n"
+        "file = \"bar.obj\"\nat = [0, \"8 cm\", 0]\n[[stage]]\nmachine = \"floor\"\n"
+        "drop = \"10 cm\"\nframes = 1\nduration = \"1 ms\"\ngravity = \"9.81 m/s2\"\n");
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     std::istringstream table(bytes_of(run / "curves/1-floor.csv"));

@@ -4,11 +4,16 @@
 
 #include <unistd.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
+#include "geometry/mesh_read.h"
+#include "geometry/mesh_repair.h"
 #include "geometry/trimesh.h"
+#include "tests/catch.h"
 
 namespace swage::fixtures {
 
@@ -37,6 +42,27 @@ class Folder {
 inline std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The bytes of a number, as binary files hold it.
+template <typename T>
+std::string raw(T value) {
+    std::string bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    return bytes;
+}
+
+inline TriMesh read_quietly(const std::filesystem::path& file) {
+    std::vector<std::string> finding;
+    return read_mesh(file, {}, &finding);
+}
+
+// Whether the account of a repair says so; what it says is shown where a check fails.
+inline bool told(const Repair& repair, const std::string& what) {
+    for (const std::string& line : repair.account)
+        if (line.find(what) != std::string::npos) return true;
+    for (const std::string& line : repair.account) UNSCOPED_INFO(line);
+    return false;
 }
 
 // Unit cube of quads, outward, with a texture square on each face.

@@ -10,15 +10,9 @@
 using namespace swage;
 using fixtures::append;
 using fixtures::box_mesh;
+using fixtures::told;
 
 namespace {
-
-bool told(const Repair& repair, const std::string& what) {
-    for (const std::string& line : repair.account)
-        if (line.find(what) != std::string::npos) return true;
-    for (const std::string& line : repair.account) UNSCOPED_INFO(line);
-    return false;
-}
 
 // Boxes in a row, each 0.2 into the next and a little aside of it.
 TriMesh chain(const std::vector<int>& order) {

@@ -9,20 +9,10 @@
 
 using namespace swage;
 using fixtures::Folder;
+using fixtures::raw;
+using fixtures::read_quietly;
 
 namespace {
-
-template <typename T>
-std::string raw(T value) {
-    std::string bytes(sizeof value, '\0');
-    std::memcpy(bytes.data(), &value, sizeof value);
-    return bytes;
-}
-
-TriMesh read_quietly(const std::filesystem::path& file) {
-    std::vector<std::string> finding;
-    return read_mesh(file, {}, &finding);
-}
 
 std::uint32_t crc32(const std::string& bytes) {
     std::uint32_t crc = ~0u;

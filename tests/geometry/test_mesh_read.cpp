@@ -12,20 +12,10 @@
 
 using namespace swage;
 using fixtures::Folder;
+using fixtures::raw;
+using fixtures::read_quietly;
 
 namespace {
-
-template <typename T>
-std::string raw(T value) {
-    std::string bytes(sizeof value, '\0');
-    std::memcpy(bytes.data(), &value, sizeof value);
-    return bytes;
-}
-
-TriMesh read_quietly(const std::filesystem::path& file) {
-    std::vector<std::string> finding;
-    return read_mesh(file, {}, &finding);
-}
 
 // A unit cube as split triangles, for formats without shared vertices.
 std::string cube_stl_ascii() {

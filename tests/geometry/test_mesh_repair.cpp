@@ -15,15 +15,9 @@ using namespace swage;
 using fixtures::append;
 using fixtures::ball_mesh;
 using fixtures::box_mesh;
+using fixtures::told;
 
 namespace {
-
-bool told(const Repair& repair, const std::string& what) {
-    for (const std::string& line : repair.account)
-        if (line.find(what) != std::string::npos) return true;
-    for (const std::string& line : repair.account) UNSCOPED_INFO(line);
-    return false;
-}
 
 std::string refusal(const TriMesh& mesh) {
     try {

@@ -10,13 +10,9 @@
 
 using namespace swage;
 using fixtures::Folder;
+using fixtures::read_quietly;
 
 namespace {
-
-TriMesh read_quietly(const std::filesystem::path& file) {
-    std::vector<std::string> finding;
-    return read_mesh(file, {}, &finding);
-}
 
 void check_equal(const TriMesh& a, const TriMesh& b) {
     CHECK(a.position == b.position);

@@ -390,97 +390,6 @@ TEST_CASE("a mesh that cannot be read is refused at once, with the path as writt
     CHECK(mistakes("../bar.obj") == "");
 }
 
-TEST_CASE("mistakes in insets are found, and what insets do not go with is refused") {
-    const std::string box = "from = [0, 0, 0.5]\nto = [1, 1, 1]\n";
-    const auto inset = [](const std::string& lines) {
-        return with(&Parts::rest, "[render]\nfps = 30\n[[inset]]\n" + lines);
-    };
-    Parts springs = inset("name = \"lead\"\n" + box);
-    springs.material = "[material]\nname = \"rubber\"\nmechanics = \"springs\"\n";
-    Parts undamped = inset("name = \"lead\"\ndamping_ratio = 0\n" + box);
-    undamped.stage = "[[stage]]\nmachine = \"bend\"\nsolver = \"euler\"\n";
-    check_all({
-        {"nowhere", inset("name = \"lead\"\n"), {"the mesh of the inset; or a box by from"}},
-        {"empty",
-         inset("name = \"lead\"\nfrom = [0, 0, 0.5]\nto = [1, 1, 0.5]\n"),
-         {"15:6: the box is empty: from must be less than to"}},
-        {"outside",
-         inset("name = \"lead\"\nfrom = [0, 0, 0.5]\nto = [1, 1, 2]\n"),
-         {"15:6: to = [1, 1, 2]: each is a share of the work-piece's box, 0 to 1"}},
-        {"twice",
-         inset("name = \"lead\"\nfile = \"bar.obj\"\n" + box),
-         {"an inset is a mesh (file) or a box (from, to), not both"}},
-        {"of its own restitution",
-         inset("name = \"lead\"\nrestitution = 0.3\n" + box),
-         {"14:15: restitution is the whole body's: say it in [material]"}},
-        {"of its own friction",
-         inset("name = \"lead\"\nfriction = 0.3\n" + box),
-         {"14:12: friction is the whole body's: say it in [material]"}},
-        {"in springs", springs, {"springs know one material"}},
-        {"undamped",
-         undamped,
-         {"where nothing damps: give each [[inset]] a damping_ratio, or use solver"}},
-    });
-}
-
-TEST_CASE("a block is not molded anew, and no two meshes have one name") {
-    Parts block = stage("remold = true");
-    block.mold = "[mold]\nacross = 6\nkind = \"block\"\n";
-    Parts same;
-    same.stage =
-        "[[body]]\nname = \"b-c\"\nfile = \"bar.obj\"\nat = [0, 1, 0]\n"
-        "[[body]]\nname = \"c\"\nfile = \"bar.obj\"\nat = [0, 2, 0]\n"
-        "[[stage]]\nname = \"a\"\nmachine = \"floor\"\ngravity = 9.81\n"
-        "[[stage]]\nname = \"a-b\"\nmachine = \"floor\"\ngravity = 9.81\n";
-    check_all({
-        {"block", block, {"fills the box of the mesh, and stage \"1-bend\" would mold the box"}},
-        {"same",
-         same,
-         {"body \"b-c\" of stage \"a\" and body \"c\" of stage \"a-b\" would both be written "
-          "as a-b-c"}},
-    });
-}
-
-TEST_CASE("a solver that cannot move the scene's matter is refused where it is named") {
-    const auto solver = [](const std::string& material, const std::string& lines) {
-        Parts parts = with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\n" + lines);
-        parts.material = "[material]\nname = \"rubber\"\n" + material;
-        return parts;
-    };
-    Parts cracks = with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\nsolver = \"implicit\"\n");
-    cracks.material = "[material]\nname = \"ice\"\ndamping_ratio = 0\n";
-    check_all({
-        {"misspelt", solver("", "solver = \"implcit\"\n"), {"did you mean \"implicit\"?"}},
-        {"Euler without damping",
-         solver("damping_ratio = 0\n", "solver = \"euler\"\n"),
-         {"10:10: solver = \"euler\" gains energy at any step"}},
-        {"implicit springs",
-         solver("damping_ratio = 0\nmechanics = \"springs\"\n", "solver = \"implicit\"\n"),
-         {"11:10: solver = \"implicit\" needs mechanics = \"cells\""}},
-        {"implicit cracks", cracks, {"10:10: solver = \"implicit\" does not follow cracks"}},
-        {"implicit cuts",
-         with(&Parts::stage, "[[stage]]\nmachine = \"cut\"\nsolver = \"implicit\"\n"),
-         {"solver = \"implicit\" does not follow cuts, and the machine has a blade"}},
-        {"implicit after a cut",
-         with(&Parts::stage,
-              "[[stage]]\nmachine = \"cut\"\n[[stage]]\nmachine = \"bend\"\nsolver = "
-              "\"implicit\"\n"),
-         {"cannot move matter that is cut, as stage \"1-cut\" leaves it"}},
-        {"implicit drag",
-         solver("damping_ratio = 0\n", "solver = \"implicit\"\nmedium_density = 1.2\n"),
-         {"11:18: warning: medium_density has no effect with solver = \"implicit\""}},
-        {"implicit damping",
-         solver("damping_ratio = 0.1\n", "solver = \"implicit\"\n"),
-         {"10:10: warning: damping_ratio has no effect with solver = \"implicit\""}},
-        {"retries at rest",
-         solver("", "retry_limit = 3\n"),
-         {"9:15: warning: retry_limit has no effect with solver = \"quasistatic\""}},
-        {"retries",
-         solver("", "solver = \"explicit\"\nretry_limit = 21\n"),
-         {"10:15: retry_limit = 21"}},
-    });
-}
-
 TEST_CASE("a mistake among the materials is told once, however many bodies name one") {
     const Scratch scratch;
     scratch.write("materials.toml", "[jelly]\nyoung_modulus = 1e3\ndensity = 1000\ncolour = 3\n");
@@ -495,8 +404,4 @@ TEST_CASE("a mistake among the materials is told once, however many bodies name 
     const std::size_t first = all.find("unknown key \"colour\"");
     REQUIRE(first != std::string::npos);
     CHECK(all.find("unknown key \"colour\"", first + 1) == std::string::npos);
-}
-
-TEST_CASE("blanks around the parts of an override's key are not of it") {
-    CHECK(mistakes_in(Parts().text(), {" mold . across = 3", "stage.1.angle =45 deg"}) == "");
 }

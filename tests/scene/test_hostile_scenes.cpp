@@ -43,7 +43,8 @@ TEST_CASE("scene files that cannot be files are refused without blocking") {
 
 TEST_CASE("long lines and deep nesting are read or refused, never fatal") {
     CHECK(mistakes_in(Parts().text() + "# " + std::string(1'000'000, 'x') + "\n") == "");
-    CHECK(mistakes_in(std::string("a = ").append(100'000, '[')).find("nested") != std::string::npos);
+    CHECK(mistakes_in(std::string("a = ").append(100'000, '[')).find("nested") !=
+          std::string::npos);
     const std::string wide = mistakes_in(Parts().text() + [] {
         std::string text = "[output]\n";
         for (int n = 0; n < 20000; ++n) text += fmt::format("key_{} = 1\n", n);
@@ -119,6 +120,10 @@ TEST_CASE("overrides are checked like the file, and named as they were given") {
     CHECK(told_of("mould.across=3").find("unknown section [mould], did you mean [mold]?") !=
           std::string::npos);
     CHECK(told_of("material.density=1\nx = 2").find("density") != std::string::npos);
+}
+
+TEST_CASE("blanks around the parts of an override's key are not of it") {
+    CHECK(mistakes_in(Parts().text(), {" mold . across = 3", "stage.1.angle =45 deg"}) == "");
 }
 
 TEST_CASE("all mistakes of all files come in one reading, in the order of the files") {
