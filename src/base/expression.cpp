@@ -11,6 +11,7 @@
 #include <mutex>
 
 #include "base/math.h"
+#include "base/portable_math.h"
 #include "base/suggest.h"
 #include "base/units.h"
 
@@ -82,21 +83,21 @@ const Function kFunctions[] = {
      .arguments = "mod(x, y)",
      .help = "what is left of x divided by y"},
     {.name = "sqrt", .one = std::sqrt, .arguments = "sqrt(x)", .help = "square root"},
-    {.name = "exp", .one = std::exp, .arguments = "exp(x)", .help = "e to the power x"},
-    {.name = "log", .one = std::log, .arguments = "log(x)", .help = "natural logarithm"},
-    {.name = "pow", .two = std::pow, .arguments = "pow(x, y)", .help = "as x ^ y"},
+    {.name = "exp", .one = portable::exp, .arguments = "exp(x)", .help = "e to the power x"},
+    {.name = "log", .one = portable::log, .arguments = "log(x)", .help = "natural logarithm"},
+    {.name = "pow", .two = portable::pow, .arguments = "pow(x, y)", .help = "as x ^ y"},
     {.name = "hypot",
-     .two = std::hypot,
+     .two = portable::hypot,
      .arguments = "hypot(x, y)",
      .help = "square root of x^2 + y^2"},
-    {.name = "sin", .one = std::sin, .arguments = "sin(x)", .help = "of an angle"},
-    {.name = "cos", .one = std::cos, .arguments = "cos(x)", .help = "of an angle"},
-    {.name = "tan", .one = std::tan, .arguments = "tan(x)", .help = "of an angle"},
-    {.name = "asin", .one = std::asin, .arguments = "asin(x)", .help = "an angle"},
-    {.name = "acos", .one = std::acos, .arguments = "acos(x)", .help = "an angle"},
-    {.name = "atan", .one = std::atan, .arguments = "atan(x)", .help = "an angle"},
+    {.name = "sin", .one = portable::sin, .arguments = "sin(x)", .help = "of an angle"},
+    {.name = "cos", .one = portable::cos, .arguments = "cos(x)", .help = "of an angle"},
+    {.name = "tan", .one = portable::tan, .arguments = "tan(x)", .help = "of an angle"},
+    {.name = "asin", .one = portable::asin, .arguments = "asin(x)", .help = "an angle"},
+    {.name = "acos", .one = portable::acos, .arguments = "acos(x)", .help = "an angle"},
+    {.name = "atan", .one = portable::atan, .arguments = "atan(x)", .help = "an angle"},
     {.name = "atan2",
-     .two = std::atan2,
+     .two = portable::atan2,
      .arguments = "atan2(y, x)",
      .help = "the angle towards (x, y)"},
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/math.h"
 
+#include "base/portable_math.h"
+
 namespace swage {
 
 Vec3 Pose::operator*(const Vec3& point) const { return rotation * point + translation; }
@@ -24,9 +26,27 @@ Mat3 cross_matrix(const Vec3& v) {
 
 Quat turn_onto(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to); }
 
+Quat turn_about(const Vec3& axis, double angle) {
+    Quat turn;
+    turn.w() = portable::cos(0.5 * angle);
+    turn.vec() = portable::sin(0.5 * angle) * axis;
+    return turn;
+}
+
+Quat turn_by(const Vec3& rotation) {
+    const double angle = rotation.stableNorm();
+    return angle > 0 ? turn_about(rotation / angle, angle) : Quat::Identity();
+}
+
+Vec3 rotation_of(const Quat& turn) {
+    const double across = turn.vec().stableNorm();
+    if (!(across > 0)) return Vec3::Zero();
+    const double angle = 2 * portable::atan2(across, std::abs(turn.w()));
+    return (turn.w() < 0 ? -angle : angle) / across * turn.vec();
+}
+
 Vec3 turn_between(const Pose& from, const Pose& to) {
-    const Eigen::AngleAxisd turn((to.rotation * from.rotation.conjugate()).normalized());
-    return (turn.angle() > kPi ? turn.angle() - 2 * kPi : turn.angle()) * turn.axis();
+    return rotation_of((to.rotation * from.rotation.conjugate()).normalized());
 }
 
 Pose between(const Pose& from, const Pose& to, double s) {
@@ -38,11 +58,11 @@ Pose between(const Pose& from, const Pose& to, double s) {
     const auto jacobian = [&](double theta) -> Mat3 {
         const Mat3 k = cross_matrix(axis);
         if (std::abs(theta) < 1e-6) return Mat3::Identity() + 0.5 * theta * k;
-        return Mat3::Identity() + (1 - std::cos(theta)) / theta * k +
-               (theta - std::sin(theta)) / theta * k * k;
+        return Mat3::Identity() + (1 - portable::cos(theta)) / theta * k +
+               (theta - portable::sin(theta)) / theta * k * k;
     };
     const Vec3 velocity = jacobian(angle).inverse() * change.translation;
-    const Pose part{Quat(Eigen::AngleAxisd(s * angle, axis)), jacobian(s * angle) * (s * velocity)};
+    const Pose part{turn_about(axis, s * angle), jacobian(s * angle) * (s * velocity)};
     return part * from;
 }
 

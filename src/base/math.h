@@ -34,6 +34,13 @@ Mat3 cross_matrix(const Vec3& v);
 // The shortest turn that carries one direction onto another.
 Quat turn_onto(const Vec3& from, const Vec3& to);
 
+// A turn by `angle` [rad] about an axis of length 1.
+Quat turn_about(const Vec3& axis, double angle);
+
+// A turn about a rotation vector's direction by its length [rad], and back, the shorter way.
+Quat turn_by(const Vec3& rotation);
+Vec3 rotation_of(const Quat& turn);
+
 // Rotation vector [rad] in the world that turns one pose's axes into another's, the shorter way.
 Vec3 turn_between(const Pose& from, const Pose& to);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "geometry/calf.h"
 #include "geometry/implicit.h"
 #include "geometry/noise.h"
@@ -79,13 +80,13 @@ void paint_eye(Vec3& color, const Vec3& mirrored) {
     const Vec3 up = axis.cross(along).y() > 0 ? axis.cross(along) : along.cross(axis);
     const Vec2 flat = Vec2(from.dot(along), from.dot(up)) / kCalfEyeRadius;
     if (from.dot(axis) < 0) return;
-    const double lid = std::hypot(flat.x() / 1.08, (flat.y() - 0.05) / 0.80);
+    const double lid = portable::hypot(flat.x() / 1.08, (flat.y() - 0.05) / 0.80);
     color = mix(color, Vec3(0.07, 0.045, 0.04), rise(1.28, 1.08, lid));
     const Vec3 iris =
         mix(Vec3(0.30, 0.17, 0.09), Vec3(0.12, 0.06, 0.04), rise(0.2, -0.6, -flat.y()));
     color = mix(color, iris, rise(0.99, 0.90, lid));
     color = mix(color, Vec3(0.02, 0.015, 0.015),
-                rise(0.70, 0.58, std::hypot(flat.x() / 1.1, flat.y() / 0.9)));
+                rise(0.70, 0.58, portable::hypot(flat.x() / 1.1, flat.y() / 0.9)));
     color = mix(color, Vec3(0.98, 0.98, 1.0), rise(0.26, 0.18, (flat - Vec2(0.26, 0.36)).norm()));
     color = mix(color, Vec3(0.65, 0.68, 0.75),
                 0.8 * rise(0.15, 0.07, (flat - Vec2(-0.32, -0.30)).norm()));
@@ -96,7 +97,7 @@ void paint_ear(Vec3& color, const Vec3& mirrored, const Vec3& normal) {
     const double s = (mirrored - kCalfEarRoot).dot(along) / along.squaredNorm();
     const Vec3 off = mirrored - kCalfEarRoot - s * along;
     if (s < 0.05 || s > 1.1 || off.norm() > 0.06) return;
-    const double hollow = std::hypot((s - 0.52) / 0.42, off.y() / 0.030);
+    const double hollow = portable::hypot((s - 0.52) / 0.42, off.y() / 0.030);
     color = mix(color, kPink * 0.92, rise(0.25, 0.6, normal.x()) * rise(1.1, 0.7, hollow));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "geometry/implicit.h"
 #include "geometry/made_shapes.h"
 
@@ -11,8 +12,8 @@ namespace swage {
 namespace {
 
 Vec2 turned(const Vec2& p, double angle) {
-    return {std::cos(angle) * p.x() + std::sin(angle) * p.y(),
-            -std::sin(angle) * p.x() + std::cos(angle) * p.y()};
+    return {portable::cos(angle) * p.x() + portable::sin(angle) * p.y(),
+            -portable::sin(angle) * p.x() + portable::cos(angle) * p.y()};
 }
 
 double hexagon_distance(const Vec2& p, double across) {

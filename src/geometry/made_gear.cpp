@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "geometry/made_shapes.h"
 #include "geometry/remesh.h"
 
@@ -20,14 +21,14 @@ struct Teeth {
     double root_radius() const { return pitch_radius() - 1.25 * module(); }
 };
 
-double involute(double tangent) { return tangent - std::atan(tangent); }
+double involute(double tangent) { return tangent - portable::atan(tangent); }
 
 // Half the angle that a tooth fills at a radius. Below the base circle the flank would go straight
 // in; it leans out instead, as a fillet does, to a share of the gap at the root.
 double half_tooth_angle(const Teeth& teeth, double radius) {
     const double pressure = 20 * kPi / 180;
-    const double base = teeth.pitch_radius() * std::cos(pressure);
-    const double at_pitch = kPi / (2 * teeth.count) + involute(std::tan(pressure));
+    const double base = teeth.pitch_radius() * portable::cos(pressure);
+    const double at_pitch = kPi / (2 * teeth.count) + involute(portable::tan(pressure));
     const double ratio = std::max(1.0, radius / base);
     const double flank = at_pitch - involute(std::sqrt(ratio * ratio - 1));
     const double start = std::min(base, teeth.pitch_radius());
@@ -92,8 +93,8 @@ TriMesh lace(const std::vector<Row>& rows, std::vector<bool>& keep) {
     for (const Row& row : rows) {
         first.push_back(static_cast<int>(mesh.position.size()));
         for (const Vec2& p : row.polar)
-            mesh.position.emplace_back(p.y() * std::sin(p.x()), row.height,
-                                       p.y() * std::cos(p.x()));
+            mesh.position.emplace_back(p.y() * portable::sin(p.x()), row.height,
+                                       p.y() * portable::cos(p.x()));
     }
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const std::size_t s = (r + 1) % rows.size();

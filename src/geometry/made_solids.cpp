@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "geometry/made_shapes.h"
 
 namespace swage {
@@ -48,7 +49,7 @@ TriMesh rounded_box(const Vec3& size, double rounding, double edge, double round
         if (flat[axis] > 0)
             t = even_ticks(-flat[axis], flat[axis], divisions(2 * flat[axis], edge));
         for (int i = 1; i <= steps; ++i) {
-            const double out = rounding * std::tan(kPi / 4 * i / steps);
+            const double out = rounding * portable::tan(kPi / 4 * i / steps);
             t.insert(t.begin(), -flat[axis] - out);
             t.push_back(flat[axis] + out);
         }
@@ -68,7 +69,7 @@ void wrap_uv(TriMesh& mesh, double length, double radius, double inner_radius) {
         std::array<Vec3, 3> p = {mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]};
         const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
         const Vec3 middle = (p[0] + p[1] + p[2]) / 3;
-        const double angle = std::atan2(middle.z(), middle.y());
+        const double angle = portable::atan2(middle.z(), middle.y());
         Corners uv;
         for (int k = 0; k < 3; ++k) {
             Vec2 at;
@@ -76,7 +77,8 @@ void wrap_uv(TriMesh& mesh, double length, double radius, double inner_radius) {
                 at = Vec2(0.5 * length + (normal.x() > 0 ? 1 : -1) * p[k].y(), p[k].z());
             } else {
                 // The corner's angle without a jump at the seam.
-                const double off = std::remainder(std::atan2(p[k].z(), p[k].y()) - angle, 2 * kPi);
+                const double off =
+                    std::remainder(portable::atan2(p[k].z(), p[k].y()) - angle, 2 * kPi);
                 const bool outer = middle.tail<2>().norm() > 0.5 * (radius + inner_radius);
                 const double r = outer ? radius : inner_radius;
                 at = Vec2(p[k].x() + 0.5 * length, (angle + off + kPi) * r);
@@ -173,7 +175,8 @@ TriMesh make_rod(const ShapeValues& values) {
             const double angle = std::abs(y) >= std::abs(z)
                                      ? (y > 0 ? 0 : kPi) + kPi / 4 * z / y
                                      : (z > 0 ? 0.5 : 1.5) * kPi - kPi / 4 * y / z;
-            return {p.x(), radius * ring * std::cos(angle), radius * ring * std::sin(angle)};
+            return {p.x(), radius * ring * portable::cos(angle),
+                    radius * ring * portable::sin(angle)};
         });
     wrap_uv(mesh, length, radius, 0);
     return mesh;
@@ -201,7 +204,7 @@ TriMesh make_tube(const ShapeValues& values) {
     TriMesh mesh = ring_surface(around, static_cast<int>(section.size()), [&](int i, int j) {
         const double angle = 2 * kPi * i / around;
         const Vec2 at = section[j];
-        return Vec3(at.x(), at.y() * std::cos(angle), -at.y() * std::sin(angle));
+        return Vec3(at.x(), at.y() * portable::cos(angle), -at.y() * portable::sin(angle));
     });
     wrap_uv(mesh, length, radius, inner);
     return mesh;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "geometry/made_shapes.h"
 
 namespace swage {
@@ -168,7 +169,7 @@ ShapeValues complete(const ShapeInfo& info, const std::map<std::string, double>&
 // short and read back to the same numbers.
 void tidy(TriMesh& mesh) {
     const double size = box_of(mesh.position).size().maxCoeff();
-    const double per_unit = std::pow(10.0, 7 - std::ceil(std::log10(size)));
+    const double per_unit = portable::pow(10.0, 7 - std::ceil(portable::log10(size)));
     const auto rounded = [](double x, double steps) {
         return std::round(x * steps) / steps + 0.0;  // no negative zero
     };

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "geometry/edges.h"
 
 namespace swage {
@@ -201,7 +202,7 @@ class Remesher {
   private:
     static double least_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
         const auto at = [](const Vec3& p, const Vec3& q, const Vec3& r) {
-            return std::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p));
+            return portable::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p));
         };
         return std::min({at(a, b, c), at(b, c, a), at(c, a, b)});
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/portable_math.h"
 #include "geometry/shape.h"
 
 namespace swage {
@@ -61,8 +62,8 @@ TriMesh surface(const CylinderShape& cylinder) {
     for (int end = 0; end < 2; ++end) {
         for (int n = 0; n <= kAroundRim; ++n) {
             const double angle = 0.5 * kPi * (end == 0 ? kAroundRim - n : n) / kAroundRim;
-            const double height = 0.5 * cylinder.length - rim * (1 - std::sin(angle));
-            outline.push_back({cylinder.radius - rim * (1 - std::cos(angle)),
+            const double height = 0.5 * cylinder.length - rim * (1 - portable::sin(angle));
+            outline.push_back({cylinder.radius - rim * (1 - portable::cos(angle)),
                                end == 0 ? -height : height, n == 0 ? 2 * end : 2 * end + 1});
         }
     }
@@ -72,7 +73,7 @@ TriMesh surface(const CylinderShape& cylinder) {
     const auto point = [&](const Ring& ring, int n) {
         const double angle = 2 * kPi * (n % kAroundCylinder) / kAroundCylinder;
         return surface.position(
-            {ring.radius * std::cos(angle), ring.radius * std::sin(angle), ring.height});
+            {ring.radius * portable::cos(angle), ring.radius * portable::sin(angle), ring.height});
     };
     for (std::size_t r = 1; r < outline.size(); ++r) {
         for (int n = 0; n < kAroundCylinder; ++n) {
@@ -94,8 +95,8 @@ TriMesh rounded_box(const Vec3& core, double rounding, int steps) {
         double end;    // -1 or 1
     };
     std::vector<Line> line;
-    for (int n = -steps; n <= 0; ++n) line.push_back({std::tan(0.25 * kPi * n / steps), -1});
-    for (int n = 0; n <= steps; ++n) line.push_back({std::tan(0.25 * kPi * n / steps), 1});
+    for (int n = -steps; n <= 0; ++n) line.push_back({portable::tan(0.25 * kPi * n / steps), -1});
+    for (int n = 0; n <= steps; ++n) line.push_back({portable::tan(0.25 * kPi * n / steps), 1});
     line.front().slope = -1;  // to the bit, where sides meet
     line.back().slope = 1;
 

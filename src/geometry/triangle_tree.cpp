@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 
 namespace swage {
 
@@ -75,7 +76,7 @@ double solid_angle(const Vec3& p, const std::array<Vec3, 3>& t) {
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     const double volume = a.dot(b.cross(c));
     const double side = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    return 2 * std::atan2(volume, side);
+    return 2 * portable::atan2(volume, side);
 }
 
 double squared_distance(const Vec3& p, const Box& box) {

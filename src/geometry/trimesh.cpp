@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
 
@@ -101,7 +102,7 @@ void smooth_by_crease_angle(TriMesh& mesh, double crease_angle) {
     std::vector<Vec3> normal(count);
     for (std::size_t t = 0; t < count; ++t)
         normal[t] = area_vector(mesh.position, mesh.triangle[t]).stableNormalized();
-    const double least_cosine = std::cos(crease_angle);
+    const double least_cosine = portable::cos(crease_angle);
 
     // Corners are joined across an edge when its two faces run along it in opposite directions
     // (they agree on the outside) and meet at less than the angle.
@@ -139,9 +140,10 @@ std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& p
             for (int k = 0; k < 3; ++k) {
                 const Vec3 out = p[(k + 1) % 3] - p[k];
                 const Vec3 in = p[(k + 2) % 3] - p[k];
-                share[t][k] = twice_area > 0
-                                  ? Vec3(cross * (std::atan2(twice_area, out.dot(in)) / twice_area))
-                                  : Vec3(Vec3::Zero());
+                share[t][k] =
+                    twice_area > 0
+                        ? Vec3(cross * (portable::atan2(twice_area, out.dot(in)) / twice_area))
+                        : Vec3(Vec3::Zero());
             }
         }
     });

@@ -41,6 +41,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "base/portable_math.h"
 #include "laws/lane_tensor.h"
 
 namespace swage {
@@ -62,7 +63,7 @@ inline double restitution_loss(double restitution) {
     double low = 0, high = 1 / e;
     for (int n = 0; n < 60; ++n) {
         const double beta = 0.5 * (low + high);
-        const bool above = beta * (1 + e) < std::log((1 + beta) / (1 - beta * e));
+        const bool above = beta * (1 + e) < portable::log((1 + beta) / (1 - beta * e));
         (above ? high : low) = beta;
     }
     return 0.5 * (low + high);
@@ -71,7 +72,7 @@ inline double restitution_loss(double restitution) {
 // The damping ratio of a swing of which e is left after half a turn.
 inline double restitution_damping(double restitution) {
     const double e = std::max(restitution, kDullest), turn = std::numbers::pi;
-    return e >= 1 ? 0 : -std::log(e) / std::hypot(turn, std::log(e));
+    return e >= 1 ? 0 : -portable::log(e) / portable::hypot(turn, portable::log(e));
 }
 
 // Of two materials from theirs: what each gives back of the energy that its part of the give k_1,

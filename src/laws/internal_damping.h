@@ -37,6 +37,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace swage {
 
 inline constexpr int kMostBranches = 5;
@@ -72,10 +74,10 @@ inline double fast_stiffness(const DampingBranches& branches) {
 inline DampingBranches damping_branches(double ratio, double low, double high) {
     DampingBranches branches;
     if (!(ratio > 0)) return branches;
-    const double decades = std::log10(std::max(1.0, high / low));
+    const double decades = portable::log10(std::max(1.0, high / low));
     branches.count = std::clamp(1 + static_cast<int>(std::ceil(decades)), 2, kMostBranches);
     for (int j = 0; j < branches.count; ++j) {
-        branches.time[j] = std::pow(10.0, j) / high;
+        branches.time[j] = portable::pow(10.0, j) / high;
         branches.share[j] = 3 * ratio;
     }
     constexpr int kRounds = 300;  // each branch in turn, until all agree
@@ -88,14 +90,8 @@ inline DampingBranches damping_branches(double ratio, double low, double high) {
     return branches;
 }
 
-// (1 - exp(-x)) / x for x >= 0. Not by expm1: its last bit is another from one C library to the
-// next.
-inline double mean_decay(double x) {
-    if (x > 0.5) return (1 - std::exp(-x)) / x;
-    double sum = 0;
-    for (int n = 16; n > 0; --n) sum = 1 - x * sum / (n + 1);
-    return sum;
-}
+// (1 - exp(-x)) / x for x >= 0.
+inline double mean_decay(double x) { return x > 0 ? -portable::expm1(-x) / x : 1; }
 
 // One branch over a step, in shares of the connection's stiffness and length l: m = q / (k l), with
 // the strain v step / l that the step added. Exact for a steady rate.
@@ -104,7 +100,7 @@ struct DampingStep {
 };
 inline DampingStep damping_step(const DampingBranches& branches, int j, double step) {
     const double share = step / branches.time[j];
-    return {std::exp(-share), branches.share[j] * mean_decay(share)};
+    return {portable::exp(-share), branches.share[j] * mean_decay(share)};
 }
 
 }  // namespace swage

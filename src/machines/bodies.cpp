@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/portable_math.h"
 #include "geometry/shape.h"
 
 namespace swage {
@@ -41,7 +42,7 @@ void append_prism(TriMesh& mesh, int sides, double radius, double length, const 
     std::vector<int> low, high;
     for (int n = 0; n < sides; ++n) {
         const double turn = 2 * kPi * n / sides;
-        const Vec3 out = radius * Vec3(std::cos(turn), 0, -std::sin(turn));
+        const Vec3 out = radius * Vec3(portable::cos(turn), 0, -portable::sin(turn));
         mesh.position.push_back(centre + out - Vec3(0, 0.5 * length, 0));
         mesh.position.push_back(centre + out + Vec3(0, 0.5 * length, 0));
         low.insert(low.begin(), first + 2 * n);

@@ -62,14 +62,14 @@ class Straightness {
     }
     static bool turns_far(const std::vector<Pose>& a, const std::vector<Pose>& b) {
         for (std::size_t n = 0; n < a.size(); ++n) {
-            if (a[n].rotation.angularDistance(b[n].rotation) > kMostTurn) return true;
+            if (turn_between(a[n], b[n]).norm() > kMostTurn) return true;
         }
         return false;
     }
     bool are_near(const std::vector<Pose>& a, const std::vector<Pose>& b) const {
         for (std::size_t n = 0; n < a.size(); ++n) {
             const double off = (a[n].translation - b[n].translation).norm() +
-                               reach_ * a[n].rotation.angularDistance(b[n].rotation);
+                               reach_ * turn_between(a[n], b[n]).norm();
             if (off > slack_) return false;
         }
         return true;

@@ -180,7 +180,7 @@ void add_grip(Machine& machine, const Setting& setting, const GripSpec& spec,
     const Pose start = motion.at(0);
     const double size = setting.frame.size.norm();
     if ((start * held.center() - held.center()).norm() > kAtRest * size ||
-        start.rotation.angularDistance(Quat::Identity()) > 10 * kAtRest) {
+        rotation_of(start.rotation).norm() > 10 * kAtRest) {
         refuse(setting, fmt::format("the motion of grip {} does not start at rest: at t = 0 it has "
                                     "to be 0",
                                     spec.name));

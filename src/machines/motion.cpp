@@ -65,7 +65,7 @@ Pose Motion::at(double t) const {
     const Vec3 move(move_[0].at(t), move_[1].at(t), move_[2].at(t));
     const Vec3 pivot(pivot_[0].at(t), pivot_[1].at(t), pivot_[2].at(t));
     const double turn = turn_.front().at(t);
-    const Quat rotation(Eigen::AngleAxisd(turn, axis_));
+    const Quat rotation = turn_about(axis_, turn);
     return {rotation, pivot - rotation * pivot + move};
 }
 

@@ -106,6 +106,7 @@ struct Lattice {
     std::vector<int>
         cell_row_begin;  // for (j, k) = j + cell_count.y() * k: first cell_run; one more at the end
 
+    double cell_volume() const { return spacing * spacing * spacing; }
     // The cell at this site, or -1.
     CellId cell_at(int i, int j, int k) const;
     Vec3i cell_site(CellId cell) const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "base/units.h"
 #include "geometry/mesh_check.h"
 #include "laws/fracture.h"
@@ -25,7 +26,7 @@ double toughness_for(const Material& material, double spacing) {
 
 // Three figures tell it; of a bound the next above.
 double told(double value, double (*round)(double) = std::round) {
-    const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+    const double unit = portable::pow(10, std::floor(portable::log10(value)) - 2);
     return unit * round(value / unit);
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/math.h"
+#include "base/portable_math.h"
 #include "geometry/disjoint_sets.h"
 
 namespace swage {
@@ -22,7 +23,7 @@ class Outline {
         for (int n = 0; n < kDirections; ++n) {
             const double y = 1 - (2 * n + 1.0) / kDirections, r = std::sqrt(1 - y * y);
             const double turn = n * kPi * (3 - std::sqrt(5.0));
-            direction_.emplace_back(r * std::cos(turn), y, r * std::sin(turn));
+            direction_.emplace_back(r * portable::cos(turn), y, r * portable::sin(turn));
         }
         reach_.assign(direction_.size(), -std::numeric_limits<double>::infinity());
         point_.resize(direction_.size());

@@ -253,7 +253,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         const BodySpec& body = scene.body[b];
         matter.push_back(
             mold(input[b].to_mold(), body.material, body.mold, insets_for(input[b], body)));
-        place_at_start(body.start, matter[b]);
+        place_at_start(body.start, input[b].to_mold(), matter[b]);
         cost.body[b].cells = static_cast<double>(matter[b].cell_fill.size());
         cost.mold.active_cells += cost.body[b].cells;
         cost.mold.particles += static_cast<double>(matter[b].particle_count());

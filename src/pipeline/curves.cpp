@@ -52,12 +52,10 @@ void StageCurves::pass(const std::vector<ToolLoad>& loads) {
     for (std::size_t n = 0; n < way_.size() && n < loads.size(); ++n) {
         Way& way = way_[n];
         const Pose& now = loads[n].pose;
-        const Eigen::AngleAxisd turned(now.rotation * way.pose.rotation.conjugate());
-        const double angle = turned.angle() > kPi ? turned.angle() - 2 * kPi : turned.angle();
-        if (way.turn_axis.isZero() && std::abs(angle) > 1e-12) {
-            way.turn_axis = angle > 0 ? turned.axis() : Vec3(-turned.axis());
-        }
-        way.turn += turned.axis().dot(way.turn_axis) < 0 ? -angle : angle;
+        const Vec3 turn = turn_between(way.pose, now);
+        const double angle = turn.norm();
+        if (way.turn_axis.isZero() && angle > 1e-12) way.turn_axis = turn / angle;
+        way.turn += turn.dot(way.turn_axis) < 0 ? -angle : angle;
         way.travel += (now.translation - way.pose.translation).norm();
         way.pose = now;
     }

@@ -148,15 +148,9 @@ std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body) {
     return insets;
 }
 
-void place_at_start(const StartSpec& start, Aggregate& matter) {
-    std::vector<Vec3> surface;
-    for (std::size_t p = 0; p < matter.surface.size(); ++p) {
-        surface.push_back(matter.surface_position(p));
-    }
-    const Vec3 middle = box_of(surface).center();
-    const double angle = start.turn.norm();
-    const Mat3 turn =
-        angle > 0 ? Mat3(Eigen::AngleAxisd(angle, start.turn / angle)) : Mat3(Mat3::Identity());
+void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matter) {
+    const Vec3 middle = box_of(mesh.position).center();
+    const Mat3 turn = turn_by(start.turn).toRotationMatrix();
     const Vec3 at = start.at.value_or(middle);
     Vec3 moment = Vec3::Zero();
     double mass = 0;
@@ -189,7 +183,7 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     }
     const StartSpec& start = body.start;
     const bool stands = !start.at && start.turn == Vec3::Zero();
-    if (!stands || start.moves()) place_at_start(start, piece.matter);
+    if (!stands || start.moves()) place_at_start(start, input.to_mold(), piece.matter);
     if (!stands || skin.kind == SkinKind::boundary) follow_matter(piece, skin.kind);
     return piece;
 }

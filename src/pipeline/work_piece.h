@@ -64,8 +64,8 @@ struct WorkPiece {
 // that how it stands has no effect on how well it is resolved.
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin);
 
-// Turns about the middle of the surface's box, moves and sets in motion. For a body as molded.
-void place_at_start(const StartSpec& start, Aggregate& matter);
+// Turns about the middle of the box of the mesh that it was molded from, moves and sets in motion.
+void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matter);
 
 // A new representation of the work-piece as it is now, without strain, of cells of the same size,
 // as hard as it has become and as fast as it goes.

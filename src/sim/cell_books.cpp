@@ -77,7 +77,7 @@ SWAGE_INLINE BookCells<V> load_cells(const BookTask& task, int begin, int count)
 template <int kWidth>
 SWAGE_INLINE void add_energy(BookTask& task) {
     typedef LanesOf<kWidth> V;
-    const double volume = std::pow(task.matter->lattice.spacing, 3);
+    const double volume = task.matter->lattice.cell_volume();
     const auto& [law, kind] = *task.law;
     for (int begin = 0; begin < task.run->count; begin += kWidth) {
         const int count = std::min(kWidth, task.run->count - begin);
@@ -126,7 +126,7 @@ SWAGE_INLINE void add_growths(const BookTask& task, int begin, int count, const 
 template <int kWidth>
 SWAGE_INLINE void add_flow(BookTask& task) {
     typedef LanesOf<kWidth> V;
-    const double volume = std::pow(task.matter->lattice.spacing, 3);
+    const double volume = task.matter->lattice.cell_volume();
     const CellModuli& law = task.law->moduli;
     for (int begin = 0; begin < task.run->count; begin += kWidth) {
         const int count = std::min(kWidth, task.run->count - begin);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "laws/spring_damper.h"
 #include "laws/volume_guard.h"
 #include "laws/yield.h"
@@ -244,7 +245,7 @@ const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
             const double share = cell_share(d) * fill / weight;
             // The rest ratio grows by the factor exp(share * flow).
             rest_[d][lower] = static_cast<float>(
-                (1.0 + rest_[d][lower]) * std::exp(share * flow_of(matter, cell, slot)) - 1.0);
+                (1.0 + rest_[d][lower]) * portable::exp(share * flow_of(matter, cell, slot)) - 1.0);
         }
     }
     return rest_;
@@ -255,7 +256,7 @@ const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
 double CellFlow::plastic_work(const Aggregate& matter, int d, ParticleId lower,
                               double growth) const {
     const double reference = reference_length(matter.lattice, d);
-    const double elastic = std::exp(double(strain_[d][lower])) - 1 - rest_[d][lower];
+    const double elastic = portable::exp(double(strain_[d][lower])) - 1 - rest_[d][lower];
     return lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing) *
            matter.connection[d].weight[lower] * reference * reference * elastic * growth;
 }

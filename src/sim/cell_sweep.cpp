@@ -265,7 +265,7 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     const std::vector<CellRun>& runs = this->runs(matter);
     const Vec3Array& x = matter.particle_position;
     force.resize(x.size());
-    SlabTask whole{.crushed = kMaybeCrushed * 64 * std::pow(matter.lattice.spacing, 3),
+    SlabTask whole{.crushed = kMaybeCrushed * 64 * matter.lattice.cell_volume(),
                    .strained = strain_measure_at(onset_),
                    .share = share_.data(),
                    .particles = static_cast<int>(x.size()),

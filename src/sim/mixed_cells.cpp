@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "laws/cell_growth.h"
 #include "sim/connection_shares.h"
 #include "sim/mixed_batch.h"
@@ -190,7 +191,7 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
 
 double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& laws, bool seen,
                           RestGrowths* growths) const {
-    const double volume = std::pow(matter.lattice.spacing, 3);
+    const double volume = matter.lattice.cell_volume();
     double lost = 0;
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
@@ -219,7 +220,7 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
         const SlotLengths is = rest_lengths(matter, cell.cell, &cell);
         for (int slot = 0; slot < kCellConnectionCount; ++slot) {
             const CellConnection& c = kCellConnection[slot];
-            const double by = std::log(is[slot] / was[slot]) * cell_share(c.direction) *
+            const double by = portable::log(is[slot] / was[slot]) * cell_share(c.direction) *
                               matter.cell_fill[cell.cell];
             (*growths)[c.direction].push_back(
                 {batches_.corner[n][c.corner], static_cast<float>(by)});
@@ -230,7 +231,7 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
 
 double MixedCells::elastic_energy(const Aggregate& matter,
                                   const std::vector<MaterialLaw>& laws) const {
-    const double volume = std::pow(matter.lattice.spacing, 3);
+    const double volume = matter.lattice.cell_volume();
     const auto energy_of = [&](std::size_t n) {
         const MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
         const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/portable_math.h"
 #include "sim/cell_batch.h"
 #include "sim/crushed_cells.h"
 #include "sim/vector_clones.h"
@@ -241,7 +242,7 @@ bool MovingBody::remember(double step, BodyOutcome& outcome) {
 void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
                              BodyOutcome& outcome) {
     if (lattice_.saw_crushed() || inside_out_ > 0) {
-        outcome.damped_work += calm_crushed(matter_, std::exp(-kCalm * step / step_));
+        outcome.damped_work += calm_crushed(matter_, portable::exp(-kCalm * step / step_));
     }
     if (remember(step, outcome)) find_forces(now, 0, outcome);
     if (implicit_) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -135,7 +136,7 @@ void Multigrid::find_largest(const Product& product, const Scale& scale, std::si
         // Any start that is no eigenvector will do.
         s.mode.resize(count);
         for (std::size_t p = 0; p < count; ++p) {
-            const auto wave = [&](double turn) { return std::sin(turn * double(p) + 0.3); };
+            const auto wave = [&](double turn) { return portable::sin(turn * double(p) + 0.3); };
             s.mode.set(p, Vec3(wave(2.1), wave(2.7), wave(1.9)));
         }
         left = kFirstIterations;

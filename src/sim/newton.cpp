@@ -26,11 +26,6 @@ constexpr double kFarthest = 0.1;     // of the body, for what leaves an equilib
 constexpr double kProbe = 0.05;       // spacings, to find how that bends
 constexpr double kOvershoot = 0.5;    // of the work along a step that may be left, either way
 
-Mat3 rotation_by(const Vec3& turn) {
-    const double angle = turn.norm();
-    return angle > 0 ? Mat3(Eigen::AngleAxisd(angle, turn / angle)) : Mat3(Mat3::Identity());
-}
-
 }  // namespace
 
 Newton::Newton(const Aggregate& matter, const std::vector<float>& carried_fill)
@@ -167,7 +162,7 @@ double Newton::line_search(Aggregate& matter, const NewtonProblem& problem, bool
     Vec3Array& x = matter.particle_position;
     double share = bends ? std::min(1.0, kFarthest * extent_ / longest_of(direction_)) : 1;
     for (int n = 0; n < kMostTries; ++n) {
-        const Mat3 turned = rotation_by(share * way.turn);
+        const Mat3 turned = turn_by(share * way.turn).toRotationMatrix();
         for_each_chunk(x.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 const Vec3 arm = turned * (from_.at(p) - way.center);

@@ -90,9 +90,10 @@ void QuasistaticSolver::stay(const Drive& to) {
     const Eigen::Matrix3Xd from = columns(start_), now = columns(free);
     if (from == now) return;
     const Vec3 start_center = from.rowwise().mean(), free_center = now.rowwise().mean();
-    const Eigen::AngleAxisd turn(Mat3(Eigen::umeyama(from, now, false).topLeftCorner<3, 3>()));
+    const Mat3 placed = Eigen::umeyama(from, now, false).topLeftCorner<3, 3>();
+    const Vec3 turn = rotation_of(Quat(placed));
     const auto go_back = [&](double share) {
-        const Mat3 back = Eigen::AngleAxisd(-share * turn.angle(), turn.axis()).toRotationMatrix();
+        const Mat3 back = turn_by(-share * turn).toRotationMatrix();
         const Vec3 center = free_center + share * (start_center - free_center);
         for (std::size_t p = 0; p < free.size(); ++p) {
             matter_.particle_position.set(p, center + back * (free.at(p) - free_center));

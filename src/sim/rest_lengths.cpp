@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "laws/cell_rest.h"
 #include "sim/cell_volume.h"
 
@@ -30,7 +31,7 @@ double mixed_ratio(const Aggregate& matter, const MixedCell& mixed,
     const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
     double fill = 0, give = 0, beside = 0, mean = 0, held = 0;
     for (int p : {0, 1}) {
-        const double along = 0.5 * std::log(square_along(n, metric[p]));
+        const double along = 0.5 * portable::log(square_along(n, metric[p]));
         const double share = mixed.fill[p];
         const double modulus = matter.material_at(mixed.material[p]).young_modulus;
         fill += share, give += share / modulus, beside += share * modulus;
@@ -38,7 +39,7 @@ double mixed_ratio(const Aggregate& matter, const MixedCell& mixed,
     }
     const double cosine = n.dot(mixed.normal.cast<double>()), square = cosine * cosine;
     const double series = square * fill * fill / give, parallel = 1 - square;
-    return std::exp((series * mean / fill + parallel * held) / (series + parallel * beside));
+    return portable::exp((series * mean / fill + parallel * held) / (series + parallel * beside));
 }
 
 }  // namespace

@@ -413,7 +413,7 @@ RestSurface::Depth RestSurface::at(CellId cell, const Vec3& p) const {
     if (!fine.has_twist) return depth;
     for (int face = 0; face < 6; ++face) {
         const int d = face >> 1, u = (d + 1) % 3, v = (d + 2) % 3;
-        const double twist = fine.twist[face] * sign[u] * sign[v] / std::pow(kFine, 4);
+        const double twist = fine.twist[face] * sign[u] * sign[v] / (kFine * kFine * kFine * kFine);
         const double near = face & 1 ? p[d] : 1 - p[d];
         const double a = along[u], b = along[v], bulge = a * b - std::min(a, b);
         depth.distance += near * twist * bulge;

@@ -72,8 +72,7 @@ class RigidPiece {
     }
     Place moved(const Place& from, const Motion& way, double heavy) {
         const Vec3 turn = way.tail<3>() / radius_;
-        const Quat more(Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()));
-        const Pose pose{(more * from.pose.rotation).normalized(),
+        const Pose pose{(turn_by(turn) * from.pose.rotation).normalized(),
                         from.pose.translation + way.head<3>()};
         return {pose, push_at(pose, heavy)};
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/portable_math.h"
 #include "sim/vector_sums.h"
 
 namespace swage {
@@ -28,7 +29,7 @@ Vec3Array first_guess(const Vec3Array& x) {
     for (std::size_t p = 0; p < x.size(); ++p) {
         const double t = kPi * (x.at(p)[axis] - low[axis]) / (high - low)[axis];
         const auto waves = [&](double a, double b, double c) {
-            return a * std::sin(t) + b * std::sin(2 * t) + c * std::sin(3 * t);
+            return a * portable::sin(t) + b * portable::sin(2 * t) + c * portable::sin(3 * t);
         };
         Vec3 way = Vec3::Zero();
         way[(axis + 1) % 3] = waves(1, 0.5, 0.3);

@@ -31,14 +31,14 @@ ToolEntry met_on_the_way(const Shape& shape, const Vec3& from, const Vec3& now) 
 Distance distance_by_entry(const Shape& shape, const EntryReach& reach, const Vec3& from,
                            const Vec3& now, ToolEntry& entry) {
     const Distance nearest = distance_to(shape, now);
-    if (thinness_of(shape) >= 2 * reach.deep) return nearest;  // beyond its middle is too deep
+    const double thin = thinness_of(shape);
+    if (thin >= 2 * reach.deep) return nearest;  // beyond its middle is too deep
     const bool is_inside = nearest.value < 0;
     bool goes_on = nearest.normal.dot(entry.normal) >= 0;
     if (entry.normal.isZero(0)) {
         // On its way in, or on no way through: outside, less than the tool is thin.
         const Vec3 way = now - from;
-        goes_on = is_inside ? way.dot(nearest.normal) <= 0
-                            : way.squaredNorm() < std::pow(thinness_of(shape), 2);
+        goes_on = is_inside ? way.dot(nearest.normal) <= 0 : way.norm() < thin;
         if (!goes_on) entry = met_on_the_way(shape, from, now);
         goes_on = goes_on || entry.normal.isZero(0);
     }

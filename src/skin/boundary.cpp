@@ -152,7 +152,7 @@ void drop_crumbs(const Aggregate& matter, const Pieces& pieces, const std::vecto
         for (int k = 0; k < 4; ++k) p[k] = place[face.point[k]] - origin[piece];
         volume[piece] += (p[0].dot(p[1].cross(p[2])) + p[0].dot(p[2].cross(p[3]))) / 6;
     }
-    const double least = kCrumb * std::pow(matter.lattice.spacing, 3);
+    const double least = kCrumb * matter.lattice.cell_volume();
     std::erase_if(surface.face,
                   [&](const VoxelFace& face) { return volume[piece_of(face)] < least; });
     std::vector<int> number(surface.vertex_count, -1);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "geometry/disjoint_sets.h"
 
 namespace swage {
@@ -111,7 +112,7 @@ std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
         for (int e : members[patch]) {
             const Vec3 way = edges[e].middle - place[s];
             const double d2 = way.squaredNorm() / (a * a);
-            if (d2 < kReach * kReach) fit.add(way, std::exp(-d2 / 2.25));
+            if (d2 < kReach * kReach) fit.add(way, portable::exp(-d2 / 2.25));
             if (d2 < kNear * kNear) near.push_back(e);
         }
         if (fit.weight <= 0) continue;

@@ -117,8 +117,7 @@ class PlaneCut {
             all += under;
             if (t.parent < 0) is_cut[part[a]] = 1;
         }
-        const double least =
-            std::min(std::pow(matter_.lattice.spacing, 3), kChipShare * std::abs(all));
+        const double least = std::min(matter_.lattice.cell_volume(), kChipShare * std::abs(all));
         for (std::size_t v = 0; v < own.size(); ++v) {
             if (is_cut[part[v]] && std::abs(volume[part[v]]) < least) own[v] = -own[v];
         }

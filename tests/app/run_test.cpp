@@ -17,7 +17,7 @@ namespace {
 // The end of assets/scenes/bar-springback.toml at 3 cells across and 6 frames. To be changed, and
 // the reason said in the commit, only when the scene, its mesh, material or machine, the mold or
 // the laws and solver are meant to give other numbers.
-constexpr const char* kShippedBarHash = "55ffb863970aa782";
+constexpr const char* kShippedBarHash = "59b2fcff4b8179a8";
 
 // Name and bytes of every file below a folder.
 std::map<std::string, std::string> files_below(const fs::path& folder) {
@@ -226,10 +226,13 @@ TEST_CASE("how often a run is looked at does not change what its machine does") 
         return Json::parse(bytes_of(run / "run.json")).at("stages").at(0).at("energies_J");
     };
     // It leaves the straight on the way, by as soft a motion as there is: however it comes there.
+    // The later it does, the more it leaps, and the more work is lost in that: the remainder.
     const Json often = twisted(24), seldom = twisted(2);
-    const double work = often.at("machine_work").get<double>();
-    CHECK(work > 1);
-    CHECK(seldom.at("machine_work").get<double>() == Approx(work).epsilon(0.03));
+    const auto kept = [](const Json& books) {
+        return books.at("machine_work").get<double>() - books.at("remainder").get<double>();
+    };
+    CHECK(kept(often) > 1);
+    CHECK(kept(seldom) == Approx(kept(often)).epsilon(1e-3));
     CHECK(seldom.at("elastic").get<double>() ==
           Approx(often.at("elastic").get<double>()).epsilon(1e-4));
 }

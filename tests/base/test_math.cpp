@@ -1,7 +1,68 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Core>
+#include "base/math.h"
 
+#include "base/hash.h"
+#include "base/portable_math.h"
 #include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+// Of numbers a and b, all over the range that states have.
+template <typename Take>
+void for_each_pair(Take take) {
+    double a = 0.3, b = 0.7;
+    for (int n = 0; n < 20000; ++n) {
+        a = 3.99 * a * (1 - a);
+        b = 3.97 * b * (1 - b);
+        take(16 * a - 8, 16 * b - 8);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("functions without an exact standard are right to the last places, and always the same") {
+    Hasher hasher;
+    double worst = 0;
+    const auto add = [&](double got, double want) {
+        worst = std::max(worst, std::abs(got / want - 1));
+        hasher.add(std::span<const double>(&got, 1));
+    };
+    for_each_pair([&](double a, double b) {
+        add(portable::sin(a), std::sin(a));
+        add(portable::cos(a), std::cos(a));
+        add(portable::tan(a), std::tan(a));
+        add(portable::asin(a / 8), std::asin(a / 8));
+        add(portable::acos(a / 8), std::acos(a / 8));
+        add(portable::atan(a), std::atan(a));
+        add(portable::atan2(a, b), std::atan2(a, b));
+        add(portable::exp(a), std::exp(a));
+        add(portable::expm1(a), std::expm1(a));
+        add(portable::log(std::abs(a)), std::log(std::abs(a)));
+        add(portable::log10(std::abs(a)), std::log10(std::abs(a)));
+        add(portable::pow(std::abs(a), b), std::pow(std::abs(a), b));
+        add(portable::hypot(a, b), std::hypot(a, b));
+    });
+    CHECK(worst < 5e-16);
+    CHECK(hash_text(hasher.value()) == "0a5388f76c056ed8");
+}
+
+TEST_CASE("a turn by a rotation vector is that about its axis, and gives the vector back") {
+    for_each_pair([&](double a, double b) {
+        const Vec3 axis = Vec3(a, b, 1).normalized();
+        const double angle = 0.39 * a;
+        const Quat turn = turn_about(axis, angle);
+        CHECK((turn.toRotationMatrix() - Eigen::AngleAxisd(angle, axis).toRotationMatrix()).norm() <
+              2e-15);
+        CHECK((turn_by(angle * axis).coeffs() - turn.coeffs()).norm() < 1e-15);
+        CHECK((rotation_of(turn) - angle * axis).norm() < 2e-15);
+        CHECK((rotation_of(Quat(Eigen::Vector4d(-turn.coeffs()))) - angle * axis).norm() < 2e-15);
+    });
+    CHECK(turn_by(Vec3::Zero()).coeffs() == Quat::Identity().coeffs());
+    CHECK(rotation_of(Quat::Identity()) == Vec3::Zero());
+    CHECK((rotation_of(turn_by(Vec3(1e-200, 0, 0))) - Vec3(1e-200, 0, 0)).norm() < 1e-210);
+}
 
 #ifdef __x86_64__  // elsewhere Eigen has other sizes, but does not ask for them either
 TEST_CASE("sums of products are cut the same on every machine") {

@@ -92,6 +92,21 @@ TEST_CASE("a body starts where it is told to, turned about its middle, with its 
     }
 }
 
+TEST_CASE("a round body stands where it is told to, however coarse its matter is") {
+    InputMesh input;
+    input.mesh = make_shape("sphere", {}).mesh;
+    BodySpec body;
+    body.start.at = Vec3(1, 2, 3);
+    for (int across : {1, 2, 5}) {
+        body.mold.across = across;
+        for (Vec3& p : input.mesh.position)
+            p.y() *= p.y() > 0 ? 1.1 : 1;  // no twin of its other half
+        const WorkPiece piece = make_work_piece(input, body, {SkinKind::mount});
+        INFO(across);
+        CHECK((box_of(piece.position).center() - *body.start.at).norm() < 1e-9);
+    }
+}
+
 TEST_CASE("a body that is told no start is left as it was molded") {
     const WorkPiece piece = block({}, SkinKind::mount);
     CHECK(piece.matter.particle_position.x == piece.matter.particle_reference.all().x);
@@ -187,8 +202,7 @@ TEST_CASE("a body in motion is molded anew in motion") {
     const WorkPiece piece = block(start, SkinKind::mount);
     BodySpec body;
     body.mold.across = 3;
-    const Sums before = sums_of(piece.matter),
-               after = sums_of(mold_anew(piece, body, {}).matter);
+    const Sums before = sums_of(piece.matter), after = sums_of(mold_anew(piece, body, {}).matter);
     CHECK((after.momentum - before.momentum).norm() < 1e-9 * before.momentum.norm());
     CHECK((after.turning - before.turning).norm() < 1e-9 * before.turning.norm());
 }
