@@ -32,11 +32,20 @@ LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
     take_in(matter);
 }
 
-void LatticeForces::connections_changed(Aggregate& matter) {
-    const bool lays_down = cells_ && in_motion_ && matter.breaks();
-    std::vector<HeldCell> turned;
-    if (cells_) cells_->cells_changed(matter, lays_down ? &turned : nullptr);
-    if (lays_down) loose_.take_over(matter, turned);
+void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
+    const bool in_excess = in_motion_ && matter.breaks();
+    const bool at_rest = severed && !matter.cell_hardening.empty();
+    std::vector<HeldCell> turned, flowed;
+    if (cells_) cells_->cells_changed(matter, in_excess || at_rest ? &turned : nullptr);
+    if (at_rest) {
+        const auto first = std::stable_partition(
+            turned.begin(), turned.end(),
+            [&](const HeldCell& c) { return matter.cell_hardening[c.id()] == 0; });
+        flowed.assign(first, turned.end());
+        turned.erase(first, turned.end());
+    }
+    if (in_excess) loose_.take_over(matter, turned);
+    loose_.lay_to_rest(matter, flowed);
     others_changed(matter);
 }
 

@@ -36,8 +36,10 @@ class LatticeForces {
 
     // Connections have been severed or broken, or cells cracked. Such a cell is no cell any more;
     // what it has left acts as plain springs, with the plastic strain it had. In motion those of
-    // matter that breaks are laid down so that they hold no more than it did.
-    void connections_changed(Aggregate& matter);
+    // matter that breaks are laid down so that they hold no more than it did. Where a blade has
+    // `severed` what has flowed they are at rest as they lie: how a cell has flowed says little of
+    // what bends it, and held to that what is cut loose crumples.
+    void connections_changed(Aggregate& matter, bool severed = false);
     // The matter has been put back to what it was before such changes.
     void take_in(const Aggregate& matter);
 

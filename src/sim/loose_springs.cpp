@@ -175,6 +175,22 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
     }
 }
 
+void LooseSprings::lay_to_rest(Aggregate& matter, const std::vector<HeldCell>& turned) {
+    for (const HeldCell& held : turned) {
+        spring_.clear();
+        add_springs(matter, *held.run, held.n);
+        find_strains(matter, nullptr);
+        CellSet set{held.id(), {}};
+        if (const CellSet* had = matter.set_of(held.id())) set = *had;
+        for (std::size_t n = 0; n < now_.size(); ++n) {
+            if (n > 0 && spring_[n].slot == spring_[n - 1].slot) continue;
+            float& kept = set.strain[spring_[n].slot];
+            kept = static_cast<float>((1 + double(kept)) * (1 + now_[n].strain) - 1);
+        }
+        matter.lay_down(set);
+    }
+}
+
 std::vector<char> LooseSprings::softening_ends(const Aggregate& matter) const {
     std::vector<char> ends;
     for (const Spring& s : spring_) {
@@ -218,9 +234,8 @@ void LooseSprings::find_softening() {
     for_each_chunk(spring_.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
             const auto partner = static_cast<std::size_t>(spring_[n].partner);
-            now_[n].softens_by = partner == n
-                                     ? now_[n].strain
-                                     : face_strain(now_[n].strain, now_[partner].strain);
+            now_[n].softens_by =
+                partner == n ? now_[n].strain : face_strain(now_[n].strain, now_[partner].strain);
         }
     });
 }

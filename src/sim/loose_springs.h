@@ -40,6 +40,8 @@ class LooseSprings {
     // and what their stretch holds too much then. For matter that breaks: what a blade severs,
     // its tools pay for. connections_changed() must follow.
     void take_over(Aggregate& matter, const std::vector<HeldCell>& turned);
+    // The same so that they hold nothing, as they lie.
+    void lay_to_rest(Aggregate& matter, const std::vector<HeldCell>& turned);
 
     const FractureLaws& laws() const { return laws_; }
     bool empty() const { return spring_.empty(); }

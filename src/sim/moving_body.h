@@ -95,7 +95,7 @@ class MovingBody {
     }
 
     void connections_changed() {
-        lattice_.connections_changed(matter_);
+        lattice_.connections_changed(matter_, true);
         branch_energy_ = -1;
         surface_changed();
     }

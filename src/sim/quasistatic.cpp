@@ -78,12 +78,12 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
 
 void QuasistaticSolver::connections_changed(std::size_t) {
     severed_ = true;
+    lattice_.connections_changed(matter_, true);
     connections_renewed();
 }
 
 // Masses are found anew.
 void QuasistaticSolver::connections_renewed() {
-    lattice_.connections_changed(matter_);
     contacts_.connections_changed(matter_);
     pushes_.connections_changed(matter_);
     self_.connections_changed();

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "sim/advance.h"
+#include "sim/lattice_forces.h"
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
@@ -155,6 +156,38 @@ TEST_CASE("what a cut or an opened grip lets go of is set free, not left over by
         CHECK(r.set_free == Approx(stored).epsilon(0.05));
     }
     CHECK(std::abs(r.remainder) < 0.01 * stored);
+}
+
+TEST_CASE("what a blade has cut through is at rest where it lay, however it had flowed") {
+    Aggregate m = make_block(
+        8, 4, 4, 0.1, Material{.young_modulus = 1e6, .poisson_ratio = 0.3, .yield_stress = 1e4});
+    LatticeForces lattice(m);
+    Vec3Array force;
+    force.resize(m.particle_count());
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> off(-0.02, 0.02);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        const Vec3 x = m.particle_reference.at(p);
+        m.particle_position.set(p, x + Vec3(off(random), off(random), off(random)));
+    }
+    lattice.find(m, Flow::trial, force);
+    lattice.commit(m);
+    const double held = lattice.elastic_energy(m);
+    for (double x : {-0.05, 0.05}) cut_along(m, Vec3(x, 0, 0), Vec3::UnitX(), 2, 1);
+    REQUIRE(find_pieces(m).count == 3);
+    const auto pull_between = [&](LatticeForces& forces) {  // the cuts, where no cell is whole
+        forces.find(m, Flow::trial, force);
+        double most = 0;
+        for (std::size_t p = 0; p < m.particle_count(); ++p) {
+            if (m.particle_reference.at(p).x() == 0) most = std::max(most, force.at(p).norm());
+        }
+        return most;
+    };
+    LatticeForces as_it_flowed(m);
+    REQUIRE(pull_between(as_it_flowed) > 1);
+    lattice.connections_changed(m, true);
+    CHECK(pull_between(lattice) < 1e-3);
+    CHECK(lattice.elastic_energy(m) < held);
 }
 
 TEST_CASE("a crumb between two cuts stays with one side and does not join them") {
