@@ -52,9 +52,10 @@ std::string text_of(const std::string& file, const InputMesh& input,
     line("colors", input.mesh.position_color.empty() ? "no" : "at vertices");
     for (const SurfaceMaterial& material : input.mesh.material) {
         const std::string name = material.name.empty() ? "(no name)" : material.name;
-        line("material", material.texture.empty()
-                             ? name
-                             : name + ", texture " + material.texture.filename().string());
+        const std::string image = material.texture.filename().string();
+        line("material", material.embedded_texture ? name + ", texture in the file"
+                         : image.empty()           ? name
+                                                   : name + ", texture " + image);
     }
     for (const std::string& part : input.mesh.part_name) {
         if (!part.empty()) line("part", part);

@@ -52,6 +52,9 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
         CameraKey key;
         key.eye = Vec3(given.eye[0], given.eye[1], given.eye[2]);
         key.target = Vec3(given.target[0], given.target[1], given.target[2]);
+        if (key.eye == key.target) {
+            fail(ExitCode::command_line, "--camera-eye and --camera-target are the same point");
+        }
         settings.camera.assign(1, key);
     }
     if (!given.up.empty()) settings.up = up_named(given.up);

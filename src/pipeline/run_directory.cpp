@@ -110,8 +110,11 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
         if (old == nullptr) {
             found.push_back(fmt::format("{} ({}) is new", input.role, input.file.string()));
         } else if (old->hash != input.hash) {
-            found.push_back(fmt::format("{} differs ({} now, {} then)", input.role,
-                                        input.file.string(), old->file.string()));
+            const auto told = [](const RunInput& of) {
+                return of.file.empty() ? std::string("none") : of.file.string();
+            };
+            found.push_back(
+                fmt::format("{} differs ({} now, {} then)", input.role, told(input), told(*old)));
         }
     }
     for (const RunInput& input : there.input) {

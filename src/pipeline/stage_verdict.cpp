@@ -56,6 +56,10 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     if (whole && !end.machine.apparatus.tool.empty() && !end.totals.touched) {
         warn("its tools never touched the work-piece");
     }
+    if (whole && !end.machine.apparatus.blade.empty() && end.totals.severed == 0) {
+        warn(
+            "the blade has met no matter: it passed beside the work-piece, or through a gap in it");
+    }
     if (whole && end.totals.severed > 0 && piece_count(end.bodies) == pieces_before) {
         warn(fmt::format(
             "the blade has severed {} connections and parted nothing: it passed through a part of "

@@ -42,7 +42,7 @@ void read_view(TableReader& table, CameraKey& key) {
     const Range quarter = between(-kPi / 2 - 1e-12, kPi / 2 + 1e-12);
     const bool orbits[] = {table.quantity("azimuth", Quantity::angle, {}, key.azimuth),
                            table.quantity("elevation", Quantity::angle, quarter, key.elevation),
-                           table.quantity("zoom", Quantity::number, above(0), key.zoom)};
+                           table.quantity("zoom", Quantity::number, between(0.01, 1000), key.zoom)};
     Vec3 eye = Vec3::Zero(), target = Vec3::Zero();
     const bool has_eye = table.vector("eye", Quantity::length, eye);
     const bool has_target = table.vector("target", Quantity::length, target);
