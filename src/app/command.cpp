@@ -16,11 +16,11 @@ namespace {
 
 CommonOptions common;
 
-int parse_whole(const std::string& text, const std::string& of) {
+int parse_whole(const std::string& text) {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value < 1) {
-        throw CLI::ValidationError(of, fmt::format("\"{}\" is no whole number of 1 or more", text));
+        throw CLI::ValidationError(fmt::format("\"{}\" is no whole number of 1 or more", text));
     }
     return value;
 }
@@ -61,11 +61,10 @@ void put_json(const Json& json) { put_out(json_text(json)); }
 FrameRange parse_frame_range(const std::string& text) {
     const std::size_t dash = text.find('-');
     FrameRange range;
-    range.first = parse_whole(text.substr(0, dash), "--frames");
-    range.last =
-        dash == std::string::npos ? range.first : parse_whole(text.substr(dash + 1), "--frames");
+    range.first = parse_whole(text.substr(0, dash));
+    range.last = dash == std::string::npos ? range.first : parse_whole(text.substr(dash + 1));
     if (range.last < range.first) {
-        throw CLI::ValidationError("--frames", fmt::format("\"{}\" ends before it begins", text));
+        throw CLI::ValidationError(fmt::format("\"{}\" ends before it begins", text));
     }
     return range;
 }
@@ -73,13 +72,11 @@ FrameRange parse_frame_range(const std::string& text) {
 std::pair<int, int> parse_size(const std::string& text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos) {
-        throw CLI::ValidationError("--size",
-                                   fmt::format("\"{}\" is no size such as 1280x720", text));
+        throw CLI::ValidationError(fmt::format("\"{}\" is no size such as 1280x720", text));
     }
-    const std::pair size{parse_whole(text.substr(0, cross), "--size"),
-                         parse_whole(text.substr(cross + 1), "--size")};
+    const std::pair size{parse_whole(text.substr(0, cross)), parse_whole(text.substr(cross + 1))};
     if (size.first > 16384 || size.second > 16384) {
-        throw CLI::ValidationError("--size", fmt::format("\"{}\" is more than 16384x16384", text));
+        throw CLI::ValidationError(fmt::format("\"{}\" is more than 16384x16384", text));
     }
     return size;
 }

@@ -41,7 +41,7 @@ void add_verify_command(CLI::App& app, Action& chosen);
 void put_out(std::string_view text);
 void put_json(const Json& json);
 
-// Reads "7" or "3-9". Throws CLI::ValidationError.
+// Reads "7" or "3-9". Throws CLI::ValidationError without the name of its option.
 FrameRange parse_frame_range(const std::string& text);
 // Reads "1280x720". Throws CLI::ValidationError.
 std::pair<int, int> parse_size(const std::string& text);

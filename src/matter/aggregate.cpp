@@ -133,6 +133,7 @@ std::size_t Aggregate::bytes() const {
     for (const ConnectionArrays& direction : connection) {
         sum += direction.weight.bytes() + bytes_of(direction.plastic) + bytes_of(direction.damage);
     }
+    for (const BranchMemory& memory : branch_memory) sum += bytes_of(memory.strain);
     return sum;
 }
 
@@ -195,6 +196,9 @@ std::uint64_t state_hash(const Aggregate& matter) {
     for (const CellSet& set : matter.cell_set) {
         hasher.add(std::span<const CellId>(&set.cell, 1));
         hasher.add(std::span<const float>(set.strain));
+    }
+    for (const BranchMemory& memory : matter.branch_memory) {
+        hasher.add(std::span<const float>(memory.strain));
     }
     return hasher.value();
 }

@@ -9,6 +9,7 @@
 
 #include "base/math.h"
 #include "base/sparse_array.h"
+#include "laws/internal_damping.h"
 #include "matter/lattice.h"
 #include "matter/material.h"
 #include "matter/surface_points.h"
@@ -42,6 +43,12 @@ struct MixedCell {
 struct CellSet {
     CellId cell;
     std::array<float, kCellConnectionCount> strain;
+};
+
+// What the internal damping of one of a body's damping ratios remembers (sim/internal_damping.h).
+struct BranchMemory {
+    DampingBranches branches;
+    std::vector<float> strain;  // tension over stiffness and length, as LatticeSweep keeps it
 };
 
 struct Aggregate {
@@ -78,6 +85,8 @@ struct Aggregate {
     // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24
     // connections, by slot (kCellConnection), then cell.
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
+
+    std::vector<BranchMemory> branch_memory;  // empty: it has come to rest
 
     SurfacePoints surface;
 

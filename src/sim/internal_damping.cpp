@@ -57,20 +57,21 @@ double largest_damping_ratio(const Aggregate& matter) {
 }
 
 InternalDamping::InternalDamping(const Aggregate& matter, double highest) {
+    for (const BranchMemory& memory : matter.branch_memory) branches_.push_back(memory.branches);
+    if (acts()) return;
     for (const DampedMaterials& of : damped_materials(matter)) {
-        part_.push_back(
-            {damping_branches(of.damping_ratio, slowest_frequency(matter), highest), {}});
+        branches_.push_back(damping_branches(of.damping_ratio, slowest_frequency(matter), highest));
     }
 }
 
 void InternalDamping::add_stiffness_bound(const Aggregate& matter,
                                           std::vector<double>& bound) const {
     const std::vector<DampedMaterials> damped = damped_materials(matter);
-    for (std::size_t n = 0; n < part_.size(); ++n) {
+    for (std::size_t n = 0; n < branches_.size(); ++n) {
         const std::vector<double> more = stiffness_bound(
             matter, lattice_law(matter), ConnectionShares(matter, damped[n].counts));
         for (std::size_t p = 0; p < bound.size(); ++p) {
-            bound[p] += (fast_stiffness(part_[n].branches) - 1) * more[p];
+            bound[p] += (fast_stiffness(branches_[n]) - 1) * more[p];
         }
     }
 }
@@ -93,13 +94,15 @@ void InternalDamping::take_growths(const Aggregate& matter) {
     clear(growths_);
 }
 
-std::vector<BranchStep> InternalDamping::step(const Aggregate& matter, LatticeForces& lattice,
+std::vector<BranchStep> InternalDamping::step(Aggregate& matter, LatticeForces& lattice,
                                               double duration) {
     if (duration > 0) take_growths(matter);
     const bool flowed = duration > 0 && any(taken_);
     std::vector<BranchStep> steps;
-    for (std::size_t n = 0; n < part_.size(); ++n) {
-        auto& [branches, strain] = part_[n];
+    matter.branch_memory.resize(branches_.size());
+    for (std::size_t n = 0; n < branches_.size(); ++n) {
+        auto& [branches, strain] = matter.branch_memory[n];
+        branches = branches_[n];
         strain.resize(lattice.sweep(matter, n).branch_floats(branches.count));
         BranchStep step{.count = branches.count, .step = duration, .strain = &strain};
         if (flowed) step.grown = &grown_, step.yield_strain = yield_strain(matter);
@@ -112,15 +115,15 @@ std::vector<BranchStep> InternalDamping::step(const Aggregate& matter, LatticeFo
     return steps;
 }
 
-void InternalDamping::let_go() {
-    for (Part& part : part_) part.strain.clear();
+void InternalDamping::let_go(Aggregate& matter) {
+    matter.branch_memory.clear();
     clear(growths_);
 }
 
 double InternalDamping::stored_energy(const Aggregate& matter, LatticeForces& lattice) const {
     double stored = 0;
-    for (std::size_t n = 0; n < part_.size(); ++n) {
-        const auto& [branches, strain] = part_[n];
+    for (std::size_t n = 0; n < matter.branch_memory.size(); ++n) {
+        const auto& [branches, strain] = matter.branch_memory[n];
         if (strain.empty()) continue;
         stored +=
             lattice.sweep(matter, n).branch_energy(matter, lattice_law(matter), branches, strain);

@@ -19,19 +19,20 @@ double largest_damping_ratio(const Aggregate& matter);  // of its materials
 
 class InternalDamping {
   public:
-    // `highest`: angular frequency of the lattice [rad/s].
+    // `highest`: angular frequency of the lattice [rad/s]. Matter that comes from an earlier stage
+    // goes on with the branches it has.
     InternalDamping(const Aggregate& matter, double highest);
 
-    bool acts() const { return !part_.empty(); }
+    bool acts() const { return !branches_.empty(); }
     // Adds what the branches are as stiff as at most, as if they were springs [N/m].
     void add_stiffness_bound(const Aggregate& matter, std::vector<double>& bound) const;
 
     // A step of this length [s], for LatticeForces::find(): 0 to leave the branches as they are.
     // `lattice` is the one that takes it.
-    std::vector<BranchStep> step(const Aggregate& matter, LatticeForces& lattice, double duration);
+    std::vector<BranchStep> step(Aggregate& matter, LatticeForces& lattice, double duration);
     // Where LatticeForces::commit() is to say how rest lengths have grown.
     SlabGrowths* growths() { return &growths_; }
-    void let_go();  // all branches carry nothing from now on
+    void let_go(Aggregate& matter);  // all branches carry nothing from now on
 
     double stored_energy(const Aggregate& matter, LatticeForces& lattice) const;  // [J]
 
@@ -40,14 +41,9 @@ class InternalDamping {
     // when it did, and the books are of second order.
     void take_growths(const Aggregate& matter);
 
-    struct Part {  // of damped_materials()
-        DampingBranches branches;
-        // Tension over stiffness and length, as LatticeSweep keeps it.
-        std::vector<float> strain;
-    };
-    std::vector<Part> part_;
-    SlabGrowths growths_, taken_;  // to come, and as they are in grown_
-    RestStrains grown_;            // all else is 0
+    std::vector<DampingBranches> branches_;  // of damped_materials()
+    SlabGrowths growths_, taken_;            // to come, and as they are in grown_
+    RestStrains grown_;                      // all else is 0
 };
 
 }  // namespace swage

@@ -115,6 +115,7 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
         const Material& material = matter.material_at(m);
         remembers_ = remembers_ || material.breaks() || std::isfinite(material.yield_stress);
     }
+    if (implicit_) let_go();
 }
 
 double MovingBody::branch_energy() {
@@ -179,7 +180,7 @@ double MovingBody::move(double kick, double step) {
 }
 
 void MovingBody::let_go() {
-    damping_.let_go();
+    damping_.let_go(matter_);
     branch_energy_ = -1;
 }
 
@@ -370,7 +371,10 @@ void MovingBody::save(State& state) const {
     }
     state.contacts.assign(1, contacts_);
     state.pushes.assign(1, pushes_);
-    if (saves_branches_) state.damping.assign(1, damping_);
+    if (saves_branches_) {
+        state.damping.assign(1, damping_);
+        state.memory = m.branch_memory;
+    }
     state.load = load_;
     state.gone = gone_;
     state.turned = turned_;
@@ -401,6 +405,7 @@ void MovingBody::restore(const State& state, BodyOutcome& outcome) {
     if (breaks_) drag_.connections_changed(matter_);
     if (saves_branches_) {
         damping_ = state.damping[0];
+        matter_.branch_memory = state.memory;
         branch_energy_ = -1;
     } else {
         let_go();

@@ -130,6 +130,7 @@ class MovingBody {
         std::vector<ContactSet> contacts;      // one
         std::vector<LoadSet> pushes;           // one
         std::vector<InternalDamping> damping;  // one, or none
+        std::vector<BranchMemory> memory;
         std::vector<LoadSum> load;
         double gone, turned;
     };

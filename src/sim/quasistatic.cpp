@@ -70,6 +70,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       slips_(apparatus),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
     velocity_.resize(matter.particle_count());
+    matter_.branch_memory.clear();
     for (std::size_t m = 0; m < matter.material_count(); ++m) {
         yields_ = yields_ || std::isfinite(matter.material_at(m).yield_stress);
     }
@@ -373,6 +374,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome, Unsolved unsolved) {
     start_ = matter_.particle_position;
     const double held = yields_ ? elastic_energy() : 0;
+    const double before = matter_.breaks() ? booked(from, outcome.body[0]) : 0;
     newton_rests_ = std::max(0, newton_rests_ - 1);
     contacts_.begin_move(matter_, from);
     self_.begin_move();
@@ -430,6 +432,10 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     slips_.keep(load, work, motion, released || breaks, outcome.lost);
     load_ = std::move(load);
     pushes_.commit(matter_, to, outcome.body[0].push_work);
+    if (breaks) {
+        const double done = std::accumulate(work.begin(), work.end(), 0.0);
+        outcome.body[0].set_free += std::max(0.0, before + done - booked(to, outcome.body[0]));
+    }
     foresight_.keep(start_, motion);
     // None of these goes on as it did.
     if (buckled || breaks || seated > kSeated * matter_.lattice.spacing) foresight_.forget();

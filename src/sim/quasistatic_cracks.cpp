@@ -38,7 +38,7 @@ double QuasistaticSolver::booked(const Drive& now, const BodyOutcome& outcome) {
 void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
     if (!matter_.breaks()) return;
     for (;;) {
-        const double before = booked(to, outcome.body[0]);
+        const double before = booked(to, outcome.body[0]) + outcome.body[0].set_free;
         const Cracked cracked = lattice_.crack(matter_);
         Committed snapped;
         if (cracked.cells == 0 && lattice_.may_snap()) snapped = lattice_.snap(matter_);
@@ -48,7 +48,7 @@ void QuasistaticSolver::let_crack(const Drive& to, MoveOutcome& outcome) {
         outcome.body[0].fracture_work += cracked.lost + snapped.fracture;
         outcome.body[0].broken += snapped.broken;
         increment(to, to, settings_.halving_limit, outcome);
-        outcome.body[0].set_free += before - booked(to, outcome.body[0]);
+        outcome.body[0].set_free = before - booked(to, outcome.body[0]);
     }
 }
 
@@ -74,12 +74,12 @@ bool QuasistaticSolver::begin(const Drive& from, BodyOutcome& outcome) {
 // is not taken for an error. NOTE: where there is no rest the move goes on without; then it is.
 void QuasistaticSolver::let_go(const Drive& from, MoveOutcome& outcome) {
     slips_.forget();
-    const double before = booked(from, outcome.body[0]);
+    const double before = booked(from, outcome.body[0]) + outcome.body[0].set_free;
     held_ = matter_.particle_position;
     evaluate(from);
     most_measure_ = std::max(most_measure_, residual_of(force_, from) * push_limit(from));
     if (!increment(from, from, settings_.halving_limit, outcome, Unsolved::leave)) return;
-    outcome.body[0].set_free += before - booked(from, outcome.body[0]);
+    outcome.body[0].set_free = before - booked(from, outcome.body[0]);
 }
 
 }  // namespace swage

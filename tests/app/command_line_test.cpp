@@ -110,7 +110,9 @@ TEST_CASE("a wrong command line ends with 2 and a hint") {
     CHECK(code_of({"info", "--threads", "two", "assets/meshes/bar.obj"}) == 2);
     CHECK(code_of({"info", "--quiet", "--verbose", "assets/meshes/bar.obj"}) == 2);
     for (const char* frames : {"0-3", "5-2", "x", "1-", "-2", "1-2-3", "1.5"}) {
-        CHECK(code_of({"run", "a.toml", std::string("--frames=") + frames}) == 2);
+        const Outcome refused = run_swage({"run", "a.toml", std::string("--frames=") + frames});
+        CHECK(refused.code == 2);
+        CHECK(refused.err.find("error: --frames: \"") == 0);
     }
     for (const char* size : {"0x10", "10", "axb", "99999x5", "10x10x10"}) {
         CHECK(code_of({"render", "somewhere", std::string("--size=") + size}) == 2);

@@ -143,6 +143,37 @@ TEST_CASE("a damped body that spins keeps its energy, and what its spin strains 
     CHECK(r.elastic == Approx(held).epsilon(0.05));
 }
 
+TEST_CASE("what damping remembers goes from one stage on into the next") {
+    for (const Solver solver : {Solver::explicit_steps, Solver::energy_stepped}) {
+        const auto stretched = [&] {
+            Aggregate m = make_block(6, 2, 2, 0.1, springy(0.05));
+            for (std::size_t p = 0; p < m.particle_count(); ++p) {
+                m.particle_velocity.set(p, {0.5 * m.particle_reference.at(p).x(), 0, 0});
+            }
+            return m;
+        };
+        const Apparatus nothing;
+        SimSettings settings = motion_settings();
+        settings.solver = solver;
+        Aggregate one = stretched(), two = stretched();
+        Simulation whole(one, nothing, settings), first(two, nothing, settings);
+        whole.advance(still(0), still(0.02));
+        const double held = first.advance(still(0), still(0.02)).elastic;
+        Simulation second(two, nothing, settings);
+        CHECK(second.start().elastic == Approx(held).epsilon(1e-9));
+        const FrameReport unbroken = whole.advance(still(0.02), still(0.04));
+        const FrameReport after = second.advance(still(0.02), still(0.04));
+        CHECK(std::abs(after.remainder) < 1e-3 * held);
+        CHECK(after.elastic == Approx(unbroken.elastic).epsilon(1e-3));
+        // Steps that the energy chooses begin anew.
+        if (solver == Solver::explicit_steps) CHECK(state_hash(one) == state_hash(two));
+        // At rest nothing is left of it.
+        settings.solver = Solver::quasistatic;
+        Simulation at_rest(two, nothing, settings);
+        CHECK(two.branch_memory.empty());
+    }
+}
+
 TEST_CASE("a body falling through air follows the tanh of quadratic drag") {
     // Terminal speed 10 m/s: m g = 1/2 c rho (A / 4) v^2.
     Aggregate m = make_block(3, 3, 3, 0.1, springy(0.1));

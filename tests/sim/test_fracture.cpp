@@ -88,6 +88,23 @@ TEST_CASE("a bar pulled past its strength parts in two, and its curve's area is 
     }
 }
 
+TEST_CASE(
+    "what a bar holds beyond its toughness when it snaps is set free, however it came there") {
+    for (int across : {2, 3}) {
+        for (int frames : {3, 5, 16}) {
+            Material material = brittle(Mechanics::cells);
+            material.toughness *= 0.1;
+            Bar bar(material, across);
+            FrameReport r;
+            const double way = 1.3 * kStrength / kModulus * kLength;
+            for (int n = 1; n <= frames; ++n) r = bar.pull_to(way * n / frames);
+            INFO(across << " cells, " << frames << " frames");
+            REQUIRE(r.pieces == 2);
+            CHECK(std::abs(r.remainder) < 0.02 * r.work);
+        }
+    }
+}
+
 TEST_CASE("a bar half torn unloads to the origin, and goes on from where it was") {
     Bar bar(brittle(Mechanics::cells), 2);
     double torn = 0;
