@@ -58,13 +58,17 @@ std::string blind_push(const StageEnd& end) {
     return any ? "directional_drag" : "";
 }
 
-const char* how_to_close(Solver solver) {
+std::string how_to_close(Solver solver) {
     if (solver == Solver::implicit_steps) {
         return "implicit steps damp by themselves: try more frames, which shorten them, or solver "
                "= \"explicit\"";
     }
-    return "try a lower step_safety, more cells, or, where bodies are pressed deep into each "
-           "other, a larger contact_stiffness";
+    const std::string shorter = solver == Solver::energy_stepped
+                                    ? "solver = \"explicit\" with a low step_safety"
+                                    : "a lower step_safety";
+    return "try " + shorter +
+           ", more cells, or, where bodies are pressed deep into each other, a larger "
+           "contact_stiffness";
 }
 
 }  // namespace

@@ -188,15 +188,28 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t w : awake) {
         const ContactWay::Held& own = held[w];
         if (pair_[w].back == w) {
-            way_[w].push(0.5, 0.5 * own.gone);
+            way_[w].push(0.5, 0.5 * own.gone, 0.5 * own.turned);
             continue;
         }
         const ContactWay::Held& other = held[pair_[w].back];
-        const double lost = held_by_both(own.now + own.gone, other.now + other.gone) -
-                            held_by_both(own.now, other.now);
-        way_[w].push(share_of(own.now, other.now), 0.5 * lost);
+        const double ends = held_by_both(own.now, other.now),
+                     turns = held_by_both(own.now + own.turned, other.now + other.turned),
+                     begins = held_by_both(own.now + own.turned + own.gone,
+                                           other.now + other.turned + other.gone);
+        way_[w].push(share_of(own.now, other.now), 0.5 * (begins - turns), 0.5 * (turns - ends));
     }
     for (std::size_t w : awake) way_[w].respond(step, again);
+    // NOTE: what friction lets go of may be any part of what a way holds, however short the step,
+    // and the shares that both have then are others. With those from before it counted as less that
+    // is kept, and more that friction took; the next step found energy that came from nowhere.
+    for (std::size_t w : awake) {
+        const std::size_t back = pair_[w].back;
+        if (back == w) continue;
+        const double own = way_[w].kept(), other = way_[back].kept();
+        const double counted = share_of(held[w].now, held[back].now) * own +
+                               share_of(held[back].now, held[w].now) * other;
+        way_[w].keep_more(0.5 * (held_by_both(own, other) - counted));
+    }
     for (std::size_t b = 0; b < side_.size(); ++b) {
         if (acts[b]) side_[b].patch().write(*force[b], gravity, step, sums[b]);
     }

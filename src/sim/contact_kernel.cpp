@@ -23,6 +23,11 @@ struct ContactWay::Kernel {
 
     static bool is_known(const Meeting& at) { return at.inverse[0][3] != 0; }
     static bool meets(const Meeting& at) { return at.inverse[1][3] != 0; }
+    // Whether it presses, or sticks and is not torn off.
+    static bool acts(const Meeting& at, const ContactMemory& last, double hold) {
+        return at.normal[3] > 0 ||
+               (last.history.touches && hold > 0 && at.inverse[2][3] * at.normal[3] >= -hold);
+    }
 
     // How deep the point lies as it goes on from where it has met; false where it has left the
     // cell and what is around it.
@@ -104,7 +109,7 @@ struct ContactWay::Kernel {
         at.normal = slope / size;
         at.normal[3] = -depth.distance / size;
         at.inverse[0][3] = stretch;
-        if (at.normal[3] > 0 || (last.history.touches && hold > 0)) at.inverse[1][3] = soft;
+        if (acts(at, last, hold)) at.inverse[1][3] = soft;
     }
 
     // Of its depth, what nobody has pressed: that does not count.
@@ -119,7 +124,7 @@ struct ContactWay::Kernel {
         }
         at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, whole));
         at.normal[3] -= at.now[3] / stretch;
-        if (!(at.normal[3] > 0 || hold > 0)) at.inverse[1][3] = 0;
+        if (!acts(at, last, hold)) at.inverse[1][3] = 0;
     }
 
     // All that does not depend on forces.
@@ -160,7 +165,7 @@ struct ContactWay::Kernel {
                 held *= std::sqrt(2 * last.held / (k * left));
             } else {
                 held = Vec4{};
-                sums.lost += last.held;
+                sums.held.turned += last.held;
             }
             at.reach = turned(back) + held;
             const Vec4 along = k * (at.reach - dot3(at.normal, at.reach) * at.normal);
@@ -190,7 +195,7 @@ struct ContactWay::Kernel {
     SWAGE_INLINE void find_chunk(std::size_t chunk, double step) const {
         Chunk& result = way.chunk_[chunk];
         result.moved.clear();
-        result.took = result.lost = 0;
+        result.took = 0;
         result.held = {};
         const std::size_t begin = way.begin_of(chunk), end = way.begin_of(chunk + 1);
         for (std::size_t n = begin; n < end; ++n) {
@@ -208,6 +213,7 @@ struct ContactWay::Kernel {
             if (!is_known(at)) result.held.gone += last.stored;
             if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
             prepare(contact, last, corner, gradient, step, at, result);
+            if (is_known(at) && !meets(at)) result.held.gone += last.bound;
         }
     }
 
@@ -288,10 +294,9 @@ struct ContactWay::Kernel {
     SWAGE_INLINE void respond(double step, bool again) const {
         ContactSums& sums = way.sums_ = {};
         sums.damped = 0.5 * way.broken_;
-        for (const Chunk& chunk : way.chunk_) {
-            sums.took += 0.5 * chunk.took;
-            sums.friction += 0.5 * way.share_ * chunk.lost;
-        }
+        sums.friction = 0.5 * way.turned_;
+        for (const Chunk& chunk : way.chunk_) sums.took += 0.5 * chunk.took;
+        way.kept_ = 0;
         for (std::size_t n = 0; n < way.list_.size(); ++n) {
             Contact& contact = way.list_.contact[n];
             const ContactMemory& last = way.list_.memory[n];
@@ -309,14 +314,18 @@ struct ContactWay::Kernel {
             next.pressed = at.inverse[0][3] * at.normal[3];
             next.soft = at.inverse[1][3];
             next.stored = f.stored / way.share_;
+            way.kept_ += next.stored;
             next.is_new = !is_known(at) && (last.is_new || !way.is_static());
             contact.dashed = f.force - f.elastic;
+            next.bound = 0;
             if (f.history.touches) {
                 const Vec4 reach = vec4(f.reach);
                 next.place = contact.site.cast<double>() + contact.place;
                 next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
                                   dot3(at.inverse[2], reach));
-                next.held = 0.5 * at.inverse[2][3] * dot3(reach, reach);
+                const double k = at.inverse[2][3], pulled = std::min(at.normal[3], 0.0);
+                next.held = 0.5 * k * dot3(reach, reach);
+                next.bound = next.held + 0.5 * k * pulled * pulled;
                 sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
                 sums.stored += 0.5 * f.stored;
                 sums.friction += 0.5 * f.friction;
@@ -327,7 +336,8 @@ struct ContactWay::Kernel {
                     sums.damped += 0.5 * (last.soft / next.soft - 1) * f.stored;
                 }
             } else if (last.history.touches && is_known(at)) {
-                sums.damped += 0.5 * parting_loss(last.stiffness, last.bond, vec3(at.now), step);
+                // What its bond does no longer on the way from there.
+                sums.damped -= 0.25 * step * last.bond.dot(vec3(at.now));
             }
         }
     }

@@ -30,6 +30,7 @@ struct ContactMemory {
     double stiffness = 0;      // with which it was found [N/m]
     ImpactHistory history{};
     double stored = 0;  // in its springs, were its way alone [J]
+    double bound = 0;   // of that, what is lost when it parts; 0 where it does not touch
     // Where matter has broken, or a cell turned inside out has held nothing for a while, a point
     // may be deeper in what lies there than it can have gone: nobody has pressed it in. That much
     // of the depth does not count until it has come out again. Depths as at rest [m].

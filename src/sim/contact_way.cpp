@@ -77,7 +77,7 @@ void ContactWay::part() {
     stiffness_ = stiffest_ = hold_ = {};
     point_push_ = cell_push_ = {};
     sums_ = {};
-    gone_ = broken_ = 0;
+    gone_ = broken_ = turned_ = kept_ = 0;
     is_found_ = false;
 }
 
@@ -213,6 +213,7 @@ void ContactWay::press_chunk(std::size_t chunk, Held& held) {
     push_chunk(chunk);
     held.now += chunk_[chunk].held.now;
     held.gone += chunk_[chunk].held.gone;
+    held.turned += chunk_[chunk].held.turned;
 }
 
 void ContactWay::find(double step) {
@@ -221,14 +222,14 @@ void ContactWay::find(double step) {
 }
 
 ContactWay::Held ContactWay::press() {
-    Held held{0, std::exchange(gone_, 0)};
+    Held held{.gone = std::exchange(gone_, 0)};
     for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) press_chunk(chunk, held);
     return held;
 }
 
 ContactWay::Held ContactWay::find_and_press(double step) {
     begin_meeting();
-    Held held{0, std::exchange(gone_, 0)};
+    Held held{.gone = std::exchange(gone_, 0)};
     for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
         find_chunk(chunk, step);
         press_chunk(chunk, held);
@@ -236,11 +237,18 @@ ContactWay::Held ContactWay::find_and_press(double step) {
     return held;
 }
 
-void ContactWay::push(double share, double lost) {
+void ContactWay::push(double share, double gone, double turned) {
     share_ = share;
-    broken_ = lost;
+    broken_ = gone;
+    turned_ = turned;
     point_push_.add_to(from_->patch(), share);
     cell_push_.add_to(onto_->patch(), share);
+}
+
+void ContactWay::keep_more(double energy) {
+    if (!(law_.holding > 0)) return;  // round-off
+    sums_.stored += 0.5 * energy;
+    sums_.friction -= 0.5 * energy;
 }
 
 void ContactWay::add_stiffness(std::vector<double>& stiffness) const {

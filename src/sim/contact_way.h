@@ -62,19 +62,25 @@ class ContactWay {
 
     // How each point lies and moves now, for a step of this length [s]: of all ways at once.
     void find(double step);
-    // What springs would do if this way were alone. What they would hold then, and what those held
-    // whose points or cells have broken since [J].
+    // What springs would do if this way were alone. What they would hold then, what those held that
+    // have ended since, and what those let go where the surface turned away from where points
+    // stick [J].
     struct Held {
-        double now = 0, gone = 0;
+        double now = 0, gone = 0, turned = 0;
     };
     Held press();
     // Both, for one thread: what it has just found is pressed while it is near.
     Held find_and_press(double step);
-    // Adds this share of it. `lost`: what both ways hold less for what is gone [J].
-    void push(double share, double lost);
+    // Adds this share of it. Half of what both ways hold less for what is gone, and for what the
+    // surface turned away from [J].
+    void push(double share, double gone, double turned);
     // Dashpots and friction, one contact after the other, given what all springs do. `again`: as
     // they were when last committed.
     void respond(double step, bool again);
+    // What its springs would hold alone, now that friction has let go of some of it [J].
+    double kept() const { return kept_; }
+    // What friction has let go of is less by this [J].
+    void keep_more(double energy);
     // Adds what its contacts can add to the stiffness of its one body's particles [N/m], about.
     void add_stiffness(std::vector<double>& stiffness) const;
     // Of its one body, what pressed when forces were last found, and still stands in the list.
@@ -112,7 +118,6 @@ class ContactWay {
         std::vector<int> moved;  // contacts that have come into other cells
         double took = 0;         // ContactSums::took, of the one half
         Held held;               // by springs of the whole stiffness
-        double lost = 0;         // likewise, where the surface turned away from where points stick
     };
     // What springs do to the particles of a patch, from the slot `low` on [N].
     struct Pushed {
@@ -166,7 +171,8 @@ class ContactWay {
     std::vector<char> is_let_be_;                            // likewise; empty: none is
     double share_ = 0.5;                                     // of what this way would do alone
     double gone_ = 0;                                        // Held::gone, of points, so far [J]
-    double broken_ = 0;                                      // lost by what is gone, in this step
+    double broken_ = 0, turned_ = 0;                         // push()
+    double kept_ = 0;                                        // kept()
     ContactList list_, spare_{};         // the spare one keeps its room for the next search
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit

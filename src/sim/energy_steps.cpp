@@ -276,7 +276,8 @@ void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutco
                             .step = steps_ + 1,
                             .time = t.now.time,
                             .gain = t.gain / budget};
-        why = sentence_of(found, mover_[group[0]].body, apparatus_.name, t.step);
+        why = sentence_of(found, mover_[group[0]].body, apparatus_.name, t.step,
+                          Solver::energy_stepped);
     }
     for (std::size_t n = 0; n < group.size(); ++n) {
         Mover& m = mover_[group[n]];

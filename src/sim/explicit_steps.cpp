@@ -354,7 +354,7 @@ void ExplicitSolver::take_back(const Block& block, const Finding& found,
     const bool rescue = fails && can_be_rescued();
     std::string why;
     if (fails && !rescue) {
-        why = sentence_of(found, body_[found.body], apparatus_.name, block.dt);
+        why = sentence_of(found, body_[found.body], apparatus_.name, block.dt, settings_.solver);
     }
     const std::vector<BodyOutcome> gone_wrong = std::exchange(outcome.body, so_far);
     in_block_ = false;

@@ -63,6 +63,18 @@ std::string text_of(const Strained& connection) {
                        connection.lower, connection.upper, connection.stretch);
 }
 
+std::string advice(Solver solver) {
+    const std::string rest =
+        "move the tools slower (a longer duration), raise [mold] across where matter is crushed or "
+        "contact_stiffness where bodies are pressed deep into each other";
+    if (solver == Solver::energy_stepped) {
+        return "use solver = \"explicit\", whose steps may gain more, " + rest;
+    }
+    const std::string shorter =
+        solver == Solver::implicit_steps ? "ask for more frames, " : "lower step_safety, ";
+    return shorter + rest + ", or, where one body is machined, use solver = \"quasistatic\"";
+}
+
 std::string place(const Vec3& x) {
     return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", x.x(), x.y(), x.z());
 }
@@ -84,7 +96,7 @@ Finding look_at(const MovingBody& body, double way, int allowed) {
 }
 
 std::string sentence_of(const Finding& finding, const MovingBody& body, const std::string& stage,
-                        double step) {
+                        double step, Solver solver) {
     const Aggregate& matter = body.matter();
     const std::size_t p = worst_particle(matter);
     const std::string where =
@@ -120,12 +132,9 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
     const bool lost = is_lost(matter, p);
     const Strained worst =
         lost ? most_strained(matter, static_cast<std::ptrdiff_t>(p)) : most_strained(matter);
-    return fmt::format(
-        "{}: step {} at {:.6g} s: {}, and {}, even with steps of {:.3g} s; move the tools slower "
-        "(a longer duration), lower step_safety, raise [mold] across where matter is crushed or "
-        "contact_stiffness where bodies are pressed deep into each other, or "
-        "use solver = \"quasistatic\"",
-        stage, finding.step, finding.time, what, text_of(worst), step);
+    return fmt::format("{}: step {} at {:.6g} s: {}, and {}, even with steps of {:.3g} s; {}",
+                       stage, finding.step, finding.time, what, text_of(worst), step,
+                       advice(solver));
 }
 
 bool EnergyGuard::accepts(double turned_over, double done, double lost, double gain, double noise,

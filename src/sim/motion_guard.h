@@ -46,9 +46,9 @@ struct Finding {
 Finding look_at(const MovingBody& body, double way, int allowed);
 
 // Says what is wrong at which particle, connection or cell of the bodies as they are, and what to
-// change. `step`: the shortest that was tried [s].
+// change with this solver. `step`: the shortest that was tried [s].
 std::string sentence_of(const Finding& finding, const MovingBody& body, const std::string& stage,
-                        double step);
+                        double step, Solver solver);
 
 // The energy that all bodies hold against what was put in.
 class EnergyGuard {

@@ -241,6 +241,40 @@ TEST_CASE("steps that energy chooses let bodies meet as explicit ones do") {
         Approx(fixed.last.body[0].passed + fixed.last.body[1].passed).margin(0.03 * chosen.start));
 }
 
+TEST_CASE("steps that energy chooses go on where friction, or what sticks, lets go at once") {
+    Material dull = kSpringy;  // dashpots hold points beyond what friction can
+    dull.restitution = 0.5;
+    dull.friction = 0.3;
+    Material holding = kSpringy;  // what begins to slide lets go of half
+    holding.restitution = 1;
+    holding.friction = 0.3, holding.static_friction = 0.6;
+    Material sticky = kSpringy;
+    sticky.restitution = 1;
+    sticky.friction = 0;
+    sticky.stickiness = 3000;
+    for (const Material& material : {dull, holding, sticky}) {
+        Aggregate a = make_block(3, 3, 3, 0.033, material), b = a;
+        place(b,
+              {Quat(Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized())), Vec3(0.15, 0.02, 0.03)});
+        for (double& v : b.particle_velocity.x) v = -4;
+        const double energy = 0.5 * b.mass() * 16;
+        const Apparatus nothing;
+        Simulation simulation({&a, &b}, nothing, motion_settings(Solver::energy_stepped));
+        FrameReport last;
+        double met = 0, friction = 0;
+        for (int n = 0; n < 10; ++n) {
+            last = simulation.advance(still(0.004 * n), still(0.004 * (n + 1)));
+            met = std::max(met, last.contact);
+            CHECK(last.friction > friction - 1e-6 * energy);
+            friction = last.friction;
+        }
+        INFO(last.remainder / energy << ", friction " << last.friction / energy);
+        CHECK(met > 0.01 * energy);
+        CHECK(last.contact == 0);  // they have parted
+        CHECK(std::abs(last.remainder) < 1e-3 * energy);
+    }
+}
+
 TEST_CASE("steps that energy chooses part all that a stage begins with pressed") {
     Aggregate a = make_block(3, 3, 3, 0.1, kSpringy);
     std::vector<Aggregate> body(4, a);  // two pairs, far from each other

@@ -75,8 +75,14 @@ TEST_CASE("a step that goes too far, or is lost, or turns a cell inside out, is 
     CHECK(look_at(body, 0, 35).fault == Fault::inside_out);
     CHECK_FALSE(look_at(body, 0, 36));
     const Finding finding = look_at(body, 0, 0);
-    const std::string text = sentence_of(finding, body, "drop", 1e-6);
-    CHECK(text.find("cell 0 turns inside out") != std::string::npos);
+    const auto text = [&](Solver solver) {
+        return sentence_of(finding, body, "drop", 1e-6, solver);
+    };
+    CHECK(text(Solver::explicit_steps).find("cell 0 turns inside out") != std::string::npos);
+    CHECK(text(Solver::explicit_steps).find("step_safety") != std::string::npos);
+    // Which is no key of this solver.
+    CHECK(text(Solver::energy_stepped).find("step_safety") == std::string::npos);
+    CHECK(text(Solver::energy_stepped).find("solver = \"explicit\"") != std::string::npos);
 }
 
 TEST_CASE("rubber that is inside out is counted") {
