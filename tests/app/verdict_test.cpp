@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run says of a stage that did not do what was meant.
+#include "geometry/mesh_write.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
-
+#include "tests/shared/meshes.h"
 
 namespace fs = std::filesystem;
+using swage::fixtures::box_mesh;
+using swage::fixtures::together;
 
 namespace {
 
-// What a run of a bar in these stages says.
-std::string told_of(const std::string& stages) {
+// What a run of this body in these stages says.
+std::string told_of(const swage::TriMesh& mesh, const std::string& stages) {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "scene.toml";
-    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    swage::write_obj(scratch.path() / "body.obj", mesh);
     put_text(scene,
-             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = "
-             "2\n" +
+             "[mesh]\nfile = \"body.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 2\n" +
                  stages);
     const Outcome outcome = run_swage(
         {"run", scene.string(), "--out", (scratch.path() / "run").string(), "--no-render"});
@@ -29,21 +31,24 @@ bool says(const std::string& text, const std::string& what) {
     return text.find(what) != std::string::npos;
 }
 
+const swage::TriMesh kBar = box_mesh({-0.05, -0.01, -0.01}, {0.05, 0.01, 0.01});
+
 }  // namespace
 
 TEST_CASE("a blade that meets nothing is told of, and one that cuts is not") {
-    CHECK(says(told_of("[[stage]]\nmachine = \"cut\"\nframes = 2\nplace = 2\n"),
-               "has met no matter"));
-    CHECK(!says(told_of("[[stage]]\nmachine = \"cut\"\nframes = 2\n"), "met no matter"));
+    const swage::TriMesh parted = together(box_mesh({-0.05, -0.01, -0.01}, {-0.02, 0.01, 0.01}),
+                                           box_mesh({0.02, -0.01, -0.01}, {0.05, 0.01, 0.01}));
+    const std::string cut = "[[stage]]\nmachine = \"cut\"\nframes = 2\n";
+    CHECK(says(told_of(parted, cut), "has met no matter"));
+    CHECK(!says(told_of(kBar, cut), "met no matter"));
 }
 
-TEST_CASE(
-    "what a cut has laid open takes no pressure, and the run says so until it is molded anew") {
+TEST_CASE("what a cut lays open takes no pressure, and the run says so until it is molded anew") {
     const std::string cut = "[[stage]]\nmachine = \"cut\"\nframes = 2\n",
                       hold = "[[stage]]\nmachine = \"hold\"\nframes = 1\n",
                       press = "[[stage.load]]\npressure = \"1 kPa\"\n";
     const std::string warning = "does not act on faces";
-    CHECK(!says(told_of(hold + press), warning));
-    CHECK(says(told_of(cut + hold + press), warning));
-    CHECK(!says(told_of(cut + hold + "remold = true\n" + press), warning));
+    CHECK(!says(told_of(kBar, hold + press), warning));
+    CHECK(says(told_of(kBar, cut + hold + press), warning));
+    CHECK(!says(told_of(kBar, cut + hold + "remold = true\n" + press), warning));
 }
