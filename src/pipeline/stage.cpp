@@ -176,9 +176,14 @@ class StageRun {
             FrameReport frame;
             for (; leg_ < legs_.leg.size() && legs_.leg[leg_].frame == n - 1; ++leg_) {
                 throw_if_interrupted();
+                if (leg_ > 0 && legs_.leg[leg_ - 1].frame == n - 1) follow_on_the_way();
                 plan_cuts(simulation, number);
-                const auto lap = context_.watch.lap("simulate");
-                frame.go_on(simulation.advance(ahead_.front(), ahead_[steps_]));
+                FrameReport report = [&] {
+                    const auto lap = context_.watch.lap("simulate");
+                    return simulation.advance(ahead_.front(), ahead_[steps_]);
+                }();
+                if (report.severed > 0) hold_skins();
+                frame.go_on(std::move(report));
                 curves.pass(frame.load);
                 ahead_ = ahead_.subspan(steps_);
             }
@@ -203,6 +208,18 @@ class StageRun {
             simulation.plan_cuts(b, ahead_, steps_);
             tears_ = cut_ahead(machine_, ahead_, bodies_[b], skin_, number, warnings_) || tears_;
         }
+    }
+
+    // A skin is cut, and held where it is severed, where it is as a leg begins.
+    void follow_on_the_way() {
+        if (!cuts_any() || skin_ == SkinKind::boundary) return;
+        const auto lap = context_.watch.lap("skin");
+        for (WorkPiece& body : bodies_) follow_matter(body, skin_);
+    }
+    void hold_skins() {
+        if (skin_ == SkinKind::boundary) return;
+        const auto lap = context_.watch.lap("skin");
+        for (WorkPiece& body : bodies_) hold_skin(body);
     }
 
     void dress(int number) {

@@ -179,6 +179,7 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
         piece.skin = skin.divide ? divided_skin(input.mesh, piece.matter) : input.mesh;
         if (body.color) paint(piece.skin, *body.color, body.metal);
         piece.position = piece.skin.position;
+        piece.followed = piece.matter.particle_position;
         piece.mount = mount_mesh(piece.position, piece.matter, skin.kind);
     }
     const StartSpec& start = body.start;
@@ -215,6 +216,16 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies) {
     return hasher.value();
 }
 
+void hold_skin(WorkPiece& piece) {
+    std::swap(piece.matter.particle_position, piece.followed);
+    if (piece.whole_skin) {
+        hold_places(piece.whole_mount, piece.matter, piece.whole_position);
+    } else {
+        hold_places(piece.mount, piece.matter, piece.position);
+    }
+    std::swap(piece.matter.particle_position, piece.followed);
+}
+
 int show_breaks(WorkPiece& piece) {
     if (!is_broken(piece.matter)) return 0;
     if (!piece.whole_skin) {
@@ -230,9 +241,8 @@ int show_breaks(WorkPiece& piece) {
 CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep) {
     const CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
     if (!piece.whole_skin) return shown;
-    std::vector<Vec3> now;
-    skin_positions(piece.whole_mount, piece.matter, now);
-    CutResult whole = cut_skin(*piece.whole_skin, now, piece.whole_mount, piece.matter, sweep);
+    CutResult whole =
+        cut_skin(*piece.whole_skin, piece.whole_position, piece.whole_mount, piece.matter, sweep);
     whole.open_parts = std::max(whole.open_parts, shown.open_parts);
     return whole;
 }
@@ -243,6 +253,10 @@ void follow_matter(WorkPiece& piece, SkinKind kind) {
         piece.position = piece.skin.position;
     } else {
         skin_positions(piece.mount, piece.matter, piece.position);
+        piece.followed = piece.matter.particle_position;
+        if (piece.whole_skin) {
+            skin_positions(piece.whole_mount, piece.matter, piece.whole_position);
+        }
     }
 }
 

@@ -52,9 +52,11 @@ struct WorkPiece {
     Mount mount;                          // unless the skin is a boundary
     std::shared_ptr<const NewLook> look;  // where it is
     std::vector<Vec3> position;           // of the skin now [m]
+    Vec3Array followed;                   // of the particles that this is from [m]
     // Once matter broke by load: what skin and mount were made from since.
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;
+    std::vector<Vec3> whole_position;
 
     // The skin as a mesh where it is now.
     TriMesh deformed() const;
@@ -76,6 +78,10 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 
 // Brings the skin to where the matter is.
 void follow_matter(WorkPiece& piece, SkinKind kind);
+
+// Lets a mounted skin go on from where it was: to be called when matter has been severed since it
+// followed, which it shall not be seen to do before it moves (hold_places).
+void hold_skin(WorkPiece& piece);
 
 // Parts a mounted skin where matter broke by load, and closes it. Returns in how many places that
 // was not possible. To be called when matter has broken or been severed.

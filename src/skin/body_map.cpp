@@ -2,6 +2,7 @@
 #include "skin/body_map.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <limits>
@@ -17,6 +18,24 @@ namespace {
 constexpr double kThinnest = 1e-3;  // of a cell's volume at rest, below which none is looked for
 
 }  // namespace
+
+Hold hold_between(const Vec3& reference, std::span<const BodyPlace> others) {
+    const BodyPlace& first = others.front();
+    Hold hold = first.hold;
+    Eigen::Matrix<double, 3, 2> way = Eigen::Matrix<double, 3, 2>::Zero(), change = way;
+    for (std::size_t n = 1; n < others.size(); ++n) {
+        const Hold& other = others[n].hold;
+        way.col(n - 1) = others[n].reference - first.reference;
+        change.col(n - 1) = other.offset - first.hold.offset;
+        if (other.offset.squaredNorm() > hold.offset.squaredNorm()) hold = other;
+    }
+    if (!hold.holds()) return hold;
+    // It fades as the longest does.
+    const Eigen::Vector2d share =
+        way.colPivHouseholderQr().solve(reference - first.reference).cwiseMax(0.0).cwiseMin(1.0);
+    hold.offset = first.hold.offset + change * share;
+    return hold;
+}
 
 BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(find_pieces(matter)) {
     std::vector<ParticleId> all(matter.particle_count());
@@ -37,25 +56,20 @@ Vec3 BodyMap::world(const BodyPlace& place) const {
     const CornerMask followed =
         followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
     const CellFrames cell = frames(corner);
-    return place.reference + (followed == kAllCorners
-                                  ? whole_displacement(half_frames(cell), carrier)
-                                  : part_displacement(cell, carrier, followed));
+    Vec3 world =
+        place.reference + (followed == kAllCorners ? whole_displacement(half_frames(cell), carrier)
+                                                   : part_displacement(cell, carrier, followed));
+    if (place.hold.holds())
+        world += place.hold.left(mean_stretch(cell, followed), matter_.lattice.spacing);
+    return world;
 }
 
-Mat3 BodyMap::mean_slope(CellId cell, CornerMask side) const {
-    const CellFrames frames = this->frames(matter_.lattice.cell_corners(cell));
-    Mat3 sum = Mat3::Zero();
-    int used = 0;
-    for (int c = 0; c < 8; ++c) {
-        if (!(side >> c & 1)) continue;
-        sum += frames.corner.col(c).head<9>().reshaped(3, 3);
-        ++used;
-    }
-    return Mat3::Identity() + sum / used;
+Mat3 BodyMap::slope(CellId cell, CornerMask side) const {
+    return mean_slope(frames(matter_.lattice.cell_corners(cell)), side);
 }
 
 std::optional<BodyPlace> BodyMap::solve(CellId cell, CornerMask side, const Vec3& world) const {
-    const Mat3 slope = mean_slope(cell, side);
+    const Mat3 slope = this->slope(cell, side);
     if (std::abs(slope.determinant()) < kThinnest) return std::nullopt;
     const Mat3 inverse = slope.inverse();
     const CellBox box = cell_box(matter_, cell);
@@ -119,13 +133,14 @@ BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<MappedCell>& ce
     if (best) return *best;
     // Far outside of all matter, as a skin on a block may be: it hangs on the next place.
     BodyPlace guess = near;
-    const Mat3 slope = mean_slope(near.cell, near.side);
+    const Mat3 slope = this->slope(near.cell, near.side);
     guess.reference += std::abs(slope.determinant()) < kThinnest ? way : slope.inverse() * way;
     return guess;
 }
 
 BodyPlace BodyMap::beside(const Vec3& reference, std::span<const BodyPlace> others) const {
-    BodyPlace place{reference, carrying_cell(matter_, reference)};
+    BodyPlace place{reference, carrying_cell(matter_, reference), kAllCorners,
+                    hold_between(reference, others)};
     if (is_whole(matter_, matter_.lattice.cell_corners(place.cell))) return place;
     for (const BodyPlace& other : others) {
         if (other.cell == place.cell) {

@@ -17,7 +17,11 @@ struct BodyPlace {
     Vec3 reference = Vec3::Zero();
     CellId cell = -1;
     CornerMask side = kAllCorners;
+    Hold hold = {};
 };
+
+// Of a place between up to three others: linear in the place.
+Hold hold_between(const Vec3& reference, std::span<const BodyPlace> others);
 
 // Where a cell's middle is now, and was at molding.
 struct MappedCell {
@@ -48,7 +52,7 @@ class BodyMap {
 
   private:
     CellFrames frames(const std::array<ParticleId, 8>& corner) const;
-    Mat3 mean_slope(CellId cell, CornerMask side) const;  // of the world by the body
+    Mat3 slope(CellId cell, CornerMask side) const;  // of the world by the body, in the mean
     // Nothing where the cell has no thickness or the search leaves its surroundings.
     std::optional<BodyPlace> solve(CellId cell, CornerMask side, const Vec3& world) const;
 

@@ -79,12 +79,15 @@ class PlaneCut {
             } else {
                 const std::size_t at = raw - old;
                 place = at < cut.size() ? cut[at] : inner[at - cut.size()];
-                world.push_back(map_.world(place));
+                // Where the body's map jumps not every place is to be found.
+                world.push_back(at < cut.size() ? plane_.world(plane_.flat(map_.world(place)))
+                                                : split.cap_point[at - cut.size()]);
             }
             reference.push_back(place.reference);
             mount_.reference.push_back(place.reference);
             mount_.cell.push_back(place.cell);
             mount_.side.push_back(place.side);
+            mount_.hold.push_back(place.hold);
         }
         leave_chips(split, world, own);
         for (std::size_t v = 0; v < own.size(); ++v) {
@@ -92,6 +95,7 @@ class PlaneCut {
         }
         mesh_ = apply_split(mesh_, split, reference, share);
         finish_mount(mount_, matter_);
+        hold_places(mount_, matter_, world);
         return split;
     }
 
@@ -129,7 +133,7 @@ class PlaneCut {
                            ends);
     }
     BodyPlace place_of(int v) const {
-        return {mount_.reference[v], mount_.cell[v], mount_.side[v]};
+        return {mount_.reference[v], mount_.cell[v], mount_.side[v], mount_.hold[v]};
     }
 
     // Where each edge of the mesh, straight at molding and curved by now, meets the plane. Regula
@@ -298,7 +302,7 @@ int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& ma
     const BodyMap map(matter);
     std::vector<int> piece;
     for (std::size_t v = 0; v < mount.reference.size(); ++v) {
-        piece.push_back(map.piece_of({mount.reference[v], mount.cell[v], mount.side[v]}));
+        piece.push_back(map.piece_of({mount.reference[v], mount.cell[v], mount.side[v], {}}));
     }
     std::vector<std::size_t> kept;
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {

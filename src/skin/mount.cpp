@@ -14,6 +14,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // cells
+constexpr double kHeld = 1e-9;       // spacings; nearer a vertex is at its place
 
 Vec3 moved_by(const Vec3& place, const Vec3& u) {
     // A sum with zero would turn -0 into 0.
@@ -81,6 +82,7 @@ void finish_mount(Mount& mount, const Aggregate& matter) {
         return std::pair(mount.cell[a], a) < std::pair(mount.cell[b], b);
     });
     mount.group.clear();
+    mount.hold.resize(count);
     mount.carrier.resize(count);
     std::vector<ParticleId> used;
     CellBox box;
@@ -107,10 +109,13 @@ void finish_mount(Mount& mount, const Aggregate& matter) {
     mount.stencil = make_frame_stencil(matter);
 }
 
-void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec3>& position) {
+namespace {
+
+// Calls visit(v, where it is, its cell, stretch() of what carries it) with each vertex.
+template <typename Visit>
+void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& visit) {
     std::vector<ParticleFrame> frame;
     particle_frames(matter, mount.stencil, mount.particle, frame);
-    position.resize(mount.reference.size());
     parallel_for((mount.group.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
         const std::size_t end = std::min(mount.group.size(), (chunk + 1) * kChunk);
         std::vector<Vec3> moved;
@@ -124,14 +129,25 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
             }
             cell.size =
                 matter.particle_reference.at(corner[7]) - matter.particle_reference.at(corner[0]);
+            CornerMask stretched = 0;  // which corners' stretch is known
+            Stretch known;
+            const auto go_on = [&](int v, const Vec3& u, CornerMask followed) {
+                const auto stretch = [&]() -> const Stretch& {
+                    if (stretched != followed) known = mean_stretch(cell, stretched = followed);
+                    return known;
+                };
+                Vec3 at = moved_by(mount.reference[v], u);
+                if (mount.hold[v].holds())
+                    at += mount.hold[v].left(stretch(), matter.lattice.spacing);
+                visit(v, at, group.cell, stretch);
+            };
             const bool whole = is_whole(matter, corner);
             if (whole && mount.kind == SkinKind::mount) {
                 moved.resize(static_cast<std::size_t>(group.count));
                 whole_displacements(half_frames(cell), &mount.carrier[group.first], group.count,
                                     moved.data());
                 for (int n = 0; n < group.count; ++n) {
-                    const int v = mount.vertex[group.first + n];
-                    position[v] = moved_by(mount.reference[v], moved[n]);
+                    go_on(mount.vertex[group.first + n], moved[n], kAllCorners);
                 }
                 continue;
             }
@@ -143,15 +159,44 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
                 const Carrier& carrier = mount.carrier[n];
                 const CornerMask followed =
                     whole ? kAllCorners : followed_corners(groups, mount.side[v], carrier.local);
-                Vec3 u;
-                if (mount.kind == SkinKind::frame4) {
-                    u = frame4_displacement(matter, corner, cell, carrier, followed);
-                } else {
-                    u = part_displacement(cell, carrier, followed);
-                }
-                position[v] = moved_by(mount.reference[v], u);
+                const Vec3 u = mount.kind == SkinKind::frame4
+                                   ? frame4_displacement(matter, corner, cell, carrier, followed)
+                                   : part_displacement(cell, carrier, followed);
+                go_on(v, u, followed);
             }
         }
+    });
+}
+
+double flowed_around(const Aggregate& matter, CellId cell) {
+    if (matter.cell_hardening.empty()) return 0;
+    float most = 0;
+    const Vec3i site = matter.lattice.cell_site(cell);
+    for (int n = 0; n < 27; ++n) {
+        const Vec3i at = site + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const CellId near = matter.lattice.cell_at(at.x(), at.y(), at.z());
+        if (near >= 0) most = std::max(most, matter.cell_hardening[near]);
+    }
+    return most;
+}
+
+}  // namespace
+
+void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec3>& position) {
+    position.resize(mount.reference.size());
+    for_each_vertex(mount, matter,
+                    [&](int v, const Vec3& at, CellId, const auto&) { position[v] = at; });
+}
+
+void hold_places(Mount& mount, const Aggregate& matter, const std::vector<Vec3>& place) {
+    const double least = kHeld * matter.lattice.spacing;
+    for_each_vertex(mount, matter, [&](int v, const Vec3& at, CellId cell, const auto& stretch) {
+        const Vec3 gap = place[v] - at;
+        if (gap.squaredNorm() <= least * least) return;
+        const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
+        if (corner_groups(matter, corner) != corner_groups_of_cut(matter, corner)) return;
+        mount.hold[v] = held_on(mount.hold[v], gap, stretch(), matter.lattice.spacing,
+                                flowed_around(matter, cell));
     });
 }
 

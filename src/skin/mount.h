@@ -11,13 +11,14 @@
 
 namespace swage {
 
-// Vertices in the order of the mesh. `reference`, `cell` and `side` say everything; the rest is
-// derived from them by finish_mount.
+// Vertices in the order of the mesh. `reference`, `cell`, `side` and `hold` say everything; the
+// rest is derived from them by finish_mount.
 struct Mount {
     SkinKind kind = SkinKind::mount;
     std::vector<Vec3> reference;   // at molding [m]
     std::vector<CellId> cell;      // that carries the vertex
     std::vector<CornerMask> side;  // corners that it follows once the cell is severed
+    std::vector<Hold> hold;        // beside what these alone tell
 
     // Vertices of one cell together, so that its frames are read once.
     struct CellGroup {
@@ -42,5 +43,10 @@ void finish_mount(Mount& mount, const Aggregate& matter);
 // Where the vertices are now [m]. With the matter at rest they are the reference to the bit; a
 // rigid motion is followed exactly; in severed cells each vertex follows the matter on its side.
 void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec3>& position);
+
+// With the matter where it is now, the vertices are at `place` and follow it from there (Hold). To
+// be called when cells, sides or connections were changed. Cells that broke by load are left out:
+// their vertices part only then.
+void hold_places(Mount& mount, const Aggregate& matter, const std::vector<Vec3>& place);
 
 }  // namespace swage

@@ -113,14 +113,12 @@ PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Agg
         const Vec3& at = mesh.position[v];
         source_.push_back(static_cast<int>(v));
         if (v < old) {
-            mount_at({at, whole_mount.cell[v], whole_mount.side[v]});
-        } else if (uncracked_) {
+            mount_at({at, whole_mount.cell[v], whole_mount.side[v], whole_mount.hold[v]});
+        } else {
             const Corners& c = whole.triangle[diced_.on_triangle[v - old]];
             const std::array<BodyPlace, 3> corner = {place_of(c[0]), place_of(c[1]),
                                                      place_of(c[2])};
-            mount_at(uncracked_->map.beside(at, corner));
-        } else {
-            mount_at({at, carrying_cell(matter, at)});
+            mount_beside(at, corner);
         }
     }
     part_vertices();
@@ -130,6 +128,12 @@ void PartedSkin::mount_at(const BodyPlace& place) {
     mount.reference.push_back(place.reference);
     mount.cell.push_back(place.cell);
     mount.side.push_back(place.side);
+    mount.hold.push_back(place.hold);
+}
+
+void PartedSkin::mount_beside(const Vec3& place, std::span<const BodyPlace> others) {
+    if (uncracked_) return mount_at(uncracked_->map.beside(place, others));
+    mount_at({place, carrying_cell(matter_, place), kAllCorners, hold_between(place, others)});
 }
 
 bool PartedSkin::joined(const Vec3i& lower, int axis) const {
@@ -190,7 +194,7 @@ int PartedSkin::copy_of(int v, const Vec3i& site) {
             const Eigen::Vector3f color = mesh.position_color[v];
             mesh.position_color.push_back(color);
         }
-        mount_at({mesh.position[v], whole_cell_[v], whole_side_[v]});
+        mount_at({mesh.position[v], whole_cell_[v], whole_side_[v], mount.hold[v]});
         source_.push_back(v);
     }
     used_[v] = 1;
@@ -333,10 +337,11 @@ int PartedSkin::add_vertex(const Vec3& place, const std::array<int, 3>& plane,
     const std::size_t v = mesh.position.size();
     mesh.position.push_back(place);
     if (!mesh.position_color.empty()) mesh.position_color.push_back(color);
-    if (uncracked_ && beside >= 0) {
+    if (beside >= 0) {
         const int source = source_[beside];
-        const BodyPlace near{mount.reference[beside], whole_cell_[source], whole_side_[source]};
-        mount_at(uncracked_->map.beside(place, {&near, 1}));
+        const BodyPlace near{mount.reference[beside], whole_cell_[source], whole_side_[source],
+                             mount.hold[source]};
+        mount_beside(place, {&near, 1});
     } else {
         mount_at({place, carrying_cell(matter_, place)});
     }

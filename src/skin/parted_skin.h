@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <unordered_set>
 #include <vector>
 
@@ -64,8 +65,11 @@ class PartedSkin {
         Aggregate matter;
         BodyMap map;
     };
-    BodyPlace place_of(int v) const { return {mount.reference[v], mount.cell[v], mount.side[v]}; }
+    BodyPlace place_of(int v) const {
+        return {mount.reference[v], mount.cell[v], mount.side[v], mount.hold[v]};
+    }
     void mount_at(const BodyPlace& place);
+    void mount_beside(const Vec3& place, std::span<const BodyPlace> others);
     Mask group_of(int v, const Vec3i& site) const;
     static Mask all_around(const std::array<int, 3>& plane);
     void take_sides(int copy, int v, const Vec3i& site, Mask group);
