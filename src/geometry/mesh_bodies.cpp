@@ -11,12 +11,11 @@
 #include <utility>
 
 #include "base/error.h"
-#include "geometry/disjoint_sets.h"
-#include "geometry/edges.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair_cgal.h"
 #include "geometry/mesh_shells.h"
+#include "geometry/mesh_unite.h"
 
 namespace swage {
 
@@ -401,17 +400,6 @@ class Settler {
 };
 
 }  // namespace
-
-std::vector<int> shells_of(const TriMesh& mesh) {
-    DisjointSets sets(mesh.triangle.size());
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        for (std::size_t i = 1; i < uses.size(); ++i)
-            sets.unite(uses[0].triangle, uses[i].triangle);
-    });
-    std::vector<int> shell;
-    sets.number_sets(shell);
-    return shell;
-}
 
 std::optional<std::string> settle_bodies(TriMesh& mesh, std::vector<std::string>& account) {
     return Settler(mesh, account).run();

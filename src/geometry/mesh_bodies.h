@@ -10,9 +10,6 @@
 
 namespace swage {
 
-// Parts connected through shared edges, numbered by their first triangle; one number a triangle.
-std::vector<int> shells_of(const TriMesh& mesh);
-
 // For closed, oriented shells: turns bodies outward (with all that is inside them, so that a cavity
 // stays one), leaves out a body inside another of the same sense, unites bodies that cross (each
 // less its cavities) and cavities that do. Adds a sentence to `account` for each kind of change.

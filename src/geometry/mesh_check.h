@@ -36,10 +36,10 @@ struct MeshReport {
     std::vector<std::string> finding;  // a sentence for each thing that is not as it should be
 
     bool bounds_a_volume() const { return watertight && oriented && volume > 0; }
-    // There is nothing to repair: of several bodies one may be inside out or inside another, and
-    // one body may be given twice.
+    // There is nothing to repair: of several bodies one may be inside out or inside another, also
+    // where they share an edge or a vertex, and one body may be given twice.
     bool is_one_body() const {
-        return bounds_a_volume() && components == 1 && duplicate_triangles == 0;
+        return bounds_a_volume() && components == 1 && manifold && duplicate_triangles == 0;
     }
 };
 

@@ -12,6 +12,7 @@
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair_cgal.h"
+#include "geometry/mesh_shells.h"
 #include "geometry/mesh_stitch.h"
 
 namespace swage {
@@ -158,14 +159,22 @@ class Repairer {
         if (std::count(keep.begin(), keep.end(), 0) == 0) return;
         // Where that would open a shell its copies stay: two bodies share those triangles.
         const std::vector<int> shell = shells_of(mesh_);
+        const std::vector<EdgeUse> all_uses = edge_uses(mesh_.triangle, mesh_.position.size());
         std::vector<char> opens(mesh_.triangle.size(), 0);
-        for_each_edge(edge_uses(mesh_.triangle, mesh_.position.size()), [&](auto uses) {
-            int sum = 0;
-            for (const EdgeUse& use : uses)
-                if (keep[use.triangle]) sum += use.forward ? 1 : -1;
-            if (sum != 0) opens[shell[uses[0].triangle]] = 1;
-        });
-        for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = keep[t] || opens[shell[t]];
+        for (bool more = true; more;) {
+            more = false;
+            for_each_edge(all_uses, [&](auto uses) {
+                int sum = 0;
+                for (const EdgeUse& use : uses)
+                    if (keep[use.triangle]) sum += use.forward ? 1 : -1;
+                if (sum == 0) return;
+                for (const EdgeUse& use : uses) {
+                    more = more || opens[shell[use.triangle]] == 0;
+                    opens[shell[use.triangle]] = 1;
+                }
+            });
+            for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = keep[t] || opens[shell[t]];
+        }
         const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
         if (dropped == 0) return;
         keep_triangles(mesh_, keep);

@@ -17,6 +17,7 @@
 #include <memory>
 #include <set>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/polygon.h"
 
 namespace swage {
@@ -122,29 +123,44 @@ TriMesh wrap_triangles(const TriMesh& mesh, double alpha, double offset) {
     return from_surface(wrap);
 }
 
-bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+bool cut_along_each_other(const TriMesh& a, const TriMesh& b, CutSurface& cut_a,
+                          CutSurface& cut_b) {
     namespace pmp = CGAL::Polygon_mesh_processing;
-    Surface first, second, both;
+    Surface first, second;
     if (!to_surface(a, first) || !to_surface(b, second)) return false;
     OriginVisitor visitor;
-    for (const Face f : first.faces()) visitor.put(first, f, static_cast<int>(f.idx()));
-    for (const Face f : second.faces())
-        visitor.put(second, f, static_cast<int>(a.triangle.size() + f.idx()));
+    for (Surface* surface : {&first, &second})
+        for (const Face f : surface->faces()) visitor.put(*surface, f, static_cast<int>(f.idx()));
+    const auto on_cut_a = first.add_property_map<Surface::Edge_index, bool>("e:cut", false).first;
+    const auto on_cut_b = second.add_property_map<Surface::Edge_index, bool>("e:cut", false).first;
     try {
-        if (!pmp::corefine_and_compute_union(
-                first, second, both,
-                pmp::parameters::visitor(visitor).throw_on_self_intersection(true)))
-            return false;
+        pmp::corefine(first, second,
+                      pmp::parameters::visitor(visitor)
+                          .edge_is_constrained_map(on_cut_a)
+                          .throw_on_self_intersection(true),
+                      pmp::parameters::edge_is_constrained_map(on_cut_b));
     } catch (const std::exception&) {
         return false;
     }
-    result = from_surface(both);
-    origin.clear();
-    for (const Face f : both.faces()) {
-        origin.push_back(visitor.get(both, f));
-        if (origin.back() < 0) return false;
-    }
-    return true;
+    const auto finish = [&](const Surface& surface, const auto& on_cut, CutSurface& cut) {
+        cut.mesh = from_surface(surface);
+        cut.origin.clear();
+        cut.patch.clear();
+        std::map<Face, int> number;
+        for (const Face f : surface.faces()) {
+            number[f] = static_cast<int>(cut.origin.size());
+            cut.origin.push_back(visitor.get(surface, f));
+            if (cut.origin.back() < 0) return false;
+        }
+        DisjointSets sets(cut.origin.size());
+        for (const auto e : surface.edges())
+            if (!on_cut[e])
+                sets.unite(number.at(surface.face(surface.halfedge(e, 0))),
+                           number.at(surface.face(surface.halfedge(e, 1))));
+        sets.number_sets(cut.patch);
+        return true;
+    };
+    return finish(first, on_cut_a, cut_a) && finish(second, on_cut_b, cut_b);
 }
 
 std::optional<std::vector<std::pair<int, int>>> parts_that_meet(const TriMesh& mesh,

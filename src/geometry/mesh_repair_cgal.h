@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two repairs that CGAL does; kept apart because its headers take a minute to compile.
+// What repairs need of CGAL; kept apart because its headers take a minute to compile.
 #pragma once
 
 #include <optional>
@@ -18,10 +18,14 @@ std::vector<Corners> fill_outline(const std::vector<Vec3>& outline);
 // `offset` [m] away from them. Positions and triangles only.
 TriMesh wrap_triangles(const TriMesh& mesh, double alpha, double offset);
 
-// The union of two closed, oriented surfaces that cross. `origin` tells for each triangle of the
-// result which triangle it is a piece of: t of a, or a.triangle.size() + t of b. False when it
-// cannot be made (a surface that crosses itself, say). Positions and triangles only.
-bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
+// Cuts two closed, oriented surfaces where they meet, into patches that neither crosses. False when
+// that cannot be done (a surface that crosses itself, say). Positions and triangles only.
+struct CutSurface {
+    TriMesh mesh;
+    std::vector<int> origin;  // the triangle that each is a piece of
+    std::vector<int> patch;   // of each triangle, numbered from 0
+};
+bool cut_along_each_other(const TriMesh& a, const TriMesh& b, CutSurface& cut_a, CutSurface& cut_b);
 
 // Of triangles that belong to parts, one number a triangle: the pairs of parts that cross or touch,
 // the lower number first, sorted. None when more than `most` pairs of triangles would have to be

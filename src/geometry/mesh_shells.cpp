@@ -2,11 +2,198 @@
 #include "geometry/mesh_shells.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <span>
 #include <utility>
 
+#include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
 #include "geometry/mesh_edit.h"
 
 namespace swage {
+
+namespace {
+
+constexpr double kSameTurn = 1e-9;  // of a quarter turn: triangles that lie on each other
+
+// A triangle at an edge, seen along it.
+struct Blade {
+    double turn;  // 0 to 4: quarters of the way around, counter-clockwise, from the first
+    EdgeUse use;
+    bool opens;  // going around, matter begins here; else it ends
+};
+
+// In the order around the edge. Of those that lie on each other, matter's ends come first: bodies
+// that touch along a face stay two.
+std::vector<Blade> blades_of(const TriMesh& mesh, std::span<const EdgeUse> uses, bool inside_out) {
+    const Vec3& low = mesh.position[uses[0].low];
+    const Vec3 along = (mesh.position[uses[0].high] - low).normalized();
+    const auto across = [&](const EdgeUse& use) -> Vec3 {
+        const Vec3 arm = mesh.position[mesh.triangle[use.triangle][(use.side + 2) % 3]] - low;
+        return arm - along * along.dot(arm);
+    };
+    const Vec3 x = across(uses[0]).normalized(), y = along.cross(x);
+    std::vector<Blade> blades;
+    for (const EdgeUse& use : uses) {
+        const Vec3 arm = across(use);
+        const double right = arm.dot(x), up = arm.dot(y);
+        const double sum = std::abs(right) + std::abs(up);  // no angle, but in its order
+        double turn = sum > 0 ? up / sum : 0;
+        if (right < 0)
+            turn = 2 - turn;
+        else if (up < 0)
+            turn += 4;
+        if (turn > 4 - kSameTurn) turn = 0;
+        blades.push_back({turn, use, use.forward == inside_out});
+    }
+    std::sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) {
+        return a.turn != b.turn ? a.turn < b.turn : a.use.triangle < b.use.triangle;
+    });
+    for (std::size_t i = 1; i < blades.size(); ++i)
+        if (blades[i].turn - blades[i - 1].turn < kSameTurn) blades[i].turn = blades[i - 1].turn;
+    // The lower of several in one place is nearer to the matter it bounds, on either side: of
+    // surfaces that lie on each other the first ones in the file go together.
+    std::sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) {
+        if (a.turn != b.turn) return a.turn < b.turn;
+        if (a.opens != b.opens) return b.opens;
+        return (a.use.triangle < b.use.triangle) != a.opens;
+    });
+    return blades;
+}
+
+// Of the triangles at an edge, as many that run along it in one direction as in the other, calls
+// join(use, use) for two and two: like brackets, each pair with whole pairs only between them.
+template <typename F>
+void join_wedges(const TriMesh& mesh, std::span<const EdgeUse> uses, bool inside_out,
+                 const F& join) {
+    const std::vector<Blade> blades = blades_of(mesh, uses, inside_out);
+    std::vector<EdgeUse> open;
+    std::vector<char> joined(blades.size(), 0);
+    for (const bool first_lap : {true, false})
+        for (std::size_t i = 0; i < blades.size(); ++i) {
+            if (blades[i].opens) {
+                if (first_lap) open.push_back(blades[i].use);
+            } else if (!joined[i] && !open.empty()) {
+                join(open.back(), blades[i].use);
+                open.pop_back();
+                joined[i] = 1;
+            }
+        }
+}
+
+auto joiner(DisjointSets& sets) {
+    return [&](const EdgeUse& a, const EdgeUse& b) { sets.unite(a.triangle, b.triangle); };
+}
+
+// As brackets in the order of the file, where the triangles of one body mostly stand together.
+void join_in_order(const std::vector<EdgeUse>& uses, DisjointSets& sets) {
+    std::vector<EdgeUse> open;
+    for (const EdgeUse& use : uses) {
+        if (open.empty() || open.back().forward == use.forward) {
+            open.push_back(use);
+            continue;
+        }
+        sets.unite(open.back().triangle, use.triangle);
+        open.pop_back();
+    }
+}
+
+// Those at an edge that have no partner among the triangles they are joined to already.
+std::vector<EdgeUse> without_partner(std::span<const EdgeUse> uses, DisjointSets& sets) {
+    std::vector<EdgeUse> left;
+    for (const EdgeUse& use : uses) {
+        const auto partner = std::find_if(left.begin(), left.end(), [&](const EdgeUse& other) {
+            return other.forward != use.forward &&
+                   sets.root(other.triangle) == sets.root(use.triangle);
+        });
+        if (partner == left.end())
+            left.push_back(use);
+        else
+            left.erase(partner);
+    }
+    return left;
+}
+
+// How many of the shells, if closed, enclose something.
+std::size_t solid_count(const TriMesh& mesh, const std::vector<int>& shell, int count) {
+    std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
+    const Box box = box_of(mesh.position);
+    const Vec3 middle = box.center();
+    for (std::size_t t = 0; t < shell.size(); ++t) {
+        const Corners& c = mesh.triangle[t];
+        const Vec3 p = mesh.position[c[0]] - middle, q = mesh.position[c[1]] - middle;
+        volume[static_cast<std::size_t>(shell[t])] +=
+            p.cross(q).dot(mesh.position[c[2]] - middle) / 6;
+    }
+    const double least = 1e-12 * std::pow(box.size().norm(), 3);
+    return static_cast<std::size_t>(
+        std::count_if(volume.begin(), volume.end(), [&](double v) { return std::abs(v) > least; }));
+}
+
+int excess(std::span<const EdgeUse> uses) {
+    int sum = 0;
+    for (const EdgeUse& use : uses) sum += use.forward ? 1 : -1;
+    return sum;
+}
+
+}  // namespace
+
+std::vector<int> shells_of(const TriMesh& mesh) {
+    DisjointSets sets(mesh.triangle.size());
+    const std::vector<EdgeUse> all_uses = edge_uses(mesh.triangle, mesh.position.size());
+    std::vector<std::span<const EdgeUse>> crowded;
+    for_each_edge(all_uses, [&](std::span<const EdgeUse> uses) {
+        if (uses.size() > 2 && excess(uses) == 0) {
+            crowded.push_back(uses);
+            return;
+        }
+        for (std::size_t i = 1; i < uses.size(); ++i)
+            sets.unite(uses[0].triangle, uses[i].triangle);
+    });
+    const bool inside_out = !crowded.empty() && signed_volume(mesh) < 0;
+    if (!mesh.triangle_part.empty())
+        for (const auto& uses : crowded) {
+            std::map<int, std::vector<EdgeUse>> of_part;
+            for (const EdgeUse& use : without_partner(uses, sets))
+                of_part[mesh.triangle_part[use.triangle]].push_back(use);
+            for (const auto& [part, own] : of_part)
+                if (excess(own) == 0) join_wedges(mesh, own, inside_out, joiner(sets));
+        }
+    DisjointSets by_order = sets;
+    for (const auto& uses : crowded) {
+        if (const auto left = without_partner(uses, sets); !left.empty())
+            join_wedges(mesh, left, inside_out, joiner(sets));
+        join_in_order(without_partner(uses, by_order), by_order);
+    }
+    // What is joined amiss at one edge joins bodies, or makes a sheet of their walls, at the next.
+    std::vector<int> shell, other;
+    const int count = by_order.number_sets(shell), other_count = sets.number_sets(other);
+    if (!crowded.empty() && solid_count(mesh, other, other_count) > solid_count(mesh, shell, count))
+        return other;
+    return shell;
+}
+
+TriMesh split_fans(const TriMesh& mesh) {
+    DisjointSets fans(3 * mesh.triangle.size());
+    const auto join = [&](const EdgeUse& a, const EdgeUse& b) {
+        fans.unite(3 * a.triangle + a.side, 3 * b.triangle + (b.side + 1) % 3);
+        fans.unite(3 * a.triangle + (a.side + 1) % 3, 3 * b.triangle + b.side);
+    };
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
+                  [&](std::span<const EdgeUse> uses) {
+                      if (excess(uses) == 0) join_wedges(mesh, uses, false, join);
+                  });
+    std::vector<int> fan;
+    TriMesh split;
+    split.position.resize(fans.number_sets(fan));
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const Corners own = {fan[3 * t], fan[3 * t + 1], fan[3 * t + 2]};
+        for (int k = 0; k < 3; ++k) split.position[own[k]] = mesh.position[mesh.triangle[t][k]];
+        split.triangle.push_back(own);
+    }
+    return split;
+}
 
 std::vector<Shell> split_shells(const TriMesh& mesh, const std::vector<int>& shell, int count) {
     std::vector<Shell> shells(count);

@@ -23,6 +23,16 @@ struct Shell {
     }
 };
 
+// Parts connected through shared edges, numbered by their first triangle; one number a triangle.
+// Where more than two triangles share an edge, bodies touch or cross there: those of them belong
+// together that are one surface elsewhere, or one part of the file's; else those that stand
+// together in the file, or that bound a wedge of matter, whichever keeps more bodies apart.
+std::vector<int> shells_of(const TriMesh& mesh);
+
+// The triangles of a closed surface, with a vertex of its own for each fan of them: it no longer
+// touches itself at an edge or a vertex.
+TriMesh split_fans(const TriMesh& mesh);
+
 // One for each number in `shell`, which has one a triangle. Attributes keep their numbers; only
 // positions are made few, so that many shells are cheap.
 std::vector<Shell> split_shells(const TriMesh& mesh, const std::vector<int>& shell, int count);

@@ -2,6 +2,10 @@
 // What the repair makes of bodies that cross, touch and lie in each other.
 #include "geometry/mesh_bodies.h"
 
+#include <map>
+#include <random>
+#include <set>
+
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_repair.h"
 #include "tests/catch.h"
@@ -150,4 +154,153 @@ TEST_CASE("a mesh given twice, as two shells, is one body") {
         CHECK(signed_volume(repair.mesh) == Approx(6));
         CHECK(check_mesh(repair.mesh).components == 1);
     }
+}
+
+namespace {
+
+using Cell = std::array<int, 3>;
+using Block = std::pair<Cell, Cell>;  // from one corner of a grid to another
+
+// A box of unit squares.
+TriMesh squared_box(const Block& block) {
+    const auto& [low, high] = block;
+    TriMesh mesh;
+    const auto add = [&](int axis, bool upper) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (int i = low[u]; i < high[u]; ++i)
+            for (int j = low[v]; j < high[v]; ++j) {
+                const int base = static_cast<int>(mesh.position.size());
+                for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+                    Vec3 p;
+                    p[axis] = upper ? high[axis] : low[axis];
+                    p[u] = i + a;
+                    p[v] = j + b;
+                    mesh.position.push_back(p);
+                }
+                for (Corners t : {Corners{0, 1, 2}, Corners{0, 2, 3}}) {
+                    if (!upper) std::swap(t[1], t[2]);
+                    mesh.triangle.push_back({t[0] + base, t[1] + base, t[2] + base});
+                }
+            }
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        for (const bool upper : {false, true}) add(axis, upper);
+    return mesh;
+}
+
+// Blocks as a file's parts, with one position for each place.
+TriMesh welded_blocks(const std::vector<Block>& blocks, bool as_parts) {
+    TriMesh mesh;
+    for (const Block& block : blocks) {
+        append(mesh, squared_box(block));
+        if (!as_parts) continue;
+        mesh.triangle_part.resize(mesh.triangle.size(), static_cast<int>(mesh.part_name.size()));
+        mesh.part_name.push_back("block");
+    }
+    std::map<Cell, int> place;
+    std::vector<Vec3> position;
+    std::vector<int> number;
+    for (const Vec3& p : mesh.position) {
+        const Cell key = {static_cast<int>(p.x()), static_cast<int>(p.y()),
+                          static_cast<int>(p.z())};
+        const auto [at, is_new] = place.emplace(key, static_cast<int>(position.size()));
+        if (is_new) position.push_back(p);
+        number.push_back(at->second);
+    }
+    mesh.position = position;
+    for (Corners& t : mesh.triangle)
+        for (int& i : t) i = number[i];
+    return mesh;
+}
+
+double union_volume(const std::vector<Block>& blocks) {
+    std::set<Cell> filled;
+    for (const auto& [low, high] : blocks)
+        for (int x = low[0]; x < high[0]; ++x)
+            for (int y = low[1]; y < high[1]; ++y)
+                for (int z = low[2]; z < high[2]; ++z) filled.insert({x, y, z});
+    return static_cast<double>(filled.size());
+}
+
+}  // namespace
+
+TEST_CASE("bodies that cross and share edges of one grid are united to their true volume") {
+    const Block bar = {{0, 1, 1}, {10, 3, 3}};
+    const std::vector<std::vector<Block>> cases = {
+        {bar, {{4, 2, 0}, {6, 5, 4}}},                             // no edge, no vertex of both
+        {bar, {{4, 1, 0}, {6, 4, 4}}},                             // along two edges
+        {bar, {{4, 3, 1}, {6, 5, 3}}, {{5, 2, 2}, {7, 4, 4}}},     // across a face that two share
+        {bar, {{5, 1, 1}, {12, 3, 3}}},                            // one bar further into the other
+        {bar, {{0, 1, 1}, {4, 5, 3}}},                             // flush on three sides
+        {bar, {{4, 3, 3}, {6, 5, 5}}, {{4, 2, 2}, {6, 4, 4}}},     // two at one edge, one across it
+        {bar, {{4, 0, 0}, {6, 3, 3}}, {{3, 1, 1}, {5, 5, 5}}},     // three through one edge
+        {bar, {{10, 3, 3}, {12, 5, 5}}, {{9, 2, 2}, {11, 4, 4}}},  // two at one vertex
+    };
+    for (const std::vector<Block>& blocks : cases)
+        for (const bool as_parts : {true, false}) {
+            CAPTURE(union_volume(blocks), as_parts);
+            TriMesh mesh = welded_blocks(blocks, as_parts);
+            CHECK(!check_mesh(mesh).is_one_body());
+            for (const bool inside_out : {false, true}) {
+                if (inside_out)
+                    for (Corners& t : mesh.triangle) std::swap(t[0], t[1]);
+                const Repair repair = repair_mesh(mesh);
+                CHECK(told(repair, "crossing bodies: a volume of"));
+                const MeshReport report = check_mesh(repair.mesh);
+                CHECK(report.bounds_a_volume());
+                CHECK(report.volume == Approx(union_volume(blocks)));
+                CHECK(report.degenerate_triangles == 0);
+            }
+        }
+}
+
+TEST_CASE("blocks of one grid are united however they lie to each other") {
+    std::mt19937 random(5);
+    for (int round = 0; round < 60; ++round) {
+        std::vector<Block> blocks(2 + round % 3);
+        const bool as_parts = round % 2 == 0;
+        for (auto& [low, high] : blocks)
+            for (int k = 0; k < 3; ++k) {
+                low[k] = static_cast<int>(random() % 4);
+                high[k] = low[k] + 1 + static_cast<int>(random() % 3);
+            }
+        CAPTURE(round);
+        const MeshReport report = check_mesh(repair_mesh(welded_blocks(blocks, as_parts)).mesh);
+        CHECK(report.bounds_a_volume());
+        CHECK(report.volume == Approx(union_volume(blocks)));
+        CHECK(report.degenerate_triangles == 0);
+    }
+}
+
+TEST_CASE("what only touches, itself or another, stays as it is") {
+    const Block one = {{0, 0, 0}, {2, 2, 2}};
+    for (const Block& other : {Block{{2, 0, 0}, {4, 2, 2}},   // along a face
+                               Block{{2, 1, 0}, {4, 3, 2}},   // along a part of one
+                               Block{{2, 2, 0}, {4, 4, 2}},   // along an edge
+                               Block{{2, 2, 2}, {4, 4, 4}}})  // at a vertex
+        for (const bool as_parts : {true, false}) {
+            const TriMesh mesh = welded_blocks({one, other}, as_parts);
+            const Repair repair = repair_mesh(mesh);
+            CHECK(repair.account.empty());
+            CHECK(repair.mesh.triangle == mesh.triangle);
+            CHECK(signed_volume(repair.mesh) == Approx(16));
+        }
+
+    // Two blocks and the bridge that makes them one body, which touches itself along an edge.
+    const TriMesh bridged = repair_mesh(welded_blocks({one,
+                                                       {{2, 2, 0}, {4, 4, 2}},
+                                                       {{0, 0, -2}, {4, 4, 0}},
+                                                       {{1, 1, -1}, {2, 2, 1}},
+                                                       {{2, 2, -1}, {3, 3, 1}}},
+                                                      true))
+                                .mesh;
+    CHECK(check_mesh(bridged).crowded_edges > 0);
+    CHECK(signed_volume(bridged) == Approx(16 + 32));
+    const Repair again = repair_mesh(bridged);
+    CHECK(again.account.empty());
+    CHECK(again.mesh.triangle == bridged.triangle);
+    // Another that crosses it elsewhere is united with it.
+    TriMesh crossed = bridged;
+    append(crossed, box_mesh({0.5, 0.5, 1}, {1.5, 1.5, 3}));
+    CHECK(signed_volume(repair_mesh(crossed).mesh) == Approx(48 + 1));
 }

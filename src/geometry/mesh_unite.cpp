@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CGAL's own union is not used: it refuses a result that touches itself along an edge, and that of
+// CGAL 5.5 never ends for some bodies whose faces lie on each other.
+#include "geometry/mesh_unite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "geometry/box.h"
+#include "geometry/edges.h"
+#include "geometry/mesh_repair_cgal.h"
+#include "geometry/mesh_shells.h"
+#include "geometry/triangle_tree.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kOnSurface = 1e-9;  // of the size of both: no further from it
+constexpr double kNoArea = 1e-10;    // of the longest side squared
+
+Vec3 area_vector(const TriMesh& mesh, const Corners& t) {
+    return (mesh.position[t[1]] - mesh.position[t[0]])
+        .cross(mesh.position[t[2]] - mesh.position[t[0]]);
+}
+
+// Which patches of one surface bound the union with another. Where the two lie on each other and
+// face the same way only `keep_common` ones do.
+std::vector<char> outer_patches(const CutSurface& cut, const TriMesh& other, double gap,
+                                bool keep_common) {
+    std::vector<int> largest;  // triangle of each patch: in the middle of it as far as may be
+    std::vector<double> area;
+    for (std::size_t t = 0; t < cut.patch.size(); ++t) {
+        const auto p = static_cast<std::size_t>(cut.patch[t]);
+        if (p >= area.size()) {
+            area.resize(p + 1, -1);
+            largest.resize(p + 1, 0);
+        }
+        const double own = area_vector(cut.mesh, cut.mesh.triangle[t]).norm();
+        if (own <= area[p]) continue;
+        area[p] = own;
+        largest[p] = static_cast<int>(t);
+    }
+    const TriangleTree tree(other);
+    std::vector<char> outer;
+    for (const int t : largest) {
+        const Corners& c = cut.mesh.triangle[t];
+        const Vec3 middle =
+            (cut.mesh.position[c[0]] + cut.mesh.position[c[1]] + cut.mesh.position[c[2]]) / 3;
+        if (tree.distance(middle) > gap) {
+            outer.push_back(std::abs(tree.winding_number(middle)) < 0.5);
+            continue;
+        }
+        const Corners& beneath = other.triangle[tree.nearest(middle).triangle];
+        const bool agree = area_vector(cut.mesh, c).dot(area_vector(other, beneath)) > 0;
+        outer.push_back(agree && keep_common);
+    }
+    return outer;
+}
+
+// Triangles whose three corners lie in a row go; the middle one becomes a corner of the neighbour
+// across the longest side, which it lies on.
+void drop_flat(TriMesh& mesh, std::vector<int>& origin) {
+    std::map<std::pair<int, int>, std::vector<int>> at_side;  // from, to: triangles
+    const auto side = [&](int t, int k) {
+        return std::pair{mesh.triangle[t][k], mesh.triangle[t][(k + 1) % 3]};
+    };
+    const auto put = [&](int t) {
+        for (int k = 0; k < 3; ++k) at_side[side(t, k)].push_back(t);
+    };
+    const auto take = [&](int t) {
+        for (int k = 0; k < 3; ++k) std::erase(at_side[side(t, k)], t);
+    };
+    const auto longest_of = [&](int t) {
+        int longest = 0;
+        double most = -1;
+        for (int k = 0; k < 3; ++k) {
+            const auto [from, to] = side(t, k);
+            const double length = (mesh.position[to] - mesh.position[from]).squaredNorm();
+            if (length > most) {
+                most = length;
+                longest = k;
+            }
+        }
+        const bool flat = area_vector(mesh, mesh.triangle[t]).norm() <= kNoArea * most;
+        return flat ? longest : -1;
+    };
+    std::vector<int> flat;
+    for (int t = 0; t < static_cast<int>(mesh.triangle.size()); ++t)
+        if (longest_of(t) >= 0) flat.push_back(t);
+    if (flat.empty()) return;
+    for (int t = 0; t < static_cast<int>(mesh.triangle.size()); ++t) put(t);
+    // A turn may leave a neighbour flat in its place.
+    for (std::size_t tries = 4 * flat.size(); !flat.empty() && tries > 0; --tries) {
+        const int t = flat.back();
+        flat.pop_back();
+        const int k = longest_of(t);
+        if (k < 0) continue;
+        const auto [from, to] = side(t, k);
+        const int middle = mesh.triangle[t][(k + 2) % 3];
+        const auto& across = at_side[{to, from}];
+        if (across.size() != 1 || at_side[{from, to}].size() != 1) continue;
+        const int n = across[0];
+        const Corners& c = mesh.triangle[n];
+        const int apex = c[0] != from && c[0] != to   ? c[0]
+                         : c[1] != from && c[1] != to ? c[1]
+                                                      : c[2];
+        if (apex == middle || !at_side[{apex, middle}].empty() || !at_side[{middle, apex}].empty())
+            continue;
+        take(t);
+        take(n);
+        mesh.triangle[t] = {middle, apex, to};
+        mesh.triangle[n] = {middle, from, apex};
+        origin[t] = origin[n];
+        put(t);
+        put(n);
+        for (const int again : {t, n})
+            if (longest_of(again) >= 0) flat.push_back(again);
+    }
+}
+
+bool is_closed(const TriMesh& mesh) {
+    bool closed = true;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        int sum = 0;
+        for (const EdgeUse& use : uses) sum += use.forward ? 1 : -1;
+        closed = closed && sum == 0;
+    });
+    return closed;
+}
+
+}  // namespace
+
+bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
+    CutSurface cut_a, cut_b;
+    if (!cut_along_each_other(split_fans(a), split_fans(b), cut_a, cut_b)) return false;
+    Box box = box_of(a.position);
+    for (const Vec3& p : b.position) box.grow(p);
+    const double gap = kOnSurface * box.size().norm();
+    result = TriMesh();
+    origin.clear();
+    std::map<std::array<double, 3>, int> place;
+    const auto add = [&](const CutSurface& cut, const std::vector<char>& outer, int base) {
+        for (std::size_t t = 0; t < cut.patch.size(); ++t) {
+            if (!outer[cut.patch[t]]) continue;
+            Corners corners = cut.mesh.triangle[t];
+            for (int& i : corners) {
+                const Vec3& p = cut.mesh.position[i];
+                const auto [at, is_new] = place.emplace(std::array{p.x(), p.y(), p.z()},
+                                                        static_cast<int>(result.position.size()));
+                if (is_new) result.position.push_back(p);
+                i = at->second;
+            }
+            if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+                continue;
+            result.triangle.push_back(corners);
+            origin.push_back(base + cut.origin[t]);
+        }
+    };
+    add(cut_a, outer_patches(cut_a, b, gap, true), 0);
+    add(cut_b, outer_patches(cut_b, a, gap, false), static_cast<int>(a.triangle.size()));
+    if (!is_closed(result)) return false;
+    drop_flat(result, origin);
+    return true;
+}
+
+}  // namespace swage

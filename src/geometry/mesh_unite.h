@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two bodies made one.
+#pragma once
+
+#include <vector>
+
+#include "geometry/trimesh.h"
+
+namespace swage {
+
+// The union of two closed, oriented surfaces that cross or touch; it may touch itself along edges.
+// `origin` tells for each triangle of the result which triangle it is a piece of: t of a, or
+// a.triangle.size() + t of b. No triangle is without area where that can be avoided. False when it
+// cannot be made (a surface that crosses itself, say). Positions and triangles only.
+bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin);
+
+}  // namespace swage
