@@ -8,7 +8,10 @@
 #include <map>
 
 #include "geometry/box.h"
+#include "geometry/close_points.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
+#include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair_cgal.h"
 #include "geometry/mesh_shells.h"
 #include "geometry/triangle_tree.h"
@@ -57,6 +60,38 @@ std::vector<char> outer_patches(const CutSurface& cut, const TriMesh& other, dou
         outer.push_back(agree && keep_common);
     }
     return outer;
+}
+
+// Vertices within the gap become one: rounding alone tells them apart. That opens no surface. What
+// then stands twice, back to back, goes.
+void merge_close(TriMesh& mesh, std::vector<int>& origin, double gap) {
+    DisjointSets same(mesh.position.size());
+    for_each_close_pair(mesh.position, gap, [&](int i, int j) { same.unite(i, j); });
+    std::map<Corners, std::vector<int>> standing;  // by sorted corners: one way or the other only
+    std::vector<char> keep(mesh.triangle.size(), 0);
+    const auto is_even = [](const Corners& c) {
+        return (c[0] < c[1]) + (c[1] < c[2]) + (c[2] < c[0]) == 2;
+    };
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        Corners& c = mesh.triangle[t];
+        for (int& i : c) i = same.root(i);
+        if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+        Corners sorted = c;
+        std::sort(sorted.begin(), sorted.end());
+        std::vector<int>& here = standing[sorted];
+        keep[t] = here.empty() || is_even(mesh.triangle[here.back()]) == is_even(c);
+        if (keep[t]) {
+            here.push_back(static_cast<int>(t));
+        } else {
+            keep[here.back()] = 0;
+            here.pop_back();
+        }
+    }
+    std::size_t next = 0;
+    for (std::size_t t = 0; t < keep.size(); ++t)
+        if (keep[t]) origin[next++] = origin[t];
+    origin.resize(next);
+    keep_triangles(mesh, keep);
 }
 
 // Triangles whose three corners lie in a row go; the middle one becomes a corner of the neighbour
@@ -152,16 +187,16 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
                 if (is_new) result.position.push_back(p);
                 i = at->second;
             }
-            if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
-                continue;
             result.triangle.push_back(corners);
             origin.push_back(base + cut.origin[t]);
         }
     };
     add(cut_a, outer_patches(cut_a, b, gap, true), 0);
     add(cut_b, outer_patches(cut_b, a, gap, false), static_cast<int>(a.triangle.size()));
+    merge_close(result, origin, gap);
     if (!is_closed(result)) return false;
     drop_flat(result, origin);
+    drop_unused_positions(result);
     return true;
 }
 
