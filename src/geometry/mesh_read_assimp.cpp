@@ -170,11 +170,34 @@ class SceneReader {
         for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], world_from_node);
     }
 
-    int part_of(const aiMesh& mesh, const aiNode& node) {
-        const bool is_plain =
-            source_.format == MeshFormat::stl || source_.format == MeshFormat::off;
+    // Empty where the file gives none and assimp has made one up.
+    static std::string given_name(std::string name) {
+        const bool counted = name.starts_with("nodes[") || name.starts_with("meshes[");
+        return counted || name.starts_with("$ColladaAutoName$") ? std::string() : name;
+    }
+
+    // As the object is called in the program that wrote the file: there a node of glTF and DAE.
+    std::string part_name_of(const aiMesh& mesh, const aiNode& node) const {
         std::string name = mesh.mName.C_Str();
-        if (name.empty() && !is_plain) name = node.mName.C_Str();
+        switch (source_.format) {
+            case MeshFormat::stl:
+            case MeshFormat::off:
+                return name;
+            case MeshFormat::gltf:
+            case MeshFormat::glb:
+            case MeshFormat::dae:
+                if (std::string own = given_name(node.mName.C_Str()); !own.empty()) return own;
+                // assimp counts the pieces of a glTF mesh, one a material.
+                if (source_.format != MeshFormat::dae && node.mNumMeshes > 1)
+                    name = name.substr(0, name.rfind('-'));
+                return given_name(name);
+            default:
+                return name.empty() ? node.mName.C_Str() : name;
+        }
+    }
+
+    int part_of(const aiMesh& mesh, const aiNode& node) {
+        std::string name = part_name_of(mesh, node);
         is_named_ = is_named_ || !name.empty();
         if (name.empty()) name = "part";
         // One node's meshes of one name differ in material only: one part.

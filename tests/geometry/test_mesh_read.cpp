@@ -107,7 +107,7 @@ void check_square(const TriMesh& mesh) {
     CHECK(mesh.material[0].metallic == Approx(0.125));
     CHECK(mesh.material[0].roughness == Approx(0.375));
     REQUIRE(mesh.part_name.size() == 1);
-    CHECK(mesh.part_name[0] == "square");
+    CHECK(mesh.part_name[0] == "board");
     // The first corner of the file's square: uv (0, 1) counted from the top is (0, 0) from below.
     for (std::size_t t = 0; t < 2; ++t)
         for (int k = 0; k < 3; ++k) {
@@ -400,6 +400,31 @@ TEST_CASE("DAE arrives scaled by its unit and turned to its axes") {
 </visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
     CHECK(mesh.position.size() == 4);
     CHECK(signed_volume(mesh) == Approx(1.0 / 6));
+}
+
+TEST_CASE("parts are called by their objects, whatever materials and instances a mesh has") {
+    const Folder folder;
+    const std::string primitive =
+        R"({"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2,"material":0})";
+    const auto parts_of = [&](const std::string& nodes, const std::string& mesh_name) {
+        std::string text = replaced(kGltfScene, "IMAGE", R"({"uri":"image.png"})");
+        text = replaced(text, "URI", R"(,"uri":"square.bin")");
+        text = replaced(text, R"("name":"square",)", mesh_name);
+        text = replaced(text, primitive, primitive + "," + primitive);
+        const std::size_t from = text.find(R"([{"name":"board")");
+        text.replace(from, text.find("]}],", from) + 3 - from, nodes);
+        text = replaced(text, R"("nodes":[0])", R"("nodes":[0,1])");
+        return read_quietly(folder.write("square.gltf", text)).part_name;
+    };
+    folder.write("square.bin", square_gltf() + "padding!");
+    folder.write("image.png", "png");
+    using Names = std::vector<std::string>;
+    const std::string named = R"("name":"square-1",)";
+    CHECK(parts_of(R"([{"name":"left","mesh":0},{"name":"right","mesh":0}])", named) ==
+          Names{"left", "right"});
+    CHECK(parts_of(R"([{"name":"left","mesh":0},{"mesh":0}])", named) == Names{"left", "square-1"});
+    CHECK(parts_of(R"([{"mesh":0},{"mesh":0}])", named) == Names{"square-1", "square-1.2"});
+    CHECK(parts_of(R"([{"mesh":0},{}])", "") == Names{});
 }
 
 TEST_CASE("the same file read twice gives the same mesh") {
