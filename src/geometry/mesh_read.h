@@ -23,7 +23,8 @@ struct ReadLimits {
 // taken as metres (glTF is in metres; DAE is scaled by the unit it states, 3MF taken as
 // millimetres). Equal positions are welded; texture coordinates, colours, materials, parts,
 // polygons and shading (from the file's normals, else by a crease angle of 40 degrees) are kept.
-// Node transforms are applied.
+// Node transforms are applied, and what scales, shifts or turns the image of an OBJ or glTF
+// material.
 //
 // `finding` receives one sentence for everything that the file held and the mesh does not, or that
 // was odd; without it they are logged as warnings. Throws Error(mesh): the file, the reason.

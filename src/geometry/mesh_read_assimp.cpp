@@ -6,6 +6,7 @@
 #include <assimp/scene.h>
 
 #include <assimp/importerdesc.h>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
@@ -188,8 +189,7 @@ class SceneReader {
             case MeshFormat::dae:
                 if (std::string own = given_name(node.mName.C_Str()); !own.empty()) return own;
                 // assimp counts the pieces of a glTF mesh, one a material.
-                if (source_.format != MeshFormat::dae && node.mNumMeshes > 1)
-                    name = name.substr(0, name.rfind('-'));
+                if (is_gltf() && node.mNumMeshes > 1) name = name.substr(0, name.rfind('-'));
                 return given_name(name);
             default:
                 return name.empty() ? node.mName.C_Str() : name;
@@ -210,13 +210,36 @@ class SceneReader {
         return at->second;
     }
 
+    bool is_gltf() const {
+        return source_.format == MeshFormat::gltf || source_.format == MeshFormat::glb;
+    }
+
     // glTF's colours are light itself. A 3MF file's are sRGB, says its specification; a DAE, 3DS or
     // STL file's are what a screen showed to who chose them, and so are an OFF file's.
     Vec3 light_of(double red, double green, double blue) const {
         Vec3 color = Vec3(red, green, blue).cwiseMax(0.0).cwiseMin(1.0);
-        if (source_.format == MeshFormat::gltf || source_.format == MeshFormat::glb) return color;
+        if (is_gltf()) return color;
         for (double& c : color) c = linear_from_srgb(c);
         return color;
+    }
+
+    // Where on a glTF material's image (KHR_texture_transform) texture coordinates are, which count
+    // from below here and from above there. assimp turns about the image's middle, the other way,
+    // and has moved the rest to suit.
+    Eigen::Affine2d image_from_uv(unsigned material) const {
+        Eigen::Affine2d on_image = Eigen::Affine2d::Identity();
+        aiUVTransform by;
+        if (!is_gltf() || material >= scene_.mNumMaterials ||
+            scene_.mMaterials[material]->Get(AI_MATKEY_UVTRANSFORM(aiTextureType_BASE_COLOR, 0),
+                                             by) != AI_SUCCESS)
+            return on_image;
+        const double c = std::cos(-by.mRotation), s = std::sin(-by.mRotation);
+        const Vec2 scale(by.mScaling.x, by.mScaling.y);
+        const Vec2 shift(by.mTranslation.x - 0.5 * scale.x() * (1 - c + s),
+                         1 - scale.y() + 0.5 * scale.y() * (s + c - 1) - by.mTranslation.y);
+        const auto from_above = Eigen::Translation2d(0, 1) * Eigen::Scaling(1.0, -1.0);
+        return from_above * Eigen::Translation2d(shift) * Eigen::Rotation2Dd(by.mRotation) *
+               Eigen::Scaling(scale) * from_above;
     }
 
     void add_mesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& m) {
@@ -246,6 +269,7 @@ class SceneReader {
         // An STL file's normals belong to facets and say nothing about shading.
         const bool has_normal = mesh.HasNormals() && source_.format != MeshFormat::stl;
         const bool has_uv = mesh.HasTextureCoords(0);
+        const Eigen::Affine2d on_image = image_from_uv(mesh.mMaterialIndex);
         if (mesh.HasVertexColors(0) && mesh_.color.empty())
             mesh_.color.resize(base, Eigen::Vector3f::Ones());
         mesh_.uv.resize(base, Vec2::Zero());
@@ -260,7 +284,8 @@ class SceneReader {
                     (cofactor * Vec3(n.x, n.y, n.z)).stableNormalized().cast<float>());
             }
             if (has_uv)
-                mesh_.uv.emplace_back(mesh.mTextureCoords[0][v].x, mesh.mTextureCoords[0][v].y);
+                mesh_.uv.push_back(on_image *
+                                   Vec2(mesh.mTextureCoords[0][v].x, mesh.mTextureCoords[0][v].y));
             if (mesh.HasVertexColors(0)) {
                 const aiColor4D& c = mesh.mColors[0][v];
                 mesh_.color.push_back(light_of(c.r, c.g, c.b).cast<float>());
@@ -340,7 +365,7 @@ class SceneReader {
             if (from.GetTextureCount(type) == 0) continue;
             if (from.GetTexture(type, 0, &path_) != AI_SUCCESS) continue;
             aiUVTransform transform;
-            if (from.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) == AI_SUCCESS &&
+            if (!is_gltf() && from.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) == AI_SUCCESS &&
                 (transform.mScaling != aiVector2D(1, 1) ||
                  transform.mTranslation != aiVector2D(0, 0) || transform.mRotation != 0))
                 source_.finding.push_back(fmt::format(

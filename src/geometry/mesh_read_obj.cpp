@@ -184,7 +184,9 @@ class ObjReader {
         bool all_read = true;
         for (const std::string& library : library_) all_read &= read_library(library);
         if (all_read) tell_undefined(asked);
+        tell_clear();
         add_polygons(polygons_, mesh_);
+        place_images();
         return std::move(mesh_);
     }
 
@@ -202,6 +204,17 @@ class ObjReader {
         source_.finding.push_back(fmt::format("no material file defines {} {}: left grey",
                                               count == 1 ? "the material" : "the materials",
                                               names));
+    }
+
+    void tell_clear() {
+        const std::size_t count = clear_.size();
+        if (count == 0) return;
+        const std::string name = material_name_[*clear_.begin()].substr(0, 40);
+        source_.finding.push_back(
+            count == 1
+                ? fmt::format("the material '{}' lets light through (d, Tr): drawn opaque", name)
+                : fmt::format("{} materials, such as '{}', let light through (d, Tr): drawn opaque",
+                              count, name));
     }
 
     // A library name may hold blanks, or be several names. False when it cannot be read.
@@ -224,18 +237,25 @@ class ObjReader {
         return found > 0;
     }
 
-    // Image name after its options, "-s 1 1 1" and the like.
-    static std::string_view map_name(std::string_view line) {
+    // Where on its image a material's texture coordinates are.
+    struct OnImage {
+        Vec2 scale = Vec2::Ones(), shift = Vec2::Zero();
+    };
+
+    // Image name after its options, "-s 1 1 1" and the like, of which scale and shift count.
+    static std::string_view map_name(std::string_view line, OnImage& on_image) {
         for (std::string_view rest = line; !trimmed(rest).empty();) {
             const std::string_view option = next_word(rest);
             if (option.front() != '-' || option.size() < 2) break;
             const bool vector = option == "-s" || option == "-o" || option == "-t";
-            int arguments = option == "-mm" ? 2 : vector ? 3 : 1;
-            for (double ignored; arguments > 0; --arguments) {
+            const int arguments = option == "-mm" ? 2 : vector ? 3 : 1;
+            for (int n = 0; n < arguments; ++n) {
                 std::string_view peek = rest;
                 const std::string_view word = next_word(peek);
-                if (vector && !to_number(word, ignored))
-                    break;  // of three, the last may be left out
+                double value = 0;
+                if (vector && !to_number(word, value)) break;  // of three, the last may be left out
+                if (n < 2 && std::isfinite(value) && option == "-s") on_image.scale[n] = value;
+                if (n < 2 && std::isfinite(value) && option == "-o") on_image.shift[n] = value;
                 rest = peek;
             }
             line = rest;
@@ -243,10 +263,31 @@ class ObjReader {
         return trimmed(line);
     }
 
+    // Texture coordinates of materials whose images are scaled or shifted become others.
+    void place_images() {
+        if (on_image_.empty() || mesh_.triangle_uv.empty()) return;
+        std::map<std::pair<int, int>, int> placed;  // material and old coordinates: the new ones
+        for (std::size_t t = 0; t < mesh_.triangle_uv.size(); ++t) {
+            const int material = mesh_.triangle_material[t];
+            const auto at = on_image_.find(material);
+            if (at == on_image_.end()) continue;
+            for (int& i : mesh_.triangle_uv[t]) {
+                if (i < 0) continue;
+                const auto [entry, is_new] =
+                    placed.emplace(std::pair{material, i}, static_cast<int>(mesh_.uv.size()));
+                if (is_new)
+                    mesh_.uv.push_back(mesh_.uv[i].cwiseProduct(at->second.scale) +
+                                       at->second.shift);
+                i = entry->second;
+            }
+        }
+    }
+
     void read_materials(const std::string& bytes, const fs::path& folder) {
         std::string_view text = bytes, line;
         if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
         RawMaterial unused, *material = &unused;
+        int number = -1;
         std::vector<std::string> other_maps;
         while (next_line(text, line)) {
             std::string_view rest = trimmed(line);
@@ -260,7 +301,8 @@ class ObjReader {
             if (key == "newmtl") {
                 defined_.emplace(trimmed(rest));
                 const auto at = material_id_.find(std::string(trimmed(rest)));
-                material = at == material_id_.end() ? &unused : &mesh_.material[at->second];
+                number = at == material_id_.end() ? -1 : at->second;
+                material = number < 0 ? &unused : &mesh_.material[number];
             } else if (key == "Kd") {
                 Vec3 color;
                 int count = 0;
@@ -276,9 +318,17 @@ class ObjReader {
             } else if (key == "Pm") {
                 material->metallic = std::clamp(scalar(material->metallic), 0.0, 1.0);
             } else if (key == "map_Kd") {
-                std::string name(map_name(rest));
+                OnImage on_image;
+                std::string name(map_name(rest, on_image));
+                on_image_.erase(number);
+                if (number >= 0 &&
+                    (on_image.scale != Vec2::Ones() || on_image.shift != Vec2::Zero()))
+                    on_image_[number] = on_image;
                 std::replace(name.begin(), name.end(), '\\', '/');
                 material->texture = (folder / name).string();
+            } else if (key == "d" || key == "Tr") {
+                const double value = scalar(key == "d" ? 1 : 0);
+                if (number >= 0 && (key == "d" ? value < 1 : value > 0)) clear_.insert(number);
             } else if (key.starts_with("map_") || key == "bump" || key == "norm") {
                 if (material != &unused) other_maps.emplace_back(key);
             }
@@ -299,7 +349,9 @@ class ObjReader {
     int lines_and_points_ = 0, free_forms_ = 0;
     std::map<std::string, int> material_id_, part_id_;
     std::vector<std::string> material_name_, library_;
-    std::set<std::string> defined_;  // materials of the libraries
+    std::set<std::string> defined_;    // materials of the libraries
+    std::map<int, OnImage> on_image_;  // of the materials that are scaled or shifted
+    std::set<int> clear_;              // materials of an opacity below 1
 };
 
 }  // namespace

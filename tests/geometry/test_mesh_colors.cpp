@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of a file arrive as the light they stand for.
+// Colours of a file arrive as the light they stand for, images where they belong.
 #include <cstring>
+#include <set>
 
 #include "base/srgb.h"
 #include "geometry/mesh_read.h"
@@ -158,4 +159,28 @@ TEST_CASE("a PLY's colours are bytes whatever whole numbers hold them") {
     CHECK(red_of("int", "-3") == 0);
     CHECK(red_of("ushort", "51400") == Approx(light));
     CHECK(red_of("float", "0.25") == 0.25f);
+}
+
+TEST_CASE("an image lies where an OBJ file's material scales and shifts it to") {
+    const Folder folder;
+    folder.write("a.png", "png");
+    folder.write("a.mtl",
+                 "newmtl plain\nmap_Kd a.png\nnewmtl moved\nmap_Kd -s 2 3 1 -o 0.5 0.25 a.png\n"
+                 "d 0.5\n");
+    std::string text = fixtures::cube_obj();
+    text.insert(text.find("f 1"), "mtllib a.mtl\nusemtl plain\n");
+    text.insert(text.find("f 4/1"), "usemtl moved\n");
+    std::vector<std::string> finding;
+    const TriMesh cube = read_mesh(folder.write("a.obj", text), {}, &finding);
+    REQUIRE(cube.triangle.size() == 12);
+    CHECK(cube.material[1].texture.filename() == "a.png");
+    std::set<std::pair<double, double>> plain, moved;
+    for (std::size_t t = 0; t < 12; ++t)
+        for (const int i : cube.triangle_uv[t])
+            (t < 10 ? plain : moved).emplace(cube.uv[i].x(), cube.uv[i].y());
+    CHECK(plain == std::set<std::pair<double, double>>{{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    CHECK(moved ==
+          std::set<std::pair<double, double>>{{0.5, 0.25}, {2.5, 0.25}, {2.5, 3.25}, {0.5, 3.25}});
+    REQUIRE(finding.size() == 1);
+    CHECK(finding[0] == "the material 'moved' lets light through (d, Tr): drawn opaque");
 }

@@ -427,6 +427,31 @@ TEST_CASE("parts are called by their objects, whatever materials and instances a
     CHECK(parts_of(R"([{"mesh":0},{}])", "") == Names{});
 }
 
+TEST_CASE("an image lies where a glTF material scales, shifts and turns it to") {
+    const Folder folder;
+    // From above, as glTF counts: (u, v) goes to shift + turned (2 u, 3 v), a quarter to the left
+    // as the image is looked at.
+    std::string gltf = replaced(kGltfScene, "IMAGE", R"({"uri":"image.png"})");
+    gltf = replaced(gltf, "URI", R"(,"uri":"square.bin")");
+    gltf = replaced(gltf, R"({"asset")", R"({"extensionsUsed":["KHR_texture_transform"],"asset")");
+    gltf = replaced(gltf, R"("baseColorTexture":{"index":0})",
+                    R"("baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":
+                    {"scale":[2,3],"offset":[0.5,0.25],"rotation":1.5707963267948966}}})");
+    folder.write("square.bin", square_gltf() + "padding!");
+    folder.write("image.png", "png");
+    std::vector<std::string> finding;
+    const TriMesh square = read_mesh(folder.write("square.gltf", gltf), {}, &finding);
+    CHECK(finding.empty());
+    for (std::size_t t = 0; t < 2; ++t)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3& p = square.position[square.triangle[t][k]];
+            const Vec2 from_above(10 - p.x(), 1 - p.y());
+            const Vec2 expected(0.5 + 3 * from_above.y(), 0.25 - 2 * from_above.x());
+            const Vec2& uv = square.uv[square.triangle_uv[t][k]];
+            CHECK((Vec2(uv.x(), 1 - uv.y()) - expected).norm() < 1e-5);
+        }
+}
+
 TEST_CASE("the same file read twice gives the same mesh") {
     const Folder folder;
     const auto file = folder.write("square.glb", square_glb());
