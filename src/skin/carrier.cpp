@@ -223,9 +223,9 @@ double along(const Eigen::Matrix<float, 6, 1>& fade, const Mat3& strain) {
 
 Vec3 Hold::left(const Stretch& now, double spacing) const {
     const double gone = std::clamp(level - along(fade, now.strain), 0.0, 1.0);
-    // No more than strain makes of a cell. NOTE: crumpled rubber had offsets of two cells where it
-    // was hardly strained; they stood out as spikes once it was let go.
-    const double length = offset.norm(), most = spacing * (now.strain.norm() + flow);
+    // No more than strain makes of half a cell. NOTE: crumpled rubber had offsets of two cells
+    // where it was hardly strained; they stood out as spikes once it was let go.
+    const double length = offset.norm(), most = 0.5 * spacing * (now.strain.norm() + flow);
     return now.turn * (std::min(1 - gone, most / length) * offset);
 }
 
