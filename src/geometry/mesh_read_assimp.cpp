@@ -17,6 +17,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/portable_math.h"
 #include "base/srgb.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
@@ -233,13 +234,13 @@ class SceneReader {
             scene_.mMaterials[material]->Get(AI_MATKEY_UVTRANSFORM(aiTextureType_BASE_COLOR, 0),
                                              by) != AI_SUCCESS)
             return on_image;
-        const double c = std::cos(-by.mRotation), s = std::sin(-by.mRotation);
+        const double c = portable::cos(-by.mRotation), s = portable::sin(-by.mRotation);
         const Vec2 scale(by.mScaling.x, by.mScaling.y);
-        const Vec2 shift(by.mTranslation.x - 0.5 * scale.x() * (1 - c + s),
-                         1 - scale.y() + 0.5 * scale.y() * (s + c - 1) - by.mTranslation.y);
-        const auto from_above = Eigen::Translation2d(0, 1) * Eigen::Scaling(1.0, -1.0);
-        return from_above * Eigen::Translation2d(shift) * Eigen::Rotation2Dd(by.mRotation) *
-               Eigen::Scaling(scale) * from_above;
+        on_image.linear() << scale.x() * c, scale.y() * s, -scale.x() * s, scale.y() * c;
+        on_image.translation() << by.mTranslation.x - 0.5 * scale.x() * (1 - c + s),
+            1 - scale.y() + 0.5 * scale.y() * (s + c - 1) - by.mTranslation.y;
+        const Eigen::Affine2d from_above(Eigen::Translation2d(0, 1) * Eigen::Scaling(1.0, -1.0));
+        return from_above * on_image * from_above;
     }
 
     void add_mesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& m) {

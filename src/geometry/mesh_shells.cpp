@@ -126,7 +126,7 @@ std::size_t solid_count(const TriMesh& mesh, const std::vector<int>& shell, int 
         volume[static_cast<std::size_t>(shell[t])] +=
             p.cross(q).dot(mesh.position[c[2]] - middle) / 6;
     }
-    const double least = 1e-12 * std::pow(box.size().norm(), 3);
+    const double size = box.size().norm(), least = 1e-12 * size * size * size;
     return static_cast<std::size_t>(
         std::count_if(volume.begin(), volume.end(), [&](double v) { return std::abs(v) > least; }));
 }
