@@ -19,22 +19,17 @@ constexpr double kThinnest = 1e-3;  // of a cell's volume at rest, below which n
 
 }  // namespace
 
-Hold hold_between(const Vec3& reference, std::span<const BodyPlace> others) {
+Vec3 hold_between(const Vec3& reference, std::span<const BodyPlace> others) {
     const BodyPlace& first = others.front();
-    Hold hold = first.hold;
     Eigen::Matrix<double, 3, 2> way = Eigen::Matrix<double, 3, 2>::Zero(), change = way;
     for (std::size_t n = 1; n < others.size(); ++n) {
-        const Hold& other = others[n].hold;
         way.col(n - 1) = others[n].reference - first.reference;
-        change.col(n - 1) = other.offset - first.hold.offset;
-        if (other.offset.squaredNorm() > hold.offset.squaredNorm()) hold = other;
+        change.col(n - 1) = others[n].hold - first.hold;
     }
-    if (!hold.holds()) return hold;
-    // It fades as the longest does.
+    if (change.isZero(0)) return first.hold;
     const Eigen::Vector2d share =
         way.colPivHouseholderQr().solve(reference - first.reference).cwiseMax(0.0).cwiseMin(1.0);
-    hold.offset = first.hold.offset + change * share;
-    return hold;
+    return first.hold + change * share;
 }
 
 BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(find_pieces(matter)) {
@@ -59,8 +54,7 @@ Vec3 BodyMap::world(const BodyPlace& place) const {
     Vec3 world =
         place.reference + (followed == kAllCorners ? whole_displacement(half_frames(cell), carrier)
                                                    : part_displacement(cell, carrier, followed));
-    if (place.hold.holds())
-        world += place.hold.left(mean_stretch(cell, followed), matter_.lattice.spacing);
+    if (!place.hold.isZero(0)) world += mean_turn(cell, followed) * place.hold;
     return world;
 }
 

@@ -17,11 +17,11 @@ struct BodyPlace {
     Vec3 reference = Vec3::Zero();
     CellId cell = -1;
     CornerMask side = kAllCorners;
-    Hold hold = {};
+    Vec3 hold = Vec3::Zero();  // as Mount has it
 };
 
-// Of a place between up to three others: linear in the place.
-Hold hold_between(const Vec3& reference, std::span<const BodyPlace> others);
+// `hold` of a place between up to three others: linear in the place.
+Vec3 hold_between(const Vec3& reference, std::span<const BodyPlace> others);
 
 // Where a cell's middle is now, and was at molding.
 struct MappedCell {

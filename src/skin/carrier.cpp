@@ -200,50 +200,13 @@ Mat3 mean_slope(const CellFrames& cell, CornerMask corners) {
     return Mat3::Identity() + sum / used;
 }
 
-Stretch mean_stretch(const CellFrames& cell, CornerMask corners) {
+Mat3 mean_turn(const CellFrames& cell, CornerMask corners) {
     const Eigen::JacobiSVD<Mat3> svd(mean_slope(cell, corners),
                                      Eigen::ComputeFullU | Eigen::ComputeFullV);
     Mat3 left = svd.matrixU();
-    Vec3 stretch = svd.singularValues();
-    const Mat3& right = svd.matrixV();
     // What is turned inside out has a rotation too.
-    if (left.determinant() * right.determinant() < 0) left.col(2) *= -1, stretch[2] *= -1;
-    return {left * right.transpose(),
-            right * (stretch - Vec3::Ones()).asDiagonal() * right.transpose()};
+    if (left.determinant() * svd.matrixV().determinant() < 0) left.col(2) *= -1;
+    return left * svd.matrixV().transpose();
 }
 
-namespace {
-
-double along(const Eigen::Matrix<float, 6, 1>& fade, const Mat3& strain) {
-    return fade[0] * strain(0, 0) + fade[1] * strain(1, 1) + fade[2] * strain(2, 2) +
-           fade[3] * strain(0, 1) + fade[4] * strain(1, 2) + fade[5] * strain(2, 0);
-}
-
-}  // namespace
-
-Vec3 Hold::left(const Stretch& now, double spacing) const {
-    const double gone = std::clamp(level - along(fade, now.strain), 0.0, 1.0);
-    // No more than strain makes of half a cell. NOTE: crumpled rubber had offsets of two cells
-    // where it was hardly strained; they stood out as spikes once it was let go.
-    const double length = offset.norm(), most = 0.5 * spacing * (now.strain.norm() + flow);
-    return now.turn * (std::min(1 - gone, most / length) * offset);
-}
-
-// NOTE: plastic flow counts ten times what strain does, since it is uneven where strain is smooth.
-// Without the share of flow, cut faces of what has flowed were torn where the matter on one side
-// had not; with offsets that stay, those of twisted rubber were, once it was let go.
-Hold held_on(const Hold& hold, const Vec3& gap, const Stretch& now, double spacing, double flowed) {
-    constexpr double kFlowCounts = 10;
-    constexpr double kLeastStrain = 1e-4;  // below which none is let go
-    Hold next;
-    next.offset = now.turn.transpose() * (hold.left(now, spacing) + gap);
-    next.flow = kFlowCounts * flowed;
-    const double strain = now.strain.norm();
-    if (strain < kLeastStrain) return next;
-    const Mat3 fade = now.strain / (strain * (strain + next.flow));
-    const Vec3 shear(fade(0, 1), fade(1, 2), fade(2, 0));
-    next.fade << fade.diagonal().cast<float>(), (2 * shear).cast<float>();
-    next.level = along(next.fade, now.strain);
-    return next;
-}
 }  // namespace swage

@@ -60,28 +60,8 @@ inline Vec3 whole_displacement(const CellFrames& half, const Carrier& carrier) {
 // In a severed cell: the weighted mean of what each followed corner's affine frame says.
 Vec3 part_displacement(const CellFrames& cell, const Carrier& carrier, CornerMask followed);
 
-// Mean deformation gradient of the corners, and it as F = turn (1 + strain).
+// Mean deformation gradient of the corners, and the turn in it.
 Mat3 mean_slope(const CellFrames& cell, CornerMask corners);
-struct Stretch {
-    Mat3 turn = Mat3::Identity(), strain = Mat3::Zero();
-};
-Stretch mean_stretch(const CellFrames& cell, CornerMask corners);
-
-// What is left of a cell once a blade has severed it tells less of a place than all of it did, and
-// has it elsewhere where the matter is deformed unevenly: by the offset, which turns with it. What
-// was elastic is let go with the strain, and the offset with it; what has flowed stays.
-struct Hold {
-    Vec3 offset = Vec3::Zero();  // [m]
-    // The share of the offset that is gone: level - fade : strain, where that is above 0.
-    Eigen::Matrix<float, 6, 1> fade = Eigen::Matrix<float, 6, 1>::Zero();
-    double level = 0;
-    double flow = 0;  // strain that has flowed nearby, counted as `fade` does
-
-    bool holds() const { return offset != Vec3::Zero(); }
-    Vec3 left(const Stretch& now, double spacing) const;
-};
-
-// A hold that has what it held and is off by `gap` at its place. `flowed`: plastic strain nearby.
-Hold held_on(const Hold& hold, const Vec3& gap, const Stretch& now, double spacing, double flowed);
+Mat3 mean_turn(const CellFrames& cell, CornerMask corners);
 
 }  // namespace swage

@@ -302,7 +302,8 @@ int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& ma
     const BodyMap map(matter);
     std::vector<int> piece;
     for (std::size_t v = 0; v < mount.reference.size(); ++v) {
-        piece.push_back(map.piece_of({mount.reference[v], mount.cell[v], mount.side[v], {}}));
+        piece.push_back(
+            map.piece_of({mount.reference[v], mount.cell[v], mount.side[v], Vec3::Zero()}));
     }
     std::vector<std::size_t> kept;
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {

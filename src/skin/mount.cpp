@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kChunk = 256;  // cells
 constexpr double kHeld = 1e-9;       // spacings; nearer a vertex is at its place
+constexpr double kMostHeld = 5;      // spacings at a plastic strain of 1, uneven as flow is
 
 Vec3 moved_by(const Vec3& place, const Vec3& u) {
     // A sum with zero would turn -0 into 0.
@@ -82,7 +83,7 @@ void finish_mount(Mount& mount, const Aggregate& matter) {
         return std::pair(mount.cell[a], a) < std::pair(mount.cell[b], b);
     });
     mount.group.clear();
-    mount.hold.resize(count);
+    mount.hold.resize(count, Vec3::Zero());
     mount.carrier.resize(count);
     std::vector<ParticleId> used;
     CellBox box;
@@ -111,7 +112,7 @@ void finish_mount(Mount& mount, const Aggregate& matter) {
 
 namespace {
 
-// Calls visit(v, where it is, its cell, stretch() of what carries it) with each vertex.
+// Calls visit(v, where it is, its cell, turn() of what carries it) with each vertex.
 template <typename Visit>
 void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& visit) {
     std::vector<ParticleFrame> frame;
@@ -129,17 +130,16 @@ void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& v
             }
             cell.size =
                 matter.particle_reference.at(corner[7]) - matter.particle_reference.at(corner[0]);
-            CornerMask stretched = 0;  // which corners' stretch is known
-            Stretch known;
+            CornerMask turned = 0;  // which corners' turn is known
+            Mat3 known = Mat3::Identity();
             const auto go_on = [&](int v, const Vec3& u, CornerMask followed) {
-                const auto stretch = [&]() -> const Stretch& {
-                    if (stretched != followed) known = mean_stretch(cell, stretched = followed);
+                const auto turn = [&]() -> const Mat3& {
+                    if (turned != followed) known = mean_turn(cell, turned = followed);
                     return known;
                 };
                 Vec3 at = moved_by(mount.reference[v], u);
-                if (mount.hold[v].holds())
-                    at += mount.hold[v].left(stretch(), matter.lattice.spacing);
-                visit(v, at, group.cell, stretch);
+                if (!mount.hold[v].isZero(0)) at += turn() * mount.hold[v];
+                visit(v, at, group.cell, turn);
             };
             const bool whole = is_whole(matter, corner);
             if (whole && mount.kind == SkinKind::mount) {
@@ -189,14 +189,15 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
 }
 
 void hold_places(Mount& mount, const Aggregate& matter, const std::vector<Vec3>& place) {
-    const double least = kHeld * matter.lattice.spacing;
-    for_each_vertex(mount, matter, [&](int v, const Vec3& at, CellId cell, const auto& stretch) {
+    const double a = matter.lattice.spacing;
+    for_each_vertex(mount, matter, [&](int v, const Vec3& at, CellId cell, const auto& turn) {
         const Vec3 gap = place[v] - at;
-        if (gap.squaredNorm() <= least * least) return;
+        const double most = kMostHeld * flowed_around(matter, cell) * a;
+        if (most == 0 || gap.norm() <= kHeld * a) return;
         const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
         if (corner_groups(matter, corner) != corner_groups_of_cut(matter, corner)) return;
-        mount.hold[v] = held_on(mount.hold[v], gap, stretch(), matter.lattice.spacing,
-                                flowed_around(matter, cell));
+        const Vec3 hold = mount.hold[v] + turn().transpose() * gap;
+        mount.hold[v] = std::min(1.0, most / hold.norm()) * hold;
     });
 }
 

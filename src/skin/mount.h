@@ -18,7 +18,10 @@ struct Mount {
     std::vector<Vec3> reference;   // at molding [m]
     std::vector<CellId> cell;      // that carries the vertex
     std::vector<CornerMask> side;  // corners that it follows once the cell is severed
-    std::vector<Hold> hold;        // beside what these alone tell
+    // How far it lies off where these have it, in the axes of what carries it [m]. What is left of
+    // a cell that a blade has severed has its places elsewhere than all of it did, where the matter
+    // has flowed unevenly. What is strained elastically comes back, and its places with it.
+    std::vector<Vec3> hold;
 
     // Vertices of one cell together, so that its frames are read once.
     struct CellGroup {
@@ -44,9 +47,9 @@ void finish_mount(Mount& mount, const Aggregate& matter);
 // rigid motion is followed exactly; in severed cells each vertex follows the matter on its side.
 void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec3>& position);
 
-// With the matter where it is now, the vertices are at `place` and follow it from there (Hold). To
-// be called when cells, sides or connections were changed. Cells that broke by load are left out:
-// their vertices part only then.
+// With the matter where it is now, the vertices are at `place` and follow it from there, where
+// anything has flowed. To be called when cells, sides or connections were changed. Cells that broke
+// by load are left out: their vertices part only then.
 void hold_places(Mount& mount, const Aggregate& matter, const std::vector<Vec3>& place);
 
 }  // namespace swage
