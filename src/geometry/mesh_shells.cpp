@@ -18,7 +18,7 @@ namespace {
 constexpr double kSameTurn = 1e-9;  // of a quarter turn: triangles that lie on each other
 
 // A triangle at an edge, seen along it.
-struct Blade {
+struct Wing {
     double turn;  // 0 to 4: quarters of the way around, counter-clockwise, from the first
     EdgeUse use;
     bool opens;  // going around, matter begins here; else it ends
@@ -26,7 +26,7 @@ struct Blade {
 
 // In the order around the edge. Of those that lie on each other, matter's ends come first: bodies
 // that touch along a face stay two.
-std::vector<Blade> blades_of(const TriMesh& mesh, std::span<const EdgeUse> uses, bool inside_out) {
+std::vector<Wing> wings_of(const TriMesh& mesh, std::span<const EdgeUse> uses, bool inside_out) {
     const Vec3& low = mesh.position[uses[0].low];
     const Vec3 along = (mesh.position[uses[0].high] - low).normalized();
     const auto across = [&](const EdgeUse& use) -> Vec3 {
@@ -34,7 +34,7 @@ std::vector<Blade> blades_of(const TriMesh& mesh, std::span<const EdgeUse> uses,
         return arm - along * along.dot(arm);
     };
     const Vec3 x = across(uses[0]).normalized(), y = along.cross(x);
-    std::vector<Blade> blades;
+    std::vector<Wing> wings;
     for (const EdgeUse& use : uses) {
         const Vec3 arm = across(use);
         const double right = arm.dot(x), up = arm.dot(y);
@@ -45,21 +45,21 @@ std::vector<Blade> blades_of(const TriMesh& mesh, std::span<const EdgeUse> uses,
         else if (up < 0)
             turn += 4;
         if (turn > 4 - kSameTurn) turn = 0;
-        blades.push_back({turn, use, use.forward == inside_out});
+        wings.push_back({turn, use, use.forward == inside_out});
     }
-    std::sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) {
+    std::sort(wings.begin(), wings.end(), [](const Wing& a, const Wing& b) {
         return a.turn != b.turn ? a.turn < b.turn : a.use.triangle < b.use.triangle;
     });
-    for (std::size_t i = 1; i < blades.size(); ++i)
-        if (blades[i].turn - blades[i - 1].turn < kSameTurn) blades[i].turn = blades[i - 1].turn;
+    for (std::size_t i = 1; i < wings.size(); ++i)
+        if (wings[i].turn - wings[i - 1].turn < kSameTurn) wings[i].turn = wings[i - 1].turn;
     // The lower of several in one place is nearer to the matter it bounds, on either side: of
     // surfaces that lie on each other the first ones in the file go together.
-    std::sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) {
+    std::sort(wings.begin(), wings.end(), [](const Wing& a, const Wing& b) {
         if (a.turn != b.turn) return a.turn < b.turn;
         if (a.opens != b.opens) return b.opens;
         return (a.use.triangle < b.use.triangle) != a.opens;
     });
-    return blades;
+    return wings;
 }
 
 // Of the triangles at an edge, as many that run along it in one direction as in the other, calls
@@ -67,15 +67,15 @@ std::vector<Blade> blades_of(const TriMesh& mesh, std::span<const EdgeUse> uses,
 template <typename F>
 void join_wedges(const TriMesh& mesh, std::span<const EdgeUse> uses, bool inside_out,
                  const F& join) {
-    const std::vector<Blade> blades = blades_of(mesh, uses, inside_out);
+    const std::vector<Wing> wings = wings_of(mesh, uses, inside_out);
     std::vector<EdgeUse> open;
-    std::vector<char> joined(blades.size(), 0);
+    std::vector<char> joined(wings.size(), 0);
     for (const bool first_lap : {true, false})
-        for (std::size_t i = 0; i < blades.size(); ++i) {
-            if (blades[i].opens) {
-                if (first_lap) open.push_back(blades[i].use);
+        for (std::size_t i = 0; i < wings.size(); ++i) {
+            if (wings[i].opens) {
+                if (first_lap) open.push_back(wings[i].use);
             } else if (!joined[i] && !open.empty()) {
-                join(open.back(), blades[i].use);
+                join(open.back(), wings[i].use);
                 open.pop_back();
                 joined[i] = 1;
             }
