@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/math.h"
 
+#include <Eigen/SVD>
+
 #include "base/portable_math.h"
 
 namespace swage {
@@ -22,6 +24,13 @@ Mat3 cross_matrix(const Vec3& v) {
     Mat3 m;
     m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
     return m;
+}
+
+Mat3 nearest_rotation(const Mat3& m) {
+    const Eigen::JacobiSVD<Mat3> split(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 u = split.matrixU();
+    if ((u * split.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+    return u * split.matrixV().transpose();
 }
 
 Quat turn_onto(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to); }

@@ -31,6 +31,9 @@ struct Pose {
 
 Mat3 cross_matrix(const Vec3& v);
 
+// What turns in a linear map; of one that turns inside out, the nearest that does not.
+Mat3 nearest_rotation(const Mat3& m);
+
 // The shortest turn that carries one direction onto another.
 Quat turn_onto(const Vec3& from, const Vec3& to);
 

@@ -20,6 +20,9 @@ struct EdgeUse {
 // are left out.
 std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangle, std::size_t position_count);
 
+// Of the uses of one edge, how many more run from low to high than back; 0 where it is closed.
+int excess(std::span<const EdgeUse> uses);
+
 // Calls f(std::span<const EdgeUse>) once an edge.
 template <typename F>
 void for_each_edge(const std::vector<EdgeUse>& uses, const F& f) {

@@ -69,22 +69,6 @@ void check_edges(const TriMesh& mesh, MeshReport& report) {
     report.manifold = report.crowded_edges == 0 && report.crowded_vertices == 0;
 }
 
-// Closed components only; each about its own first vertex, so that it is exact wherever it lies.
-std::vector<double> component_volumes(const TriMesh& mesh, const Components& components) {
-    std::vector<double> volume(components.count, 0.0);
-    std::vector<int> anchor(components.count, -1);
-    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
-        const int c = components.triangle_component[t];
-        if (anchor[c] < 0) anchor[c] = mesh.triangle[t][0];
-        const Vec3& o = mesh.position[anchor[c]];
-        const Corners& k = mesh.triangle[t];
-        volume[c] += (mesh.position[k[0]] - o)
-                         .dot((mesh.position[k[1]] - o).cross(mesh.position[k[2]] - o)) /
-                     6;
-    }
-    return volume;
-}
-
 std::string counted(std::size_t count, const char* one, const char* many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -109,6 +93,21 @@ void add_findings(MeshReport& report) {
 }
 
 }  // namespace
+
+std::vector<double> component_volumes(const TriMesh& mesh, const Components& components) {
+    std::vector<double> volume(components.count, 0.0);
+    std::vector<int> anchor(components.count, -1);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const int c = components.triangle_component[t];
+        if (anchor[c] < 0) anchor[c] = mesh.triangle[t][0];
+        const Vec3& o = mesh.position[anchor[c]];
+        const Corners& k = mesh.triangle[t];
+        volume[c] += (mesh.position[k[0]] - o)
+                         .dot((mesh.position[k[1]] - o).cross(mesh.position[k[2]] - o)) /
+                     6;
+    }
+    return volume;
+}
 
 MeshReport check_mesh(const TriMesh& mesh) {
     MeshReport report;

@@ -53,4 +53,8 @@ std::string length_text(double metres);
 std::string volume_text(double cubic_metres);
 std::string area_text(double square_metres);
 
+// What each component encloses, if it is closed, about its own first vertex, so that it is exact
+// wherever it lies [m3].
+std::vector<double> component_volumes(const TriMesh& mesh, const Components& components);
+
 }  // namespace swage

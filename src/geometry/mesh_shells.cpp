@@ -9,6 +9,7 @@
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
+#include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 
 namespace swage {
@@ -115,26 +116,12 @@ std::vector<EdgeUse> without_partner(std::span<const EdgeUse> uses, DisjointSets
     return left;
 }
 
-// How many of the shells, if closed, enclose something.
+// How many of the shells enclose something.
 std::size_t solid_count(const TriMesh& mesh, const std::vector<int>& shell, int count) {
-    std::vector<double> volume(static_cast<std::size_t>(count), 0.0);
-    const Box box = box_of(mesh.position);
-    const Vec3 middle = box.center();
-    for (std::size_t t = 0; t < shell.size(); ++t) {
-        const Corners& c = mesh.triangle[t];
-        const Vec3 p = mesh.position[c[0]] - middle, q = mesh.position[c[1]] - middle;
-        volume[static_cast<std::size_t>(shell[t])] +=
-            p.cross(q).dot(mesh.position[c[2]] - middle) / 6;
-    }
-    const double size = box.size().norm(), least = 1e-12 * size * size * size;
+    const double size = box_of(mesh.position).size().norm(), least = 1e-12 * size * size * size;
+    const std::vector<double> volume = component_volumes(mesh, {count, shell});
     return static_cast<std::size_t>(
         std::count_if(volume.begin(), volume.end(), [&](double v) { return std::abs(v) > least; }));
-}
-
-int excess(std::span<const EdgeUse> uses) {
-    int sum = 0;
-    for (const EdgeUse& use : uses) sum += use.forward ? 1 : -1;
-    return sum;
 }
 
 }  // namespace

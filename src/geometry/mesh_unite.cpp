@@ -23,11 +23,6 @@ namespace {
 constexpr double kOnSurface = 1e-9;  // of the size of both: no further from it
 constexpr double kNoArea = 1e-10;    // of the longest side squared
 
-Vec3 area_vector(const TriMesh& mesh, const Corners& t) {
-    return (mesh.position[t[1]] - mesh.position[t[0]])
-        .cross(mesh.position[t[2]] - mesh.position[t[0]]);
-}
-
 // Which patches of one surface bound the union with another. Where the two lie on each other and
 // face the same way only `keep_common` ones do.
 std::vector<char> outer_patches(const CutSurface& cut, const TriMesh& other, double gap,
@@ -40,7 +35,7 @@ std::vector<char> outer_patches(const CutSurface& cut, const TriMesh& other, dou
             area.resize(p + 1, -1);
             largest.resize(p + 1, 0);
         }
-        const double own = area_vector(cut.mesh, cut.mesh.triangle[t]).norm();
+        const double own = area_vector(cut.mesh.position, cut.mesh.triangle[t]).norm();
         if (own <= area[p]) continue;
         area[p] = own;
         largest[p] = static_cast<int>(t);
@@ -56,7 +51,8 @@ std::vector<char> outer_patches(const CutSurface& cut, const TriMesh& other, dou
             continue;
         }
         const Corners& beneath = other.triangle[tree.nearest(middle).triangle];
-        const bool agree = area_vector(cut.mesh, c).dot(area_vector(other, beneath)) > 0;
+        const bool agree =
+            area_vector(cut.mesh.position, c).dot(area_vector(other.position, beneath)) > 0;
         outer.push_back(agree && keep_common);
     }
     return outer;
@@ -118,7 +114,7 @@ void drop_flat(TriMesh& mesh, std::vector<int>& origin) {
                 longest = k;
             }
         }
-        const bool flat = area_vector(mesh, mesh.triangle[t]).norm() <= kNoArea * most;
+        const bool flat = area_vector(mesh.position, mesh.triangle[t]).norm() <= kNoArea * most;
         return flat ? longest : -1;
     };
     std::vector<int> flat;
@@ -157,11 +153,8 @@ void drop_flat(TriMesh& mesh, std::vector<int>& origin) {
 
 bool is_closed(const TriMesh& mesh) {
     bool closed = true;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        int sum = 0;
-        for (const EdgeUse& use : uses) sum += use.forward ? 1 : -1;
-        closed = closed && sum == 0;
-    });
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
+                  [&](auto uses) { closed = closed && excess(uses) == 0; });
     return closed;
 }
 

@@ -19,11 +19,6 @@ constexpr std::size_t kChunk = 8192;  // triangles
 
 std::size_t chunk_count(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
-// Twice the area, along the normal.
-Vec3 area_vector(const std::vector<Vec3>& position, const Corners& t) {
-    return (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
-}
-
 template <typename Term>
 double sum_over_triangles(const TriMesh& mesh, const Term& term) {
     return ordered_sum(chunk_count(mesh.triangle.size()), [&](std::size_t chunk) {
@@ -155,6 +150,12 @@ std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& p
         n = length > 0 ? Vec3(n / length) : Vec3(Vec3::UnitZ());  // only degenerate faces: any
     }
     return normal;
+}
+
+int excess(std::span<const EdgeUse> uses) {
+    int sum = 0;
+    for (const EdgeUse& use : uses) sum += use.forward ? 1 : -1;
+    return sum;
 }
 
 }  // namespace swage

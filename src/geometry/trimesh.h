@@ -40,8 +40,8 @@ struct TriMesh {
     std::vector<Corners> triangle_uv;             // one a triangle; -1 where a corner has none
     int smooth_group_count = 0;                   // corners of one group share a shading normal
     std::vector<Corners> triangle_smooth;         // one a triangle: ids of smooth groups
-    std::vector<int> triangle_polygon;  // one a triangle: triangles of one polygon (a quad, say)
-                                        // are consecutive and share the number
+    std::vector<int> triangle_polygon;   // one a triangle: triangles of one polygon (a quad, say)
+                                         // are consecutive and share the number
     std::vector<int> triangle_material;  // one a triangle, into material
     std::vector<int> triangle_part;      // one a triangle, into part_name
     std::vector<SurfaceMaterial> material;
@@ -50,6 +50,10 @@ struct TriMesh {
 
 // Enclosed volume [m3] by the divergence theorem, about the box centre. Exact for closed surfaces.
 double signed_volume(const TriMesh& mesh);
+// Twice a triangle's area, along its normal.
+inline Vec3 area_vector(const std::vector<Vec3>& position, const Corners& t) {
+    return (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
+}
 double surface_area(const TriMesh& mesh);
 
 // Parts of the surface connected through shared positions; component[t] for each triangle.

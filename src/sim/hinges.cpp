@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/hinges.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
 namespace swage {
 
 namespace {
-
-Mat3 nearest_rotation(const Mat3& m) {
-    const Eigen::JacobiSVD<Mat3> split(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 u = split.matrixU();
-    if ((u * split.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-    return u * split.matrixV().transpose();
-}
 
 struct Connection {
     int direction;

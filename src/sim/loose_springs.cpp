@@ -120,6 +120,20 @@ void LooseSprings::add_springs(const Aggregate& matter, const CellRun& run, int 
     }
 }
 
+// Each of the cell's springs is at rest when it is longer by the factor longer_by(n).
+template <typename Factor>
+void LooseSprings::lay_down(Aggregate& matter, CellId cell, const Factor& longer_by) {
+    CellSet set{cell, {}};
+    if (const CellSet* had = matter.set_of(cell)) set = *had;
+    for (std::size_t n = 0; n < spring_.size(); ++n) {
+        // Not twice where what breaks and what holds on have one each.
+        if (n > 0 && spring_[n].slot == spring_[n - 1].slot) continue;
+        float& kept = set.strain[spring_[n].slot];
+        kept = static_cast<float>((1 + double(kept)) * longer_by(n) - 1);
+    }
+    matter.lay_down(set);
+}
+
 void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& turned) {
     const double a = matter.lattice.spacing;
     // Less than this is rounding [J].
@@ -162,16 +176,8 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
             (excess(bent, all) <= 0 ? low : high) = share;
         }
         share = low;
-        CellSet set{held.id(), {}};
-        if (const CellSet* had = matter.set_of(held.id())) set = *had;
-        for (std::size_t n = 0; n < now.size(); ++n) {
-            // Not twice where what breaks and what holds on have one each.
-            if (n > 0 && spring_[n].slot == spring_[n - 1].slot) continue;
-            float& kept = set.strain[spring_[n].slot];
-            const double by = (1 + now[n].strain) / (1 + strain(n, bent, all));
-            kept = static_cast<float>((1 + double(kept)) * by - 1);
-        }
-        matter.lay_down(set);
+        lay_down(matter, held.id(),
+                 [&](std::size_t n) { return (1 + now[n].strain) / (1 + strain(n, bent, all)); });
     }
 }
 
@@ -180,14 +186,7 @@ void LooseSprings::lay_to_rest(Aggregate& matter, const std::vector<HeldCell>& t
         spring_.clear();
         add_springs(matter, *held.run, held.n);
         find_strains(matter, nullptr);
-        CellSet set{held.id(), {}};
-        if (const CellSet* had = matter.set_of(held.id())) set = *had;
-        for (std::size_t n = 0; n < now_.size(); ++n) {
-            if (n > 0 && spring_[n].slot == spring_[n - 1].slot) continue;
-            float& kept = set.strain[spring_[n].slot];
-            kept = static_cast<float>((1 + double(kept)) * (1 + now_[n].strain) - 1);
-        }
-        matter.lay_down(set);
+        lay_down(matter, held.id(), [&](std::size_t n) { return 1 + now_[n].strain; });
     }
 }
 

@@ -76,6 +76,8 @@ class LooseSprings {
     void add_stiffness_bound(std::vector<double>& bound) const;
 
   private:
+    template <typename Factor>
+    void lay_down(Aggregate& matter, CellId cell, const Factor& longer_by);
     enum class Kind : char {
         elastic,    // for ever
         softening,  // when pulled

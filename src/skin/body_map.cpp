@@ -54,7 +54,7 @@ Vec3 BodyMap::world(const BodyPlace& place) const {
     Vec3 world =
         place.reference + (followed == kAllCorners ? whole_displacement(half_frames(cell), carrier)
                                                    : part_displacement(cell, carrier, followed));
-    if (!place.hold.isZero(0)) world += mean_turn(cell, followed) * place.hold;
+    if (!place.hold.isZero(0)) world += nearest_rotation(mean_slope(cell, followed)) * place.hold;
     return world;
 }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "skin/carrier.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -198,15 +195,6 @@ Mat3 mean_slope(const CellFrames& cell, CornerMask corners) {
         ++used;
     }
     return Mat3::Identity() + sum / used;
-}
-
-Mat3 mean_turn(const CellFrames& cell, CornerMask corners) {
-    const Eigen::JacobiSVD<Mat3> svd(mean_slope(cell, corners),
-                                     Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 left = svd.matrixU();
-    // What is turned inside out has a rotation too.
-    if (left.determinant() * svd.matrixV().determinant() < 0) left.col(2) *= -1;
-    return left * svd.matrixV().transpose();
 }
 
 }  // namespace swage

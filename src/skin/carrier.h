@@ -60,8 +60,7 @@ inline Vec3 whole_displacement(const CellFrames& half, const Carrier& carrier) {
 // In a severed cell: the weighted mean of what each followed corner's affine frame says.
 Vec3 part_displacement(const CellFrames& cell, const Carrier& carrier, CornerMask followed);
 
-// Mean deformation gradient of the corners, and the turn in it.
+// Mean deformation gradient of the corners.
 Mat3 mean_slope(const CellFrames& cell, CornerMask corners);
-Mat3 mean_turn(const CellFrames& cell, CornerMask corners);
 
 }  // namespace swage

@@ -134,7 +134,8 @@ void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& v
             Mat3 known = Mat3::Identity();
             const auto go_on = [&](int v, const Vec3& u, CornerMask followed) {
                 const auto turn = [&]() -> const Mat3& {
-                    if (turned != followed) known = mean_turn(cell, turned = followed);
+                    if (turned != followed)
+                        known = nearest_rotation(mean_slope(cell, turned = followed));
                     return known;
                 };
                 Vec3 at = moved_by(mount.reference[v], u);
@@ -169,7 +170,6 @@ void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& v
 }
 
 double flowed_around(const Aggregate& matter, CellId cell) {
-    if (matter.cell_hardening.empty()) return 0;
     float most = 0;
     const Vec3i site = matter.lattice.cell_site(cell);
     for (int n = 0; n < 27; ++n) {
@@ -189,11 +189,13 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
 }
 
 void hold_places(Mount& mount, const Aggregate& matter, const std::vector<Vec3>& place) {
+    if (matter.cell_hardening.empty()) return;
     const double a = matter.lattice.spacing;
     for_each_vertex(mount, matter, [&](int v, const Vec3& at, CellId cell, const auto& turn) {
         const Vec3 gap = place[v] - at;
+        if (gap.norm() <= kHeld * a) return;
         const double most = kMostHeld * flowed_around(matter, cell) * a;
-        if (most == 0 || gap.norm() <= kHeld * a) return;
+        if (most == 0) return;
         const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
         if (corner_groups(matter, corner) != corner_groups_of_cut(matter, corner)) return;
         const Vec3 hold = mount.hold[v] + turn().transpose() * gap;
