@@ -87,8 +87,16 @@ std::vector<Vec2> inner_points(const Section& section, const Triangulation& cdt)
         inner.push_back(p);
     };
     const double a = section.spacing;
-    for (const Vec2& p : section.wish) offer(p, 0.3 * a);
-    const std::size_t wishes = inner.size();
+    std::size_t wishes = 0;
+    const auto is_free = [&](const Vec2& p, double reach) {
+        return std::none_of(inner.begin(), inner.begin() + wishes, [&](const Vec2& wish) {
+            return (p - wish).squaredNorm() < reach * reach;
+        });
+    };
+    for (const Vec2& p : section.wish) {  // a blade that comes back asks for the same ones again
+        if (is_free(p, 0.2 * a)) offer(p, 0.3 * a);
+        wishes = inner.size();
+    }
 
     Vec2 low = section.point.front(), high = low;
     for (const Vec2& p : section.point) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -96,11 +104,7 @@ std::vector<Vec2> inner_points(const Section& section, const Triangulation& cdt)
     for (int j = 0; low[1] + j * rise <= high[1]; ++j) {
         for (int i = 0; low[0] + (i + 0.5 * (j & 1)) * a <= high[0]; ++i) {
             const Vec2 p(low[0] + (i + 0.5 * (j & 1)) * a, low[1] + j * rise);
-            bool free = true;
-            for (std::size_t n = 0; n < wishes && free; ++n) {
-                free = (p - inner[n]).squaredNorm() > 0.25 * a * a;
-            }
-            if (free) offer(p, 0.45 * a);
+            if (is_free(p, 0.5 * a)) offer(p, 0.45 * a);
         }
     }
     return inner;

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "geometry/disjoint_sets.h"
+#include "skin/cap_front.h"
 #include "skin/section.h"
 #include "skin/sheets.h"
 
@@ -23,9 +24,6 @@ namespace {
 // A vertex nearer to the plane than this share of its shortest edge counts as lying on it, so that
 // no slivers are cut off.
 constexpr double kOnPlane = 0.01;
-
-using Ends = std::pair<int, int>;
-Ends ends(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 // One triangle of the old surface, or a part of one.
 struct Part {
@@ -50,6 +48,7 @@ class Splitter {
         classify();
         find_section();
         cap_all();
+        part_all();
         emit_surface();
         emit_caps();
         join_corners();
@@ -67,6 +66,10 @@ class Splitter {
         return position[cut.low] + cut.share * (position[cut.high] - position[cut.low]);
     }
     Vec3 place(int raw) const { return place(raw, position_); }
+    Vec2 flat(int raw) const {
+        const int inner = raw - old_count() - static_cast<int>(split_.cut.size());
+        return plane_.flat(inner < 0 ? place(raw) : split_.cap_point[inner]);
+    }
 
     void classify() {
         std::vector<double> shortest(position_.size(), std::numeric_limits<double>::infinity());
@@ -268,10 +271,27 @@ class Splitter {
                 seam_[at->second].kept = true;
                 neighbor = seam_[at->second].plus;
             }
-            cap_.push_back(cap);
-            cap_neighbor_.push_back(neighbor);
+            cap_.triangle.push_back(cap);
+            cap_.neighbor.push_back(neighbor);
         }
         return true;
+    }
+
+    void part_all() {
+        std::map<Ends, Seam*> kept;
+        for (Seam& seam : seam_) {
+            if (seam.kept) kept[ends(seam.from, seam.to)] = &seam;
+        }
+        const auto is_seam = [&](const Ends& edge) { return kept.count(edge) > 0; };
+        const auto leave = [&](const Ends& edge) {
+            kept.at(edge)->kept = false;
+            kept.erase(edge);
+        };
+        const auto half_way = [&](const Ends& edge) {
+            split_.cap_point.push_back(plane_.world(0.5 * (flat(edge.first) + flat(edge.second))));
+            return old_count() + static_cast<int>(split_.cut.size() + split_.cap_point.size() - 1);
+        };
+        part_caps(cap_, is_seam, leave, half_way);
     }
 
     void emit_surface() {
@@ -291,23 +311,25 @@ class Splitter {
 
     // Both caps; those of one connected piece take the same neighbour.
     void emit_caps() {
-        DisjointSets pieces(cap_.size());
+        const std::size_t count = cap_.triangle.size();
+        DisjointSets pieces(count);
         std::map<Ends, int> first;
-        for (std::size_t c = 0; c < cap_.size(); ++c) {
+        for (std::size_t c = 0; c < count; ++c) {
+            const Corners& cap = cap_.triangle[c];
             for (int k = 0; k < 3; ++k) {
-                const Ends edge = ends(cap_[c][k], cap_[c][(k + 1) % 3]);
+                const Ends edge = ends(cap[k], cap[(k + 1) % 3]);
                 const auto [at, fresh] = first.emplace(edge, static_cast<int>(c));
                 if (!fresh) pieces.unite(at->second, static_cast<int>(c));
             }
         }
-        std::vector<int> neighbor(cap_.size(), -1);
-        for (std::size_t c = 0; c < cap_.size(); ++c) {
+        std::vector<int> neighbor(count, -1);
+        for (std::size_t c = 0; c < count; ++c) {
             int& own = neighbor[pieces.root(static_cast<int>(c))];
-            if (own < 0) own = cap_neighbor_[c];
+            if (own < 0) own = cap_.neighbor[c];
         }
         for (int side : {1, -1}) {
-            for (std::size_t c = 0; c < cap_.size(); ++c) {
-                Corners raw = cap_[c];
+            for (std::size_t c = 0; c < count; ++c) {
+                Corners raw = cap_.triangle[c];
                 if (side > 0) std::swap(raw[1], raw[2]);
                 split_.triangle.push_back(
                     {raw, raw, -1, false, side, neighbor[pieces.root(static_cast<int>(c))]});
@@ -333,7 +355,7 @@ class Splitter {
             at_seam.insert({seam.from, seam.to});
             kept.insert(ends(seam.from, seam.to));
         }
-        for (const Corners& cap : cap_) at_seam.insert(cap.begin(), cap.end());
+        for (const Corners& cap : cap_.triangle) at_seam.insert(cap.begin(), cap.end());
 
         std::vector<Use> uses;
         DisjointSets corners(3 * split_.triangle.size());
@@ -418,8 +440,7 @@ class Splitter {
     std::map<Ends, int> cut_id_;
     std::vector<bool> used_;  // cut points
     std::vector<Seam> seam_;
-    std::vector<Corners> cap_;  // raw, seen against the normal
-    std::vector<int> cap_neighbor_;
+    Caps cap_;  // raw, seen against the normal
     std::vector<int> added_set_, seam_set_;
 };
 

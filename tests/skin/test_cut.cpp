@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
+#include <random>
 #include <set>
 
 #include "skin/cut_mesh.h"
@@ -300,6 +301,44 @@ TEST_CASE("a blade that stops inside the body leaves the surface in one piece") 
         high = std::max(high, f.position[v].x());
     }
     CHECK(high - low == Approx(2 * .2 * (.15 - .0161)).epsilon(.05));
+}
+
+TEST_CASE("wherever a blade stops, no triangle or edge is its own other side") {
+    std::mt19937 random(7);
+    const auto at_random = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    // A blade that falls in steps and rises in others.
+    const auto slit = [](const Vec3& from, const Vec3& edge, const Vec3& fall, int down, int up) {
+        Sweep sweep;
+        for (int way = 0; way < 2; ++way) {
+            const int steps = way == 0 ? down : up;
+            for (int n = 0; n < steps; ++n) {
+                const double s0 = double(n) / steps, s1 = double(n + 1) / steps;
+                const Vec3 a = from + (way == 0 ? s0 : 1 - s0) * fall;
+                const Vec3 b = from + (way == 0 ? s1 : 1 - s1) * fall;
+                sweep.push_back({a, a + edge, b + edge});
+                sweep.push_back({a, b + edge, b});
+            }
+        }
+        return sweep;
+    };
+    for (int n = 0; n < 60; ++n) {
+        CAPTURE(n);
+        Fixture f(bar(n % 3 == 0));
+        const double whole = signed_volume(f.mesh);
+        const Vec3 across = (Vec3::UnitZ() + at_random(-.3, .3) * Vec3::UnitX()).normalized();
+        const Vec3 fall(at_random(-.1, .1), -at_random(.05, .3), 0);
+        const double width = at_random(.002, .25);
+        const Vec3 from(at_random(-.2, .2), .17, at_random(-.18, .15));
+        f.cut(slit(from, width * across, fall, 1 + n % 5, 1 + n % 7));
+        check_sound(f.mesh, f.mesh.position);
+        CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
+        std::set<std::pair<int, int>> seen;
+        for (const Corners& t : f.mesh.triangle) {
+            for (int k = 0; k < 3; ++k) CHECK(seen.insert({t[k], t[(k + 1) % 3]}).second);
+        }
+    }
 }
 
 TEST_CASE("a body that has gone into itself is closed where it is cut, each part by its own") {

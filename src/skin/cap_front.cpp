@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "skin/cap_front.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace swage {
+
+namespace {
+
+Ends edge_of(const Corners& t, int k) { return ends(t[k], t[(k + 1) % 3]); }
+
+struct Edges {
+    std::map<Ends, int> triangles;
+    std::set<int> shared;  // by both sides: the ends of edges at which the blade stops
+};
+
+Edges edges_of(const Caps& caps, const std::function<bool(const Ends&)>& is_seam) {
+    Edges edges;
+    for (const Corners& t : caps.triangle) {
+        for (int k = 0; k < 3; ++k) ++edges.triangles[edge_of(t, k)];
+    }
+    for (const auto& [edge, count] : edges.triangles) {
+        if (count == 1 && !is_seam(edge)) edges.shared.insert({edge.first, edge.second});
+    }
+    return edges;
+}
+
+}  // namespace
+
+void part_caps(Caps& caps, const std::function<bool(const Ends&)>& is_seam,
+               const std::function<void(const Ends&)>& leave,
+               const std::function<int(const Ends&)>& half_way) {
+    Edges edges = edges_of(caps, is_seam);
+    const auto cannot_part = [&](const Ends& edge) {
+        return edges.shared.count(edge.first) && edges.shared.count(edge.second);
+    };
+    for (bool has_left = true; has_left;) {
+        Caps kept;
+        for (std::size_t c = 0; c < caps.triangle.size(); ++c) {
+            const Corners& t = caps.triangle[c];
+            bool parts = false, tears = false;
+            for (int k = 0; k < 3; ++k) {
+                const Ends edge = edge_of(t, k);
+                const bool at_rim = edges.triangles.at(edge) == 1;
+                parts = parts || !at_rim || !cannot_part(edge);
+                tears = tears || (at_rim && is_seam(edge) && cannot_part(edge));
+            }
+            if (parts && !tears) {
+                kept.triangle.push_back(t);
+                kept.neighbor.push_back(caps.neighbor[c]);
+                continue;
+            }
+            for (int k = 0; k < 3; ++k) {
+                if (is_seam(edge_of(t, k))) leave(edge_of(t, k));
+            }
+        }
+        has_left = kept.triangle.size() < caps.triangle.size();
+        caps = std::move(kept);
+        edges = edges_of(caps, is_seam);
+    }
+
+    std::map<Ends, int> middle;
+    for (const auto& [edge, count] : edges.triangles) {
+        if (count == 2 && cannot_part(edge)) middle[edge] = half_way(edge);
+    }
+    for (const auto& [edge, point] : middle) {
+        const std::size_t before = caps.triangle.size();
+        for (std::size_t c = 0; c < before; ++c) {
+            for (int k = 0; k < 3; ++k) {
+                Corners& t = caps.triangle[c];
+                if (edge_of(t, k) != edge) continue;
+                Corners other = t;
+                t[(k + 1) % 3] = point;
+                other[k] = point;
+                caps.triangle.push_back(other);
+                caps.neighbor.push_back(caps.neighbor[c]);
+                break;
+            }
+        }
+    }
+}
+
+}  // namespace swage
