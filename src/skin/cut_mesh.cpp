@@ -23,6 +23,9 @@ using Triangle = std::array<Vec3, 3>;
 
 // A part that a cut leaves is a chip below one cell and this share of the mesh.
 constexpr double kChipShare = 0.01;
+// An edge that by the matter's map leaves its chord by more than this share of its length spans a
+// jump of the map.
+constexpr double kLeavesChord = 0.1;
 
 // One sweep for each blade: triangles that hang together by corners.
 std::vector<std::vector<Triangle>> separate_sweeps(const std::vector<Triangle>& sweep) {
@@ -60,7 +63,8 @@ class PlaneCut {
         const int old = static_cast<int>(mesh_.position.size());
         std::vector<BodyPlace> cut, inner;
         std::vector<double> share;
-        find_cut_places(split, cut, share);
+        std::vector<Vec3> cut_world;
+        find_cut_places(split, cut, share, cut_world);
         find_cap_places(split, cut, inner);
 
         // The side of the plane that each vertex must follow; 0: as it likes.
@@ -79,9 +83,7 @@ class PlaneCut {
             } else {
                 const std::size_t at = raw - old;
                 place = at < cut.size() ? cut[at] : inner[at - cut.size()];
-                // Where the body's map jumps not every place is to be found.
-                world.push_back(at < cut.size() ? plane_.world(plane_.flat(map_.world(place)))
-                                                : split.cap_point[at - cut.size()]);
+                world.push_back(at < cut.size() ? cut_world[at] : split.cap_point[at - cut.size()]);
             }
             reference.push_back(place.reference);
             mount_.reference.push_back(place.reference);
@@ -137,9 +139,10 @@ class PlaneCut {
     }
 
     // Where each edge of the mesh, straight at molding and curved by now, meets the plane. Regula
-    // falsi, Illinois variant.
+    // falsi, Illinois variant. `world`: where what is held is held; the chord's where the map
+    // jumps.
     void find_cut_places(const SurfaceSplit& split, std::vector<BodyPlace>& places,
-                         std::vector<double>& share) const {
+                         std::vector<double>& share, std::vector<Vec3>& world) const {
         for (const CutPoint& cut : split.cut) {
             double s0 = 0, s1 = 1;
             double h0 = plane_.height(position_[cut.low]), h1 = plane_.height(position_[cut.high]);
@@ -156,8 +159,13 @@ class PlaneCut {
                 s = s0 + (s1 - s0) * h0 / (h0 - h1);
                 place = on_edge(cut, s);
             }
+            Vec3 at = map_.world(place);
+            const Vec3 &low = position_[cut.low], &high = position_[cut.high];
+            const Vec3 chord = low + cut.share * (high - low);
+            if ((at - chord).norm() > kLeavesChord * (high - low).norm()) at = chord;
             places.push_back(place);
             share.push_back(s);
+            world.push_back(plane_.world(plane_.flat(at)));
         }
     }
 

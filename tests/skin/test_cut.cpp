@@ -3,6 +3,7 @@
 #include <random>
 #include <set>
 
+#include "geometry/triangle_tree.h"
 #include "skin/cut_mesh.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
@@ -445,6 +446,48 @@ TEST_CASE("a second stage cuts what the first one left") {
             }
         }
         CHECK((high - low).norm() < 1e-12);
+    }
+}
+
+TEST_CASE(
+    "a second cut goes through the faces of the first as they are, however the matter flowed") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> noise(-.2 * .05, .2 * .05);
+    for (int n = 0; n < 8; ++n) {
+        CAPTURE(n);
+        Fixture f(bar());
+        const Vec3 p1(0.0137, 0, 0), n1 = Vec3(1, .3, .1 * n).normalized();
+        f.cut(sweep_of(p1, n1, 3));
+        test::sever_plane(f.matter, p1, n1);
+        f.matter.cell_hardening.assign(f.matter.cell_fill.size(), 1);
+        test::deform(f.matter, [&](const Vec3& p) -> Vec3 {
+            return p + Vec3(noise(random), noise(random), noise(random));
+        });
+        f.follow();
+        TriMesh before = f.mesh;
+        before.position = f.position;
+        double longest = 0;
+        for (const Corners& t : before.triangle) {
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 edge = f.position[t[k]] - f.position[t[(k + 1) % 3]];
+                longest = std::max(longest, edge.norm());
+            }
+        }
+        const TriangleTree surface(before);
+        const CutResult result = f.cut(sweep_of({0, .0071, 0}, Vec3(.1, 1, .1).normalized(), 3));
+        REQUIRE(result.cap_triangles > 0);
+        // Between its ends an edge leaves its chord by a tenth of its length at most. Caps come
+        // last.
+        const std::size_t end =
+            f.mesh.triangle.size() - static_cast<std::size_t>(result.cap_triangles);
+        double worst = 0;
+        for (std::size_t t = 0; t < end; ++t) {
+            for (int v : f.mesh.triangle[t]) {
+                if (v < static_cast<int>(before.position.size())) continue;
+                worst = std::max(worst, surface.distance(f.position[v]));
+            }
+        }
+        CHECK(worst < .1 * longest);
     }
 }
 
