@@ -34,30 +34,6 @@ double unaccounted(const Books& b, double least) {
     return play > least ? (b.remainder + std::min(0.0, b.fracture)) / play : 0;
 }
 
-bool has_parted(const Aggregate& matter) {
-    const std::vector<Span>& spans = matter.lattice.span;
-    return std::any_of(spans.begin(), spans.end(), [&](const Span& span) {
-        const SparseArray<float>& weight = matter.connection[span.direction].weight;
-        for (int n = 0; n < span.count; ++n) {
-            if (weight[span.lower + n] <= 0) return true;
-        }
-        return false;
-    });
-}
-
-// What goes by the surface that came in, and stands at a body that has laid open more; or nothing.
-std::string blind_push(const StageEnd& end) {
-    for (const Load& load : end.machine.apparatus.load) {
-        if (load.pressure != 0 && has_parted(end.bodies[std::size_t(load.body)].matter)) {
-            return "pressure \"" + load.name + "\"";
-        }
-    }
-    const bool drags = end.stage.sim.directional_drag > 0;
-    const bool any = drags && std::any_of(end.bodies.begin(), end.bodies.end(),
-                                          [](const WorkPiece& b) { return has_parted(b.matter); });
-    return any ? "directional_drag" : "";
-}
-
 std::string how_to_close(Solver solver) {
     if (solver == Solver::implicit_steps) {
         return "implicit steps damp by themselves: try more frames, which shorten them, or solver "
@@ -93,12 +69,6 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             "the blade has severed {} connections and parted nothing: it passed through a part of "
             "the work-piece only, by its place, its width or its way",
             end.totals.severed));
-    }
-    if (const std::string push = blind_push(end); whole && !push.empty()) {
-        warn(push +
-             " does not act on faces that cuts and breaks have laid open, so that what is "
-             "parted is pushed from its other sides alone; after a cut, a stage with remold "
-             "= true gives it to them");
     }
     if (const double share = unaccounted(end.last, round_off(end.bodies));
         sim.solver != Solver::quasistatic && std::abs(share) > kMostGain) {

@@ -120,7 +120,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[[stage.load]]", "force", "in all, spread by area; keeps its direction (machine's axes)"},
         {"[[stage.load]]",
          "pressure",
-         "instead of force: along the inward normal as it deforms",
+         "instead of force: along the inward normal as it deforms; all round a piece, also on what "
+         "cuts and breaks lay open",
          {},
          "-"},
         {"[[stage.load]]", "on", "the part of the surface that looks to this side"},

@@ -62,10 +62,17 @@ void read_start(TableReader& table, BodySpec& body) {
 void read_fineness(TableReader& table, MoldSettings& mold) {
     int across = kDefaultAcross;
     double spacing = 0;
-    const bool has_across = table.whole("across", 1, 1'000'000, across);
-    const bool has_spacing = table.quantity("spacing", Quantity::length, above(0), spacing);
+    bool has_across = table.whole("across", 1, 1'000'000, across);
+    bool has_spacing = table.quantity("spacing", Quantity::length, above(0), spacing);
     if (has_across && has_spacing) {
-        table.mistake("spacing", "across and spacing say the same: give one of them");
+        // Of an override and the file's the override counts.
+        const bool sets_across = table.find("across")->place.line == 0;
+        const bool sets_spacing = table.find("spacing")->place.line == 0;
+        if (sets_across == sets_spacing) {
+            table.mistake("spacing", "across and spacing say the same: give one of them");
+        } else {
+            (sets_across ? has_spacing : has_across) = false;
+        }
     }
     if (has_spacing) {
         if (spacing > 0) mold.spacing = spacing;

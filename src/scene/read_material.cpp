@@ -16,6 +16,9 @@ constexpr double kLatticePoisson = 0.25;  // of central springs, whatever is ask
 constexpr double kPoissonSlack = 0.005;
 constexpr double kMuchFriction = 2;
 constexpr double kMostStrength = 0.1;  // of young_modulus
+// Beyond all matter, and far from where numbers end.
+constexpr Range kStiffness = {.low = 1e-3, .high = 1e18};  // [Pa]
+constexpr Range kDensity = {.low = 1e-3, .high = 1e12};    // [kg/m3]
 
 // Materials that never yield say so by leaving yield_stress out; a scene turns a yielding one into
 // such by `yield_stress = inf`.
@@ -82,19 +85,19 @@ void read_surface(TableReader& table, Material& material) {
 
 void read_material_numbers(TableReader& table, bool needs_all, Material& material) {
     const bool has_modulus =
-        table.quantity("young_modulus", Quantity::stress, above(0), material.young_modulus);
+        table.quantity("young_modulus", Quantity::stress, kStiffness, material.young_modulus);
     table.quantity("poisson_ratio", Quantity::number, between(0, 0.49), material.poisson_ratio);
     table.choice<Elasticity>(
         "elasticity", {{"hencky", Elasticity::hencky}, {"neo-hookean", Elasticity::neo_hookean}},
         material.elasticity);
     const bool has_density =
-        table.quantity("density", Quantity::density, above(0), material.density);
+        table.quantity("density", Quantity::density, kDensity, material.density);
     if (is_infinite(table.find("yield_stress"))) {
         material.yield_stress = std::numeric_limits<double>::infinity();
     } else {
         table.quantity("yield_stress", Quantity::stress, above(0), material.yield_stress);
     }
-    table.quantity("hardening", Quantity::stress, at_least(0), material.hardening);
+    table.quantity("hardening", Quantity::stress, between(0, kStiffness.high), material.hardening);
     read_fracture(table, material);
     table.quantity("damping_ratio", Quantity::number, between(0, kMostDampingRatio),
                    material.damping_ratio);

@@ -2,6 +2,8 @@
 #include "sim/load_set.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "base/parallel.h"
 #include "sim/surface_forces.h"
@@ -23,13 +25,6 @@ Vec3 centre_of(const std::vector<double>& area, const std::vector<Vec3>& positio
     return all > 0 ? Vec3(sum / all) : sum;
 }
 
-std::vector<Vec3> positions_of(const Aggregate& matter, const std::vector<int>& points) {
-    std::vector<Vec3> position;
-    position.reserve(points.size());
-    for (int p : points) position.push_back(matter.surface_position(p));
-    return position;
-}
-
 PushSum sum_of(const std::vector<double>& area, const std::vector<Vec3>& position,
                const std::vector<Vec3>& force) {
     PushSum sum;
@@ -41,8 +36,7 @@ PushSum sum_of(const std::vector<double>& area, const std::vector<Vec3>& positio
     return sum;
 }
 
-// NOTE: the points sample a closed surface, and their area vectors sum to nothing only nearly. What
-// is left would drive a free body for ever, so it is taken off: evenly by area, and by a turn.
+// Takes the sum and the torque off, evenly by area, and by a turn.
 void balance(const std::vector<double>& area, const std::vector<Vec3>& position,
              std::vector<Vec3>& force) {
     const PushSum sum = sum_of(area, position, force);
@@ -78,20 +72,74 @@ LoadSet::LoadSet(const Apparatus& apparatus, const SimSettings& settings, int bo
     : apparatus_(&apparatus), body_(body), gravity_(settings.gravity) {}
 
 void LoadSet::connections_changed(const Aggregate& matter) {
-    parted_ = nullptr;
+    const std::shared_ptr<const Parted> before = std::exchange(parted_, nullptr);
     const bool presses =
         std::any_of(apparatus_->load.begin(), apparatus_->load.end(),
                     [&](const Load& load) { return pushes(load) && load.force.empty(); });
     if (!presses) return;
-    std::vector<char> parted(matter.surface.size());
-    parallel_for((parted.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(parted.size(), (chunk + 1) * kChunk);
+    const std::size_t count = matter.surface.size();
+    Parted parted;
+    parted.is_off.resize(count);
+    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(count, (chunk + 1) * kChunk);
         for (std::size_t p = chunk * kChunk; p < end; ++p) {
-            parted[p] = is_parted(matter, p);
+            parted.is_off[p] = is_parted(matter, p);
         }
     });
-    if (std::find(parted.begin(), parted.end(), 1) == parted.end()) return;
-    parted_ = std::make_shared<const std::vector<char>>(std::move(parted));
+    if (std::find(parted.is_off.begin(), parted.is_off.end(), 1) != parted.is_off.end()) {
+        parted.pieces = find_pieces(matter);
+        const std::vector<OpenFace> open = laid_open(matter);
+        for (const Load& load : apparatus_->load) {
+            parted.face.push_back(pressed(load, matter.surface, parted.pieces, open));
+        }
+        parted_ = std::make_shared<const Parted>(std::move(parted));
+    }
+    renew_last(matter, before.get());
+}
+
+std::vector<OpenFace> LoadSet::pressed(const Load& load, const SurfacePoints& surface,
+                                       const Pieces& pieces,
+                                       const std::vector<OpenFace>& open) const {
+    std::vector<OpenFace> faces;
+    if (!pushes(load) || !load.closed || !load.force.empty()) return faces;
+    std::vector<char> is_pressed(surface.size(), 0);
+    for (int p : load.point) is_pressed[std::size_t(p)] = 1;
+    std::vector<char> all_round(std::size_t(pieces.count), 1);
+    for (std::size_t p = 0; p < surface.size(); ++p) {
+        if (!is_pressed[p]) all_round[pieces.particle_piece[surface.row(p)[0]]] = 0;
+    }
+    for (const OpenFace& face : open) {
+        if (all_round[pieces.particle_piece[face.corner[0]]]) faces.push_back(face);
+    }
+    return faces;
+}
+
+std::span<const OpenFace> LoadSet::faces_of(const Load& load) const {
+    if (parted_ == nullptr) return {};
+    return parted_->face[std::size_t(&load - apparatus_->load.data())];
+}
+
+// What is laid open now has not moved since it was.
+void LoadSet::renew_last(const Aggregate& matter, const Parted* before) {
+    for (std::size_t l = 0; l < last_.force.size(); ++l) {
+        const Load& load = apparatus_->load[l];
+        if (!pushes(load)) continue;
+        const std::size_t points = load.point.size();
+        std::map<std::array<ParticleId, 4>, std::size_t> known;
+        for (std::size_t n = points; n < last_.force[l].size(); ++n) {
+            known[before->face[l][n - points].corner] = n;
+        }
+        const std::vector<Vec3> position = last_.position[l], force = last_.force[l];
+        last_.position[l].resize(points);
+        last_.force[l].resize(points);
+        for (const OpenFace& face : faces_of(load)) {
+            const auto had = known.find(face.corner);
+            const bool is_new = had == known.end();
+            last_.position[l].push_back(is_new ? face.mean(matter.particle_position)
+                                               : position[had->second]);
+            last_.force[l].push_back(is_new ? Vec3(Vec3::Zero()) : force[had->second]);
+        }
+    }
 }
 
 std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter) const {
@@ -99,34 +147,72 @@ std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter)
     area.reserve(load.point.size());
     const bool presses = load.force.empty();
     for (int p : load.point) {
-        const bool is_off = presses && parted_ != nullptr && (*parted_)[p];
+        const bool is_off = presses && parted_ != nullptr && parted_->is_off[p];
         area.push_back(is_off ? 0 : matter.surface.area(p));
     }
+    for (const OpenFace& face : faces_of(load)) area.push_back(face.area);
     return area;
+}
+
+std::vector<Vec3> LoadSet::positions_of(const Load& load, const Aggregate& matter) const {
+    std::vector<Vec3> position;
+    position.reserve(load.point.size());
+    for (int p : load.point) position.push_back(matter.surface_position(p));
+    for (const OpenFace& face : faces_of(load)) {
+        position.push_back(face.mean(matter.particle_position));
+    }
+    return position;
+}
+
+void LoadSet::balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
+                      std::vector<Vec3>& force) const {
+    const std::vector<Vec3> position = positions_of(load, matter);
+    if (parted_ == nullptr) return swage::balance(area, position, force);
+    const Pieces& pieces = parted_->pieces;
+    std::vector<std::vector<std::size_t>> of_piece(std::size_t(pieces.count));
+    const std::size_t points = load.point.size();
+    for (std::size_t n = 0; n < force.size(); ++n) {
+        if (area[n] == 0) continue;
+        const ParticleId by = n < points ? matter.surface.row(load.point[n])[0]
+                                         : faces_of(load)[n - points].corner[0];
+        of_piece[pieces.particle_piece[by]].push_back(n);
+    }
+    for (const std::vector<std::size_t>& piece : of_piece) {
+        std::vector<double> own_area;
+        std::vector<Vec3> own_position, own;
+        for (std::size_t n : piece) {
+            own_area.push_back(area[n]);
+            own_position.push_back(position[n]);
+            own.push_back(force[n]);
+        }
+        swage::balance(own_area, own_position, own);
+        for (std::size_t n = 0; n < piece.size(); ++n) force[piece[n]] = own[n];
+    }
 }
 
 std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
                                      const Aggregate& matter) const {
-    std::vector<Vec3> force(load.point.size());
+    const std::size_t points = load.point.size();
+    const std::span<const OpenFace> face = faces_of(load);
+    std::vector<Vec3> force(points + face.size(), Vec3::Zero());
     if (!load.force.empty()) {
-        for (std::size_t n = 0; n < force.size(); ++n) force[n] = strength * load.force[n];
+        for (std::size_t n = 0; n < points; ++n) force[n] = strength * load.force[n];
         return force;
     }
     const double pressure = strength * load.pressure;
-    if (pressure == 0) {
-        std::fill(force.begin(), force.end(), Vec3::Zero());
-        return force;
-    }
+    if (pressure == 0) return force;
     const std::vector<double> area = areas_of(load, matter);
-    parallel_for((force.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(force.size(), (chunk + 1) * kChunk);
+    parallel_for((points + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        const std::size_t end = std::min(points, (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            force[n] = area[n] > 0
-                           ? pressure_force(pressure, surface_area_vector(matter, load.point[n]))
-                           : Vec3(Vec3::Zero());
+            if (area[n] == 0) continue;
+            force[n] = pressure_force(pressure, surface_area_vector(matter, load.point[n]));
         }
     });
-    if (load.closed) balance(area, positions_of(matter, load.point), force);
+    for (std::size_t n = 0; n < face.size(); ++n) {
+        force[points + n] = pressure_force(pressure, face[n].outward(matter.particle_position));
+    }
+    if (load.closed) balance(load, matter, area, force);
     return force;
 }
 
@@ -135,9 +221,12 @@ void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& f
         const Load& load = apparatus_->load[l];
         if (!pushes(load) || now.load_strength[l] == 0) continue;
         const std::vector<Vec3> push = forces_of(load, now.load_strength[l], matter);
-        for (std::size_t n = 0; n < push.size(); ++n) {
+        const std::size_t points = load.point.size();
+        for (std::size_t n = 0; n < points; ++n) {
             spread(matter.surface, load.point[n], push[n], force);
         }
+        const std::span<const OpenFace> face = faces_of(load);
+        for (std::size_t n = 0; n < face.size(); ++n) spread(face[n], push[points + n], force);
     }
 }
 
@@ -184,7 +273,7 @@ LoadSet::Settled LoadSet::settled(const Aggregate& matter, const Drive& now) con
             state.force.emplace_back();
             continue;
         }
-        state.position.push_back(positions_of(matter, load.point));
+        state.position.push_back(positions_of(load, matter));
         state.force.push_back(forces_of(load, now.load_strength[l], matter));
     }
     if (has_gravity()) {
@@ -224,7 +313,7 @@ std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) co
             sums.emplace_back();
             continue;
         }
-        sums.push_back(sum_of(areas_of(load, matter), positions_of(matter, load.point),
+        sums.push_back(sum_of(areas_of(load, matter), positions_of(load, matter),
                               forces_of(load, now.load_strength[l], matter)));
     }
     if (has_gravity()) {

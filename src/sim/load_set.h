@@ -2,14 +2,16 @@
 // What pushes the work-piece without being a body: the apparatus' loads, and gravity; and the work
 // that they do. Forces on the surface keep their direction; a pressure follows the surface, but for
 // that of cells no longer whole, cut or broken, whose corners belong to different sides: it presses
-// on them no more, nor on new surface.
+// on them no more. One all round a piece presses on what was laid open instead (sim/laid_open.h).
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/laid_open.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -54,11 +56,30 @@ class LoadSet {
     std::size_t count() const { return apparatus_->load.size() + has_gravity(); }
 
   private:
+    // What has come of the surface since a blade or a crack has parted cells.
+    struct Parted {
+        std::vector<char> is_off;  // of each point: its cell is parted
+        Pieces pieces;
+        std::vector<std::vector<OpenFace>> face;  // of each load
+    };
+    // Those laid open on pieces that it presses on all round. Wherever a load's points are listed
+    // they follow these.
+    std::span<const OpenFace> faces_of(const Load& load) const;
+    std::vector<OpenFace> pressed(const Load& load, const SurfacePoints& surface,
+                                  const Pieces& pieces, const std::vector<OpenFace>& open) const;
+
     // On each point of a load [N].
     std::vector<Vec3> forces_of(const Load& load, double strength, const Aggregate& matter) const;
 
     // Of each of a load's points that it acts on; 0: it does not [m2].
     std::vector<double> areas_of(const Load& load, const Aggregate& matter) const;
+    std::vector<Vec3> positions_of(const Load& load, const Aggregate& matter) const;
+    // NOTE: the points sample a closed surface, and their area vectors sum to nothing only nearly.
+    // What is left would drive a free body, or a piece of it, for ever, so it is taken off.
+    void balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
+                 std::vector<Vec3>& force) const;
+
+    void renew_last(const Aggregate& matter, const Parted* before);
 
     bool pushes(const Load& load) const { return load.body == body_; }
 
@@ -74,7 +95,7 @@ class LoadSet {
     Settled settled(const Aggregate& matter, const Drive& now) const;
 
     bool started_ = false;
-    std::shared_ptr<const std::vector<char>> parted_;  // of each point of the surface; null: none
+    std::shared_ptr<const Parted> parted_;  // null: all cells are whole
     Settled last_;
 };
 

@@ -19,7 +19,8 @@ constexpr double kMostShare = 0.25;  // of a carrier's speed that a step may tak
 
 SurfaceDrag::SurfaceDrag(const Aggregate& matter, const SimSettings& settings, double step)
     : ambient_{settings.medium_density, settings.drag_coefficient},
-      facing_{settings.directional_drag, settings.directional_drag_along} {
+      facing_{settings.directional_drag, settings.directional_drag_along},
+      step_(step) {
     if (!acts()) return;
     const SurfacePoints& surface = matter.surface;
     const double a = matter.lattice.spacing;
@@ -38,7 +39,30 @@ SurfaceDrag::SurfaceDrag(const Aggregate& matter, const SimSettings& settings, d
 }
 
 void SurfaceDrag::connections_changed(const Aggregate& matter) {
+    if (!acts()) return;
     for (Cell& cell : cell_) cell.parted = is_parted(matter, cell.first);
+    face_.clear();
+    for (const OpenFace& open : laid_open(matter)) {
+        double lightest = std::numeric_limits<double>::infinity();
+        for (ParticleId p : open.corner) lightest = std::min(lightest, matter.particle_mass[p]);
+        face_.push_back({open, kMostShare * lightest / step_});
+    }
+}
+
+SWAGE_INLINE Vec3 SurfaceDrag::force_on(const Vec3& outward, const Vec3& velocity, double most,
+                                        bool& held) const {
+    const double area = outward.norm(), fast = velocity.norm();
+    if (!(area > 0 && fast > 0)) return Vec3::Zero();
+    Vec3 f = ambient_drag_force(ambient_, area, velocity);
+    if (facing_.drag > 0) {
+        f += directional_drag_force<double>(facing_, area, velocity, outward / area);
+    }
+    const double size = f.norm();
+    if (size > most * fast) {
+        f *= most * fast / size;
+        held = true;
+    }
+    return f;
 }
 
 struct SurfaceDrag::Kernel {
@@ -82,20 +106,8 @@ struct SurfaceDrag::Kernel {
                 const Patch& patch = drag.patch_[m];
                 Vec4 now{};
                 for (int c = 0; c < 8; ++c) now += patch.weight[c] * v[c];
-                const Vec4 outward = area_of(patch, x);
-                const double area = std::sqrt(dot3(outward, outward)),
-                             fast = std::sqrt(dot3(now, now));
-                if (!(area > 0 && fast > 0)) continue;
-                Vec3 f = ambient_drag_force(drag.ambient_, area, vec3(now));
-                if (drag.facing_.drag > 0) {
-                    f += directional_drag_force<double>(drag.facing_, area, vec3(now),
-                                                        vec3(outward / area));
-                }
-                const double size = f.squaredNorm(), most = patch.place[3] * fast;
-                if (size > most * most) {
-                    f *= most / std::sqrt(size);
-                    result.held = true;
-                }
+                const Vec3 f =
+                    drag.force_on(vec3(area_of(patch, x)), vec3(now), patch.place[3], result.held);
                 const Vec4 force = vec4(f);
                 for (int c = 0; c < 8; ++c) push[c] += patch.weight[c] * force;
                 result.power -= dot3(force, now);
@@ -125,6 +137,17 @@ double SurfaceDrag::add_forces(const Aggregate& matter, Vec3Array& force) {
     }
     for (std::size_t n = 0; n < cell_.size(); ++n) {
         for (int c = 0; c < 8; ++c) force.add(cell_[n].corner[c], vec3(push_[n][c]));
+    }
+    return face_.empty() ? power : power + add_open_forces(matter, force);
+}
+
+double SurfaceDrag::add_open_forces(const Aggregate& matter, Vec3Array& force) {
+    double power = 0;
+    for (const auto& [open, most] : face_) {
+        const Vec3 now = open.mean(matter.particle_velocity);
+        const Vec3 f = force_on(open.outward(matter.particle_position), now, most, held_);
+        spread(open, f, force);
+        power -= f.dot(now);
     }
     return power;
 }

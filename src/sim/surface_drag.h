@@ -9,6 +9,7 @@
 #include "laws/ambient_drag.h"
 #include "laws/directional_drag.h"
 #include "matter/aggregate.h"
+#include "sim/laid_open.h"
 #include "sim/settings.h"
 #include "sim/vec4.h"
 
@@ -22,7 +23,8 @@ class SurfaceDrag {
 
     bool acts() const { return ambient_.density * ambient_.coefficient > 0 || facing_.drag > 0; }
 
-    // A blade or a crack has changed which cells are whole: the medium flows past the others only.
+    // A blade or a crack has changed which cells are whole: the medium flows past these only, and
+    // past what was laid open.
     void connections_changed(const Aggregate& matter);
 
     // Adds the forces; returns the power that they take [W].
@@ -44,7 +46,14 @@ class SurfaceDrag {
         double power = 0;
         bool held = false;
     };
+    struct Face {
+        OpenFace open;
+        double most;  // force over speed [N s/m]
+    };
     struct Kernel;
+    // `outward`: area vector [m2]; `most`: force over speed [N s/m].
+    Vec3 force_on(const Vec3& outward, const Vec3& velocity, double most, bool& held) const;
+    double add_open_forces(const Aggregate& matter, Vec3Array& force);
     void find_chunk(const Aggregate& matter, std::size_t chunk);
     void middle_find_chunk(const Aggregate& matter, std::size_t chunk);
 
@@ -54,6 +63,8 @@ class SurfaceDrag {
     std::vector<Cell> cell_;
     std::vector<std::array<Vec4, 8>> push_;  // of each cell's corners [N]
     std::vector<Chunk> chunk_;
+    double step_;  // [s]
+    std::vector<Face> face_;
     bool held_ = false;
 };
 

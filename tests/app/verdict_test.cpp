@@ -42,13 +42,3 @@ TEST_CASE("a blade that meets nothing is told of, and one that cuts is not") {
     CHECK(says(told_of(parted, cut), "has met no matter"));
     CHECK(!says(told_of(kBar, cut), "met no matter"));
 }
-
-TEST_CASE("what a cut lays open takes no pressure, and the run says so until it is molded anew") {
-    const std::string cut = "[[stage]]\nmachine = \"cut\"\nframes = 2\n",
-                      hold = "[[stage]]\nmachine = \"hold\"\nframes = 1\n",
-                      press = "[[stage.load]]\npressure = \"1 kPa\"\n";
-    const std::string warning = "does not act on faces";
-    CHECK(!says(told_of(kBar, hold + press), warning));
-    CHECK(says(told_of(kBar, cut + hold + press), warning));
-    CHECK(!says(told_of(kBar, cut + hold + "remold = true\n" + press), warning));
-}

@@ -257,8 +257,7 @@ TEST_CASE("a single gravity points against a stage's up, and the pictures have t
         REQUIRE(reading.scene);
         return *reading.scene;
     };
-    const std::string z =
-        "[[stage]]\nmachine = \"floor\"\nup = \"z\"\ngravity = \"9.81 m/s2\"\n";
+    const std::string z = "[[stage]]\nmachine = \"floor\"\nup = \"z\"\ngravity = \"9.81 m/s2\"\n";
     const std::string bare = "[[stage]]\nmachine = \"bend\"\nup = \"z\"\n";
     const std::string y = "[[stage]]\nmachine = \"floor\"\ngravity = \"9.81 m/s2\"\n";
     const SceneSpec up = scene_with(z + bare);
@@ -362,6 +361,22 @@ TEST_CASE("overrides count as if the file said so") {
     CHECK(scene.render.camera[0].azimuth == Approx(kPi / 6));
     CHECK(scene.work_piece().mold.across.value() == 4);
     CHECK(scene.output.meshes_per_frame);
+}
+
+TEST_CASE("an override of across or spacing counts instead of the file's of the other") {
+    const Scratch scratch;
+    const auto mold = [&](const std::string& file, const std::vector<std::string>& overrides) {
+        const std::string text =
+            kHead + "[mold]\n" + file + "\n[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\n";
+        const SceneReading reading = read(scratch, text, overrides);
+        INFO(told(reading.mistakes, scratch.folder()));
+        REQUIRE(reading.scene);
+        return reading.scene->work_piece().mold;
+    };
+    CHECK(mold("across = 5", {"mold.spacing=2 mm"}).spacing.value() == Approx(0.002));
+    CHECK_FALSE(mold("across = 5", {"mold.spacing=2 mm"}).across.has_value());
+    CHECK(mold("spacing = \"2 mm\"", {"mold.across=7"}).across.value() == 7);
+    CHECK_FALSE(mold("spacing = \"2 mm\"", {"mold.across=7"}).spacing.has_value());
 }
 
 TEST_CASE("every shipped machine reads without a word") {

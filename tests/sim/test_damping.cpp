@@ -7,6 +7,7 @@
 #include "sim/surface_drag.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
 #include "tests/sim/motion.h"
 #include "tests/sim/steady_flow.h"
 
@@ -237,6 +238,24 @@ TEST_CASE("drag does not grow as the gap of a crack or a cut opens") {
     }
     CHECK(before > 0);
     CHECK(power() == Approx(before));
+}
+
+TEST_CASE("a medium meets what a cut has laid open") {
+    Aggregate m = make_block(6, 4, 4, 0.1, kSpringy);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) m.particle_velocity.set(p, {2, 0, 0});
+    SimSettings settings = motion_settings();
+    settings.directional_drag = 3;
+    SurfaceDrag drag(m, settings, 1e-4);
+    const auto power = [&] {
+        Vec3Array force;
+        force.resize(m.particle_count());
+        return drag.add_forces(m, force);
+    };
+    const double front = 16 * 0.01;  // [m2]
+    CHECK(power() == Approx(3 * front * 2 * 2));
+    sever_plane(m, Vec3(0.013, 0, 0), Vec3::UnitX());
+    drag.connections_changed(m);
+    CHECK(power() == Approx(2 * 3 * front * 2 * 2));  // each piece has a front
 }
 
 TEST_CASE("a plate sinks flat as fast as its weight over drag and area, and slower than on edge") {

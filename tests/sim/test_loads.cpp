@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/error.h"
 #include "sim/advance.h"
+#include "sim/laid_open.h"
 #include "sim/load_set.h"
+#include "sim/surface_forces.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
@@ -132,7 +134,8 @@ TEST_CASE("pressure does not grow as the gap of a crack or a cut opens") {
         const double whole = loads.size(m, now);
         break_layer(m, 1);
         loads.connections_changed(m);
-        CHECK(loads.size(m, now) == Approx(whole * 24 / 32));  // of the faces of cells
+        // Of the faces of cells; one all round presses on those laid open too.
+        CHECK(loads.size(m, now) == Approx(closed ? whole : whole * 24 / 32));
         const Vec3Array before = force();
         for (std::size_t p = 0; p < m.particle_count(); ++p) {
             if (m.particle_reference.at(p).y() > 0) m.particle_position.y[p] += 0.5;
@@ -142,6 +145,75 @@ TEST_CASE("pressure does not grow as the gap of a crack or a cut opens") {
             CHECK((after.at(p) - before.at(p)).norm() < 1e-12);
         }
     }
+}
+
+TEST_CASE("pressure all round drives no piece and turns none, whatever has parted") {
+    const auto ball = make_shape([](const Vec3& x) { return x.norm() - 0.31; },
+                                 Vec3::Constant(-0.4), Vec3i(8, 8, 8), 0.1);
+    for (Aggregate matter : {make_block(6, 4, 4, 0.1, kSoft), ball}) {
+        Apparatus apparatus;
+        apparatus.load.push_back(pressure_on(matter, 1e5));
+        LoadSet loads(apparatus, {});
+        const Drive now = drive_of(apparatus, 1, 1);
+        const double size = loads.size(matter, now);
+        sever_plane(matter, Vec3(0.013, 0, 0), Vec3(1, 0.4, 0.2).normalized());
+        const Pieces pieces = find_pieces(matter);
+        REQUIRE(pieces.count == 2);
+        deform(matter, crooked);
+        loads.connections_changed(matter);
+        Vec3Array force;
+        force.resize(matter.particle_count());
+        loads.add_forces(matter, now, force);
+        for (int piece = 0; piece < pieces.count; ++piece) {
+            Vec3 push = Vec3::Zero(), turn = Vec3::Zero();
+            for (std::size_t p = 0; p < force.size(); ++p) {
+                if (pieces.particle_piece[p] != piece) continue;
+                push += force.at(p);
+                turn += matter.particle_position.at(p).cross(force.at(p));
+            }
+            CHECK(push.norm() < 1e-8 * size);
+            CHECK(turn.norm() < 1e-8 * size);
+        }
+        // What had to be taken off for that is little: with the faces each piece is closed.
+        std::vector<Vec3> sum(std::size_t(pieces.count), Vec3::Zero());
+        double area = 0;
+        for (std::size_t p = 0; p < matter.surface.size(); ++p) {
+            if (is_parted(matter, p)) continue;
+            const Vec3 own = surface_area_vector(matter, int(p));
+            sum[pieces.particle_piece[matter.surface.row(p)[0]]] += own;
+            area += own.norm();
+        }
+        for (const OpenFace& face : laid_open(matter)) {
+            sum[pieces.particle_piece[face.corner[0]]] += face.outward(matter.particle_position);
+        }
+        // (Of the ball the fixture's own areas are too rough.)
+        if (matter.surface.size() == ball.surface.size()) continue;
+        for (const Vec3& one : sum) CHECK(one.norm() < 0.01 * area);
+    }
+}
+
+TEST_CASE("a body that is cut under pressure all round stays as it is pressed") {
+    const auto pressed = [](bool is_cut) {
+        Aggregate matter = make_block(6, 4, 4, 0.1, kSoft);
+        if (is_cut) sever_plane(matter, Vec3(0.013, 0, 0), Vec3::UnitX());
+        Apparatus apparatus;
+        apparatus.load.push_back(pressure_on(matter, 2e3));
+        SimSettings settings;
+        settings.solver = Solver::explicit_steps;
+        const FrameReport report = put_on(matter, apparatus, settings, 4);
+        return std::pair(matter, report);
+    };
+    const auto [whole, whole_report] = pressed(false);
+    const auto [cut, report] = pressed(true);
+    CHECK(report.pieces == 2);
+    // The cells beside the cut hold the pressure that goes through the whole one.
+    for (std::size_t p = 0; p < cut.particle_count(); ++p) {
+        const double x = cut.particle_reference.at(p).x();
+        if (std::abs(x) < 0.15) continue;
+        const Vec3 a = cut.particle_position.at(p), b = whole.particle_position.at(p);
+        CHECK((a - b).norm() < 0.02 * 0.1);
+    }
+    CHECK(std::abs(report.remainder) < 0.02 * report.load.at(0).work);
 }
 
 TEST_CASE("pressure follows the surface as the body turns") {
