@@ -422,19 +422,20 @@ double ContactSet::travel(const Aggregate& matter, const Drive& from, const Driv
     return std::max(farthest, grips_.travel(from, to));
 }
 
-bool ContactSet::is_stirred(const Drive& since, const Drive& now) const {
-    const double least = 1e-6 * spacing_;
+double ContactSet::near_travel(const Drive& from, const Drive& to) const {
+    double farthest = grips_.travel(from, to);
     for (std::size_t t = 0; t < apparatus_->tool.size(); ++t) {
         const int tool = static_cast<int>(t);
         const bool is_near =
             std::binary_search(pair_.begin(), pair_.end(), Pair{tool, 0, false, {}},
                                [](const Pair& a, const Pair& b) { return a.tool < b.tool; });
-        if (is_near && bounds_travel(apparatus_->tool[t], since.world_from_tool[t],
-                                     now.world_from_tool[t]) > least) {
-            return true;
+        if (is_near) {
+            const double own =
+                bounds_travel(apparatus_->tool[t], from.world_from_tool[t], to.world_from_tool[t]);
+            farthest = std::max(farthest, own);
         }
     }
-    return grips_.travel(since, now) > least;
+    return farthest;
 }
 
 std::string ContactSet::hardest_point(const Aggregate& matter, const Drive& now) const {

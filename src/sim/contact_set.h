@@ -101,8 +101,11 @@ class ContactSet {
     };
     Stroke stroke(const Aggregate& matter, const Drive& from, const Drive& to) const;
 
-    // Whether a tool that is near or a grip has moved.
-    bool is_stirred(const Drive& since, const Drive& now) const;
+    // The farthest that any grip, or tool that was near when the candidates were found, moves [m].
+    double near_travel(const Drive& from, const Drive& to) const;
+    bool is_stirred(const Drive& since, const Drive& now) const {
+        return near_travel(since, now) > 1e-6 * spacing_;
+    }
 
     // Explicit steps. One begins from this drive, with the forces that were found last.
     void begin_step(const Drive& from);

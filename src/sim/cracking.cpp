@@ -11,6 +11,7 @@
 #include "sim/cell_volume.h"
 #include "sim/crack_path.h"
 #include "sim/flowed_stretch.h"
+#include "sim/mixed_cells.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -40,6 +41,18 @@ double material_strain(const Aggregate& matter, const CellRun& run, int n, doubl
     const double largest =
         Eigen::SelfAdjointEigenSolver<Mat3>(c, Eigen::EigenvaluesOnly).eigenvalues()[2];
     return std::sqrt(largest) - 1;
+}
+
+// The same of a cell of two materials, of the one that is nearer to its onset, over this.
+double mixed_share(const Aggregate& matter, const FractureLaws& laws,
+                   const std::vector<MaterialLaw>& material, const MixedCell& two) {
+    const std::array<double, 2> strain = largest_strains(matter, material, two);
+    double most = 0;
+    for (int p = 0; p < 2; ++p) {
+        const double onset = laws.onset_of(two.material[p]);
+        if (onset > 0) most = std::max(most, strain[p] / onset);
+    }
+    return most;
 }
 
 struct Beyond {
@@ -113,7 +126,9 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
     const std::size_t count = only ? only->size() : runs.size();
     const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
     const bool springs = matter.material.mechanics == Mechanics::springs;
-    const double far = strain_measure_at(laws.least_onset());
+    const double far = strain_measure_at(laws.watched_onset());
+    const std::vector<MaterialLaw> material =
+        matter.mixed_cell.empty() ? std::vector<MaterialLaw>() : material_laws(matter);
     std::vector<std::vector<Beyond>> part(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
         std::vector<double> measure;
@@ -133,6 +148,11 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
                 std::array<ParticleId, 4> row = run.row;
                 for (ParticleId& p : row) p += n;
                 if (!carried && !cell_is_sound(matter, cell, row)) continue;
+                if (const MixedCell* two = matter.mixed_at(cell)) {
+                    const double share = mixed_share(matter, laws, material, *two);
+                    if (share >= 1) part[chunk].push_back({&run, n, share});
+                    continue;
+                }
                 double strain = springs ? 0 : material_strain(matter, run, n, onset);
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));

@@ -28,7 +28,7 @@ LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
     if (springs && std::isfinite(matter.material.yield_stress)) {
         spring_flow_ = std::make_unique<CellFlow>(matter);
     }
-    if (cells_) cells_->watch_strain(loose_.laws().least_onset());
+    if (cells_) cells_->watch_strain(loose_.laws().watched_onset());
     take_in(matter);
 }
 

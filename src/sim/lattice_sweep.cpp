@@ -320,7 +320,7 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
         task.run = run_.data() + slab.run_begin, task.run_end = run_.data() + slab.run_end;
         task.batch = batch_.data() + slab_batch_[index];
         task.end = slab.end, task.reach = slab.reach, task.zeroed = slab.begin;
-        stretched_[index].clear();
+        if (wanted.springs) stretched_[index].clear();
         task.stretched = &stretched_[index];
         if (wanted.branches) {
             task.strain = wanted.branches->strain->data() +

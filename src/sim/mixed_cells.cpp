@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/mixed_cells.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -112,6 +113,14 @@ OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws
     return one;
 }
 
+// Of one of the two materials, with its part in the jump.
+Columns<double> gradient_of(const OneMixed& one, const MixedCell& cell, int p) {
+    double share[2];
+    jump_shares(one.phase, share);
+    const Triple<double> normal = {cell.normal.x(), cell.normal.y(), cell.normal.z()};
+    return jumped(one.found.phase[p].gradient, normal, share[p] * one.found.jump);
+}
+
 }  // namespace
 
 std::vector<MaterialLaw> material_laws(const Aggregate& matter) {
@@ -139,6 +148,20 @@ void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun
         }
         ++pieces.back().count;
     }
+}
+
+std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                                      const MixedCell& cell) {
+    const OneMixed one = one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell));
+    std::array<double, 2> largest;
+    for (int p = 0; p < 2; ++p) {
+        const Columns<double> f = gradient_of(one, cell, p) * taken_back(one.phase[p].history);
+        Mat3 g;
+        g << f.x.x, f.y.x, f.z.x, f.x.y, f.y.y, f.z.y, f.x.z, f.y.z, f.z.z;
+        const Eigen::SelfAdjointEigenSolver<Mat3> c(g.transpose() * g, Eigen::EigenvaluesOnly);
+        largest[p] = std::sqrt(c.eigenvalues()[2]) - 1;
+    }
+    return largest;
 }
 
 MixedBatches::MixedBatches(const Aggregate& matter, const std::vector<float>& carried) {
@@ -235,16 +258,11 @@ double MixedCells::elastic_energy(const Aggregate& matter,
     const auto energy_of = [&](std::size_t n) {
         const MixedCell& cell = matter.mixed_cell[batches_.cell[n]];
         const OneMixed one = one_mixed(matter, laws, cell, batches_.corner[n]);
-        const Triple<double> normal = {cell.normal.x(), cell.normal.y(), cell.normal.z()};
-        const double all = one.phase[0].fill + one.phase[1].fill;
         double sum = 0;
         for (int p = 0; p < 2; ++p) {
             const Phase<double>& m = one.phase[p];
             const PhaseState<double>& s = one.found.phase[p];
-            const double share = p == 0 ? one.phase[1].fill / all : -one.phase[0].fill / all;
-            const Triple<double> by = share * one.found.jump;
-            const Columns<double> f = {s.gradient.x + normal.x * by, s.gradient.y + normal.y * by,
-                                       s.gradient.z + normal.z * by};
+            const Columns<double> f = gradient_of(one, cell, p);
             const Symmetric<double> a = taken_back(m.history);
             const double mean = m.kind == CellKind::rubber
                                     ? rubber_energy(*m.law, f)

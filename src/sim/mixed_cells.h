@@ -33,6 +33,10 @@ struct MixedBatches {
     std::vector<int> first;  // of each batch; the end
 };
 
+// The largest principal strain of each of its two materials, less what has flowed.
+std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                                      const MixedCell& cell);
+
 class MixedCells {
   public:
     // Cells with `carried` 0 are left out.

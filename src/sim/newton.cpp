@@ -245,15 +245,15 @@ bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
     return whole < -kFalls * material && material > -kStrains * whole;
 }
 
-Newton::Astray Newton::astray(const Aggregate& matter, const Vec3Array& force) const {
+Newton::Astray Newton::astray(const Aggregate& matter, const Vec3Array& force,
+                              const Vec3Array& start) const {
     const Vec3Array& way = softest_.motion();
     if (way.size() != force.size() || !(firmness_ > 0)) return {};
     double size = 0, gone = 0;
     for (std::size_t p = 0; p < way.size(); ++p) {
         const double mass = matter.particle_mass[p];
         size += mass * way.at(p).squaredNorm();
-        gone +=
-            mass * way.at(p).dot(matter.particle_position.at(p) - matter.particle_reference.at(p));
+        gone += mass * way.at(p).dot(matter.particle_position.at(p) - start.at(p));
     }
     const double longest = longest_of(way);
     return {.gone = std::abs(gone / size) * longest,

@@ -67,7 +67,10 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       self_(matter, settings),
       body_size_(largest_extent(matter)),
       free_(matter, apparatus),
+      begun_at_(matter.particle_position),
       slips_(apparatus),
+      measure_(kLeastPush * matter.mean_modulus() * matter.lattice.spacing *
+               matter.lattice.spacing),
       load_(apparatus.tool.size() + apparatus.grip.size()) {
     velocity_.resize(matter.particle_count());
     matter_.branch_memory.clear();
@@ -116,16 +119,9 @@ void QuasistaticSolver::evaluate(const Drive& to, double moved) {
     self_.add_forces(force_);
 }
 
-// The measure of the residual. Where tools or grips have moved, it is the largest force that any of
-// them carries or has carried, or a load or gravity asks for. Where loads alone have driven the
-// body it is what they ask for: a slender body's grips carry far more, against each other.
-double QuasistaticSolver::push_limit(const Drive& to) const {
-    const double asked = pushes_.size(matter_, to);
-    if (!moved_ && asked > 0) return std::max(asked, least_measure_);
-    const double a = matter_.lattice.spacing, least = kLeastPush * matter_.mean_modulus() * a * a;
-    double push = std::max({largest_push_, least, least_measure_});
-    for (const LoadSum& load : contacts_.loads(matter_, to)) push = std::max(push, load.size);
-    return std::max(push, asked);
+double QuasistaticSolver::push_measure(const Drive& to) const {
+    return measure_.measure(pushes_.size(matter_, to),
+                            [&] { return contacts_.loads(matter_, to); });
 }
 
 double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) const {
@@ -133,7 +129,7 @@ double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) c
     const double sum = chunked_sum(f.size(), [&](std::size_t p) {
         return std::sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]);
     });
-    return sum / push_limit(to);
+    return sum / push_measure(to);
 }
 
 NewtonProblem QuasistaticSolver::problem_of(const Drive& to, ContactSet::Slipping slipping) {
@@ -207,7 +203,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax(const Drive& to) {
         const double dragged = hold_ * chunked_sum(x.size(), [&](std::size_t p) {
                                    return drag_[p] * (x.at(p) - held_.at(p)).norm();
                                });
-        if (dragged <= accuracy_ * push_limit(to)) {
+        if (dragged <= accuracy_ * push_measure(to)) {
             if (!smooth) enough_hold_ = hold_;
             return result;
         }
@@ -241,7 +237,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
             const double hold = std::exchange(hold_, 0);  // the drag holds back what is left over
             evaluate(to);
             hold_ = hold;
-            const Newton::Astray soft = newton_->astray(matter_, force_);
+            const Newton::Astray soft = newton_->astray(matter_, force_, begun_at_);
             if (soft.left <= kAstray * soft.gone + kNudge * kAstray * matter_.lattice.spacing)
                 break;
             const Relaxation enough = result;
@@ -328,13 +324,10 @@ bool QuasistaticSolver::take_back(Relaxation& tried, const Drive& to, int depth,
     }
     // What light crumbs are short of rest may be nothing beside what was let go of, or no more than
     // the last stage left over, and much beside the loads.
-    const double measure = kEased * tried.residual * push_limit(to) / settings_.tolerance;
+    const double measure = kEased * tried.residual * push_measure(to) / settings_.tolerance;
     const bool eased =
-        given_up && !tried.falls && !tried.converged && measure <= kEased * most_measure_;
-    if (eased) {
-        least_measure_ = measure;
-        outcome.left_over = settings_.tolerance * measure;
-    }
+        given_up && !tried.falls && !tried.converged && measure_.ease(measure, kEased);
+    if (eased) outcome.left_over = settings_.tolerance * measure;
     matter_.particle_position = start_;
     self_.take_back();
     foresight_.forget();
@@ -377,6 +370,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     const double before = matter_.breaks() ? booked(from, outcome.body[0]) : 0;
     newton_rests_ = std::max(0, newton_rests_ - 1);
     contacts_.begin_move(matter_, from);
+    if (contacts_.near_travel(from, to) > 0) measure_.drive();
     self_.begin_move();
     const DriveMotion motion = motion_between(apparatus_, from, to, body_size_);
     const bool released = pushes_.eases(from, to) || slips_.draws_back(motion);
@@ -427,7 +421,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     for (std::size_t n = 0; n < work.size(); ++n) {
         work[n] -= stroke.idle[n];
         outcome.body[0].work[n] += work[n];
-        largest_push_ = std::max(largest_push_, load[n].size);
+        measure_.carry(load[n].size);
     }
     slips_.keep(load, work, motion, released || breaks, outcome.lost);
     load_ = std::move(load);
@@ -450,7 +444,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
     seats_ = true;
     const bool severed = std::exchange(severed_, false);
     const bool let_go_of = begin(from, outcome.body[0]) || severed;
-    moved_ = moved_ || contacts_.travel(matter_, from, to) > 0;
+    measure_.ask(std::max(pushes_.size(matter_, from), pushes_.size(matter_, to)));
     const int count = increments_between(contacts_, matter_, from, to);
     if (let_go_of) let_go(from, outcome);
     Drive before = from;

@@ -28,6 +28,7 @@
 #include "sim/load_set.h"
 #include "sim/move_outcome.h"
 #include "sim/newton.h"
+#include "sim/push_measure.h"
 #include "sim/self_contact.h"
 #include "sim/settings.h"
 
@@ -74,7 +75,7 @@ class QuasistaticSolver {
     // `moved`: as ContactSet::add_forces() takes it.
     void evaluate(const Drive& to, double moved = std::numeric_limits<double>::infinity());
     bool touches() { return contacts_.tools_near() || self_.presses(); }
-    double push_limit(const Drive& to) const;
+    double push_measure(const Drive& to) const;
     void let_crack(const Drive& to, MoveOutcome& outcome);
     double booked(const Drive& now, const BodyOutcome& outcome);
     bool begin(const Drive& from, BodyOutcome& outcome);
@@ -108,18 +109,15 @@ class QuasistaticSolver {
     double enough_hold_ = 1;  // and that held nothing back in the last relaxation
     Vec3Array held_, rest_;   // positions that the drag pulls back to: now, at first
     FreePieces free_;
-    Vec3Array start_, listed_;  // positions: before the move, when the candidates were found
+    // Positions: when the stage began, before the move, when the candidates were found.
+    Vec3Array begun_at_, start_, listed_;
     Foresight foresight_;
     SlipWatch slips_;
-    int splits_ = 0;      // of the present move, for yield
-    bool seats_ = true;   // until a piece finds no seat, in this advance
-    bool moved_ = false;  // any tool or grip, ever
+    int splits_ = 0;     // of the present move, for yield
+    bool seats_ = true;  // until a piece finds no seat, in this advance
     bool begun_ = false;
-    bool severed_ = false;     // by a blade, since the last equilibrium
-    double largest_push_ = 0;  // of any tool so far [N]
-    // Of the residual [N]: what it may be eased to, where there is no better rest; and since it
-    // was.
-    double most_measure_ = 0, least_measure_ = 0;
+    bool severed_ = false;  // by a blade, since the last equilibrium
+    PushMeasure measure_;
     std::vector<LoadSum> load_;  // at the end of the last increment, by tool, then grip
 };
 

@@ -66,7 +66,7 @@ bool QuasistaticSolver::begin(const Drive& from, BodyOutcome& outcome) {
     held_ = matter_.particle_position;
     evaluate(from);
     const double left = residual_of(force_, from) / settings_.tolerance;
-    most_measure_ = left * push_limit(from);
+    measure_.let_go(left * push_measure(from));
     return left > 1;
 }
 
@@ -77,7 +77,7 @@ void QuasistaticSolver::let_go(const Drive& from, MoveOutcome& outcome) {
     const double before = booked(from, outcome.body[0]) + outcome.body[0].set_free;
     held_ = matter_.particle_position;
     evaluate(from);
-    most_measure_ = std::max(most_measure_, residual_of(force_, from) * push_limit(from));
+    measure_.let_go(residual_of(force_, from) * push_measure(from));
     if (!increment(from, from, settings_.halving_limit, outcome, Unsolved::leave)) return;
     outcome.body[0].set_free = before - booked(from, outcome.body[0]);
 }

@@ -50,8 +50,8 @@ double QuasistaticSolver::seat_pieces(const Drive& from, const Drive& to) {
     const double pushed = pushes_.size(matter_, to), a = matter_.lattice.spacing;
     if (!seats_ || apparatus_.tool.empty() || pushed == 0) return 0;
     if (settings_.self_contact && free_.are_several()) return 0;  // they may lie on each other
-    if (largest_push_ > kMoreThanLoads * pushed) return 0;
-    if (contacts_.travel(matter_, from, to) > kStill * a) return 0;
+    if (measure_.carried() > kMoreThanLoads * pushed) return 0;
+    if (contacts_.near_travel(from, to) > kStill * a) return 0;
     Vec3Array& x = matter_.particle_position;
     const Vec3Array before = x;
     SeatProblem problem;

@@ -212,3 +212,61 @@ TEST_CASE("a composite that breaks in motion keeps its books, and the same bytes
     set_thread_count(0);
     CHECK(hash[0] == hash[1]);
 }
+
+namespace {
+
+// Every cell of these columns holds this share of the first material on its left, and the second.
+void mix_columns(Aggregate& m, int begin, int end, float share) {
+    for (std::size_t c = 0; c < m.cell_fill.size(); ++c) {
+        const int i = m.lattice.cell_site(CellId(c)).x();
+        if (i < begin || i >= end) continue;
+        m.mixed_cell.push_back({.cell = CellId(c),
+                                .material = {0, 1},
+                                .fill = {share, 1 - share},
+                                .centroid = {Eigen::Vector3f(0.5f * share - 0.5f, 0, 0),
+                                             Eigen::Vector3f(0.5f * share, 0, 0)},
+                                .normal = Eigen::Vector3f::UnitX()});
+        m.cell_material[c] = share < 0.5f;
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a layer thinner than a cell breaks by its own strength and toughness") {
+    const auto nowhere = [](const Vec3i&, const Vec3i&) { return false; };
+    for (const float share : {0.2f, 0.6f}) {
+        INFO("share of the stronger " << share);
+        Bar bar(kStrong, kWeak, 4, nowhere);
+        mix_columns(bar.matter, 6, 7, share);
+        bar.start();
+        const double opening = 2.3 * kToughness / kStrength;
+        double largest = 0;
+        FrameReport r;
+        for (int n = 1; n <= 30; ++n) {
+            r = bar.pull_to(opening * n / 30);
+            largest = std::max(largest, pull(r));
+        }
+        CHECK(largest / (kSide * kSide) == Approx(kStrength).epsilon(0.1));
+        CHECK(r.pieces == 2);
+        CHECK(r.work / (kSide * kSide) == Approx(kToughness).epsilon(0.15));
+    }
+}
+
+TEST_CASE("what has flowed breaks no cell of two materials") {
+    Material steel = brittle(kModulus, 4 * kStrength, 1000 * kToughness);
+    steel.yield_stress = kStrength;
+    steel.hardening = 0.01 * kModulus;
+    const auto nowhere = [](const Vec3i&, const Vec3i&) { return false; };
+    std::vector<double> force;
+    for (const bool mixed : {false, true}) {
+        Bar bar(steel, steel, 4, nowhere);
+        if (mixed) mix_columns(bar.matter, 3, 9, 0.4f);
+        bar.start();
+        FrameReport r;
+        for (int n = 1; n <= 10; ++n) r = bar.pull_to(0.002 * n * kLength);
+        CHECK(r.fracture == 0);
+        CHECK(r.plastic > 0);
+        force.push_back(pull(r));
+    }
+    CHECK(force[1] == Approx(force[0]).epsilon(0.002));
+}

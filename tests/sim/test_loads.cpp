@@ -276,6 +276,41 @@ TEST_CASE("loads put on slowly leave the books of a resting body closed, and at 
     CHECK(r.remainder == Approx(0.5 * (r.load_work + r.gravity_work)).epsilon(0.05));
 }
 
+TEST_CASE("a load that is taken off leaves nothing behind, and tools far away change nothing") {
+    for (const Mechanics mechanics : {Mechanics::cells, Mechanics::springs}) {
+        Material steel{.young_modulus = 2e11, .poisson_ratio = 0.25, .density = 7800};
+        steel.mechanics = mechanics;
+        Aggregate matter = make_block(24, 2, 2, 0.01, steel);
+        Apparatus apparatus;
+        apparatus.name = "hold";
+        apparatus.grip = {
+            hold(matter, points_where(matter, [](const Vec3& x) { return x.x() < -0.1199; }))};
+        apparatus.load = {
+            force_on(matter, points_where(matter, [](const Vec3& x) { return x.x() > 0.1199; }),
+                     Vec3(0, -5, 0))};
+        apparatus.tool.push_back({"far", BoxShape{Vec3(0.1, 0.1, 0.1), 0}, 0.3});
+        SimSettings settings;
+        Simulation simulation(matter, apparatus, settings);
+        const auto at = [&](double time, double strength) {
+            Drive d = drive_of(apparatus, time, strength);
+            d.world_from_tool.push_back({Quat::Identity(), Vec3(0, 1 - 0.1 * time, 0)});
+            return d;
+        };
+        // The force of the grip, and the elastic energy.
+        std::vector<FrameReport> report;
+        const double strength[] = {0, 0.5, 1, 0.5, 0, 0};
+        for (int n = 1; n < 6; ++n) {
+            report.push_back(simulation.advance(at(n - 1, strength[n - 1]), at(n, strength[n])));
+        }
+        INFO("mechanics " << int(mechanics));
+        CHECK(report[1].load.at(1).force.y() == Approx(5).epsilon(0.02));
+        for (int n : {3, 4}) {
+            CHECK(std::abs(report[n].load.at(1).force.y()) < 0.02 * 5);
+            CHECK(report[n].elastic < 1e-3 * report[1].elastic);
+        }
+    }
+}
+
 TEST_CASE("in explicit steps the work of loads and gravity is what moves and strains the body") {
     Material material = kSoft;
     material.damping_ratio = 0;
