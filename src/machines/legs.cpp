@@ -3,62 +3,79 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace swage {
 
 namespace {
 
 constexpr int kHalvings = 6;             // of a frame
+constexpr int kMostHalvings = 12;        // the same for loads that jump, in motion
 constexpr int kJumps = 4;                // legs of a frame that may stay bent: what jumps is one
 constexpr double kMostTurn = 0.5 * kPi;  // of a leg
-constexpr double kStrengthSlack = 0.01;  // of a load's full strength
+constexpr double kStrengthSlack = 0.01, kSlackInMotion = 0.001;  // of a load's full strength
 // Where a leg is asked whether it is straight; not where what comes back to itself does so.
 constexpr double kAsked[] = {0.2113, 0.5, 0.8090};
+constexpr int kLooks = 256;          // at loads, in a frame
+constexpr int kMostLooks = 1 << 20;  // in all
 
 class Straightness {
   public:
-    Straightness(const Machine& machine, int frames, double slack)
-        : machine_(machine), slack_(slack), reach_(0.5 * machine.frame.size.norm()) {
-        full_.resize(machine.load_strength.size(), 0.0);
-        for (int n = 0; n < frames; ++n) {
-            for (double s : kAsked) note(drive_at(machine, (n + s) / frames, 1));
-            note(drive_at(machine, static_cast<double>(n + 1) / frames, 1));
+    Straightness(const Machine& machine, int frames, double slack, bool in_motion)
+        : machine_(machine),
+          slack_(slack),
+          strength_slack_(in_motion ? kSlackInMotion : kStrengthSlack),
+          reach_(0.5 * machine.frame.size.norm()),
+          looks_(frames * std::clamp(kMostLooks / frames, 4, kLooks)) {
+        full_.resize(machine.load_strength.size() + 1, 0.0);
+        for (int n = 0; n <= looks_; ++n) {
+            strength_.push_back(strengths_at(machine, static_cast<double>(n) / looks_));
+            for (std::size_t l = 0; l < full_.size(); ++l) {
+                full_[l] = std::max(full_[l], std::abs(strength_.back()[l]));
+            }
         }
-        note(drive_at(machine, 0, 1));
     }
 
     bool of(double begin, double end) const {
+        return of_poses(begin, end) && of_strengths(begin, end);
+    }
+
+    bool of_poses(double begin, double end) const {
         const Drive from = drive_at(machine_, begin, 1), to = drive_at(machine_, end, 1);
         if (turns_far(from.world_from_tool, to.world_from_tool) ||
             turns_far(from.world_from_grip, to.world_from_grip) ||
             turns_far(from.world_from_blade, to.world_from_blade)) {
             return false;
         }
-        for (double s : kAsked) {
+        return std::all_of(std::begin(kAsked), std::end(kAsked), [&](double s) {
             const Drive told = drive_between(from, to, s),
                         is = drive_at(machine_, begin + s * (end - begin), 1);
-            if (!are_near(told.world_from_tool, is.world_from_tool) ||
-                !are_near(told.world_from_grip, is.world_from_grip) ||
-                !are_near(told.world_from_blade, is.world_from_blade) ||
-                !is_near(told.gravity_strength, is.gravity_strength, full_gravity_)) {
-                return false;
-            }
-            for (std::size_t n = 0; n < is.load_strength.size(); ++n) {
-                if (!is_near(told.load_strength[n], is.load_strength[n], full_[n])) return false;
-            }
-        }
-        return true;
+            return are_near(told.world_from_tool, is.world_from_tool) &&
+                   are_near(told.world_from_grip, is.world_from_grip) &&
+                   are_near(told.world_from_blade, is.world_from_blade);
+        });
     }
 
   private:
-    void note(const Drive& drive) {
-        for (std::size_t n = 0; n < full_.size(); ++n) {
-            full_[n] = std::max(full_[n], std::abs(drive.load_strength[n]));
+    bool of_strengths(double begin, double end) const {
+        const std::vector<double> from = strengths_at(machine_, begin),
+                                  to = strengths_at(machine_, end);
+        const auto is_near = [&](double t, const std::vector<double>& is) {
+            const double s = (t - begin) / (end - begin);
+            for (std::size_t l = 0; l < is.size(); ++l) {
+                const double told = (1 - s) * from[l] + s * to[l];
+                if (!(std::abs(told - is[l]) <= strength_slack_ * full_[l])) return false;
+            }
+            return true;
+        };
+        for (double s : kAsked) {
+            const double t = begin + s * (end - begin);
+            if (!is_near(t, strengths_at(machine_, t))) return false;
         }
-        full_gravity_ = std::max(full_gravity_, std::abs(drive.gravity_strength));
-    }
-    static bool is_near(double a, double b, double full) {
-        return std::abs(a - b) <= kStrengthSlack * full;
+        for (int n = static_cast<int>(begin * looks_) + 1; n < end * looks_; ++n) {
+            if (!is_near(static_cast<double>(n) / looks_, strength_[std::size_t(n)])) return false;
+        }
+        return true;
     }
     static bool turns_far(const std::vector<Pose>& a, const std::vector<Pose>& b) {
         for (std::size_t n = 0; n < a.size(); ++n) {
@@ -76,34 +93,47 @@ class Straightness {
     }
 
     const Machine& machine_;
-    double slack_, reach_;
-    std::vector<double> full_;  // the largest strength of each load, by samples
-    double full_gravity_ = 0;
+    double slack_, strength_slack_, reach_;
+    int looks_;                                  // over the stage
+    std::vector<std::vector<double>> strength_;  // at each, and at the end
+    std::vector<double> full_;                   // the largest of each
 };
 
 }  // namespace
 
-Legs legs_of(const Machine& machine, int frames, double slack) {
-    const Straightness straight(machine, frames, slack);
+Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
+    const Straightness straight(machine, frames, slack, in_motion);
     Legs legs;
-    int bent = 0;
+    std::vector<std::size_t> bent;
     const auto divide = [&](const auto& again, const Leg& leg, int halvings) -> void {
-        if (straight.of(leg.begin, leg.end)) {
+        const bool is_straight = straight.of(leg.begin, leg.end);
+        if (is_straight || halvings == 0) {
+            if (!is_straight) bent.push_back(legs.leg.size());
             legs.leg.push_back(leg);
-        } else if (halvings == kHalvings) {
-            legs.leg.push_back(leg);
-            ++bent;
-        } else {
-            const double middle = 0.5 * (leg.begin + leg.end);
-            again(again, {leg.frame, leg.begin, middle}, halvings + 1);
-            again(again, {leg.frame, middle, leg.end}, halvings + 1);
+            return;
         }
+        const double middle = 0.5 * (leg.begin + leg.end);
+        again(again, {leg.frame, leg.begin, middle}, halvings - 1);
+        again(again, {leg.frame, middle, leg.end}, halvings - 1);
     };
     for (int n = 0; n < frames; ++n) {
-        bent = 0;
+        bent.clear();
+        const std::size_t first = legs.leg.size();
         divide(divide, {n, static_cast<double>(n) / frames, static_cast<double>(n + 1) / frames},
-               0);
-        legs.lost += bent > kJumps;
+               kHalvings);
+        legs.lost += bent.size() > kJumps;
+        if (!in_motion || bent.empty() || bent.size() > kJumps) continue;
+        const std::vector<Leg> rough(legs.leg.begin() + std::ptrdiff_t(first), legs.leg.end());
+        legs.leg.resize(first);
+        const std::vector<std::size_t> jumps = bent;
+        for (std::size_t l = 0; l < rough.size(); ++l) {
+            if (std::binary_search(jumps.begin(), jumps.end(), first + l) &&
+                straight.of_poses(rough[l].begin, rough[l].end)) {
+                divide(divide, rough[l], kMostHalvings - kHalvings);
+            } else {
+                legs.leg.push_back(rough[l]);
+            }
+        }
     }
     return legs;
 }

@@ -347,16 +347,24 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
     fail(ExitCode::scene, "machine {}: {}", spec.name, error.what());
 }
 
-Drive drive_at(const Machine& machine, double t, double duration) {
+std::vector<double> strengths_at(const Machine& machine, double t) {
     const Apparatus& apparatus = machine.apparatus;
     std::vector<double> strength;
     for (std::size_t n = 0; n < machine.load_strength.size(); ++n) {
         strength.push_back(told_at(machine, "the strength of load " + apparatus.load[n].name, t,
                                    [&] { return machine.load_strength[n].at(t); }));
     }
-    const double gravity = told_at(machine, "gravity_strength", t, [&] {
+    strength.push_back(told_at(machine, "gravity_strength", t, [&] {
         return machine.gravity_strength ? machine.gravity_strength->at(t) : 1.0;
-    });
+    }));
+    return strength;
+}
+
+Drive drive_at(const Machine& machine, double t, double duration) {
+    const Apparatus& apparatus = machine.apparatus;
+    std::vector<double> strength = strengths_at(machine, t);
+    const double gravity = strength.back();
+    strength.pop_back();
     return {
         t * duration,
         placed(machine, "tool", apparatus.tool, machine.work_from_tool, machine.tool_motion, t),

@@ -61,6 +61,9 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
                       const WorkFrame& frame, const Aggregate& matter,
                       const std::vector<Material>& beside = {});
 
+// Of each load, then gravity, at `t` (0 to 1). Throws as drive_at().
+std::vector<double> strengths_at(const Machine& machine, double t);
+
 // Poses at `t` (0 to 1) of a stage of `duration` [s]. Throws Error(scene) naming machine and part
 // where an expression has no value then.
 Drive drive_at(const Machine& machine, double t, double duration);

@@ -8,6 +8,8 @@ namespace swage {
 
 namespace {
 
+constexpr double kAsLong = 0.99;
+
 std::optional<Vec3> direction_named(const std::string& name) {
     const std::size_t at = name.size() == 2 && (name[0] == '-' || name[0] == '+') ? 1 : 0;
     if (name.size() != at + 1) return std::nullopt;
@@ -45,8 +47,10 @@ WorkFrame place_work_frame(const Aggregate& matter, const std::string& axis, con
     if (axis == "auto") {
         Vec3 side = box.size();
         if (upright) side -= side.cwiseProduct(y.cwiseAbs());  // what stands on it may be tall
+        // Of sides that are as long the first: what rounding makes of them, and where surface is
+        // sampled, does not turn a machine.
         int longest = 0;
-        side.maxCoeff(&longest);
+        while (side[longest] < kAsLong * side.maxCoeff()) ++longest;
         x = Vec3::Unit(longest);
     } else {
         x = direction_or_fail("axis", axis);

@@ -97,6 +97,7 @@ void ContactSet::find_limits(const Aggregate& matter) {
 }
 
 void ContactSet::connections_changed(const Aggregate& matter) {
+    grips_.connections_changed(matter);
     if (touch_ == nullptr) return;
     if (touch_.use_count() > 1) touch_ = std::make_shared<TouchPoints>(*touch_);  // saved states'
     const std::size_t before = touch_->size();

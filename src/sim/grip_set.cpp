@@ -23,7 +23,21 @@ GripSet::GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimS
       of_modulus_(settings.grip_stiffness),
       spacing_(matter.lattice.spacing),
       pressed_modulus_(pressed_modulus(matter.material, settings.solver)),
-      modulus_(surface_moduli(matter, matter.surface, settings.solver)) {}
+      modulus_(surface_moduli(matter, matter.surface, settings.solver)) {
+    connections_changed(matter);
+}
+
+void GripSet::connections_changed(const Aggregate& matter) {
+    torn_.clear();
+    for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
+        if (!holds(g)) continue;
+        for (int point : apparatus_->grip[g].point) {
+            if (!swage::is_torn(matter, std::size_t(point))) continue;
+            torn_.resize(matter.surface.size(), 0);
+            torn_[std::size_t(point)] = 1;
+        }
+    }
+}
 
 double GripSet::stiffness(const Aggregate& matter, int point) const {
     const double modulus = modulus_.empty() ? pressed_modulus_ : modulus_[point];
@@ -49,6 +63,7 @@ void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Ac
         const bool wholly = grip.hold == Vec3::Ones();
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             const int point = grip.point[n];
+            if (is_torn(point)) continue;
             const double k = stiffness(matter, point);
             const Vec3 x = matter.surface_position(point);
             Vec3 force;
@@ -67,6 +82,7 @@ void GripSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffn
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
         for (int point : apparatus_->grip[g].point) {
+            if (is_torn(point)) continue;
             spread_stiffness(matter.surface, point, this->stiffness(matter, point), stiffness);
         }
     }
@@ -80,6 +96,7 @@ void GripSet::add_held_points(const Aggregate& matter, const Drive& now,
         const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
         const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
         for (int point : grip.point) {
+            if (is_torn(point)) continue;
             held.push_back(held_point(matter.surface, point, stiffness(matter, point) * hold));
         }
     }

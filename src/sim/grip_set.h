@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grips: points of a body's true surface, each held by a spring to its place in a frame that moves.
 // Forces act on the particles that carry a point, with the point's own weights, so that force and
-// moment are kept exactly.
+// moment are kept exactly. A point whose carriers hang together no more is let go.
 #pragma once
 
 #include <vector>
@@ -20,6 +20,9 @@ class GripSet {
     // outlive it.
     GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
             int body);
+
+    // A blade or a crack has parted cells: points that it has torn are held no more.
+    void connections_changed(const Aggregate& matter);
 
     // Explicit steps of this length [s] must stay stable, so there is a stiffness that no point
     // exceeds (stiffest_of_points()).
@@ -52,6 +55,7 @@ class GripSet {
     void for_each_point(const Aggregate& matter, const Drive& now, const Act& act) const;
 
     bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
+    bool is_torn(int point) const { return !torn_.empty() && torn_[std::size_t(point)]; }
     double stiffness(const Aggregate& matter, int point) const;  // [N/m]
 
     const Apparatus* apparatus_;
@@ -60,6 +64,7 @@ class GripSet {
     double spacing_, pressed_modulus_;
     // Of bodies of several materials [Pa], and limits [N/m], by point of the surface; empty: none.
     std::vector<double> modulus_, limit_;
+    std::vector<char> torn_;  // by point of the surface; empty: none
 };
 
 }  // namespace swage

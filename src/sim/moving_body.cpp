@@ -150,9 +150,8 @@ void MovingBody::find_candidates(const Drive& now) {
 void MovingBody::surface_changed() {
     pushes_.connections_changed(matter_);
     drag_.connections_changed(matter_);
-    if (!touches_) return;
     contacts_.connections_changed(matter_);
-    gone_ = std::numeric_limits<double>::infinity();
+    if (touches_) gone_ = std::numeric_limits<double>::infinity();
 }
 
 void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {

@@ -37,7 +37,7 @@ double turned_along(const Machine& machine, const Legs& legs) {
 }  // namespace
 
 TEST_CASE("what goes straight and evenly has one leg a frame, in their order") {
-    const Legs legs = legs_of(vice("80 deg*t", "0.2*length*t", "t"), 7, kSlack);
+    const Legs legs = legs_of(vice("80 deg*t", "0.2*length*t", "t"), 7, kSlack, false);
     REQUIRE(legs.leg.size() == 7);
     CHECK(legs.lost == 0);
     for (int n = 0; n < 7; ++n) {
@@ -51,7 +51,7 @@ TEST_CASE("turns are followed all round, however few the frames") {
     for (const double degrees : {100.0, 240.0, 360.0, 480.0, 7200.0}) {
         const Machine machine = vice(std::to_string(degrees) + " deg*t");
         for (int frames : {1, 2, 5, 60}) {
-            const Legs legs = legs_of(machine, frames, kSlack);
+            const Legs legs = legs_of(machine, frames, kSlack, false);
             INFO(degrees << " degrees in " << frames << " frames");
             CHECK(legs.lost == (degrees / frames > 5760));
             if (legs.lost == 0) {
@@ -64,7 +64,7 @@ TEST_CASE("turns are followed all round, however few the frames") {
 TEST_CASE("what swings between two frames is followed, within what the slack allows") {
     for (int frames : {4, 10, 20}) {
         const Machine machine = vice("0", "0.1*length*sin(2*pi*10*t)", "sin(2*pi*10*t)");
-        const Legs legs = legs_of(machine, frames, kSlack);
+        const Legs legs = legs_of(machine, frames, kSlack, false);
         INFO(frames);
         REQUIRE(legs.leg.size() > 100);
         for (const Leg& leg : legs.leg) {
@@ -82,7 +82,7 @@ TEST_CASE("what swings between two frames is followed, within what the slack all
 
 TEST_CASE("a jump or a kink takes few legs, and is where it is to within a 64th of a frame") {
     for (const char* strength : {"t < 0.37 ? 0 : 1", "max(0, t - 0.37)", "t < 0.4 ? 0 : 1"}) {
-        const Legs legs = legs_of(vice("0", "0", strength), 10, kSlack);
+        const Legs legs = legs_of(vice("0", "0", strength), 10, kSlack, false);
         INFO(strength);
         CHECK(legs.lost == 0);
         CHECK(legs.leg.size() > 10);
@@ -90,20 +90,51 @@ TEST_CASE("a jump or a kink takes few legs, and is where it is to within a 64th 
     }
 }
 
+TEST_CASE("in motion a blow has its impulse, however short and wherever it falls") {
+    for (const double length : {0.0005, 0.002, 0.011}) {
+        for (int n = 0; n < 20; ++n) {
+            const double begin = 0.1 + 0.00137 * n;
+            const std::string strength = "t > " + std::to_string(begin) + " ? (t < " +
+                                         std::to_string(begin + length) + " ? 1 : 0) : 0";
+            const Legs legs = legs_of(vice("0", "0", strength), 60, kSlack, true);
+            double impulse = 0;
+            for (const Leg& leg : legs.leg) {
+                impulse += 0.5 * (leg.end - leg.begin) *
+                           (drive_at(vice("0", "0", strength), leg.begin, 1).gravity_strength +
+                            drive_at(vice("0", "0", strength), leg.end, 1).gravity_strength);
+            }
+            INFO(length << " from " << begin);
+            CHECK(impulse == Approx(length).margin(1.1 / (60 * 4096)));
+            CHECK(legs.lost == 0);
+            CHECK(legs.leg.size() < 60 + 50);
+        }
+    }
+    const Legs legs = legs_of(vice("0", "0", "sin(pi*t)"), 10, kSlack, true);
+    double impulse = 0;
+    const Machine machine = vice("0", "0", "sin(pi*t)");
+    for (const Leg& leg : legs.leg) {
+        impulse += 0.5 * (leg.end - leg.begin) *
+                   (drive_at(machine, leg.begin, 1).gravity_strength +
+                    drive_at(machine, leg.end, 1).gravity_strength);
+    }
+    CHECK(impulse == Approx(2 / kPi).epsilon(1e-3));
+}
+
 TEST_CASE("what no leg can follow is told") {
-    CHECK(legs_of(vice("0", "0", "sin(2*pi*1000*t)"), 4, kSlack).lost == 4);
+    CHECK(legs_of(vice("0", "0", "sin(2*pi*1000*t)"), 4, kSlack, false).lost == 4);
 }
 
 TEST_CASE("how far a load may be off its way goes by its own full strength") {
     // A small pressure times large numbers, and the other way round.
-    CHECK(legs_of(vice("0", "0", "2e5*ramp(t, 0, 1)"), 6, kSlack).leg.size() ==
-          legs_of(vice("0", "0", "ramp(t, 0, 1)"), 6, kSlack).leg.size());
-    const std::size_t swings = legs_of(vice("0", "0", "sin(2*pi*6*t)^2"), 6, kSlack).leg.size();
+    CHECK(legs_of(vice("0", "0", "2e5*ramp(t, 0, 1)"), 6, kSlack, false).leg.size() ==
+          legs_of(vice("0", "0", "ramp(t, 0, 1)"), 6, kSlack, false).leg.size());
+    const std::size_t swings =
+        legs_of(vice("0", "0", "sin(2*pi*6*t)^2"), 6, kSlack, false).leg.size();
     CHECK(swings > 50);
     for (const char* strength : {"0.002*sin(2*pi*6*t)^2", "-7e3*sin(2*pi*6*t)^2"}) {
-        const Legs legs = legs_of(vice("0", "0", strength), 6, kSlack);
+        const Legs legs = legs_of(vice("0", "0", strength), 6, kSlack, false);
         CHECK(legs.leg.size() == swings);
         CHECK(legs.lost == 0);
     }
-    CHECK(legs_of(vice("0", "0", "0"), 6, kSlack).leg.size() == 6);
+    CHECK(legs_of(vice("0", "0", "0"), 6, kSlack, false).leg.size() == 6);
 }

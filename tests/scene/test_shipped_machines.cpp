@@ -241,8 +241,9 @@ TEST_CASE("the cutter parts a rod however its cells lie in it, and however they 
                 body.particle_position.set(p, turn * body.particle_position.at(p));
             }
             const Machine machine = at_bar("cut", {}, body);
-            sever(body, swept_triangles(machine.apparatus,
-                                        drives_of(machine, legs_of(machine, 40, 1).leg, 1, 1)));
+            sever(body,
+                  swept_triangles(machine.apparatus,
+                                  drives_of(machine, legs_of(machine, 40, 1, false).leg, 1, 1)));
             CHECK(find_pieces(body).count == 2);
         }
     }

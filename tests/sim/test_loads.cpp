@@ -7,7 +7,7 @@
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/lattice_fixture.h"
-#include "tests/sim/motion.h"
+#include "tests/sim/pulled_bar.h"
 
 using namespace swage;
 using namespace swage::test;
@@ -414,6 +414,34 @@ TEST_CASE(
                 alone, (whole.particle_position.at(p) - whole.particle_reference.at(p)).norm());
         }
         CHECK(farthest(matter, false) == Approx(alone).epsilon(0.3));
+    }
+}
+
+TEST_CASE("what is cut under a grip pulls no more at what it was cut from") {
+    for (const Solver solver : {Solver::quasistatic, Solver::explicit_steps}) {
+        Aggregate matter = make_block(10, 3, 3, 0.1, kSoft);
+        Apparatus apparatus;
+        apparatus.name = "draw";
+        // The right one reaches half a cell and more beyond the cut.
+        apparatus.grip = end_grips(matter, 0.31);
+        SimSettings settings;
+        settings.solver = solver;
+        const Vec3 cut(0.353, 0, 0);
+        Simulation simulation(matter, apparatus, settings);
+        const auto at = [&](double time, double way) {
+            Drive d = drive_of(apparatus, time, 0);
+            d.world_from_grip[1].translation.x() = way;
+            return d;
+        };
+        FrameReport report = simulation.advance(at(0, 0), at(1, 0));
+        CHECK(report.pieces == 1);
+        sever_plane(matter, cut, Vec3::UnitX());
+        Simulation after(matter, apparatus, settings);
+        report = after.advance(at(1, 0), at(2, 0.3));
+        INFO("solver " << int(solver));
+        CHECK(find_pieces(matter).count == 2);
+        for (int grip : {0, 1}) CHECK(report.load.at(grip).force.norm() < 1e-3 * 1e6 * 0.09 * 0.1);
+        CHECK(report.elastic < 1e-6 * 1e6 * 0.09);
     }
 }
 
