@@ -476,6 +476,7 @@ void check_off(std::string_view text) {
 RawMesh read_by_assimp(MeshSource& source) {
     if (source.format == MeshFormat::stl) check_stl(source.bytes);
     if (source.format == MeshFormat::off) check_off(source.bytes);
+    if (source.format == MeshFormat::gltf || source.format == MeshFormat::glb) patch_gltf(source);
     const std::string extension = extension_of(source.format);
     std::string dropped;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);

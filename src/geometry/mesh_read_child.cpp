@@ -18,25 +18,6 @@ std::string lower(std::string text) {
     return text;
 }
 
-std::string url_decoded(const std::string& text) {
-    const auto digit = [](char c) {
-        if (c >= '0' && c <= '9') return c - '0';
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-    };
-    std::string out;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 &&
-            digit(text[i + 2]) >= 0) {
-            out += static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
-            i += 2;
-        } else {
-            out += text[i];
-        }
-    }
-    return out;
-}
-
 bool is_file(const fs::path& file) {
     std::error_code ignored;
     return fs::is_regular_file(file, ignored);
@@ -79,6 +60,25 @@ fs::path guess_image(const fs::path& file) {
 }
 
 }  // namespace
+
+std::string url_decoded(const std::string& text) {
+    const auto digit = [](char c) {
+        if (c >= '0' && c <= '9') return c - '0';
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+    };
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 &&
+            digit(text[i + 2]) >= 0) {
+            out += static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
+            i += 2;
+        } else {
+            out += text[i];
+        }
+    }
+    return out;
+}
 
 RawMesh read_raw(MeshSource& source) {
     RawMesh mesh = source.format == MeshFormat::obj   ? read_obj(source)

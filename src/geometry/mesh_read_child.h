@@ -73,9 +73,15 @@ RawMesh read_ply(MeshSource& source);
 RawMesh read_by_assimp(MeshSource& source);
 RawMesh read_raw(MeshSource& source);  // whichever fits, with its textures looked up
 
+// Rewrites a glTF or GLB file's bytes where assimp would take them wrongly.
+void patch_gltf(MeshSource& source);
+
 // Cuts the polygons into triangles and files them in `mesh`; checks every index. Polygons of fewer
 // than three different corners are left out, with a finding.
 void add_polygons(const PolygonList& polygons, RawMesh& mesh);
+
+// "my%20image" is "my image".
+std::string url_decoded(const std::string& text);
 
 // A regular file's contents, or nothing; never blocks on a pipe or device.
 std::optional<std::string> file_contents(const std::filesystem::path& file, std::uint64_t limit);

@@ -32,7 +32,7 @@ const std::vector<Library> kLibrary = {
     {"EGL/", "render", 1},       {"stb", "render", 1},    {"toml", "scene", 1},
     {"glm/", "render", 2},       {"muParser", "base", 1}, {"tbb/", "base", 1},
     {"libdeflate", "render", 1}, {"CLI/", "app", 12},     {"xxhash", "base", 1},
-    {"sleef", "base", 1},
+    {"sleef", "base", 1},        {"nlohmann", "*", 2},
 };
 
 struct Include {

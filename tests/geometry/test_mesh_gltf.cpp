@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What glTF may write down in several ways is read alike.
+#include "base/error.h"
+#include "geometry/mesh_read.h"
+#include "tests/catch.h"
+#include "tests/geometry/mesh_fixtures.h"
+
+using namespace swage;
+using fixtures::Folder;
+using fixtures::raw;
+
+namespace {
+
+struct Values {
+    std::string name;  // of the attribute
+    int type = 5126;   // a float
+    int width = 3;
+    std::vector<double> value;
+    bool normalized = false;
+
+    std::string item(std::size_t i) const {
+        const double v = value[i];
+        switch (type) {
+            case 5120:
+                return raw(static_cast<std::int8_t>(v));
+            case 5121:
+                return raw(static_cast<std::uint8_t>(v));
+            case 5122:
+                return raw(static_cast<std::int16_t>(v));
+            case 5123:
+                return raw(static_cast<std::uint16_t>(v));
+            default:
+                return raw(static_cast<float>(v));
+        }
+    }
+};
+
+struct Document {
+    std::string json, bin;
+};
+
+// Four vertices, two triangles; each attribute in a view of its own, padded to four bytes.
+Document document_of(const std::vector<Values>& attributes, const std::string& uri,
+                     const std::string& more = "", const std::string& node = "") {
+    std::string bin, views, accessors, names;
+    const auto add_view = [&](const std::string& bytes, const std::string& stride) {
+        views += fmt::format(R"({}{{"buffer":0,"byteOffset":{},"byteLength":{}{}}})",
+                             views.empty() ? "" : ",", bin.size(), bytes.size(), stride);
+        bin += bytes;
+    };
+    int id = 0;
+    for (const Values& v : attributes) {
+        std::string bytes;
+        std::size_t stride = 0;
+        for (std::size_t i = 0; i < v.value.size(); ++i) {
+            bytes += v.item(i);
+            if ((i + 1) % static_cast<std::size_t>(v.width) != 0) continue;
+            while (bytes.size() % 4 != 0) bytes += '\x7f';
+            if (stride == 0) stride = bytes.size();
+        }
+        add_view(bytes, fmt::format(R"(,"byteStride":{})", stride));
+        accessors += fmt::format(
+            R"({{"bufferView":{0},"componentType":{1},"count":{2},"type":"VEC{3}","normalized":{4}}},)",
+            id, v.type, v.value.size() / static_cast<std::size_t>(v.width), v.width, v.normalized);
+        if (!v.name.empty())
+            names += fmt::format(R"({}"{}":{})", names.empty() ? "" : ",", v.name, id);
+        ++id;
+    }
+    std::string index;
+    for (const std::uint16_t i : {0, 1, 2, 0, 2, 3}) index += raw(i);
+    add_view(index, "");
+    accessors +=
+        fmt::format(R"({{"bufferView":{},"componentType":5123,"count":6,"type":"SCALAR"}})", id);
+    return {fmt::format(R"({{"asset":{{"version":"2.0"}},{}"scene":0,"scenes":[{{"nodes":[0]}}],
+"nodes":[{{"mesh":0{}}}],"meshes":[{{"primitives":[{{"attributes":{{{}}},"indices":{}}}]}}],
+"accessors":[{}],"bufferViews":[{}],"buffers":[{{"byteLength":{}{}}}]}})",
+                        more, node, names, id, accessors, views, bin.size(), uri),
+            bin};
+}
+
+struct Reading {
+    TriMesh mesh;
+    std::vector<std::string> finding;
+};
+
+Reading read(const Folder& folder, const std::vector<Values>& attributes,
+             const std::string& more = "", const std::string& node = "") {
+    const Document document = document_of(attributes, R"(,"uri":"my%20data.bin")", more, node);
+    folder.write("my data.bin", document.bin);
+    Reading reading;
+    reading.mesh = read_mesh(folder.write("a.gltf", document.json), {}, &reading.finding);
+    // In one file it is the same.
+    const Document inside = document_of(attributes, "", more, node);
+    std::string json = inside.json, bin = inside.bin;
+    while (json.size() % 4 != 0) json += ' ';
+    while (bin.size() % 4 != 0) bin += '\0';
+    const auto size = [](std::size_t bytes) { return raw(static_cast<std::uint32_t>(bytes)); };
+    const auto file = folder.write("a.glb", "glTF" + size(2) + size(28 + json.size() + bin.size()) +
+                                                size(json.size()) + "JSON" + json +
+                                                size(bin.size()) + std::string("BIN\0", 4) + bin);
+    const TriMesh packed = fixtures::read_quietly(file);
+    CHECK(packed.position == reading.mesh.position);
+    CHECK(packed.uv == reading.mesh.uv);
+    CHECK(packed.position_color == reading.mesh.position_color);
+    return reading;
+}
+
+const Values kSquare{"POSITION", 5126, 3, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}};
+
+Values scaled(Values values, int type, double scale, bool normalized) {
+    for (double& v : values.value) v *= scale;
+    values.type = type;
+    values.normalized = normalized;
+    return values;
+}
+
+struct Kind {
+    int type;
+    double most;
+};
+const Kind kKinds[] = {{5120, 127}, {5121, 255}, {5122, 32767}, {5123, 65535}};
+
+}  // namespace
+
+TEST_CASE("whole numbers in a glTF stand for what its specification says") {
+    const Folder folder;
+    const Values uv{"TEXCOORD_0", 5126, 2, {0, 1, 1, 1, 1, 0, 0, 0}};
+    const Values normal{"NORMAL", 5126, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}};
+    const Reading plain = read(folder, {kSquare, normal, uv});
+    REQUIRE(plain.mesh.uv.size() == 4);
+    REQUIRE(plain.mesh.triangle.size() == 2);
+    const std::string extension =
+        R"("extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],)";
+    for (const auto& [type, most] : kKinds) {
+        CAPTURE(type);
+        const Reading parts = read(folder,
+                                   {scaled(kSquare, type, most, true),
+                                    scaled(normal, type, most, true), scaled(uv, type, most, true)},
+                                   extension);
+        CHECK(parts.mesh.position == plain.mesh.position);
+        CHECK(parts.mesh.uv == plain.mesh.uv);
+        CHECK(parts.mesh.triangle_smooth == plain.mesh.triangle_smooth);
+        CHECK(parts.finding.empty());
+        // As they stand: the node scales them.
+        const Reading counts =
+            read(folder, {scaled(kSquare, type, 100, false), scaled(uv, type, 3, false)}, extension,
+                 R"(,"scale":[0.5,0.5,0.5])");
+        CHECK(box_of(counts.mesh.position).high == Vec3(50, 50, 0));
+        CHECK(counts.mesh.uv[0] == Vec2(0, -2));  // counted from below: 1 - 3
+        CHECK(counts.mesh.uv[2] == Vec2(3, 1));
+    }
+    // -128 is no less than -127.
+    Values low = scaled(kSquare, 5120, 127, true);
+    low.value[0] = -128;
+    CHECK(box_of(read(folder, {low}, extension).mesh.position).low.x() == -1);
+}
+
+TEST_CASE("a glTF's colours are the same in bytes, 16 bits and floats, with and without alpha") {
+    const Folder folder;
+    const Values color{"COLOR_0", 5126, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1, 0.2, 0.4, 0.6}};
+    Values with_alpha{"COLOR_0", 5126, 4, {}};
+    for (std::size_t i = 0; i < 12; ++i) {
+        with_alpha.value.push_back(color.value[i]);
+        if (i % 3 == 2) with_alpha.value.push_back(1);
+    }
+    for (const Values& values : {color, with_alpha})
+        for (const auto& [type, most] : {kKinds[1], kKinds[3], Kind{5126, 1}}) {
+            CAPTURE(values.width, type);
+            const TriMesh mesh = read(folder, {kSquare, scaled(values, type, most, true)}).mesh;
+            REQUIRE(mesh.position_color.size() == 4);
+            CHECK(mesh.position_color[0] == Eigen::Vector3f(1, 0, 0));
+            CHECK(mesh.position_color[2] == Eigen::Vector3f(0, 0, 1));
+            CHECK((mesh.position_color[3] - Eigen::Vector3f(0.2f, 0.4f, 0.6f)).norm() < 2e-5f);
+        }
+}
+
+TEST_CASE("whole numbers in a glTF that reach beyond their data are refused") {
+    const Folder folder;
+    Document document = document_of({scaled(kSquare, 5123, 1, false)}, R"(,"uri":"a.bin")");
+    folder.write("a.bin", document.bin);
+    const std::size_t at = document.json.find(R"("count":4)");
+    document.json.replace(at, 9, R"("count":5)");
+    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("a.gltf", document.json)),
+                      Catch::Contains("buffer view 0 holds less than is read from it"));
+}
+
+TEST_CASE("a glTF extension that nobody follows is told of, and refused where the mesh needs it") {
+    const Folder folder;
+    CHECK_THROWS_WITH(
+        read(folder, {kSquare}, R"("extensionsRequired":["EXT_meshopt_compression","X_y"],)"),
+        Catch::Contains("asks for 'EXT_meshopt_compression', 'X_y', which is not known here"));
+    const Reading looks =
+        read(folder, {kSquare}, R"("extensionsRequired":["KHR_materials_transmission"],)");
+    REQUIRE(looks.finding.size() == 1);
+    CHECK(looks.finding[0] ==
+          "it asks for 'KHR_materials_transmission', which is not followed: it may look otherwise");
+}
+
+TEST_CASE("instances of a glTF's mesh stand at all their places") {
+    const Folder folder;
+    const Values at{"", 5126, 3, {0, 0, 0, 2, 0, 0, 4, 0, 3}};
+    const double half = std::sqrt(0.5) * 32767;
+    const Values turned{"", 5122, 4, {0, 0, 0, 32767, 0, 0, 0, 32767, 0, 0, half, half}, true};
+    const Reading row =
+        read(folder, {kSquare, at, turned}, R"("extensionsRequired":["EXT_mesh_gpu_instancing"],)",
+             R"(,"name":"tile","translation":[0,10,0],"extensions":{"EXT_mesh_gpu_instancing":
+{"attributes":{"TRANSLATION":1,"ROTATION":2}}})");
+    CHECK(row.mesh.triangle.size() == 6);
+    CHECK(row.mesh.part_name == std::vector<std::string>{"tile", "tile.2", "tile.3"});
+    const Box box = box_of(row.mesh.position);
+    CHECK((box.low - Vec3(0, 10, 0)).norm() < 1e-4);
+    CHECK((box.high - Vec3(4, 11, 3)).norm() < 1e-4);  // the last is turned to the left
+    CHECK(row.finding.empty());
+}
