@@ -20,11 +20,10 @@ struct ReadLimits {
 };
 
 // OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS and 3MF, told apart by the name's ending. Lengths are
-// taken as metres (glTF is in metres; DAE is scaled by the unit it states, 3MF taken as
-// millimetres). Equal positions are welded; texture coordinates, colours, materials, parts,
-// polygons and shading (from the file's normals, else by a crease angle of 40 degrees) are kept.
-// Node transforms are applied, and what scales, shifts or turns the image of an OBJ or glTF
-// material.
+// taken as metres (glTF is in metres; DAE and 3MF are scaled by the unit they state). Equal
+// positions are welded; texture coordinates, colours, materials, parts, polygons and shading (from
+// the file's normals, else by a crease angle of 40 degrees) are kept. Node transforms are applied,
+// and what scales, shifts or turns the image of an OBJ or glTF material.
 //
 // `finding` receives one sentence for everything that the file held and the mesh does not, or that
 // was odd; without it they are logged as warnings. Throws Error(mesh): the file, the reason.

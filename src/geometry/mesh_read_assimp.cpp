@@ -477,6 +477,7 @@ RawMesh read_by_assimp(MeshSource& source) {
     if (source.format == MeshFormat::stl) check_stl(source.bytes);
     if (source.format == MeshFormat::off) check_off(source.bytes);
     if (source.format == MeshFormat::gltf || source.format == MeshFormat::glb) patch_gltf(source);
+    const double unit = source.format == MeshFormat::tmf ? patch_3mf(source) : 1;
     const std::string extension = extension_of(source.format);
     std::string dropped;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
@@ -490,10 +491,7 @@ RawMesh read_by_assimp(MeshSource& source) {
         fail(ExitCode::mesh, "not a readable .{} file ({})", extension, importer.GetErrorString());
     if (!dropped.empty()) fail(ExitCode::mesh, "the file is damaged ({})", dropped);
     RawMesh mesh = SceneReader(source, *scene).read();
-    if (source.format == MeshFormat::tmf) {  // assimp passes over the unit
-        source.finding.emplace_back("lengths were taken as millimetres, the usual unit of 3MF");
-        for (Vec3& p : mesh.position) p *= 1e-3;
-    }
+    for (Vec3& p : mesh.position) p *= unit;
     return mesh;
 }
 

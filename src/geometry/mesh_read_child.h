@@ -73,8 +73,9 @@ RawMesh read_ply(MeshSource& source);
 RawMesh read_by_assimp(MeshSource& source);
 RawMesh read_raw(MeshSource& source);  // whichever fits, with its textures looked up
 
-// Rewrites a glTF or GLB file's bytes where assimp would take them wrongly.
+// Rewrite a file's bytes where assimp would take them wrongly.
 void patch_gltf(MeshSource& source);
+double patch_3mf(MeshSource& source);  // the unit of its lengths [m]
 
 // Cuts the polygons into triangles and files them in `mesh`; checks every index. Polygons of fewer
 // than three different corners are left out, with a finding.

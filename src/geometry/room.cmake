@@ -8,6 +8,7 @@ find_library(MPFR mpfr REQUIRED)
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/geometry/mesh_repair_cgal.cpp
                             PROPERTIES COMPILE_OPTIONS -frounding-math
                                        SKIP_PRECOMPILE_HEADERS ON)
+pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 find_package(nlohmann_json REQUIRED)
 target_link_libraries(swage_geometry PRIVATE PkgConfig::ASSIMP ${GMP} ${MPFR}
-                                             nlohmann_json::nlohmann_json)
+                                             nlohmann_json::nlohmann_json PkgConfig::LIBDEFLATE)

@@ -7,6 +7,7 @@
 #include "geometry/mesh_read.h"
 #include "tests/catch.h"
 #include "tests/geometry/mesh_fixtures.h"
+#include "tests/geometry/zip_fixture.h"
 
 using namespace swage;
 using fixtures::Folder;
@@ -14,34 +15,6 @@ using fixtures::raw;
 using fixtures::read_quietly;
 
 namespace {
-
-std::uint32_t crc32(const std::string& bytes) {
-    std::uint32_t crc = ~0u;
-    for (const char c : bytes) {
-        crc ^= static_cast<unsigned char>(c);
-        for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320u : 0u);
-    }
-    return ~crc;
-}
-
-// A ZIP file of files that are stored as they are.
-std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files) {
-    std::string bytes, directory;
-    for (const auto& [name, content] : files) {
-        const auto size = static_cast<std::uint32_t>(content.size());
-        const std::string common =
-            raw<std::uint16_t>(20) + raw<std::uint16_t>(0) + raw<std::uint16_t>(0) +
-            raw<std::uint32_t>(0x21) + raw(crc32(content)) + raw(size) + raw(size) +
-            raw(static_cast<std::uint16_t>(name.size())) + raw<std::uint16_t>(0);
-        directory += raw<std::uint32_t>(0x02014b50) + raw<std::uint16_t>(20) + common +
-                     std::string(10, '\0') + raw(static_cast<std::uint32_t>(bytes.size())) + name;
-        bytes += raw<std::uint32_t>(0x04034b50) + common + name + content;
-    }
-    const auto count = static_cast<std::uint16_t>(files.size());
-    return bytes + directory + raw<std::uint32_t>(0x06054b50) + raw<std::uint32_t>(0) + raw(count) +
-           raw(count) + raw(static_cast<std::uint32_t>(directory.size())) +
-           raw(static_cast<std::uint32_t>(bytes.size())) + raw<std::uint16_t>(0);
-}
 
 std::string cube_3mf(const std::string& color) {
     std::string vertices, triangles;
@@ -52,7 +25,7 @@ std::string cube_3mf(const std::string& color) {
         triangles +=
             fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}" pid="5" p1="0"/>)", t[0], t[1], t[2]);
     const std::string relations = "http://schemas.openxmlformats.org/package/2006/relationships";
-    return zip_of(
+    return fixtures::zip_of(
         {{"[Content_Types].xml",
           R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)"},
          {"_rels/.rels",

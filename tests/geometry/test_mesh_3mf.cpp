@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A 3MF file's units, and parts of its model in files of their own.
+#include "base/error.h"
+#include "geometry/mesh_read.h"
+#include "tests/catch.h"
+#include "tests/geometry/mesh_fixtures.h"
+#include "tests/geometry/zip_fixture.h"
+
+using namespace swage;
+using fixtures::Folder;
+
+namespace {
+
+const std::string kCore = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+const std::string kProduction = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
+
+// An object that is a box from 0 to `size`.
+std::string box_object(int id, const Vec3& size, const std::string& paint = "") {
+    std::string vertices, triangles;
+    const TriMesh box = fixtures::box_mesh({0, 0, 0}, size);
+    for (const Vec3& p : box.position)
+        vertices += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", p.x(), p.y(), p.z());
+    for (const Corners& t : box.triangle)
+        triangles +=
+            fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}"{}/>)", t[0], t[1], t[2], paint);
+    return fmt::format(R"(<object id="{}" type="model"><mesh><vertices>{}</vertices><triangles>{}
+</triangles></mesh></object>)",
+                       id, vertices, triangles);
+}
+
+std::string model(const std::string& attributes, const std::string& resources,
+                  const std::string& items) {
+    return R"(<?xml version="1.0"?><!-- <model unit="foot"> --><model )" + attributes +
+           R"( xmlns=")" + kCore + R"(" xmlns:p=")" + kProduction + R"("><resources>)" + resources +
+           "</resources><build>" + items + "</build></model>";
+}
+
+std::vector<std::pair<std::string, std::string>> files_of(const std::string& root) {
+    return {
+        {"[Content_Types].xml",
+         R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)"},
+        {"_rels/.rels",
+         R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)"},
+        {"3D/3dmodel.model", root}};
+}
+
+const std::string kOneItem = R"(<item objectid="1"/>)";
+
+}  // namespace
+
+TEST_CASE("a 3MF is scaled by the unit it states, millimetres where it states none") {
+    const Folder folder;
+    for (const auto& [unit, metres] :
+         {std::pair(R"(unit="inch")", 0.0254), std::pair(R"(unit = 'micron')", 1e-6),
+          std::pair(R"(unit="meter")", 1.0), std::pair("", 1e-3)}) {
+        CAPTURE(unit);
+        std::vector<std::string> finding;
+        const TriMesh mesh = read_mesh(
+            folder.write("a.3mf", fixtures::zip_of(
+                                      files_of(model(unit, box_object(1, {1, 2, 3}), kOneItem)))),
+            {}, &finding);
+        CHECK((box_of(mesh.position).size() - metres * Vec3(1, 2, 3)).norm() < 1e-9 * metres);
+        CHECK(finding.empty());
+    }
+    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write(
+                          "a.3mf", fixtures::zip_of(files_of(model(
+                                       R"(unit="ell")", box_object(1, {1, 1, 1}), kOneItem))))),
+                      Catch::Contains("'ell' is no unit of 3MF"));
+}
+
+TEST_CASE("parts of a 3MF's model that stand in other files are read from there") {
+    const Folder folder;
+    // Both files call an object 1; the build names one of them by its file.
+    const std::string red =
+        R"(<basematerials id="2"><base name="red" displaycolor="#FF0000"/></basematerials>)";
+    const std::string root = model(
+        R"(requiredextensions="p" unit="centimeter")",
+        box_object(1, {1, 1, 1}) +
+            R"(<object id="5" type="model"><components><component p:path="/3D/Objects/a.model" objectid="1" transform="1 0 0 0 1 0 0 0 1 10 0 0"/></components></object>)",
+        kOneItem +
+            R"(<item objectid="5" transform="1 0 0 0 1 0 0 0 1 0 20 0"/><item p:path="/3D/Objects/b.model" objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 -9"/>)");
+    auto files = files_of(root);
+    files.emplace_back(
+        "3D/Objects/a.model",
+        model(R"(unit="centimeter")", red + box_object(1, {2, 2, 2}, R"( pid="2" p1="0")"), ""));
+    files.emplace_back("3D/Objects/b.model",
+                       model(R"(unit="centimeter")", box_object(1, {3, 3, 3}), ""));
+    for (const bool packed : {false, true}) {
+        CAPTURE(packed);
+        const TriMesh mesh =
+            fixtures::read_quietly(folder.write("a.3mf", fixtures::zip_of(files, packed)));
+        CHECK(mesh.triangle.size() == 36);
+        CHECK(signed_volume(mesh) == Approx(36e-6).epsilon(1e-6));
+        const Box box = box_of(mesh.position);
+        CHECK((box.low - 0.01 * Vec3(0, 0, -9)).norm() < 1e-8);
+        CHECK((box.high - 0.01 * Vec3(12, 22, 2)).norm() < 1e-8);
+        CHECK(std::any_of(mesh.material.begin(), mesh.material.end(),
+                          [](const SurfaceMaterial& m) { return m.color == Vec3(1, 0, 0); }));
+    }
+    files.pop_back();
+    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("b.3mf", fixtures::zip_of(files))),
+                      Catch::Contains("its part '3D/Objects/b.model' is missing"));
+    files.emplace_back("3D/Objects/b.model", model("", box_object(1, {3, 3, 3}), ""));
+    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("b.3mf", fixtures::zip_of(files))),
+                      Catch::Contains("'3D/Objects/b.model' has another unit"));
+}
+
+TEST_CASE("a 3MF that asks for an extension which nobody follows is refused by its name") {
+    const Folder folder;
+    const std::string beams =
+        R"(xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02" )";
+    const auto written = [&](const std::string& attributes) {
+        return folder.write(
+            "a.3mf",
+            fixtures::zip_of(files_of(model(attributes, box_object(1, {1, 1, 1}), kOneItem))));
+    };
+    CHECK_THROWS_WITH(fixtures::read_quietly(written(beams + R"(requiredextensions="p b")")),
+                      Catch::Contains("asks for the extension http://schemas.microsoft.com/"
+                                      "3dmanufacturing/beamlattice/2017/02, which is not known"));
+    CHECK_NOTHROW(fixtures::read_quietly(written(beams)));
+}
