@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STL, OFF, glTF, GLB, DAE, 3DS and 3MF through assimp; the one file that sees it. Runs only in
+// STL, glTF, GLB, DAE, 3DS and 3MF through assimp; the one file that sees it. Runs only in
 // the child process: assimp 5.2 crashes on some broken files.
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
@@ -183,7 +183,6 @@ class SceneReader {
         std::string name = mesh.mName.C_Str();
         switch (source_.format) {
             case MeshFormat::stl:
-            case MeshFormat::off:
                 return name;
             case MeshFormat::gltf:
             case MeshFormat::glb:
@@ -216,7 +215,7 @@ class SceneReader {
     }
 
     // glTF's colours are light itself. A 3MF file's are sRGB, says its specification; a DAE, 3DS or
-    // STL file's are what a screen showed to who chose them, and so are an OFF file's.
+    // STL file's are what a screen showed to who chose them.
     Vec3 light_of(double red, double green, double blue) const {
         Vec3 color = Vec3(red, green, blue).cwiseMax(0.0).cwiseMin(1.0);
         if (is_gltf()) return color;
@@ -437,45 +436,10 @@ void check_stl(const std::string& bytes) {
     check();
 }
 
-// assimp moves indices that are out of range to the last vertex without a word.
-void check_off(std::string_view text) {
-    std::string_view line;
-    const auto next = [&] {
-        while (next_line(text, line)) {
-            line = trimmed(line.substr(0, line.find('#')));
-            if (!line.empty()) return true;
-        }
-        return false;
-    };
-    long long vertices = 0, faces = 0;
-    for (bool found = false; !found;) {
-        if (!next()) fail(ExitCode::mesh, "no line with the numbers of vertices and faces");
-        std::string_view words = line;
-        std::string_view word = next_word(words);
-        if (word.ends_with("OFF")) word = next_word(words);
-        found = to_integer(word, vertices) && to_integer(next_word(words), faces);
-    }
-    for (long long v = 0; v < vertices; ++v)
-        if (!next()) fail(ExitCode::mesh, "the file ends early, at vertex {} of {}", v, vertices);
-    for (long long f = 0; f < faces; ++f) {
-        if (!next()) fail(ExitCode::mesh, "the file ends early, at face {} of {}", f, faces);
-        long long corners = 0, index = 0;
-        if (!to_integer(next_word(line), corners))
-            fail(ExitCode::mesh, "face {}: no number of corners", f);
-        for (; corners > 0; --corners) {
-            const std::string_view word = next_word(line);
-            if (!to_integer(word, index) || index < 0 || index >= vertices)
-                fail(ExitCode::mesh, "face {}: '{}' is no vertex (there are {})", f,
-                     word.substr(0, 40), vertices);
-        }
-    }
-}
-
 }  // namespace
 
 RawMesh read_by_assimp(MeshSource& source) {
     if (source.format == MeshFormat::stl) check_stl(source.bytes);
-    if (source.format == MeshFormat::off) check_off(source.bytes);
     if (source.format == MeshFormat::gltf || source.format == MeshFormat::glb) patch_gltf(source);
     const double unit = source.format == MeshFormat::tmf ? patch_3mf(source) : 1;
     const std::string extension = extension_of(source.format);

@@ -83,6 +83,7 @@ std::string url_decoded(const std::string& text) {
 RawMesh read_raw(MeshSource& source) {
     RawMesh mesh = source.format == MeshFormat::obj   ? read_obj(source)
                    : source.format == MeshFormat::ply ? read_ply(source)
+                   : source.format == MeshFormat::off ? read_off(source)
                                                       : read_by_assimp(source);
     for (RawMaterial& material : mesh.material) {
         if (material.texture.empty()) continue;

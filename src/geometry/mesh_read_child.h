@@ -70,6 +70,7 @@ struct RawMesh {
 // Reads one format. Errors are swage::Error with a sentence that does not name the file.
 RawMesh read_obj(MeshSource& source);
 RawMesh read_ply(MeshSource& source);
+RawMesh read_off(MeshSource& source);
 RawMesh read_by_assimp(MeshSource& source);
 RawMesh read_raw(MeshSource& source);  // whichever fits, with its textures looked up
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "geometry/mesh_read_child.h"
 
 namespace swage {
@@ -89,6 +90,42 @@ void weld_uv(TriMesh& mesh) {
             if (i >= 0) i = number[next++];
 }
 
+// Where faces of different colours meet, no colour of a place can be right for all: each colour
+// becomes a material. False where colours change within faces, or there are too many of them.
+bool paint_by_faces(RawMesh& raw) {
+    constexpr int kMostPaints = 256;
+    const std::size_t count = raw.triangle.size();
+    std::vector<std::array<double, 4>> key(count);
+    for (std::size_t t = 0; t < count; ++t) {
+        const auto& corner = raw.triangle[t];
+        const Eigen::Vector3f& color = raw.color[corner[0]];
+        if (raw.color[corner[1]] != color || raw.color[corner[2]] != color) return false;
+        key[t] = {raw.triangle_material.empty() ? -1.0 : raw.triangle_material[t], color.x() + 0.0,
+                  color.y() + 0.0, color.z() + 0.0};
+    }
+    int paints = 0;
+    std::vector<int> paint = number_equal(key, paints);
+    if (paints > kMostPaints) return false;
+    std::vector<RawMaterial> material;
+    for (std::size_t t = 0; t < count; ++t) {
+        if (paint[t] < static_cast<int>(material.size())) continue;
+        const Vec3 color(key[t][1], key[t][2], key[t][3]);
+        RawMaterial painted{.name = "paint", .color = Vec3::Ones()};
+        if (!raw.triangle_material.empty()) painted = raw.material[raw.triangle_material[t]];
+        painted.color = painted.color.cwiseProduct(color);
+        const auto byte = [&](int c) {
+            return std::lround(255 * srgb_from_linear(std::clamp(color[c], 0.0, 1.0)));
+        };
+        if (painted.name.empty()) painted.name = "paint";
+        painted.name += fmt::format("_{:02x}{:02x}{:02x}", byte(0), byte(1), byte(2));
+        material.push_back(std::move(painted));
+    }
+    raw.material = std::move(material);
+    raw.triangle_material = std::move(paint);
+    raw.color.clear();
+    return true;
+}
+
 // Polygons numbered from 0 without gaps, in order.
 std::vector<int> renumbered(std::vector<int> polygon) {
     int next = -1, last = -1;
@@ -123,6 +160,20 @@ TriMesh weld(RawMesh& raw) {
     const std::vector<int> number = number_equal(key, count);
     std::vector<int> place(used.size(), -1);
     mesh.position.resize(count);
+    if (!raw.color.empty()) {
+        std::vector<int> first(count, -1);
+        std::vector<char> jumps(count, 0);
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            int& known = first[number[i]];
+            if (known < 0) known = kept[i];
+            jumps[number[i]] |= raw.color[known] != raw.color[kept[i]];
+        }
+        const auto places = std::count(jumps.begin(), jumps.end(), 1);
+        if (places > 0 && !paint_by_faces(raw))
+            raw.finding.push_back(fmt::format(
+                "at {} of {} vertices its colours jump from face to face: one of them was taken",
+                places, count));
+    }
     if (!raw.color.empty()) mesh.position_color.resize(count);
     for (std::size_t i = kept.size(); i-- > 0;) {  // backwards: the first of equals wins
         place[kept[i]] = number[i];

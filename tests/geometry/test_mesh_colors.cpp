@@ -157,3 +157,96 @@ TEST_CASE("an image lies where an OBJ file's material scales and shifts it to") 
     REQUIRE(finding.size() == 1);
     CHECK(finding[0] == "the material 'moved' lets light through (d, Tr): drawn opaque");
 }
+
+TEST_CASE("colours that jump at an edge stay with their faces") {
+    const Folder folder;
+    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    // What a triangle is called by its material's colour, rounded.
+    const auto check = [&](const TriMesh& mesh, const std::vector<std::string>& finding) {
+        CHECK(finding.empty());
+        REQUIRE(mesh.position.size() == 8);
+        REQUIRE(mesh.triangle.size() == 12);
+        REQUIRE(mesh.position_color.empty());
+        REQUIRE(mesh.material.size() == 6);
+        for (std::size_t t = 0; t < 12; ++t) {
+            const int face = static_cast<int>(t) / 2;
+            const Vec3 expected(face & 1, (face >> 1) & 1, (face >> 2) & 1);
+            CHECK((mesh.material[mesh.triangle_material[t]].color - expected).norm() < 1e-6);
+        }
+        CHECK(mesh.material[3].name == "paint_ffff00");
+    };
+    std::vector<std::string> finding;
+    std::string stl(80, ' ');
+    stl += raw<std::uint32_t>(12);
+    std::string off = "OFF\n8 12 0\n", ply = "ply\nformat ascii 1.0\nelement vertex 36\n";
+    for (const char* name :
+         {"float x", "float y", "float z", "uchar red", "uchar green", "uchar blue"})
+        ply += fmt::format("property {}\n", name);
+    ply += "element face 12\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const Vec3& p : cube.position) off += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+    std::string faces;
+    for (int t = 0; t < 12; ++t) {
+        const int face = t / 2, red = face & 1, green = (face >> 1) & 1, blue = face >> 2;
+        stl += std::string(12, '\0');
+        for (const int i : cube.triangle[t]) {
+            const Vec3& p = cube.position[i];
+            stl += raw<Eigen::Vector3f>(p.cast<float>());
+            ply += fmt::format("{} {} {} {} {} {}\n", p.x(), p.y(), p.z(), 255 * red, 255 * green,
+                               255 * blue);
+        }
+        stl += raw<std::uint16_t>(
+            static_cast<std::uint16_t>(0x8000 | (31 * red << 10) | (31 * green << 5) | 31 * blue));
+        const Corners& c = cube.triangle[t];
+        off += fmt::format("3 {} {} {} {} {} {} 255\n", c[0], c[1], c[2], 255 * red, 255 * green,
+                           255 * blue);
+        faces += fmt::format("3 {} {} {}\n", 3 * t, 3 * t + 1, 3 * t + 2);
+    }
+    check(read_mesh(folder.write("a.stl", stl), {}, &finding), finding);
+    check(read_mesh(folder.write("a.off", off), {}, &finding), finding);
+    check(read_mesh(folder.write("a.ply", ply + faces), {}, &finding), finding);
+
+    // Where a face's own corners differ as well, one colour a place is all that can be kept.
+    const std::size_t at = ply.find("255 0 0\n");
+    REQUIRE(at != std::string::npos);
+    ply.replace(at, 7, "250 0 0");
+    const TriMesh smeared = read_mesh(folder.write("b.ply", ply + faces), {}, &finding);
+    CHECK(smeared.position_color.size() == 8);
+    REQUIRE(finding.size() == 1);
+    CHECK(finding[0] ==
+          "at 8 of 8 vertices its colours jump from face to face: one of them was taken");
+}
+
+TEST_CASE("an OFF's values stand in the order that Geomview gives them") {
+    const Folder folder;
+    const std::string rest = "3 0 1 2\n";
+    std::vector<std::string> finding;
+    const auto read = [&](const std::string& text) {
+        finding.clear();
+        return read_mesh(folder.write("a.off", text), {}, &finding);
+    };
+    // Place, normal, colour, texture coordinates.
+    const TriMesh all = read(
+        "STCNOFF 3 1 0\n0 0 0 0 0 1 255 0 0 255 .5 .25\n1 0 0 0 0 1 0 255 0 255 0 0\n"
+        "0 1 0 0 0 1 0 0 51 255 1 1\n" +
+        rest);
+    REQUIRE(all.position_color.size() == 3);
+    CHECK(all.position_color[0] == Eigen::Vector3f(1, 0, 0));
+    CHECK(all.position_color[2].z() == Approx(linear_from_srgb(0.2)));
+    REQUIRE(all.uv.size() == 3);
+    CHECK(all.uv[all.triangle_uv[0][0]] == Vec2(0.5, 0.25));
+    CHECK(finding.empty());
+    const TriMesh three = read("COFF\n3 1 0\n0 0 0 1 0 0\n1 0 0 0 .5 0\n0 1 0 0 0 1\n" + rest);
+    CHECK(three.position_color[0] == Eigen::Vector3f(1, 0, 0));
+    CHECK(three.position_color[1].y() == Approx(linear_from_srgb(0.5)));
+    const TriMesh weighted = read("4OFF\n3 1 0\n0 0 0 1\n2 0 0 2\n0 3 0 1.5 # a note\n" + rest);
+    CHECK(weighted.position[1] == Vec3(1, 0, 0));
+    CHECK(weighted.position[2] == Vec3(0, 2, 0));
+    // What is left out is told.
+    read("OFF\n3 1 0\n0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2 7\n");
+    CHECK(finding ==
+          std::vector<std::string>{"further values of its vertices were left out",
+                                   "colours given as numbers of a colour map were left out"});
+    CHECK_THROWS_WITH(read("nOFF\n4\n3 1 0\n"), Catch::Contains("nOFF"));
+    CHECK_THROWS_WITH(read("OFF BINARY\n"), Catch::Contains("binary OFF is not read"));
+    CHECK_THROWS_WITH(read("NOFF\n3 1 0\n0 0 0 1\n"), Catch::Contains("vertex 0 has 4 values"));
+}
