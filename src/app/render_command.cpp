@@ -12,6 +12,7 @@
 #include "pipeline/draw.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/run_record.h"
+#include "render/camera_change.h"
 
 namespace swage {
 
@@ -27,27 +28,21 @@ struct RenderArguments {
     bool no_film = false, no_tools = false, no_ground = false, json = false;
 };
 
-// As the run's scene says, with what is given on the command line in its place.
+// As the run's scene says; what is given on the command line takes the place of that alone.
 RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     constexpr double kDegree = kPi / 180;
     RenderSettings settings = render_settings_of(record);
     if (!given.size.empty()) std::tie(settings.width, settings.height) = parse_size(given.size);
     if (given.field_of_view) settings.field_of_view = *given.field_of_view * kDegree;
-    if (given.azimuth || given.elevation || given.zoom || given.turn) {
-        CameraKey key = settings.camera.empty() ? CameraKey{} : settings.camera.front();
-        key.at = 0;
-        key.eye.reset();
-        key.target.reset();
-        if (given.azimuth) key.azimuth = *given.azimuth * kDegree;
-        if (given.elevation) key.elevation = *given.elevation * kDegree;
-        if (given.zoom) key.zoom = *given.zoom;
-        settings.camera.assign(1, key);
-        if (given.turn) {
-            key.at = 1;
-            key.azimuth += *given.turn * kDegree;
-            settings.camera.push_back(key);
-        }
+    const auto radians = [&](const std::optional<double>& degrees) {
+        return degrees ? std::optional(*degrees * kDegree) : std::nullopt;
+    };
+    const CameraChange change{radians(given.azimuth), radians(given.elevation), given.zoom,
+                              radians(given.turn)};
+    if (change.any() && stands_at_eye(settings.camera)) {
+        log_info("the scene's eye and target give way to the camera that is asked for");
     }
+    settings.camera = changed_camera(std::move(settings.camera), change);
     if (!given.eye.empty()) {
         CameraKey key;
         key.eye = Vec3(given.eye[0], given.eye[1], given.eye[2]);
@@ -132,21 +127,27 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("--out", given.out, "where to draw (default: RUN/again)")->type_name("DIR");
     command
         ->add_option("--camera-azimuth", given.azimuth,
-                     "where the camera stands about the upward axis: 0 is +z and 90 +x, or "
-                     "with z up +x and +y")
+                     "where the camera stands about the upward axis, at the film's start: 0 is +z "
+                     "and 90 +x, or with z up +x and +y. What the scene has it do from there on "
+                     "(orbit, keys) it does; an eye and target of the scene give way to this and "
+                     "the next three")
         ->check(kFinite)
         ->type_name("DEG");
-    command->add_option("--camera-elevation", given.elevation, "how high it stands")
+    command
+        ->add_option("--camera-elevation", given.elevation,
+                     "how high it stands, all through the film")
         ->check(kFinite & CLI::Range(-90.0, 90.0))
         ->type_name("DEG");
-    command->add_option("--camera-zoom", given.zoom, "2 is twice as near")
+    command->add_option("--camera-zoom", given.zoom, "2 is twice as near, all through the film")
         ->check(kFinite & CLI::Range(0.01, 1000.0));
-    command->add_option("--camera-turn", given.turn, "how far it goes round during the film")
+    command
+        ->add_option("--camera-turn", given.turn, "how far it goes round during the film, evenly")
         ->check(kFinite)
         ->type_name("DEG");
-    // Instead of all these.
-    CLI::Option* eye =
-        command->add_option("--camera-eye", given.eye, "where the camera stands [m]");
+    CLI::Option* eye = command->add_option(
+        "--camera-eye", given.eye,
+        "where the camera stands [m], all through the film, instead of all these and of what the "
+        "scene says of it");
     CLI::Option* target =
         command->add_option("--camera-target", given.target, "what it looks at [m]");
     for (CLI::Option* place : {eye, target}) place->expected(3)->check(kFinite)->type_name("X Y Z");
@@ -161,13 +162,15 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("--field-of-view", given.field_of_view, "vertical")
         ->check(kFinite & CLI::Range(1.0, 170.0))
         ->type_name("DEG");
-    command->add_option("--size", given.size, "of a still in pixels (default: 1280x720)")
+    command->add_option("--size", given.size, "of a still in pixels (default: as the scene says)")
         ->type_name("WxH")
         ->each([](const std::string& text) { parse_size(text); });
     command->add_option("--frames", given.frames, "draw only the stills A to B; 1 is the start")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
-    command->add_option("--fps", given.frames_per_second, "frames a second of the film")
+    command
+        ->add_option("--fps", given.frames_per_second,
+                     "frames a second of the film (default: as the scene says)")
         ->check(CLI::Range(1, 240));
     command->add_option("--gl", given.gl, "library that draws")
         ->check(CLI::IsMember(std::vector<std::string>(kGlName.begin(), kGlName.end())));

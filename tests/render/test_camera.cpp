@@ -2,6 +2,7 @@
 #include <array>
 
 #include "render/camera.h"
+#include "render/camera_change.h"
 #include "render/studio.h"
 #include "tests/catch.h"
 
@@ -180,4 +181,50 @@ TEST_CASE("the shadow map holds the action whatever its size and place", "[studi
         const glm::vec4 up = frame.shadow_from_stage * frame.key;
         CHECK(up.z < 0);
     }
+}
+
+TEST_CASE("of a camera only that changes which is asked for") {
+    CameraKey first, last;
+    first.azimuth = 0.2;
+    first.elevation = 0.5;
+    last.at = 0.75;
+    last.azimuth = 3.2;
+    last.elevation = 0.1;
+    last.zoom = 3;
+    const std::vector<CameraKey> flight = {first, last};
+    const auto azimuths = [](const std::vector<CameraKey>& keys) {
+        std::vector<double> found;
+        for (const CameraKey& key : keys) found.push_back(key.azimuth);
+        return found;
+    };
+    CHECK(azimuths(changed_camera(flight, {})) == std::vector<double>{0.2, 3.2});
+    const auto elsewhere = changed_camera(flight, {.azimuth = 1.2});
+    CHECK(azimuths(elsewhere) == std::vector<double>{1.2, 4.2});
+    CHECK(elsewhere[1].at == 0.75);
+    CHECK(elsewhere[1].zoom == 3);
+    CHECK(elsewhere[0].elevation == 0.5);
+    const auto higher = changed_camera(flight, {.elevation = 1, .zoom = 2});
+    CHECK(azimuths(higher) == std::vector<double>{0.2, 3.2});
+    CHECK(higher[0].elevation == 1);
+    CHECK(higher[1].elevation == 1);
+    CHECK(higher[1].zoom == 2);
+    const auto round = changed_camera(flight, {.turn = -4});
+    REQUIRE(round.size() == 3);
+    CHECK(round[2].at == 1);
+    CHECK(round[1].azimuth == Approx(0.2 - 3));
+    CHECK(round[2].azimuth == Approx(0.2 - 4));
+    CHECK(round[2].zoom == 3);
+
+    // An eye has neither azimuth nor zoom.
+    CameraKey eye;
+    eye.eye = Vec3(1, 2, 3);
+    eye.target = Vec3(0, 0, 0);
+    CHECK(stands_at_eye({eye}));
+    CHECK(!stands_at_eye(flight));
+    const auto framed = changed_camera({eye}, {.zoom = 2});
+    REQUIRE(framed.size() == 1);
+    CHECK(!framed[0].eye);
+    CHECK(framed[0].zoom == 2);
+    CHECK(framed[0].azimuth == CameraKey{}.azimuth);
+    CHECK(changed_camera({eye}, {})[0].eye == eye.eye);
 }
