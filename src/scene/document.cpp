@@ -175,6 +175,11 @@ std::optional<Document> read_document(const std::filesystem::path& file,
     Document document;
     document.source = std::make_shared<const Source>(Source{shown, *text});
     for (int count = 0;; ++count) {
+        if (const auto at = too_deep_key(*text)) {
+            mistakes.add({document.source, at->first, at->second},
+                         fmt::format("a key of more than {} parts", kMostKeyParts));
+            return std::nullopt;
+        }
         try {
             const toml::table table = toml::parse(std::string_view(*text));
             document.root = converted(table, document.source);
@@ -196,6 +201,10 @@ Node parse_value(std::string_view text, const Place& place) {
     Node node;
     node.kind = Node::Kind::text;
     node.text = std::string(text);
+    if (too_deep_key(text)) {
+        set_place(node, place);
+        return node;
+    }
     try {
         const toml::table table = toml::parse("value = " + std::string(text));
         if (table.size() == 1) node = converted(*table.get("value"), place.source);

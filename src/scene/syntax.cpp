@@ -145,6 +145,58 @@ std::string plain(std::string text) {
 
 }  // namespace
 
+std::optional<std::pair<int, int>> too_deep_key(std::string_view file_text) {
+    int line = 1, column = 1, dots = 0, key_column = 1;
+    bool in_key = false;
+    std::string_view quote;  // what ends the text that is being passed over
+    for (std::size_t at = 0; at < file_text.size(); ++at) {
+        const char c = file_text[at];
+        const std::string_view rest = file_text.substr(at);
+        std::size_t taken = 1;
+        if (c == '\n') {
+            ++line;
+            column = 0;
+            dots = 0;
+            in_key = false;
+            if (quote.size() == 1) quote = {};
+        } else if (!quote.empty()) {
+            if (c == '\\' && quote[0] == '"') {
+                taken = rest.size() > 1 && rest[1] != '\n' ? 2 : 1;
+            } else if (rest.starts_with(quote)) {
+                taken = quote.size();
+                // Two more may belong to the text itself.
+                while (quote.size() == 3 && taken < 5 && taken < rest.size() &&
+                       rest[taken] == quote[0])
+                    ++taken;
+                quote = {};
+            }
+        } else if (c == '#') {
+            taken = std::min(rest.find('\n'), rest.size());
+        } else {
+            const bool is_quote = c == '"' || c == '\'';
+            if (is_quote) {
+                quote =
+                    rest.substr(0, rest.starts_with("\"\"\"") || rest.starts_with("'''") ? 3 : 1);
+                taken = quote.size();
+            }
+            const bool goes_on = is_quote || is_key_letter(c) || c == ' ' || c == '\t' ||
+                                 static_cast<unsigned char>(c) >= 0x80;
+            if (!goes_on) {
+                dots = 0;
+                in_key = false;
+            } else if (!in_key && c != ' ' && c != '\t') {
+                in_key = true;
+                key_column = column;
+            }
+            if (c == '.' && ++dots >= kMostKeyParts) return std::pair(line, key_column);
+        }
+        for (std::size_t n = 0; n < taken; ++n)
+            column += (static_cast<unsigned char>(rest[n]) & 0xC0) != 0x80;
+        at += taken - 1;
+    }
+    return std::nullopt;
+}
+
 std::string_view line_of(std::string_view file_text, int line) {
     std::size_t begin = 0;
     for (int number = 1; number < line; ++number) {

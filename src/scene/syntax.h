@@ -2,8 +2,10 @@
 // Broken TOML syntax, told in the user's terms, and how reading can go on after it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace swage {
 
@@ -19,6 +21,11 @@ struct SyntaxAdvice {
 };
 
 SyntaxAdvice explain_syntax(std::string_view file_text, const SyntaxMistake& mistake);
+
+// Line and column of the first key of more dotted parts (a.b.c) than anybody means: each is a table
+// in a table, and who follows them down needs a stack as deep.
+inline constexpr int kMostKeyParts = 16;
+std::optional<std::pair<int, int>> too_deep_key(std::string_view file_text);
 
 // The line without its end, from 1; empty beyond the last.
 std::string_view line_of(std::string_view file_text, int line);

@@ -54,6 +54,33 @@ TEST_CASE("long lines and deep nesting are read or refused, never fatal") {
     CHECK(wide.find("s.toml: and 19800 more\n") != std::string::npos);
 }
 
+TEST_CASE("a key of thousands of parts is refused where it stands") {
+    std::string deep = "a";
+    for (int n = 0; n < 40'000; ++n) deep += n % 2 == 0 ? ".a" : " . \"a.b\"";
+    const std::string refused = "a key of more than 16 parts\n";
+    CHECK(mistakes_in("x = \"\"\"\na.a\"\"\" # a.a\n  " + deep + " = 1") ==
+          "s.toml:3:3: " + refused);
+    CHECK(mistakes_in("['\u00e4'.b]\n[[" + deep + "]]\n") == "s.toml:2:3: " + refused);
+    CHECK(mistakes_in("x = {y = \"\"\"\"\"\"\"\", " + deep + " = 2}\n") ==
+          "s.toml:1:17: " + refused);
+    CHECK(mistakes_in("x = {\u00e4 = 1, " + deep + " = 2}\n") == "s.toml:1:13: " + refused);
+    CHECK(mistakes_in(Parts().text() + "\n[stage.parameters]\n" + deep + " = 2\n").find(refused) !=
+          std::string::npos);
+    // As deep as may be, through all that may be nested.
+    const std::string most = "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a = ";
+    std::string nested = "1";
+    for (int n = 0; n < 250; ++n) nested = "{" + most + nested + "}";
+    CHECK(mistakes_in("x = " + nested + "\n").find("unknown") != std::string::npos);
+    const Scratch scratch;
+    const auto scene = scratch.write("s.toml", Parts().text());
+    for (const std::string& text :
+         {"material.density={" + deep + "=1}", "material." + deep + "=1"}) {
+        CHECK(!read_scene(scene, {text}, shipped()).mistakes.empty());
+    }
+    // Text and numbers are no keys.
+    CHECK(mistakes_in(Parts().text() + "# " + deep + "\n") == "");
+}
+
 TEST_CASE("no damage to a scene's bytes does more than earn a mistake") {
     const Scratch scratch;
     Parts parts;
