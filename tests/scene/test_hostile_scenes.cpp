@@ -62,7 +62,7 @@ TEST_CASE("a key of thousands of parts is refused where it stands") {
           "s.toml:3:3: " + refused);
     CHECK(mistakes_in("['\u00e4'.b]\n[[" + deep + "]]\n") == "s.toml:2:3: " + refused);
     CHECK(mistakes_in("x = {y = \"\"\"\"\"\"\"\", " + deep + " = 2}\n") ==
-          "s.toml:1:17: " + refused);
+          "s.toml:1:20: " + refused);
     CHECK(mistakes_in("x = {\u00e4 = 1, " + deep + " = 2}\n") == "s.toml:1:13: " + refused);
     CHECK(mistakes_in(Parts().text() + "\n[stage.parameters]\n" + deep + " = 2\n").find(refused) !=
           std::string::npos);
