@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/mesh_cache.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "base/error.h"
@@ -51,13 +52,19 @@ void attribute(const Gl& gl, GLuint place, GLint size, std::size_t stride, std::
 
 bool is_closed(const TriMesh& mesh) {
     bool closed = !mesh.triangle.empty();
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](const auto& uses) {
-        int balance = 0;
-        for (const EdgeUse& use : uses) balance += use.forward ? 1 : -1;
-        closed = closed && balance == 0;
-    });
-    // Inside out, the far side would show.
-    return closed && signed_volume(mesh) > 0;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
+                  [&](const auto& uses) { closed = closed && excess(uses) == 0; });
+    if (!closed) return false;
+    // Of a body inside out the far side would show, whatever stands beside it.
+    const Components components = surface_components(mesh);
+    const Vec3 center = box_of(mesh.position).center();
+    std::vector<double> volume(static_cast<std::size_t>(components.count), 0.0);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        volume[static_cast<std::size_t>(components.triangle_component[t])] +=
+            area_vector(mesh.position, mesh.triangle[t])
+                .dot(mesh.position[static_cast<std::size_t>(mesh.triangle[t][0])] - center);
+    const auto [least, most] = std::minmax_element(volume.begin(), volume.end());
+    return *most > 0 && *least > -1e-9 * *most;  // two sheets back to back hold nothing
 }
 
 }  // namespace

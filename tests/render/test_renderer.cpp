@@ -326,6 +326,28 @@ TEST_CASE("both sides of a surface are lit", "[renderer]") {
     CHECK(mean_difference(a, b) < 1);
 }
 
+TEST_CASE("a body inside out beside a larger one is not drawn hollow", "[renderer]") {
+    if (!can_draw(GlProviderKind::automatic)) return;
+    const auto boxes = [](bool inside_out) {
+        TriMesh mesh = box_mesh(0.8);
+        const TriMesh beside = box_mesh(0.4);
+        const int base = static_cast<int>(mesh.position.size());
+        for (const Vec3& p : beside.position) mesh.position.push_back(p + Vec3(0.9, 0, 0.3));
+        for (Corners t : beside.triangle) {
+            if (inside_out) std::swap(t[0], t[1]);
+            mesh.triangle.push_back({t[0] + base, t[1] + base, t[2] + base});
+        }
+        mesh.triangle_smooth.clear();
+        mesh.smooth_group_count = 0;
+        return mesh;
+    };
+    const auto picture = [&](bool inside_out) {
+        const TriMesh mesh = boxes(inside_out);
+        return drawn(small_picture(), {{&mesh, nullptr, {Quat::Identity(), {-0.3, 0.4, 0}}, {}}});
+    };
+    CHECK(mean_difference(picture(false), picture(true)) < 0.1);
+}
+
 TEST_CASE("colours of positions are shown", "[renderer]") {
     if (!can_draw(GlProviderKind::automatic)) return;
     TriMesh mesh = square(1);
