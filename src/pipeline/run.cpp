@@ -191,8 +191,13 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     if (options.draw && wanted.first <= reached) {
         const FrameStore store(directory.store());
         const FrameRange drawn{wanted.first, std::min(wanted.last, reached)};
-        outcome.record["drawing"] =
-            drawing_json(draw_run(store, scene.render, drawn, files, watch));
+        try {
+            outcome.record["drawing"] =
+                drawing_json(draw_run(store, scene.render, drawn, files, watch));
+        } catch (const Error& error) {
+            if (!ended.stopped) throw;
+            log_warning("{}", error.what());  // what ended the run before is its outcome
+        }
     }
     if (ended.stopped) {
         write_record(directory, outcome.record, watch);

@@ -137,21 +137,22 @@ class StageRun {
         if (last_frame == 0) {
             last_frame = 1;
             context_.recorder.add_frame(bodies_, way_.front());
-            if (each_frame()) write_meshes_of(last_frame);
+            if (each_frame()) keep([&] { write_meshes_of(last_frame); });
         }
         const Apparatus& apparatus = machine_.apparatus;
         StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()),
                            simulation.start(),
                            apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size());
-        for (int n = 1; n <= stage_.frames && work(simulation, n, last_frame + n, curves); ++n) {
+        for (int n = 1; n <= stage_.frames && !outcome_.stopped; ++n) {
+            if (!work(simulation, n, last_frame + n, curves)) break;
             dress(last_frame + n);
-            record(last_frame + n, curves);
+            keep([&] { record(last_frame + n, curves); });
         }
         const auto lap = context_.watch.lap("write");
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            write_meshes(bodies_[b].deformed(), meshes_[b]);
+            keep([&] { write_meshes(bodies_[b].deformed(), meshes_[b]); });
         }
-        write_curves(curves, context_);
+        keep([&] { write_curves(curves, context_); });
         finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1);
         return std::move(outcome_);
     }
@@ -168,6 +169,17 @@ class StageRun {
             write_meshes(bodies_[b].deformed(), meshes_[b] / fmt::format("frame_{:04d}", frame));
         }
     }
+    // What cannot be written, as on a full disk, ends the stage where it is, and no more.
+    template <typename Write>
+    void keep(const Write& write) {
+        try {
+            write();
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::output) throw;
+            if (!outcome_.stopped) outcome_.stopped = error;
+        }
+    }
+
     bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
 
     // The machine goes through the n-th frame; false where that was given up.
@@ -236,10 +248,11 @@ class StageRun {
 
     void record(int number, StageCurves& curves) {
         const auto lap = context_.watch.lap("write");
-        context_.recorder.add_frame(bodies_, ahead_.front());
+        // What the matter has gone through is on the books, whether the frame can be kept or not.
         curves.add(number, last_);
         totals_.add(last_, machine_.apparatus.tool.size());
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
+        context_.recorder.add_frame(bodies_, ahead_.front());
         if (each_frame()) write_meshes_of(number);
         context_.progress.advance(number - 1, stage_.name);
     }

@@ -34,7 +34,8 @@ struct StageOutcome {
     Json record;  // for run.json
     long steps = 0;
     std::vector<std::string> warning;  // all told already
-    // The simulation gave up, or somebody asked for it; what was reached is kept.
+    // The simulation gave up, the disk was full, or somebody asked for it; what was reached is
+    // kept.
     std::optional<Error> stopped;
     std::optional<Interrupted> interrupted;
 };

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run leaves when what it writes finds no room.
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+namespace {
+
+// As long as it lives no program that is started writes a file of more bytes.
+class SmallDisk {
+  public:
+    explicit SmallDisk(std::uintmax_t bytes) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit = {bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        ::signal(SIGXFSZ, SIG_IGN);
+    }
+    ~SmallDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        ::signal(SIGXFSZ, SIG_DFL);
+    }
+
+  private:
+    rlimit before_{};
+};
+
+}  // namespace
+
+TEST_CASE("a stage that the disk is too full for leaves an account of what it did") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 60);
+    const fs::path whole = scratch.path() / "whole", run = scratch.path() / "run";
+    REQUIRE(run_swage({"run", scene.string(), "--out", whole.string(), "--no-render"}).code == 0);
+    const std::uintmax_t room = fs::file_size(whole / "motion.bin") / 2;
+    for (const auto& entry : fs::directory_iterator(whole / "meshes"))
+        REQUIRE(entry.file_size() < room);
+    {
+        const SmallDisk disk(room);
+        const Outcome outcome = run_swage({"run", scene.string(), "--out", run.string()});
+        INFO(outcome.err);
+        CHECK(outcome.code == 5);
+        CHECK(outcome.err.find("motion.bin: cannot be written: File too large") !=
+              std::string::npos);
+    }
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(record.at("state") == "stopped");
+    const int frames = record.at("frames").get<int>();
+    CHECK(frames > 10);
+    CHECK(frames < 61);
+    CHECK(fs::exists(run / fmt::format("frames/frame_{:04d}.png", frames)));
+    // Its books are those of the matter as it was left, a frame after the last that was kept.
+    const Json& stage = record.at("stages").at(0);
+    CHECK(stage.at("frames").at(1) == frames + 1);
+    CHECK(stage.at("state_hash") == record.at("state_hash"));
+    const std::string curves = bytes_of(run / "curves/1-bend.csv");
+    CHECK(curves.find(fmt::format("\n{},", frames + 1)) != std::string::npos);
+    CHECK(curves.find(fmt::format("\n{},", frames + 2)) == std::string::npos);
+    CHECK(fs::exists(run / "meshes/1-bend.obj"));
+    // Those who come after it may draw it.
+    CHECK(run_swage({"render", run.string(), "--no-film", "--frames", "1-2"}).code == 0);
+}
