@@ -6,17 +6,13 @@
 #include <cctype>
 
 #include "base/error.h"
+#include "geometry/text_scan.h"
 
 namespace swage {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 bool is_file(const fs::path& file) {
     std::error_code ignored;

@@ -341,6 +341,27 @@ TEST_CASE("STL, text or binary, is welded into a closed cube") {
     }
 }
 
+TEST_CASE("an STL's words may be in capitals, a binary one may begin like text and end in more") {
+    const Folder folder;
+    std::string capitals = cube_stl_ascii();
+    for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    std::string binary = cube_stl_binary();
+    binary.replace(0, 10, "solid cube");
+    std::vector<std::string> finding;
+    for (const std::string& bytes :
+         {capitals, binary, binary + "extra!!", cube_stl_binary() + "x"}) {
+        const TriMesh cube = read_mesh(folder.write("a.stl", bytes), {}, &finding);
+        CHECK(cube.triangle.size() == 12);
+        CHECK(signed_volume(cube) == Approx(1));
+    }
+    CHECK(finding == std::vector<std::string>{"7 bytes after its last facet left out",
+                                              "1 byte after its last facet left out"});
+    const TriMesh named = read_quietly(
+        folder.write("b.stl", replaced(replaced(capitals, "SOLID CUBE", "SOLID My Cube"),
+                                       "ENDSOLID CUBE", "EndSolid My Cube")));
+    CHECK(named.triangle.size() == 12);
+}
+
 TEST_CASE("OFF is read, and one whose faces name missing vertices is refused") {
     const Folder folder;
     const TriMesh tet = read_quietly(folder.write("t.off", kTetOff));
