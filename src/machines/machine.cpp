@@ -143,11 +143,16 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     machine.work_from_tool.push_back(work_from_tool);
 }
 
+// Of any two opposite corners.
+Box box_between(const Setting& setting, const Expression3& from, const Expression3& to) {
+    const Vec3 slack = Vec3::Constant(kGripSlack * setting.frame.size.norm());
+    const Box box = box_of({evaluate(from, setting.known), evaluate(to, setting.known)});
+    return {box.low - slack, box.high + slack};
+}
+
 void add_grip(Machine& machine, const Setting& setting, const GripSpec& spec,
               std::vector<int>& grip_of_point) {
-    const Vec3 slack = Vec3::Constant(kGripSlack * setting.frame.size.norm());
-    const Box region{evaluate(spec.from, setting.known) - slack,
-                     evaluate(spec.to, setting.known) + slack};
+    const Box region = box_between(setting, spec.from, spec.to);
     Grip grip;
     grip.name = spec.name;
     Box held;
@@ -227,11 +232,7 @@ void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) 
 void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
               const LoadSpec& spec) {
     Box box;
-    if (spec.box) {
-        const Vec3 slack = Vec3::Constant(kGripSlack * setting.frame.size.norm());
-        box = {evaluate((*spec.box)[0], setting.known) - slack,
-               evaluate((*spec.box)[1], setting.known) + slack};
-    }
+    if (spec.box) box = box_between(setting, (*spec.box)[0], (*spec.box)[1]);
     Load load;
     load.name = spec.name;
     load.point = region_points(matter, setting.frame.world_from_work, setting.point, spec.on,

@@ -231,6 +231,19 @@ TEST_CASE("a grip turns its points by the whole angle, also past a full turn") {
               .norm() == 0);
 }
 
+TEST_CASE("a grip's box has any two opposite corners") {
+    const Aggregate body = bar(0, {1, 1, 1});
+    const Machine machine = set_up(vice(), body);
+    MachineSpec turned = vice();
+    for (GripSpec& grip : turned.grip) {
+        std::swap(grip.from[0], grip.to[0]);
+        std::swap(grip.from[2], grip.to[2]);
+    }
+    const Machine same = set_up(turned, body);
+    for (std::size_t g = 0; g < machine.apparatus.grip.size(); ++g)
+        CHECK(same.apparatus.grip[g].point == machine.apparatus.grip[g].point);
+}
+
 TEST_CASE("grips that hold nothing, hold twice or jump at the start are refused by name") {
     MachineSpec spec = vice();
     spec.grip[1].from[0] = "0.6*length";

@@ -65,6 +65,8 @@ TEST_CASE(
         sum += load.force[n];
     }
     CHECK((sum - Vec3(0, 2.4, -2)).norm() < 1e-6);
+    spec.box = {{{"length/4", "height", "-width"}, {"0", "-height", "width"}}};
+    CHECK(with(matter, spec).apparatus.load.at(0).point == load.point);  // any opposite corners
     CHECK(drive_at(machine, 0.5, 1).load_strength.at(0) == 0.25);
     CHECK(drive_at(machine, 0.5, 1).gravity_strength == 1);
 }
