@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The file: a magic word, then records of kind, size, hash and bytes; the last says that the file
-// is whole.
+// The file: a magic word, then records of kind, size, hash and bytes, each head with a check of its
+// own; the last says that the file is whole.
 #include "pipeline/frame_store.h"
 
 #include <fcntl.h>
@@ -20,16 +20,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3430'6567'6177'7300;  // "\0swage04" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3530'6567'6177'7300;  // "\0swage05" on a little-endian machine
 
 enum RecordKind : std::uint32_t { kSkin = 1, kMachine, kFrame, kImage, kEnd };
 
 struct RecordHead {
     std::uint32_t kind;
-    std::uint32_t reserved;
+    std::uint32_t check;  // of the others
     std::uint64_t size;
-    std::uint64_t hash;
+    std::uint64_t hash;  // of the bytes
 };
+
+std::uint32_t check_of(const RecordHead& head) {
+    Hasher hasher;
+    hasher.add_bytes(&head.kind, sizeof head.kind);
+    hasher.add_bytes(&head.size, sizeof head.size);
+    hasher.add_bytes(&head.hash, sizeof head.hash);
+    return static_cast<std::uint32_t>(hasher.value());
+}
 
 void write_all(int handle, const fs::path& file, const void* data, std::size_t size) {
     const char* at = static_cast<const char*>(data);
@@ -91,7 +99,8 @@ FrameStoreWriter::~FrameStoreWriter() {
 }
 
 void FrameStoreWriter::put(std::uint32_t kind, const std::string& bytes) {
-    const RecordHead head{kind, 0, bytes.size(), hash_of(bytes)};
+    RecordHead head{kind, 0, bytes.size(), hash_of(bytes)};
+    head.check = check_of(head);
     try {
         write_all(handle_, file_, &head, sizeof head);
         write_all(handle_, file_, bytes.data(), bytes.size());
@@ -182,6 +191,7 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
     for (RecordHead head{};;) {
         if (!read_all(handle_, at, &head, sizeof head)) give_up("ends early");
         at += sizeof head;
+        if (head.check != check_of(head)) give_up("is damaged");
         if (head.size > file_size - at) give_up("ends early");
         const Place place{at, head.size, head.hash};
         if (head.kind == kSkin)

@@ -180,6 +180,14 @@ TEST_CASE("a damaged motion file is refused") {
         CHECK_NOTHROW(store.frame(1));
         CHECK_THROWS_AS(store.frame(2), Error);
     }
+    SECTION("a record called another kind") {
+        // The first head follows the magic word; of a skin a machine is made.
+        std::fstream change(file, std::ios::in | std::ios::out | std::ios::binary);
+        change.seekp(8);
+        change.put(2);
+        change.close();
+        CHECK_THROWS_AS(FrameStore(file), Error);
+    }
     SECTION("something else") {
         std::ofstream(file) << "not a motion file at all";
         CHECK_THROWS_AS(FrameStore(file), Error);
