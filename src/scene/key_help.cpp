@@ -70,7 +70,7 @@ const std::vector<KeyHelp>& scene_key_help() {
          "particles; boundary: made anew from voxels"},
         {"[skin]", "divide",
          "halve the edges of the mesh that are longer than a cell and a half, so that its faces "
-         "can bend; false: its own vertices and no others"},
+         "can bend; false: its own vertices and no others; not for kind = \"boundary\""},
 
         {"[[stage]]", "machine",
          "one that `swage machines` lists, or a file of your own; its "

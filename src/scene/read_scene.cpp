@@ -39,7 +39,11 @@ void read_skin(TableReader& table, SkinSettings& skin) {
                             {"frame4", SkinKind::frame4},
                             {"boundary", SkinKind::boundary}},
                            skin.kind);
-    table.truth("divide", skin.divide);
+    if (table.truth("divide", skin.divide) && skin.kind == SkinKind::boundary) {
+        table.warn("divide",
+                   "divide has no effect with kind = \"boundary\": such a skin is made "
+                   "anew, of voxels");
+    }
     table.finish();
 }
 
@@ -72,20 +76,26 @@ void refuse_remolded_blocks(TableReader& root, const SceneSpec& scene) {
     }
 }
 
-// Where there are several bodies their meshes are named after stage and body.
+// Meshes are named after their stage, where there are several bodies also after those; a stage's
+// meshes of every frame are in a folder of its name.
 void refuse_same_files(TableReader& root, const SceneSpec& scene) {
-    if (scene.body.size() == 1) return;
+    const bool has_several = scene.body.size() > 1;
     std::map<std::string, std::string> of;
     for (const StageSpec& stage : scene.stage) {
         for (const BodySpec& body : scene.body) {
-            const std::string file = stage.name + "-" + body.name,
-                              what =
-                                  fmt::format("body \"{}\" of stage \"{}\"", body.name, stage.name);
-            const auto [at, is_new] = of.try_emplace(file, what);
-            if (is_new || at->second == what) continue;  // bodies of one name are told already
-            root.mistake("stage", fmt::format("{} and {} would both be written as {}: give one "
-                                              "another name",
-                                              at->second, what, file));
+            std::string what = fmt::format("stage \"{}\"", stage.name);
+            if (has_several) what = fmt::format("body \"{}\" of {}", body.name, what);
+            const std::string stem = has_several ? stage.name + "-" + body.name : stage.name;
+            std::vector<std::string> files = {stem + ".obj", stem + ".mtl", stem + ".ply"};
+            if (scene.output.meshes_per_frame) files.push_back(stem);
+            for (const std::string& file : files) {
+                const auto [at, is_new] = of.try_emplace(file, what);
+                if (is_new || at->second == what) continue;  // those of one name are told already
+                root.mistake("stage", fmt::format("{} and {} would both be written as {}: give one "
+                                                  "another name",
+                                                  at->second, what, file));
+                break;
+            }
         }
     }
 }
@@ -129,7 +139,6 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     scene.inputs.insert(scene.inputs.end(), stages.inputs().begin(), stages.inputs().end());
     refuse_with_insets(root, scene);
     refuse_remolded_blocks(root, scene);
-    refuse_same_files(root, scene);
     if (root.find("stage") == nullptr && reading.is_complete) {
         reading.mistakes.add(absent.place,
                              "nothing to do: the scene has no [[stage]], such as\n"
@@ -139,6 +148,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     if (scene.render.up == Up::automatic) scene.render.up = up_of(scene.stage);
     output.truth("meshes_per_frame", scene.output.meshes_per_frame);
     output.finish();
+    refuse_same_files(root, scene);
     report_unknown_sections(document, reading);
     reading.report_unknown();
 }

@@ -47,8 +47,17 @@ TEST_CASE("a block is not molded anew, and no two meshes have one name") {
         "[[body]]\nname = \"c\"\nfile = \"bar.obj\"\nat = [0, 2, 0]\n"
         "[[stage]]\nname = \"a\"\nmachine = \"floor\"\ngravity = 9.81\n"
         "[[stage]]\nname = \"a-b\"\nmachine = \"floor\"\ngravity = 9.81\n";
+    Parts folder;
+    folder.stage =
+        "[[stage]]\nname = \"a\"\nmachine = \"bend\"\n[[stage]]\nname = \"a.obj\"\nmachine = "
+        "\"bend\"\n[[stage]]\nname = \"a.ob\"\nmachine = \"bend\"\n";
+    CHECK(mistakes_in(folder.text()) == "");
+    folder.rest += "[output]\nmeshes_per_frame = true\n";
     check_all({
         {"block", block, {"fills the box of the mesh, and stage \"1-bend\" would mold the box"}},
+        {"folder",
+         folder,
+         {"stage \"a\" and stage \"a.obj\" would both be written as a.obj: give one"}},
         {"same",
          same,
          {"body \"b-c\" of stage \"a\" and body \"c\" of stage \"a-b\" would both be written "
