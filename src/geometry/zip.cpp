@@ -72,6 +72,7 @@ Zip::Zip(std::string& bytes, std::uint64_t limit) : bytes_(bytes), limit_(limit)
         entry.end = at + 46 + name_size + extra_size + number_at<std::uint16_t>(bytes_, at + 32);
         number_at<char>(bytes_, entry.end);  // the end of the directory follows
         entry.method = number_at<std::uint16_t>(bytes_, at + 10);
+        entry.crc = number_at<std::uint32_t>(bytes_, at + 16);
         entry.packed = number_at<std::uint32_t>(bytes_, at + 20);
         entry.size = number_at<std::uint32_t>(bytes_, at + 24);
         entry.place = number_at<std::uint32_t>(bytes_, at + 42);
@@ -92,19 +93,25 @@ std::string Zip::contents(const std::string& name) const {
         fail(ExitCode::mesh, "its part '{}' breaks off", name);
     if (entry.size > limit_)
         fail(ExitCode::mesh, "its part '{}' is larger than a file may be", name);
-    if (entry.method == 0) return bytes_.substr(begin, entry.packed);
-    if (entry.method != 8)
+    if (entry.method != 0 && entry.method != 8)
         fail(ExitCode::mesh, "its part '{}' is packed in a way that cannot be read ({})", name,
              entry.method);
-    std::string contents(entry.size, '\0');
-    const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> unpacker(
-        libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
-    if (!unpacker) throw std::bad_alloc();
-    std::size_t size = 0;
-    if (libdeflate_deflate_decompress(unpacker.get(), bytes_.data() + begin, entry.packed,
-                                      contents.data(), contents.size(),
-                                      &size) != LIBDEFLATE_SUCCESS ||
-        size != contents.size())
+    std::string contents;
+    bool is_whole = true;
+    if (entry.method == 0) {
+        contents = bytes_.substr(begin, entry.packed);
+    } else {
+        contents.resize(entry.size);
+        const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> unpacker(
+            libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+        if (!unpacker) throw std::bad_alloc();
+        std::size_t size = 0;
+        is_whole = libdeflate_deflate_decompress(unpacker.get(), bytes_.data() + begin,
+                                                 entry.packed, contents.data(), contents.size(),
+                                                 &size) == LIBDEFLATE_SUCCESS &&
+                   size == contents.size();
+    }
+    if (!is_whole || libdeflate_crc32(0, contents.data(), contents.size()) != entry.crc)
         fail(ExitCode::mesh, "its part '{}' is damaged", name);
     return contents;
 }

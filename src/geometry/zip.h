@@ -21,6 +21,7 @@ class Zip {
     struct Entry {
         std::size_t begin = 0, end = 0;  // in the directory
         int method = 0;
+        std::uint32_t crc = 0;
         std::uint64_t packed = 0, size = 0, place = 0;
     };
     // Sizes and places beyond 32 bits.

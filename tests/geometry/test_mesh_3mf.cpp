@@ -97,6 +97,10 @@ TEST_CASE("parts of a 3MF's model that stand in other files are read from there"
         CHECK(std::any_of(mesh.material.begin(), mesh.material.end(),
                           [](const SurfaceMaterial& m) { return m.color == Vec3(1, 0, 0); }));
     }
+    std::string damaged = fixtures::zip_of(files);
+    damaged[damaged.find("displaycolor") + 15] = '0';
+    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("b.3mf", damaged)),
+                      Catch::Contains("its part '3D/Objects/a.model' is damaged"));
     files.pop_back();
     CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("b.3mf", fixtures::zip_of(files))),
                       Catch::Contains("its part '3D/Objects/b.model' is missing"));
