@@ -113,7 +113,7 @@ class Unwrapper {
             const Corners& c = mesh_.triangle[t];
             const Vec3 &p = mesh_.position[c[0]], &q = mesh_.position[c[1]];
             const Vec3& r = mesh_.position[c[2]];
-            normal_[t] = (q - p).cross(r - p).stableNormalized();
+            normal_[t] = area_vector(mesh_.position, c).stableNormalized();
             if (settings_.density) density_[t] = settings_.density((p + q + r) / 3);
         }
         for_each_edge(edge_uses(mesh_.triangle, mesh_.position.size()), [&](auto uses) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair_cgal.h"
@@ -25,11 +26,6 @@ constexpr std::size_t kMostClose = 1'000'000;    // pairs of shells with overlap
 constexpr std::size_t kMostMeeting = 5000;       // pairs of shells that cross or touch
 constexpr std::size_t kMostLooked = 50'000'000;  // pairs of triangles with overlapping boxes
 constexpr double kOnSurface = 1e-6;              // of a shell's size: no further from it
-constexpr double kCreaseAngle = 40 * kPi / 180;
-
-std::string counted(std::size_t count, const char* one, const char* many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-}
 
 bool overlap(const Box& a, const Box& b) {
     return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
@@ -97,7 +93,7 @@ class Settler {
         mesh_ = join_shells(mesh_, parts);
         if (united_) {
             mesh_.triangle_polygon.clear();
-            smooth_by_crease_angle(mesh_, kCreaseAngle);
+            smooth_by_crease_angle(mesh_);
         }
         return std::nullopt;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
 
@@ -67,10 +68,6 @@ void check_edges(const TriMesh& mesh, MeshReport& report) {
     report.crowded_vertices =
         static_cast<std::size_t>(std::count(crowded.begin(), crowded.end(), 1));
     report.manifold = report.crowded_edges == 0 && report.crowded_vertices == 0;
-}
-
-std::string counted(std::size_t count, const char* one, const char* many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 void add_findings(MeshReport& report) {

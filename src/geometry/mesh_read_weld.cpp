@@ -15,8 +15,6 @@ namespace swage {
 
 namespace {
 
-constexpr double kCreaseAngle = 40 * kPi / 180;
-
 // Gives equal keys equal numbers, in the order of their first appearance. An open-addressed table;
 // its order never shows in the result.
 template <typename Key>
@@ -205,7 +203,7 @@ TriMesh weld(RawMesh& raw) {
                 std::make_shared<const std::string>(std::move(m.texture_bytes));
         mesh.material.push_back(std::move(material));
     }
-    if (!smooth_by_normals(raw, mesh)) smooth_by_crease_angle(mesh, kCreaseAngle);
+    if (!smooth_by_normals(raw, mesh)) smooth_by_crease_angle(mesh);
     return mesh;
 }
 

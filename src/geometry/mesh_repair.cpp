@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "geometry/edges.h"
 #include "geometry/mesh_bodies.h"
 #include "geometry/mesh_check.h"
@@ -22,17 +23,10 @@ namespace {
 constexpr double kMostFilled =
     0.4;  // of a shell's area after filling, to count as a body with holes
 constexpr double kMostLeftOut = 0.25;  // of all area, in open sheets
-constexpr double kCreaseAngle = 40 * kPi / 180;
-
-std::string counted(std::size_t count, const char* one, const char* many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-}
 
 double area_of(const TriMesh& mesh, std::size_t t) {
     const Corners& c = mesh.triangle[t];
-    return 0.5 * (mesh.position[c[1]] - mesh.position[c[0]])
-                     .cross(mesh.position[c[2]] - mesh.position[c[0]])
-                     .norm();
+    return 0.5 * area_vector(mesh.position, c).norm();
 }
 
 struct EdgeCount {
@@ -43,10 +37,8 @@ struct EdgeCount {
 EdgeCount count_edges(const TriMesh& mesh) {
     EdgeCount count;
     for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        int sum = 0;
-        for (const EdgeUse& use : uses) sum += use.forward ? 1 : -1;
         count.odd += uses.size() % 2;
-        count.unbalanced += sum != 0;
+        count.unbalanced += excess(uses) != 0;
     });
     return count;
 }
@@ -335,8 +327,7 @@ class Repairer {
             }
             filling.triangle = fill_outline(point);
             for (const Corners& c : filling.triangle)
-                filled[filling.shell] +=
-                    0.5 * (point[c[1]] - point[c[0]]).cross(point[c[2]] - point[c[0]]).norm();
+                filled[filling.shell] += 0.5 * area_vector(point, c).norm();
             fillings.push_back(std::move(filling));
         }
         // A sheet is what would be closed by little less than its own area once more.
@@ -413,7 +404,7 @@ class Repairer {
                 wrapped.material[0].embedded_texture.reset();
                 wrapped.triangle_material.assign(wrapped.triangle.size(), 0);
             }
-            smooth_by_crease_angle(wrapped, kCreaseAngle);
+            smooth_by_crease_angle(wrapped);
             say(fmt::format(
                 "wrapped the whole mesh anew, {} outside of it and over openings below {}, because "
                 "{}: {} became {}, the volume enclosed {} (before, with its faults: {}); texture "

@@ -258,7 +258,7 @@ TriMesh dress_pieces(TriMesh pieces, const std::vector<int>& origin, const TriMe
         if (!from.triangle_part.empty()) pieces.triangle_part.push_back(from.triangle_part[o]);
         const Corners& c = from.triangle[o];
         const Vec3 &p0 = from.position[c[0]], &p1 = from.position[c[1]], &p2 = from.position[c[2]];
-        const Vec3 normal = (p1 - p0).cross(p2 - p0);
+        const Vec3 normal = area_vector(from.position, c);
         const double whole = normal.squaredNorm();
         Corners corner_uv = {-1, -1, -1};
         for (int k = 0; k < 3; ++k) {

@@ -65,7 +65,7 @@ Components surface_components(const TriMesh& mesh);
 
 // Fills smooth_group_count and triangle_smooth: corners at one position share a group when the
 // faces meet at less than `crease_angle` [rad].
-void smooth_by_crease_angle(TriMesh& mesh, double crease_angle);
+void smooth_by_crease_angle(TriMesh& mesh, double crease_angle = 40 * kPi / 180);
 
 // One unit normal a smooth group, weighted by corner angle, for the given positions (as many as
 // mesh.position). Groups must be present.

@@ -12,8 +12,7 @@ Caps caps_over_holes(const TriMesh& mesh) {
     };
     std::vector<RimEdge> rim;
     for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        int balance = 0;
-        for (const EdgeUse& use : uses) balance += use.forward ? 1 : -1;
+        const int balance = excess(uses);
         if (balance > 0) rim.push_back({uses[0].high, uses[0].low, balance});
         if (balance < 0) rim.push_back({uses[0].low, uses[0].high, -balance});
     });

@@ -282,8 +282,7 @@ std::vector<CellLayer> share_cells(const TriMesh& mesh, const MoldFrame& frame) 
         LayerSharer sharer(frame, static_cast<int>(k));
         for (std::size_t m = begin[k]; m < begin[k + 1]; ++m) {
             const Corners& t = mesh.triangle[member[m]];
-            const Vec3 cross = (mesh.position[t[1]] - mesh.position[t[0]])
-                                   .cross(mesh.position[t[2]] - mesh.position[t[0]]);
+            const Vec3 cross = area_vector(mesh.position, t);
             const double length = cross.norm();
             if (!(length > 0)) continue;
             sharer.add_triangle({bins[t[0]], bins[t[1]], bins[t[2]]}, cross / length, length / 2);

@@ -56,8 +56,7 @@ SkinPieces find_pieces_of(const TriMesh& skin) {
     SkinPieces pieces;
     pieces.area.resize(sets.number_sets(pieces.of_vertex));
     for (const Corners& c : skin.triangle) {
-        const Vec3 &p = skin.position[c[0]], &q = skin.position[c[1]], &r = skin.position[c[2]];
-        pieces.area[pieces.of_vertex[c[0]]] += 0.5 * (q - p).cross(r - p).norm();
+        pieces.area[pieces.of_vertex[c[0]]] += 0.5 * area_vector(skin.position, c).norm();
     }
     return pieces;
 }

@@ -12,8 +12,6 @@ namespace swage {
 
 namespace {
 
-constexpr double kCreaseAngle = 40 * kPi / 180;
-
 struct MovingVertex {
     float position[3];
     float normal[3];
@@ -103,7 +101,7 @@ std::unique_ptr<GpuMesh> MeshCache::made(const TriMesh& mesh) const {
     auto gpu = std::make_unique<GpuMesh>();
     if (mesh.triangle_smooth.empty()) {
         gpu->smoothed = std::make_unique<TriMesh>(mesh);
-        smooth_by_crease_angle(*gpu->smoothed, kCreaseAngle);
+        smooth_by_crease_angle(*gpu->smoothed);
         gpu->split = split_corners(*gpu->smoothed);
     } else {
         gpu->split = split_corners(mesh);
