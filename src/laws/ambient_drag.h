@@ -4,8 +4,8 @@
 //     F = -1/2 c rho (A / 4) |v| v      force on the patch [N]
 //     D = 1/2 c rho (A / 4) |v|^3 / 3   dissipation potential [W], F = -dD/dv
 //
-// rho density of the medium [kg/m3], c drag coefficient of the whole body (ball 0.5, cube 1.0, thin
-// plate 1.2), A area of the patch [m2], v its velocity [m/s].
+// rho density of the medium [kg/m3], c drag coefficient of the whole body over a quarter of its
+// surface (ball 0.5, a cube that goes face on 0.7), A area of the patch [m2], v its velocity [m/s].
 //
 // NOTE: the paper has F = -rho r^2 |v| v for particles of radius r, whatever the body's shape. Here
 // r^2 is c A / 8: a convex body shows a quarter of its surface to the flow, in the mean over all

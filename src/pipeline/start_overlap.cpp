@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 
 #include "base/units.h"
 #include "geometry/near_pairs.h"
 #include "machines/touch.h"
 #include "matter/cell_middle.h"
 #include "matter/touch_points.h"
+#include "sim/rest_surface.h"
 
 namespace swage {
 
@@ -18,16 +21,51 @@ namespace {
 // Middles of cells that lie on each other are half of both cells apart; these are nearer.
 constexpr double kNearer = 0.45;
 constexpr float kSolid = 0.5f;  // share of a cell, that its middle is in the body
-// Bodies that lie on a tool do so a little deep [spacings].
+// What lies on something does so a little deep [spacings].
 constexpr double kDeep = 0.25;
 
-std::vector<Vec3> solid_middles(const Aggregate& matter) {
-    std::vector<Vec3> middles;
+struct SolidCells {
+    std::vector<CellId> cell;
+    std::vector<Vec3> middle, centroid;  // of the cell, of what of it is matter [m]
+};
+
+// How a body that nothing has deformed yet lies at this cell.
+Pose world_from_reference(const Aggregate& matter, CellId cell) {
+    const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
+    const Vec3 low = matter.particle_position.at(corner[0]);
+    Mat3 axes;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 side = matter.particle_position.at(corner[std::size_t(1) << axis]) - low;
+        axes.col(axis) = side / matter.lattice.spacing;
+    }
+    const Quat turn(axes);
+    return {turn, low - turn * matter.particle_reference.at(corner[0])};
+}
+
+SolidCells solid_cells(const Aggregate& matter) {
+    SolidCells cells;
     for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
         if (matter.cell_fill[c] < kSolid) continue;
-        middles.push_back(cell_middle(matter, static_cast<CellId>(c)));
+        const Vec3 middle = cell_middle(matter, static_cast<CellId>(c));
+        const Pose pose = world_from_reference(matter, static_cast<CellId>(c));
+        const Vec3 off = matter.lattice.spacing * matter.cell_centroid[c].cast<double>();
+        cells.cell.push_back(static_cast<CellId>(c));
+        cells.middle.push_back(middle);
+        cells.centroid.push_back(middle + pose.turn(off));
     }
-    return middles;
+    return cells;
+}
+
+// Whether a place lies well below the surface of a body with this cell.
+bool is_deep_in(const Aggregate& matter, CellId near, const RestSurface& surface,
+                const Vec3& place) {
+    const Vec3 reference = world_from_reference(matter, near).inverse() * place;
+    const Vec3 at = (reference - matter.lattice.origin) / matter.lattice.spacing;
+    const Vec3 low(std::floor(at.x()), std::floor(at.y()), std::floor(at.z()));
+    const Vec3i site = low.cast<int>();
+    const CellId cell = matter.lattice.cell_at(site.x(), site.y(), site.z());
+    if (cell < 0) return false;
+    return !surface.is_rim(cell) || surface.at(cell, at - low).distance < -kDeep;
 }
 
 std::vector<Vec3> touching_points(const Aggregate& matter) {
@@ -76,8 +114,9 @@ Standing standing_at(const BoxShape& plate, const Pose& plate_from_world, const 
 }  // namespace
 
 std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) {
-    std::vector<std::vector<Vec3>> middle;
-    for (const NamedMatter& body : bodies) middle.push_back(solid_middles(*body.matter));
+    std::vector<SolidCells> cells_of;
+    for (const NamedMatter& body : bodies) cells_of.push_back(solid_cells(*body.matter));
+    std::vector<std::unique_ptr<RestSurface>> surface(bodies.size());
     std::vector<std::string> told;
     for (std::size_t a = 0; a < bodies.size(); ++a) {
         for (std::size_t b = a + 1; b < bodies.size(); ++b) {
@@ -85,14 +124,18 @@ std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) 
                          side_b = bodies[b].matter->lattice.spacing;
             const double reach = kNearer * (side_a + side_b);
             std::vector<Box> box;
-            for (const Vec3& m : middle[b]) {
+            for (const Vec3& m : cells_of[b].middle) {
                 box.push_back({m - Vec3::Constant(reach), m + Vec3::Constant(reach)});
             }
-            std::vector<char> shared(middle[a].size(), 0);
-            for (const auto& [point, other] : near_pairs(middle[a], box)) {
-                const Vec3 way = middle[a][static_cast<std::size_t>(point)] -
-                                 middle[b][static_cast<std::size_t>(other)];
-                if (way.norm() < reach) shared[static_cast<std::size_t>(point)] = 1;
+            std::vector<char> shared(cells_of[a].middle.size(), 0);
+            for (const auto& [point, other] : near_pairs(cells_of[a].middle, box)) {
+                const std::size_t p = static_cast<std::size_t>(point),
+                                  q = static_cast<std::size_t>(other);
+                const Vec3 way = cells_of[a].middle[p] - cells_of[b].middle[q];
+                if (way.norm() >= reach || shared[p]) continue;
+                if (!surface[b]) surface[b] = std::make_unique<RestSurface>(*bodies[b].matter);
+                shared[p] = is_deep_in(*bodies[b].matter, cells_of[b].cell[q], *surface[b],
+                                       cells_of[a].centroid[p]);
             }
             const auto cells = std::count(shared.begin(), shared.end(), 1);
             if (cells == 0) continue;

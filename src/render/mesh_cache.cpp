@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "geometry/edges.h"
+#include "geometry/mesh_check.h"
 
 namespace swage {
 
@@ -54,13 +55,7 @@ bool is_closed(const TriMesh& mesh) {
                   [&](const auto& uses) { closed = closed && excess(uses) == 0; });
     if (!closed) return false;
     // Of a body inside out the far side would show, whatever stands beside it.
-    const Components components = surface_components(mesh);
-    const Vec3 center = box_of(mesh.position).center();
-    std::vector<double> volume(static_cast<std::size_t>(components.count), 0.0);
-    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
-        volume[static_cast<std::size_t>(components.triangle_component[t])] +=
-            area_vector(mesh.position, mesh.triangle[t])
-                .dot(mesh.position[static_cast<std::size_t>(mesh.triangle[t][0])] - center);
+    const std::vector<double> volume = component_volumes(mesh, surface_components(mesh));
     const auto [least, most] = std::minmax_element(volume.begin(), volume.end());
     return *most > 0 && *least > -1e-9 * *most;  // two sheets back to back hold nothing
 }

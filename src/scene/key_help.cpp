@@ -103,7 +103,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[[stage]]", "self_contact", "a body meets itself; not in implicit steps"},
         {"[[stage]]", "sleep", "bodies that have come to rest cost nothing; steps of motion"},
         {"[[stage]]", "medium_density", "of what is around, for drag: air 1.2, water 1000 kg/m3"},
-        {"[[stage]]", "drag_coefficient", "in that medium: ball 0.5, cube 1, thin plate 1.2"},
+        {"[[stage]]", "drag_coefficient",
+         "of a quarter of the whole surface, whichever way it moves: ball 0.5, cube 0.7"},
         {"[[stage]]", "directional_drag",
          "on the surface that meets the flow: weight over area "
          "and speed at the end"},

@@ -6,6 +6,7 @@
 #include "tests/catch.h"
 #include "tests/scene/scratch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
 
 using namespace swage;
 
@@ -24,6 +25,26 @@ TEST_CASE("bodies that lie in each other at the start are told, those that touch
     CHECK(told(0.1, 4, 0.3)[0].find("16 cells") != std::string::npos);
     CHECK(told(0.04, 5, 0.1).size() == 1);
     CHECK(told(0.04, 5, 0.03).size() == 1);  // wholly inside
+}
+
+TEST_CASE(
+    "round bodies with air between them do not lie in each other, whatever their cells hold") {
+    for (const double a : {0.022, 0.03, 0.041}) {
+        const auto ball = [&](double x) {
+            const int count = static_cast<int>(0.14 / a) + 2;
+            const Vec3 middle(x, 0, 0);
+            return test::make_shape([&](const Vec3& p) { return (p - middle).norm() - 0.06; },
+                                    middle - Vec3::Constant(0.07), Vec3i::Constant(count), a);
+        };
+        const Aggregate one = ball(0);
+        for (const double away : {0.1205, 0.123, 0.13}) {
+            const Aggregate other = ball(away);
+            INFO(a << " " << away);
+            CHECK(start_overlaps({{"one", &one}, {"other", &other}}).empty());
+        }
+        const Aggregate in_it = ball(0.07);
+        CHECK(start_overlaps({{"one", &one}, {"other", &in_it}}).size() == 1);
+    }
 }
 
 TEST_CASE("a body beside the work-piece that starts in, beyond or under the floor is told") {
