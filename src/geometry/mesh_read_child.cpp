@@ -106,4 +106,12 @@ RawMesh read_raw(MeshSource& source) {
     return mesh;
 }
 
+std::string opaque_sentence(std::size_t count, const std::string& name, const std::string& by) {
+    const std::string shown = name.substr(0, 40);
+    return count == 1
+               ? fmt::format("the material '{}' lets light through ({}): drawn opaque", shown, by)
+               : fmt::format("{} materials, such as '{}', let light through ({}): drawn opaque",
+                             count, shown, by);
+}
+
 }  // namespace swage

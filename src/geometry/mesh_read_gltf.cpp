@@ -113,6 +113,7 @@ class GltfPatch {
     // True when the document was changed.
     bool apply() {
         check_extensions();
+        tell_clear();
         bool changed = decode_names();
         for (const Json& mesh : list_of(document_, "meshes"))
             for (const Json& primitive : list_of(mesh, "primitives")) {
@@ -169,6 +170,16 @@ class GltfPatch {
         if (!unlike.empty())
             source_.finding.push_back(fmt::format(
                 "it asks for {}, which is not followed: it may look otherwise", unlike));
+    }
+
+    void tell_clear() {
+        std::string name;
+        std::size_t count = 0;
+        for (const Json& material : list_of(document_, "materials")) {
+            if (material.value("alphaMode", "OPAQUE") == "OPAQUE") continue;
+            if (count++ == 0) name = material.value("name", "");
+        }
+        if (count > 0) source_.finding.push_back(opaque_sentence(count, name, "alphaMode"));
     }
 
     // assimp looks for "my%20data.bin" by that name alone.

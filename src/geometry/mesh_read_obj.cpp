@@ -207,14 +207,9 @@ class ObjReader {
     }
 
     void tell_clear() {
-        const std::size_t count = clear_.size();
-        if (count == 0) return;
-        const std::string name = material_name_[*clear_.begin()].substr(0, 40);
+        if (clear_.empty()) return;
         source_.finding.push_back(
-            count == 1
-                ? fmt::format("the material '{}' lets light through (d, Tr): drawn opaque", name)
-                : fmt::format("{} materials, such as '{}', let light through (d, Tr): drawn opaque",
-                              count, name));
+            opaque_sentence(clear_.size(), material_name_[*clear_.begin()], "d, Tr"));
     }
 
     // A library name may hold blanks, or be several names. False when it cannot be read.

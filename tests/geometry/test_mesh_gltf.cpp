@@ -196,6 +196,16 @@ TEST_CASE("a glTF extension that nobody follows is told of, and refused where th
           "it asks for 'KHR_materials_transmission', which is not followed: it may look otherwise");
 }
 
+TEST_CASE("of a glTF's opacity the reader tells") {
+    const Folder folder;
+    CHECK(read(folder, {kSquare}, R"("materials":[{"name":"wall"},{"alphaMode":"OPAQUE"}],)")
+              .finding.empty());
+    const Reading pane = read(
+        folder, {kSquare}, R"("materials":[{"name":"wall"},{"name":"pane","alphaMode":"BLEND"}],)");
+    REQUIRE(pane.finding.size() == 1);
+    CHECK(pane.finding[0] == "the material 'pane' lets light through (alphaMode): drawn opaque");
+}
+
 TEST_CASE("instances of a glTF's mesh stand at all their places") {
     const Folder folder;
     const Values at{"", 5126, 3, {0, 0, 0, 2, 0, 0, 4, 0, 3}};
