@@ -125,4 +125,11 @@ inline TriMesh ball_mesh(int across, double radius) {
     return mesh;
 }
 
+// With the first of `what` in it.
+inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
+    const std::size_t at = text.find(what);
+    if (at != std::string::npos) text.replace(at, what.size(), with);
+    return text;
+}
+
 }  // namespace swage::fixtures

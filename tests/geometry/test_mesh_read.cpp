@@ -14,36 +14,9 @@ using namespace swage;
 using fixtures::Folder;
 using fixtures::raw;
 using fixtures::read_quietly;
+using fixtures::replaced;
 
 namespace {
-
-// A unit cube as split triangles, for formats without shared vertices.
-std::string cube_stl_ascii() {
-    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
-    std::string text = "solid cube\n";
-    for (const Corners& t : cube.triangle) {
-        text += "facet normal 0 0 0\nouter loop\n";
-        for (const int i : t)
-            text += fmt::format("vertex {} {} {}\n", cube.position[i].x(), cube.position[i].y(),
-                                cube.position[i].z());
-        text += "endloop\nendfacet\n";
-    }
-    return text + "endsolid cube\n";
-}
-
-std::string cube_stl_binary() {
-    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
-    std::string bytes(80, ' ');
-    bytes += raw<std::uint32_t>(12);
-    for (const Corners& t : cube.triangle) {
-        for (int k = 0; k < 3; ++k) bytes += raw<float>(0);
-        for (const int i : t)
-            for (int k = 0; k < 3; ++k)
-                bytes += raw<float>(static_cast<float>(cube.position[i][k]));
-        bytes += raw<std::uint16_t>(0);
-    }
-    return bytes;
-}
 
 const char* kTetOff =
     "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
@@ -70,12 +43,6 @@ const char* kGltfScene = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nod
 "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":32},
 {"buffer":0,"byteOffset":80,"byteLength":12},{"buffer":0,"byteOffset":92,"byteLength":8}],
 "buffers":[{"byteLength":100URI}]})";
-
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-    const std::size_t at = text.find(what);
-    if (at != std::string::npos) text.replace(at, what.size(), with);
-    return text;
-}
 
 std::string square_glb() {
     std::string json = replaced(kGltfScene, "IMAGE", R"({"bufferView":3,"mimeType":"image/png"})");
@@ -325,41 +292,6 @@ TEST_CASE("triangle strips in a PLY become all their triangles, turned alike") {
                       .cross(mesh.position[t[2]] - mesh.position[t[0]])
                       .z() > 0);
     }
-}
-
-TEST_CASE("STL, text or binary, is welded into a closed cube") {
-    const Folder folder;
-    for (const auto& [name, bytes] :
-         {std::pair("a.stl", cube_stl_ascii()), std::pair("b.stl", cube_stl_binary())}) {
-        CAPTURE(name);
-        const TriMesh cube = read_quietly(folder.write(name, bytes));
-        CHECK(cube.position.size() == 8);
-        CHECK(cube.triangle.size() == 12);
-        CHECK(cube.material.empty());
-        CHECK(check_mesh(cube).bounds_a_volume());
-        CHECK(signed_volume(cube) == Approx(1));
-    }
-}
-
-TEST_CASE("an STL's words may be in capitals, a binary one may begin like text and end in more") {
-    const Folder folder;
-    std::string capitals = cube_stl_ascii();
-    for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    std::string binary = cube_stl_binary();
-    binary.replace(0, 10, "solid cube");
-    std::vector<std::string> finding;
-    for (const std::string& bytes :
-         {capitals, binary, binary + "extra!!", cube_stl_binary() + "x"}) {
-        const TriMesh cube = read_mesh(folder.write("a.stl", bytes), {}, &finding);
-        CHECK(cube.triangle.size() == 12);
-        CHECK(signed_volume(cube) == Approx(1));
-    }
-    CHECK(finding == std::vector<std::string>{"7 bytes after its last facet left out",
-                                              "1 byte after its last facet left out"});
-    const TriMesh named = read_quietly(
-        folder.write("b.stl", replaced(replaced(capitals, "SOLID CUBE", "SOLID My Cube"),
-                                       "ENDSOLID CUBE", "EndSolid My Cube")));
-    CHECK(named.triangle.size() == 12);
 }
 
 TEST_CASE("OFF is read, and one whose faces name missing vertices is refused") {

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts that stop inside a body, and cuts through what others have left.
+#include <random>
+
+#include "geometry/triangle_tree.h"
+#include "tests/skin/cut_fixture.h"
+
+using namespace swage;
+using namespace swage::test;
+
+TEST_CASE("a blade that stops inside the body leaves the surface in one piece") {
+    Fixture f(bar());
+    const double whole = signed_volume(f.mesh);
+    // From above down to y = 0.0161, through the whole depth.
+    const Vec3 a(0.0137, .0161, -1), b(0.0137, .0161, 1), c(0.0137, 1, 1), d(0.0137, 1, -1);
+    const CutResult result = f.cut({{a, b, c}, {a, c, d}});
+    CHECK(result.planes == 1);
+    CHECK(result.cap_triangles > 0);
+    CHECK(parts_of(f.mesh).size() == 1);
+    CHECK(fixtures::is_closed(f.mesh));
+    CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
+    // It opens like a mouth when the matter does.
+    test::sever_plane(f.matter, {0.0137, 0, 0}, Vec3::UnitX(),
+                      [](const Vec3& p) { return p.y() > .0161; });
+    test::deform(f.matter, [](const Vec3& p) -> Vec3 {
+        const double open = .2 * std::max(0., p.y() - .0161);
+        return p + Vec3(p.x() > .0137 ? open : -open, 0, 0);
+    });
+    f.follow();
+    TriMesh opened = f.mesh;
+    opened.position = f.position;
+    // The map moves each half along x by what depends on y alone: no volume is made.
+    CHECK(signed_volume(opened) == Approx(whole).epsilon(2e-3));
+    double low = 1e9, high = -1e9;
+    for (std::size_t v = 0; v < f.position.size(); ++v) {
+        if (std::abs(f.mesh.position[v].x() - .0137) > 1e-6) continue;
+        low = std::min(low, f.position[v].x());
+        high = std::max(high, f.position[v].x());
+    }
+    CHECK(high - low == Approx(2 * .2 * (.15 - .0161)).epsilon(.05));
+}
+
+TEST_CASE("wherever a blade stops, no triangle or edge is its own other side") {
+    std::mt19937 random(7);
+    const auto at_random = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    // A blade that falls in steps and rises in others.
+    const auto slit = [](const Vec3& from, const Vec3& edge, const Vec3& fall, int down, int up) {
+        Sweep sweep;
+        for (int way = 0; way < 2; ++way) {
+            const int steps = way == 0 ? down : up;
+            for (int n = 0; n < steps; ++n) {
+                const double s0 = double(n) / steps, s1 = double(n + 1) / steps;
+                const Vec3 a = from + (way == 0 ? s0 : 1 - s0) * fall;
+                const Vec3 b = from + (way == 0 ? s1 : 1 - s1) * fall;
+                sweep.push_back({a, a + edge, b + edge});
+                sweep.push_back({a, b + edge, b});
+            }
+        }
+        return sweep;
+    };
+    for (int n = 0; n < 60; ++n) {
+        CAPTURE(n);
+        Fixture f(bar(n % 3 == 0));
+        const double whole = signed_volume(f.mesh);
+        const Vec3 across = (Vec3::UnitZ() + at_random(-.3, .3) * Vec3::UnitX()).normalized();
+        const Vec3 fall(at_random(-.1, .1), -at_random(.05, .3), 0);
+        const double width = at_random(.002, .25);
+        const Vec3 from(at_random(-.2, .2), .17, at_random(-.18, .15));
+        f.cut(slit(from, width * across, fall, 1 + n % 5, 1 + n % 7));
+        check_sound(f.mesh, f.mesh.position);
+        CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
+        std::set<std::pair<int, int>> seen;
+        for (const Corners& t : f.mesh.triangle) {
+            for (int k = 0; k < 3; ++k) CHECK(seen.insert({t[k], t[(k + 1) % 3]}).second);
+        }
+    }
+}
+
+TEST_CASE("two blades cut four closed parts out of a bar") {
+    Fixture f(bar());
+    const double whole = signed_volume(f.mesh);
+    Sweep both = sweep_of({.013, 0, 0}, Vec3(1, .2, 0).normalized(), 3);
+    for (const auto& t : sweep_of({.01, .0071, 0}, Vec3(0, 1, .1).normalized(), 3.3)) {
+        both.push_back(t);
+    }
+    const CutResult result = f.cut(both);
+    CHECK(result.planes == 2);
+    check_sound(f.mesh, f.position);
+    const std::vector<TriMesh> parts = parts_of(f.mesh);
+    CHECK(parts.size() == 4);
+    double sum = 0;
+    for (const TriMesh& part : parts) sum += signed_volume(part);
+    CHECK(sum == Approx(whole).epsilon(1e-9));
+}
+
+TEST_CASE("a second stage cuts what the first one left") {
+    Fixture f(bar());
+    const Vec3 p1(.0137, 0, 0), n1 = Vec3::UnitX();
+    f.cut(sweep_of(p1, n1, 3));
+    test::sever_plane(f.matter, p1, n1);
+    const Vec3 p2(0.0, .0071, 0), n2 = Vec3(0.1, 1, .1).normalized();
+    f.cut(sweep_of(p2, n2, 3));
+    test::sever_plane(f.matter, p2, n2);
+    REQUIRE(find_pieces(f.matter).count == 4);
+    check_sound(f.mesh, f.position);
+    const Components parts = surface_components(f.mesh);
+    REQUIRE(parts.count == 4);
+    const std::vector<Vec3> before = f.position;
+    const auto shift = [&](const Vec3& p) -> Vec3 {
+        return Vec3(n1.dot(p - p1) >= 0 ? 1 : 0, n2.dot(p - p2) >= 0 ? 1 : 0, 0);
+    };
+    test::deform(f.matter, [&](const Vec3& p) -> Vec3 { return p + shift(p); });
+    f.follow();
+    for (int part = 0; part < parts.count; ++part) {
+        Vec3 low = Vec3::Constant(1e9), high = -low;
+        for (std::size_t t = 0; t < f.mesh.triangle.size(); ++t) {
+            if (parts.triangle_component[t] != part) continue;
+            for (int v : f.mesh.triangle[t]) {
+                low = low.cwiseMin(f.position[v] - before[v]);
+                high = high.cwiseMax(f.position[v] - before[v]);
+            }
+        }
+        CHECK((high - low).norm() < 1e-12);
+    }
+}
+
+TEST_CASE(
+    "a second cut goes through the faces of the first as they are, however the matter flowed") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> noise(-.2 * .05, .2 * .05);
+    for (int n = 0; n < 8; ++n) {
+        CAPTURE(n);
+        Fixture f(bar());
+        const Vec3 p1(0.0137, 0, 0), n1 = Vec3(1, .3, .1 * n).normalized();
+        f.cut(sweep_of(p1, n1, 3));
+        test::sever_plane(f.matter, p1, n1);
+        f.matter.cell_hardening.assign(f.matter.cell_fill.size(), 1);
+        test::deform(f.matter, [&](const Vec3& p) -> Vec3 {
+            return p + Vec3(noise(random), noise(random), noise(random));
+        });
+        f.follow();
+        TriMesh before = f.mesh;
+        before.position = f.position;
+        double longest = 0;
+        for (const Corners& t : before.triangle) {
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 edge = f.position[t[k]] - f.position[t[(k + 1) % 3]];
+                longest = std::max(longest, edge.norm());
+            }
+        }
+        const TriangleTree surface(before);
+        const CutResult result = f.cut(sweep_of({0, .0071, 0}, Vec3(.1, 1, .1).normalized(), 3));
+        REQUIRE(result.cap_triangles > 0);
+        // Between its ends an edge leaves its chord by a tenth of its length at most. Caps come
+        // last.
+        const std::size_t end =
+            f.mesh.triangle.size() - static_cast<std::size_t>(result.cap_triangles);
+        double worst = 0;
+        for (std::size_t t = 0; t < end; ++t) {
+            for (int v : f.mesh.triangle[t]) {
+                if (v < static_cast<int>(before.position.size())) continue;
+                worst = std::max(worst, surface.distance(f.position[v]));
+            }
+        }
+        CHECK(worst < .1 * longest);
+    }
+}
