@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "matter/edge_points.h"
+#include "matter/open_faces.h"
 
 namespace swage {
 
@@ -60,32 +61,16 @@ void TouchPoints::add_loose(const Aggregate& matter) {
 
 void TouchPoints::connections_changed(const Aggregate& matter) {
     const Lattice& lattice = matter.lattice;
-    whole_.assign(matter.cell_fill.size(), 0);
-    for (const CellRun& run : lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
-            whole_[run.first + n] = cell_is_whole(matter, row);
-        }
-    }
+    whole_ = whole_cells(matter);
     meets_.assign(points_.size(), 0);
     for (std::size_t p = 0; p < own_; ++p) meets_[p] = carrier_[p] < 0 || whole_[carrier_[p]];
     if (std::find(whole_.begin(), whole_.end(), 0) == whole_.end()) return;
-    for (const CellRun& run : lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            const CellId cell = run.first + n;
-            if (!whole_[cell]) continue;
-            const Vec3i site(run.i + n, run.j, run.k);
-            for (int face = 0; face < 6; ++face) {
-                const Vec3i next = site + (face & 1 ? 1 : -1) * Vec3i::Unit(face >> 1);
-                const CellId other = lattice.cell_at(next.x(), next.y(), next.z());
-                if (other < 0 || whole_[other]) continue;
-                const auto point = static_cast<std::size_t>(face_point(lattice, cell, site, face));
-                if (point == meets_.size()) meets_.push_back(0);
-                meets_[point] = 1;
-            }
-        }
-    }
+    for_each_open_face(lattice, whole_, [&](const CellRun& run, int n, int face) {
+        const Vec3i site(run.i + n, run.j, run.k);
+        const auto point = static_cast<std::size_t>(face_point(lattice, run.first + n, site, face));
+        if (point == meets_.size()) meets_.push_back(0);
+        meets_[point] = 1;
+    });
     add_loose(matter);
 }
 

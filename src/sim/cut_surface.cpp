@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "matter/open_faces.h"
+
 namespace swage {
 
 namespace {
@@ -26,27 +28,16 @@ void around(int reach, const Body& body) {
 CutSurface::CutSurface(const Lattice& lattice, const std::vector<char>& is_whole) {
     slot_.assign(is_whole.size(), -1);
     std::vector<Vec3i> open, site_of_skin;  // corners; cells
-    for (const CellRun& run : lattice.cell_run) {
-        for (int n = 0; n < run.count; ++n) {
-            if (!is_whole[run.first + n]) continue;
-            const Vec3i site(run.i + n, run.j, run.k);
-            bool has_face = false;
-            for (int face = 0; face < 6; ++face) {
-                const int axis = face >> 1, side = face & 1;
-                const Vec3i next = site + (side ? 1 : -1) * Vec3i::Unit(axis);
-                const CellId other = lattice.cell_at(next.x(), next.y(), next.z());
-                if (other < 0 || is_whole[other]) continue;
-                has_face = true;
-                for (int c = 0; c < 8; ++c) {
-                    if ((c >> axis & 1) != side) continue;
-                    open.emplace_back(site + Vec3i(c & 1, c >> 1 & 1, c >> 2));
-                }
-            }
-            if (!has_face) continue;
-            skin_.push_back(run.first + n);
-            site_of_skin.push_back(site);
+    for_each_open_face(lattice, is_whole, [&](const CellRun& run, int n, int face) {
+        const Vec3i site(run.i + n, run.j, run.k);
+        for (int c = 0; c < 8; ++c) {
+            if ((c >> (face >> 1) & 1) != (face & 1)) continue;
+            open.emplace_back(site + Vec3i(c & 1, c >> 1 & 1, c >> 2));
         }
-    }
+        if (!skin_.empty() && skin_.back() == run.first + n) return;
+        skin_.push_back(run.first + n);
+        site_of_skin.push_back(site);
+    });
     std::unordered_map<std::uint64_t, float> depth;  // looked up only
     for (const Vec3i& corner : open) {
         around(kReach, [&](const Vec3i& way) {

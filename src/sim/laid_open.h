@@ -18,7 +18,6 @@ namespace swage {
 // both faces across and the surface between them close, and their mean is f, as in a prism.
 struct OpenFace {
     std::array<ParticleId, 4> corner;  // the outside sees them counter-clockwise
-    double area;                       // s a^2 [m2]
     double share;                      // s
 
     Vec3 mean(const Vec3Array& of) const {

@@ -150,7 +150,8 @@ std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter)
         const bool is_off = presses && parted_ != nullptr && parted_->is_off[p];
         area.push_back(is_off ? 0 : matter.surface.area(p));
     }
-    for (const OpenFace& face : faces_of(load)) area.push_back(face.area);
+    const double whole = matter.lattice.spacing * matter.lattice.spacing;
+    for (const OpenFace& face : faces_of(load)) area.push_back(face.share * whole);
     return area;
 }
 
