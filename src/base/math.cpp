@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/math.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 
 #include "base/portable_math.h"
@@ -33,7 +34,21 @@ Mat3 nearest_rotation(const Mat3& m) {
     return u * split.matrixV().transpose();
 }
 
-Quat turn_onto(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to); }
+Vec3 solve_symmetric(const Mat3& m, const Vec3& right) { return m.ldlt().solve(right); }
+
+Quat turn_onto(const Vec3& from, const Vec3& to) {
+    const Vec3 a = from.normalized(), b = to.normalized();
+    const double twice = (a + b).norm();  // the cosine of half the angle
+    Quat turn;
+    if (twice < 1e-6) {  // opposite ones have no plane of their own
+        turn.w() = 0;
+        turn.vec() = a.cross(std::abs(a.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX()).normalized();
+        return turn;
+    }
+    turn.w() = 0.5 * twice;
+    turn.vec() = a.cross(b) / twice;
+    return turn;
+}
 
 Quat turn_about(const Vec3& axis, double angle) {
     Quat turn;

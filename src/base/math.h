@@ -34,6 +34,9 @@ Mat3 cross_matrix(const Vec3& v);
 // What turns in a linear map; of one that turns inside out, the nearest that does not.
 Mat3 nearest_rotation(const Mat3& m);
 
+// Of m x = right, with m symmetric.
+Vec3 solve_symmetric(const Mat3& m, const Vec3& right);
+
 // The shortest turn that carries one direction onto another.
 Quat turn_onto(const Vec3& from, const Vec3& to);
 

@@ -30,6 +30,13 @@ struct RunView {
     HistoryRows history;  // of all cells
 };
 
+// What there is to do for one run of cells, or eight cells of it.
+struct Task {
+    const CellConstants& constants;
+    const RunView& run;
+    double turning;
+};
+
 template <typename V>
 SWAGE_INLINE Triple<V> minus_slope(const Triple<Dual<V>>& a) {
     return {-a.x.slope, -a.y.slope, -a.z.slope};
@@ -42,9 +49,9 @@ SWAGE_INLINE CellHistory<Dual<V>> history_of(const RunView& run, int begin) {
 
 // Minus the change of the cells' forces on their corners' sums.
 template <CellKind kKind, typename V>
-SWAGE_INLINE CornerSums<V> tangent_forces(const CellConstants& constants, const RunView& run,
-                                          int begin, double turning, const CornerSums<V>& x,
-                                          const CornerSums<V>& way) {
+SWAGE_INLINE CornerSums<V> minus_slopes(const Task& task, int begin, const CornerSums<V>& x,
+                                        const CornerSums<V>& way) {
+    const auto& [constants, run, turning] = task;
     using N = Dual<V>;
     const CornerSums<N> c = pair(x, way);
     CornerSums<N> r;
@@ -67,6 +74,37 @@ SWAGE_INLINE CornerSums<V> tangent_forces(const CellConstants& constants, const 
             minus_slope(r.yz), minus_slope(r.zx), minus_slope(r.xyz)};
 }
 
+// It is long: one copy of a kind and a width serves all tasks.
+template <CellKind kKind, typename V>
+[[gnu::noinline]] SWAGE_WIDE_VECTORS void wide_slopes(const Task& task, int begin,
+                                                      const CornerSums<V>& x,
+                                                      const CornerSums<V>& way,
+                                                      CornerSums<V>& result) {
+    result = minus_slopes<kKind>(task, begin, x, way);
+}
+template <CellKind kKind, typename V>
+[[gnu::noinline]] SWAGE_MIDDLE_VECTORS void middle_slopes(const Task& task, int begin,
+                                                          const CornerSums<V>& x,
+                                                          const CornerSums<V>& way,
+                                                          CornerSums<V>& result) {
+    result = minus_slopes<kKind>(task, begin, x, way);
+}
+template <CellKind kKind, typename V>
+[[gnu::noinline]] void narrow_slopes(const Task& task, int begin, const CornerSums<V>& x,
+                                     const CornerSums<V>& way, CornerSums<V>& result) {
+    result = minus_slopes<kKind>(task, begin, x, way);
+}
+template <CellKind kKind, typename V>
+SWAGE_INLINE CornerSums<V> tangent_forces(const Task& task, int begin, const CornerSums<V>& x,
+                                          const CornerSums<V>& way) {
+    constexpr int kWidth = sizeof(V) / sizeof(double);
+    CornerSums<V> result;
+    if constexpr (kWidth == 8) wide_slopes<kKind>(task, begin, x, way, result);
+    if constexpr (kWidth == 4) middle_slopes<kKind>(task, begin, x, way, result);
+    if constexpr (kWidth == 2) narrow_slopes<kKind>(task, begin, x, way, result);
+    return result;
+}
+
 template <typename V>
 SWAGE_INLINE void spread(const CornerSums<V>& r, V (&force)[3][8]) {
     spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, force[0]);
@@ -74,12 +112,6 @@ SWAGE_INLINE void spread(const CornerSums<V>& r, V (&force)[3][8]) {
     spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, force[2]);
 }
 
-// What there is to do for one run of cells, or eight cells of it.
-struct Task {
-    const CellConstants& constants;
-    const RunView& run;
-    double turning;
-};
 struct ProductTask : Task {
     CornerRows<const double> direction;
     CornerRows<double> result{};
@@ -92,12 +124,6 @@ struct MatrixTask : Task {
     Lanes low[3], high[3];
     Lanes* matrix;
 };
-// Of their corners, the blocks that are their own: xx, yy, zz, xy, yz, zx.
-struct BlockTask : Task {
-    int begin;
-    Lanes (*block)[6];
-};
-
 // Some of eight lanes.
 template <typename V>
 SWAGE_INLINE V part_of(const Lanes& all, int first) {
@@ -119,8 +145,8 @@ SWAGE_INLINE void act(const ProductTask& task) {
         const int count = std::min(kWidth, run.count - begin);
         const CornerSums<V> x = gather<V>(run.x, begin, count, run.room);
         const CornerSums<V> way = gather<V>(task.direction, begin, count, run.room);
-        add_forces(tangent_forces<kKind>(task.constants, run, begin, task.turning, x, way),
-                   task.result, task.room, begin, count, carry);
+        add_forces(tangent_forces<kKind>(task, begin, x, way), task.result, task.room, begin, count,
+                   carry);
     }
     if (run.count % kWidth == 0) add_carried(task.result, run.count, carry);
 }
@@ -144,8 +170,7 @@ SWAGE_INLINE void forces_along(const Task& task, int begin, const CornerSums<V>&
     };
     const CornerSums<V> direction{along(sum[0]), along(sum[1]), along(sum[2]), along(sum[3]),
                                   along(sum[4]), along(sum[5]), along(sum[6])};
-    spread(tangent_forces<kKind>(task.constants, task.run, begin, task.turning, x, direction),
-           force);
+    spread(tangent_forces<kKind>(task, begin, x, direction), force);
 }
 
 template <CellKind kKind, int kWidth>
@@ -190,28 +215,6 @@ SWAGE_INLINE void act(const MatrixTask& task) {
                         }
                     }
                 }
-            }
-        });
-}
-
-template <CellKind kKind, int kWidth>
-SWAGE_INLINE void act(const BlockTask& task) {
-    typedef LanesOf<kWidth> V;
-    for_parts<kWidth>(
-        task.run, task.begin,
-        [&](int first, int begin, const CornerSums<V>& x) __attribute__((always_inline)) {
-            for (int corner = 0; corner < 8; ++corner) {
-                V alone[8] = {}, sum[7], column[3][3];
-                alone[corner] = 1.0 + V{};
-                sum_corners(alone, sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6]);
-                for (int axis = 0; axis < 3; ++axis) {
-                    V force[3][8];
-                    forces_along<kKind>(task, begin, x, sum, axis, force);
-                    for (int i = 0; i < 3; ++i) column[axis][i] = force[i][corner];
-                }
-                const V own[6] = {column[0][0], column[1][1], column[2][2],
-                                  column[1][0], column[2][1], column[2][0]};
-                for (int n = 0; n < 6; ++n) put_part(own[n], task.block[corner][n], first);
             }
         });
 }
@@ -366,21 +369,26 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
                   up = (size.z() - k + 1) / 2;
         parallel_for(std::size_t(across) * up, all.size() / kThreadRuns, [&](std::size_t n) {
             const int row = static_cast<int>(n);
-            Lanes block[8][6];
+            Lanes matrix[std::tuple_size_v<decltype(CellMatrix::upper)>];
             for (std::size_t r : rows.of(2 * (row % across) + j, 2 * (row / across) + k)) {
                 const CellRun& run = all[r];
                 const Law& law = law_of(matter, laws, run);
                 const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
                 for (int done = 0; done < run.count; done += kLanes) {
-                    do_task(law.kind,
-                            BlockTask{{law.constants, view, kind.geometric}, done, block});
+                    MatrixTask task{{law.constants, view, kind.geometric}, done, {}, {}, matrix};
+                    for (Lanes& high : task.high)
+                        high += 1.0;  // the cells are their own coarse ones
+                    do_task(law.kind, task);
                     for (int l = 0; l < kLanes && done + l < run.count; ++l) {
                         for (int c = 0; c < 8; ++c) {
-                            const Lanes(&b)[6] = block[c];
-                            Mat3 add;
-                            add << b[0][l], b[3][l], b[5][l], b[3][l], b[1][l], b[4][l], b[5][l],
-                                b[4][l], b[2][l];
-                            own[run.row[c >> 1] + done + l + (c & 1)] += add;
+                            Mat3& to = own[run.row[c >> 1] + done + l + (c & 1)];
+                            for (int i = 0; i < 3; ++i) {
+                                for (int j = 0; j < 3; ++j) {
+                                    const int place = CellMatrix::place(3 * c + std::min(i, j),
+                                                                        3 * c + std::max(i, j));
+                                    to(i, j) += matrix[place][l];
+                                }
+                            }
                         }
                     }
                 }

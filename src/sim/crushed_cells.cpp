@@ -172,7 +172,7 @@ double calm_crushed(Aggregate& matter, double keep) {
         const double trace = inertia.trace();
         if (!(trace > 0) || !std::isfinite(trace)) continue;
         inertia.diagonal().array() += 1e-12 * trace;
-        const Vec3 turn = inertia.ldlt().solve(spin);
+        const Vec3 turn = solve_symmetric(inertia, spin);
         for (std::size_t q : p) {
             const Vec3 rigid = drift + turn.cross(matter.particle_position.at(q) - center);
             const Vec3 v = matter.particle_velocity.at(q), calmed = rigid + keep * (v - rigid);

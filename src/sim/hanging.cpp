@@ -2,7 +2,6 @@
 #include "sim/hanging.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <utility>
 
@@ -45,7 +44,7 @@ class FirmMotions {
             square_[firm_piece(p)] += moves.transpose() * moves / members[firm_piece(p)];
         }
         for (const Mat6& s : square_) {
-            const Eigen::SelfAdjointEigenSolver<Mat6> ways(s);
+            const Eigen::SelfAdjointEigenSolver<Matrix> ways(s);
             Own own(6, 0);
             for (int w = 0; w < 6; ++w) {
                 const double moved = ways.eigenvalues()[w];
@@ -125,11 +124,15 @@ Matrix free_motions(const FirmMotions& motions, const Matrix& stiffness) {
     const Eigen::Index count = (modes.eigenvalues().array() < kFree).count();
     if (count == 0) return Matrix(motions.count(), 0);
     const Matrix free = modes.eigenvectors().leftCols(count);
-    const Eigen::HouseholderQR<Matrix> split(motions.together());
-    const Matrix together =
-        split.householderQ() *
-        Matrix::Identity(motions.count(), std::min<Eigen::Index>(6, motions.count()));
-    const Matrix apart = free - together * (together.transpose() * free);
+    const Matrix together = motions.together();
+    const Eigen::SelfAdjointEigenSolver<Matrix> ways(together.transpose() * together);
+    Matrix apart = free;
+    for (int w = 0; w < 6; ++w) {
+        const double size = ways.eigenvalues()[w];
+        if (size < kNoMotion * ways.eigenvalues()[5]) continue;
+        const Vector way = together * ways.eigenvectors().col(w);
+        apart -= way * (way.transpose() * free) / size;
+    }
     const Eigen::SelfAdjointEigenSolver<Matrix> kinds(free.transpose() * apart);
     const Eigen::Index kept = (kinds.eigenvalues().array() > kTogether).count();
     return free * kinds.eigenvectors().rightCols(kept);

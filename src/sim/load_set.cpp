@@ -48,7 +48,7 @@ void balance(const std::vector<double>& area, const std::vector<Vec3>& position,
         inertia += area[n] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
     }
     if (!(all > 0)) return;
-    const Vec3 push = sum.force / all, turn = inertia.ldlt().solve(sum.torque);
+    const Vec3 push = sum.force / all, turn = solve_symmetric(inertia, sum.torque);
     for (std::size_t n = 0; n < area.size(); ++n) {
         force[n] -= area[n] * (push + turn.cross(position[n] - sum.centre));
     }

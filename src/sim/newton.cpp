@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/newton.h"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "base/interrupt.h"
@@ -142,7 +141,7 @@ Newton::Way Newton::way_of(const Aggregate& matter, bool loose) const {
         inertia += mass[p] * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
         momentum += mass[p] * arm.cross(direction_.at(p));
     }
-    way.turn = inertia.ldlt().solve(momentum);
+    way.turn = solve_symmetric(inertia, momentum);
     for (std::size_t p = 0; p < x.size(); ++p) {
         way.rest.add(p, -way.shift - way.turn.cross(x.at(p) - way.center));
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the quasi-static solver does with what nothing holds: a body can then be at rest anywhere.
 // It stays where it was let go, as near as tools leave it room.
-#include <Eigen/Geometry>
 #include <limits>
 
 #include "sim/quasistatic.h"
@@ -90,8 +89,8 @@ void QuasistaticSolver::stay(const Drive& to) {
     const Eigen::Matrix3Xd from = columns(start_), now = columns(free);
     if (from == now) return;
     const Vec3 start_center = from.rowwise().mean(), free_center = now.rowwise().mean();
-    const Mat3 placed = Eigen::umeyama(from, now, false).topLeftCorner<3, 3>();
-    const Vec3 turn = rotation_of(Quat(placed));
+    const Mat3 spread = (now.colwise() - free_center) * (from.colwise() - start_center).transpose();
+    const Vec3 turn = rotation_of(Quat(nearest_rotation(spread)));
     const auto go_back = [&](double share) {
         const Mat3 back = turn_by(-share * turn).toRotationMatrix();
         const Vec3 center = free_center + share * (start_center - free_center);

@@ -423,7 +423,8 @@ TEST_CASE(
     put_text(picture, "keep");
     CHECK(code_of({"make", "calf", "--out", (scratch.path() / "x.stl").string()}) == 2);
     for (int n = 0; n < 2; ++n) {  // the second time its own is there
-        REQUIRE(code_of({"make", "calf", "--out", mesh.string()}) == 0);
+        REQUIRE(code_of({"make", "calf", "--texture", "64", "--division", "20", "--out",
+                         mesh.string()}) == 0);
         CHECK(bytes_of(picture) == "keep");
         CHECK(bytes_of(scratch.path() / "x.mtl").find("map_Kd x_2.png") != std::string::npos);
         CHECK_FALSE(fs::exists(scratch.path() / "x_3.png"));

@@ -17,7 +17,7 @@ namespace {
 // The end of assets/scenes/bar-springback.toml at 3 cells across and 6 frames. To be changed, and
 // the reason said in the commit, only when the scene, its mesh, material or machine, the mold or
 // the laws and solver are meant to give other numbers.
-constexpr const char* kShippedBarHash = "59b2fcff4b8179a8";
+constexpr const char* kShippedBarHash = "ddf3d364fedf3b81";
 
 // Name and bytes of every file below a folder.
 std::map<std::string, std::string> files_below(const fs::path& folder) {

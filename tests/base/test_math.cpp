@@ -64,6 +64,22 @@ TEST_CASE("a turn by a rotation vector is that about its axis, and gives the vec
     CHECK((rotation_of(turn_by(Vec3(1e-200, 0, 0))) - Vec3(1e-200, 0, 0)).norm() < 1e-210);
 }
 
+TEST_CASE("a turn onto a direction is the shortest, also onto the opposite one") {
+    for_each_pair([&](double a, double b) {
+        const Vec3 from(a, b, 1), to(-b, 2, a - 3);
+        const Quat turn = turn_onto(from, to);
+        const double apart = (from.normalized() + to.normalized()).norm();  // from being opposite
+        CHECK((turn * from.normalized() - to.normalized()).norm() < 1e-15 + 1e-15 / apart);
+        CHECK(std::abs(turn.vec().dot(from)) < 1e-14 * from.norm());
+        CHECK((turn_onto(from, -from) * from + from).norm() < 1e-14 * from.norm());
+    });
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 axis = Vec3::Unit(i);
+        CHECK(turn_onto(axis, axis).coeffs() == Quat::Identity().coeffs());
+        CHECK(turn_onto(axis, -axis) * axis == -axis);
+    }
+}
+
 #ifdef __x86_64__  // elsewhere Eigen has other sizes, but does not ask for them either
 TEST_CASE("sums of products are cut the same on every machine") {
     CHECK(Eigen::l1CacheSize() == 32 << 10);

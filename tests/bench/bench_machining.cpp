@@ -4,7 +4,6 @@
 // its number, so every run is the same. `bench_machining CASE...` runs those frame by frame.
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -131,7 +130,9 @@ Vec3 end_direction(const Aggregate& matter, bool high) {
         from.col(n) = matter.particle_reference.at(chosen[n]);
         to.col(n) = matter.particle_position.at(chosen[n]);
     }
-    return Eigen::umeyama(from, to, false).block<3, 1>(0, 0);
+    const Vec3 from_center = from.rowwise().mean(), to_center = to.rowwise().mean();
+    return nearest_rotation((to.colwise() - to_center) * (from.colwise() - from_center).transpose())
+        .col(0);
 }
 
 double angle_between_ends(const Aggregate& matter) {
