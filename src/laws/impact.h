@@ -136,7 +136,7 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
     next = last;
     const double rate = -at.normal.dot(at.now), approach = -at.normal.dot(at.velocity);
     next.rests = last.rests || (rate > 0 && last.parts) || (rate <= 0 && !last.touches);
-    next.speed = std::max({next.speed, rate, approach});
+    next.speed = std::max(next.speed, rate);
     next.parts = rate <= 0;
     next.touches = true;
 
