@@ -36,10 +36,18 @@ double turned_over(const std::vector<double>& before, const std::vector<double>&
     return sum;
 }
 
+// Dashpots stand along the connections: of what resists a change of volume beyond these
+// (nu > 1/4), whose swings are the fastest, nothing is damped.
+double damped_share(const Aggregate& matter, const Material& material) {
+    if (matter.material.mechanics == Mechanics::springs) return 1;
+    return std::min(1.0, 2 * (1 - 2 * material.poisson_ratio));
+}
+
 double euler_step(const Aggregate& matter, const MovingBody& body) {
     double least = 1;
     for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        least = std::min(least, matter.material_at(m).damping_ratio);
+        const Material& material = matter.material_at(m);
+        least = std::min(least, material.damping_ratio * damped_share(matter, material));
     }
     const double zeta = largest_damping_ratio(matter);
     return body.stable_step() * least / (std::sqrt(1 + zeta * zeta) - zeta);
