@@ -290,10 +290,13 @@ double QuasistaticSolver::share_to_yield(const Drive& from, const Drive& to, dou
     if (before > kLittleLoad * after) return 1;
     std::vector<double> work(load.size(), 0.0);
     add_work(from, to, load_, load, work);
-    const double done = std::accumulate(work.begin(), work.end(), 0.0);
+    const std::vector<double> idle = contacts_.stroke(matter_, from, to).idle;
+    const double all = std::accumulate(work.begin(), work.end(), 0.0);
+    const double air = std::accumulate(idle.begin(), idle.end(), 0.0), done = all - air;
     const double unyielding = elastic_energy() - held;  // what flows has not flowed on the books
     if (!(done > 0) || unyielding < kFarBeyond * done) return 1;
-    return std::max(kLeastShare, 0.5 * kFarBeyond * done / unyielding);
+    const double touched = std::max(kLeastShare, 0.5 * kFarBeyond * done / unyielding);
+    return 1 - std::clamp(done / all, 0.0, 1.0) * (1 - touched);
 }
 
 // What a try that has come to nothing met, at the positions that it came to.

@@ -158,6 +158,33 @@ TEST_CASE("the books of a bar that yields in a single move close") {
     }
 }
 
+TEST_CASE("what yields takes the same work after a tool has crossed air, in one move or in many") {
+    const Press press{kHeight};
+    const auto work = [&](double gap, int moves) {
+        Material lead = kPlastic;
+        lead.yield_stress = 1e-4 * lead.young_modulus;
+        Aggregate m = make_block(4, 4, 4, kHeight / 4, lead);
+        const Apparatus apparatus = press.apparatus();
+        SimSettings settings;
+        settings.tolerance = 1e-3;
+        Simulation simulation(m, apparatus, settings);
+        const auto at = [&](int n) {
+            return press.drive_at(double(n) / moves, -gap + (0.05 + gap) * n / moves);
+        };
+        FrameReport r;
+        for (int n = 0; n < moves; ++n) r = simulation.advance(at(n), at(n + 1));
+        REQUIRE(r.plastic > 0.8 * r.work);
+        CHECK(std::abs(r.remainder) < 0.05 * r.work);
+        return r.work;
+    };
+    const double wanted = work(0, 16);
+    for (const double gap : {0.0, 0.05, 0.2}) {
+        INFO(gap);
+        CHECK(work(gap, 1) == Approx(wanted).epsilon(0.06));
+        CHECK(work(gap, 3) == Approx(wanted).epsilon(0.06));
+    }
+}
+
 // Its load grows with it, so that each part of the move seems to begin with next to none.
 TEST_CASE("a move that yields is parted a few times and no more") {
     Material thin = kPlastic;
