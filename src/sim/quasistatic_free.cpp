@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kHalvings = 8;
 constexpr double kStill = 1e-9;        // spacings
+constexpr double kLies = 0.5;          // of the loads: what tools carry of what lies on them
 constexpr double kMoreThanLoads = 10;  // of them: what tools bear is not theirs
 constexpr double kSeatDrag = 3e-10;    // of E a
 constexpr double kSeatHeavy = 1e-4;    // of E a^2
@@ -43,24 +44,29 @@ int QuasistaticSolver::let_hang(const Drive& to) {
                           contacts_.held_points(matter_, to, ContactSet::Slipping::free), own);
 }
 
-// What loads press onto tools that stand still goes to where it is in balance, as a rigid body.
-// Returns how far any of it went [m].
+// What loads press onto tools goes to where it is in balance on them, as a rigid body: while they
+// stand still, or before they move, unless it lies on them already. Returns how far any of it went
+// [m].
 double QuasistaticSolver::seat_pieces(const Drive& from, const Drive& to) {
     const double pushed = pushes_.size(matter_, to), a = matter_.lattice.spacing;
     if (!seats_ || apparatus_.tool.empty() || pushed == 0) return 0;
     if (settings_.self_contact && free_.are_several()) return 0;  // they may lie on each other
     if (measure_.carried() > kMoreThanLoads * pushed) return 0;
-    if (contacts_.near_travel(from, to) > kStill * a) return 0;
+    const bool stand = contacts_.near_travel(from, to) <= kStill * a;
+    if (!stand && measure_.carried() > kLies * pushed) return 0;
+    const Drive& lie = stand ? to : from;
     Vec3Array& x = matter_.particle_position;
     const Vec3Array before = x;
     SeatProblem problem;
-    problem.add_contacts = [&](Vec3Array& force) { contacts_.add_forces(matter_, to, force); };
+    problem.add_contacts = [&](Vec3Array& force) { contacts_.add_forces(matter_, lie, force); };
     problem.add_loads = [&](Vec3Array& force) {
-        free_.add_loads(pushes_, to, force);
-        add_restraint(x, {x, drag_, 0, free_.heavy_mass(), pushes_.gravity(to)}, force);
+        free_.add_loads(pushes_, lie, force);
+        add_restraint(x, {x, drag_, 0, free_.heavy_mass(), pushes_.gravity(lie)}, force);
     };
-    problem.held = [&] { return contacts_.held_points(matter_, to, ContactSet::Slipping::lawful); };
-    problem.look_around = [&] { contacts_.find_candidates(matter_, to); };
+    problem.held = [&] {
+        return contacts_.held_points(matter_, lie, ContactSet::Slipping::lawful);
+    };
+    problem.look_around = [&] { contacts_.find_candidates(matter_, lie); };
     problem.look_around();
     problem.drag = kSeatDrag * matter_.mean_modulus() * a;
     problem.heavy = std::max(1.0, kSeatHeavy * matter_.mean_modulus() * a * a / pushed);
@@ -69,6 +75,7 @@ double QuasistaticSolver::seat_pieces(const Drive& from, const Drive& to) {
     for (const std::vector<ParticleId>& piece : free_.loose_pieces()) {
         if (!seat(matter_, piece, problem)) seats_ = false;
     }
+    if (!stand) contacts_.find_candidates(matter_, to);
     for (std::size_t p = 0; p < x.size(); ++p) rest_.add(p, x.at(p) - before.at(p));
     return farthest_move(x, before);
 }

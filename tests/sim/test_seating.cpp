@@ -126,6 +126,30 @@ TEST_CASE("what rests on two rolls turns until it bears on both along their leng
     CHECK(highest < 1e-6 * kSide);
 }
 
+TEST_CASE("what lies askew is seated before a tool presses it onto its rest") {
+    Material steel = kStiff;
+    steel.young_modulus = 2e11, steel.density = 7850;
+    Lying lying;
+    lying.block = make_block(20, 2, 2, kSide, steel);
+    lying.add_tool(kTable, kUnder, 0.3);
+    lying.add_tool(kTable, {}, 0.3);
+    lying.put({Quat(Eigen::AngleAxisd(0.02, Vec3::UnitZ())), Vec3(0, 1.2 * kSide, 0)});
+    SimSettings settings;
+    settings.gravity = {0, -9.81, 0};
+    Simulation simulation(lying.block, lying.apparatus, settings);
+    const auto at = [&](int n) {  // from above its highest corner to a hundredth of its height down
+        Drive d = lying.drive;
+        d.time = 0.1 * n;
+        d.world_from_tool[1].translation.y() = 0.1 + kSide * (2.4 - 0.03 * n);
+        return d;
+    };
+    FrameReport r;
+    for (int n = 0; n < 15; ++n) r = simulation.advance(at(n), at(n + 1));
+    CHECK(r.load[1].force.y() < -10 * lying.block.mass() * 9.81);
+    CHECK(r.load[0].force.y() ==
+          Approx(lying.block.mass() * 9.81 - r.load[1].force.y()).epsilon(0.02));
+}
+
 TEST_CASE("what has no seat is put back as it was") {
     for (const Pose& table : {Pose{Quat::Identity(), Vec3(0, -9, 0)},        // out of reach
                               Pose{Quat::Identity(), Vec3(0.57, -0.1, 0)}})  // past the middle
