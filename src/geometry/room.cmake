@@ -8,7 +8,9 @@ find_library(MPFR mpfr REQUIRED)
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/geometry/mesh_repair_cgal.cpp
                             PROPERTIES COMPILE_OPTIONS -frounding-math
                                        SKIP_PRECOMPILE_HEADERS ON)
-pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+pkg_check_modules(PUGIXML REQUIRED IMPORTED_TARGET pugixml)
 find_package(nlohmann_json REQUIRED)
 target_link_libraries(swage_geometry PRIVATE PkgConfig::ASSIMP ${GMP} ${MPFR}
-                                             nlohmann_json::nlohmann_json PkgConfig::LIBDEFLATE)
+                                             nlohmann_json::nlohmann_json PkgConfig::LIBZIP
+                                             PkgConfig::PUGIXML)

@@ -123,3 +123,68 @@ TEST_CASE("a 3MF that asks for an extension which nobody follows is refused by i
                                       "3dmanufacturing/beamlattice/2017/02, which is not known"));
     CHECK_NOTHROW(fixtures::read_quietly(written(beams)));
 }
+
+TEST_CASE("a damaged 3MF is refused by the part that is damaged") {
+    const Folder folder;
+    const std::string good = model("", box_object(1, {1, 1, 1}), kOneItem);
+    const auto refusal = [&](const std::string& bytes, const ReadLimits& limits = {}) {
+        try {
+            std::vector<std::string> finding;
+            read_mesh(folder.write("a.3mf", bytes), limits, &finding);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const auto says = [](const char* text) { return Catch::Contains(text); };
+    for (const std::string& text :
+         {std::string(), std::string("no model"), good.substr(0, good.size() / 2),
+          std::string(good).replace(good.find("</vertices>"), 11, "</triangles>"),
+          std::string(good).insert(good.find("<resources>"), std::string(100000, '<'))}) {
+        CAPTURE(text.substr(0, 300));
+        CHECK_THAT(refusal(fixtures::zip_of(files_of(text))),
+                   says("its part '3D/3dmodel.model' is damaged near byte"));
+    }
+    // However deep: what is not known is passed over.
+    std::string deep;
+    for (int k = 0; k < 100000; ++k) deep += "<a>";
+    for (int k = 0; k < 100000; ++k) deep += "</a>";
+    CHECK(refusal(fixtures::zip_of(files_of(std::string(good).insert(good.find("<build>"), deep))))
+              .empty());
+
+    // A size that is not so, in the directory; larger than a file may be; packed in ways unknown.
+    for (const bool packed : {false, true}) {
+        CAPTURE(packed);
+        const std::string zip = fixtures::zip_of(files_of(good), packed);
+        const std::size_t entry = zip.rfind("3D/3dmodel.model") - 46;
+        for (const std::size_t size : {std::size_t{0}, good.size() - 1, good.size() + 1}) {
+            std::string lies = zip;
+            lies.replace(entry + 24, 4, fixtures::raw(static_cast<std::uint32_t>(size)));
+            CHECK_THAT(refusal(lies), says("its part '3D/3dmodel.model' is damaged"));
+        }
+        ReadLimits limits;
+        limits.file_bytes = zip.size() + 100;
+        CHECK(refusal(zip, limits).empty());
+        std::string bomb = zip;
+        bomb.replace(entry + 24, 4,
+                     fixtures::raw(static_cast<std::uint32_t>(limits.file_bytes + 1)));
+        CHECK_THAT(refusal(bomb, limits),
+                   says("its part '3D/3dmodel.model' is larger than a file may be"));
+        std::string unknown = zip;
+        unknown[entry + 10] = 12;
+        CHECK_THAT(refusal(unknown), says("is packed in a way that cannot be read (12)"));
+        for (std::size_t cut = 1; cut < zip.size(); cut += 97)
+            CHECK_THAT(refusal(zip.substr(0, cut)), says("it is no ZIP file, or is damaged"));
+    }
+}
+
+TEST_CASE("what a 3MF's model says is taken as XML means it") {
+    const Folder folder;
+    auto files = files_of(model(
+        R"(unit="centi&#109;eter")",
+        R"(<metadata name="note">a &lt; b<![CDATA[<resources>&]]></metadata><object id="5"><components><component p:path="/3D/a&amp;b.model" objectid="1"/></components></object>)",
+        R"(<item objectid="5"/>)"));
+    files.emplace_back("3D/a&b.model", model(R"(unit="centimeter")", box_object(1, {1, 2, 3}), ""));
+    const TriMesh mesh = fixtures::read_quietly(folder.write("a.3mf", fixtures::zip_of(files)));
+    CHECK((box_of(mesh.position).size() - Vec3(0.01, 0.02, 0.03)).norm() < 1e-9);
+}
