@@ -2,6 +2,7 @@
 #include "machines/machine.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/text_error.h"
@@ -235,19 +236,26 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
     if (spec.box) box = box_between(setting, (*spec.box)[0], (*spec.box)[1]);
     Load load;
     load.name = spec.name;
-    load.point = region_points(matter, setting.frame.world_from_work, setting.point, spec.on,
-                               spec.box ? &box : nullptr);
+    Region region = find_region(matter, setting.frame.world_from_work, setting.point, spec.on,
+                                spec.box ? &box : nullptr);
+    load.point = std::move(region.point);
+    load.share = std::move(region.share);
     if (load.point.empty()) {
         refuse(setting, fmt::format("load {} acts on nothing: no part of the work-piece's surface "
                                     "looks that way and lies in its box",
                                     spec.name));
     }
-    load.closed = is_closed(matter, load.point);
+    const bool are_whole =
+        std::count(load.share.begin(), load.share.end(), 1.0) == std::ptrdiff_t(load.share.size());
+    load.closed = are_whole && is_closed(matter, load.point);
     if (spec.force) {
         const Vec3 force = setting.frame.world_from_work.turn(evaluate(*spec.force, setting.known));
-        double area = 0;
-        for (int p : load.point) area += matter.surface.area(p);
-        for (int p : load.point) load.force.push_back(matter.surface.area(p) / area * force);
+        std::vector<double> area;
+        for (std::size_t n = 0; n < load.point.size(); ++n) {
+            area.push_back(load.share[n] * matter.surface.area(load.point[n]));
+        }
+        const double all = std::accumulate(area.begin(), area.end(), 0.0);
+        for (double own : area) load.force.push_back(own / all * force);
     } else {
         load.pressure = evaluate(spec.pressure, setting.known);
     }

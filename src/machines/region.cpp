@@ -23,25 +23,52 @@ Side side_of(const Vec3& normal) {
     return kSides[2 * axis + (normal[axis] > 0)];
 }
 
+// How far the patch of a point goes along each axis now: half a cell across its normal, as far
+// along it as it slants, less where it is cut off.
+Vec3 patch_size(const Aggregate& matter, const Mat3& work_from_world, std::size_t p) {
+    const double half = 0.5 * matter.lattice.spacing;
+    const Vec3 normal = matter.surface.normal(p).cwiseAbs();
+    int steepest;
+    const double steep = normal.maxCoeff(&steepest);
+    const double width = half * std::min(1.0, std::sqrt(matter.surface.area(p) * steep) / half);
+    Vec3 size = Vec3::Constant(width);
+    size[steepest] = std::min(half, width * (normal.sum() - steep) / steep);
+    const Mat3 along = work_from_world * matter.surface_gradient(p) * size.asDiagonal();
+    return along.cwiseAbs().rowwise().sum();
+}
+
+double share_within(double at, double size, double low, double high) {
+    if (!(size > 0)) return at >= low && at <= high ? 1 : 0;
+    const double within = std::min(at + 0.5 * size, high) - std::max(at - 0.5 * size, low);
+    return std::clamp(within / size, 0.0, 1.0);
+}
+
 }  // namespace
 
-std::vector<int> region_points(const Aggregate& matter, const Pose& world_from_work,
-                               const std::vector<Vec3>& in_work, Side side, const Box* box) {
+Region find_region(const Aggregate& matter, const Pose& world_from_work,
+                   const std::vector<Vec3>& in_work, Side side, const Box* box) {
+    constexpr double kNothing = 1e-6;  // of a patch
     const Quat work_from_world = world_from_work.rotation.conjugate();
-    std::vector<int> points;
+    const Mat3 turn = work_from_world.toRotationMatrix();
+    Region region;
     for (std::size_t p = 0; p < in_work.size(); ++p) {
-        if (box != nullptr && ((in_work[p].array() < box->low.array()).any() ||
-                               (in_work[p].array() > box->high.array()).any())) {
-            continue;
+        double share = 1;
+        if (box != nullptr) {
+            const Vec3 size = patch_size(matter, turn, p);
+            for (int i = 0; i < 3; ++i) {
+                share *= share_within(in_work[p][i], size[i], box->low[i], box->high[i]);
+            }
+            if (share < kNothing) continue;
         }
         if (side != Side::all) {
             const Vec3 normal =
                 present_area<double>(matter.surface_gradient(p), matter.surface.normal(p));
             if (side_of(work_from_world * normal) != side) continue;
         }
-        points.push_back(static_cast<int>(p));
+        region.point.push_back(static_cast<int>(p));
+        region.share.push_back(share > 1 - kNothing ? 1 : share);
     }
-    return points;
+    return region;
 }
 
 bool is_closed(const Aggregate& matter, const std::vector<int>& points) {

@@ -11,10 +11,17 @@
 
 namespace swage {
 
-// Points of the surface that look to the side now and lie in the box (null: anywhere), both in the
-// work frame. `in_work`: where the surface's points are in it.
-std::vector<int> region_points(const Aggregate& matter, const Pose& world_from_work,
-                               const std::vector<Vec3>& in_work, Side side, const Box* box);
+struct Region {
+    std::vector<int> point;
+    std::vector<double> share;  // of each one's patch of the surface, more than 0
+};
+
+// What of the surface looks to the side now and lies in the box (null: anywhere), both in the work
+// frame. `in_work`: where the surface's points are in it.
+// NOTE: a patch counts as the box around it, which is exact for flat sides along the lattice; that
+// of a slanted one goes over into the next evenly.
+Region find_region(const Aggregate& matter, const Pose& world_from_work,
+                   const std::vector<Vec3>& in_work, Side side, const Box* box);
 
 // Whether the points make up whole closed surfaces: none of them has a neighbour that is left out.
 bool is_closed(const Aggregate& matter, const std::vector<int>& points);

@@ -71,6 +71,24 @@ TEST_CASE(
     CHECK(drive_at(machine, 0.5, 1).gravity_strength == 1);
 }
 
+TEST_CASE("of a side a box takes what lies in it, wherever its edges run") {
+    const Aggregate matter = upright();  // 0.8 long, 0.4 high, 0.3 wide
+    for (const double edge : {-0.31, -0.1, 0.0, 0.013, 0.049, 0.25}) {
+        const Box box{Vec3(edge, -1, -0.07), Vec3(0.33, 1, 0.5)};
+        const WorkFrame frame = place_work_frame(matter, "auto", "auto");
+        std::vector<Vec3> in_work;
+        for (const Vec3& p : surface_positions(matter)) {
+            in_work.push_back(frame.world_from_work.inverse() * p);
+        }
+        const Region region = find_region(matter, frame.world_from_work, in_work, Side::top, &box);
+        double area = 0;
+        for (std::size_t n = 0; n < region.point.size(); ++n) {
+            area += region.share[n] * matter.surface.area(region.point[n]);
+        }
+        CHECK(area == Approx((0.33 - edge) * (0.15 + 0.07)).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("a load that acts on nothing is refused by name") {
     LoadSpec spec = push(Side::top);
     spec.box = {{{"length", "0", "0"}, {"2*length", "0", "0"}}};
