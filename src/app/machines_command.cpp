@@ -43,9 +43,10 @@ std::string range_text(const ParameterSpec& parameter) {
     return parameter.low + " to " + parameter.high;
 }
 
+// Of a plain number.
 std::string unit_text(const ParameterSpec& parameter) {
-    const std::vector<std::string> units = unit_names(parameter.quantity);
-    return units.empty() || units.front().empty() ? "-" : units.front();
+    const std::string unit = si_unit(parameter.quantity);
+    return unit.empty() ? "-" : unit;
 }
 
 std::string machine_text(const MachineSpec& machine) {
@@ -64,8 +65,8 @@ std::string machine_text(const MachineSpec& machine) {
     text += "\n  ";
     for (const std::string& part : parts) text += (&part == &parts.front() ? "" : ", ") + part;
     return text +
-           "\n  length, height and width are those of the work-piece's box, spacing that of "
-           "its lattice\n";
+           "\n  a number without a unit is in UNIT; length, height and width are those of the "
+           "work-piece's box, spacing that of its lattice\n";
 }
 
 Json machine_json(const MachineSpec& machine) {

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <sstream>
+
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+TEST_CASE("a machine's parameters are told with the unit of a number that has none") {
+    const Scratch scratch;
+    std::string text = "help = \"tries\"\n";
+    for (const char* quantity : {"number", "force", "angle", "stress", "drag", "toughness"}) {
+        text += std::string("[parameter.its_") + quantity + "]\nquantity = \"" + quantity +
+                "\"\ndefault = 3\n";
+    }
+    put_text(scratch.path() / "mine.toml",
+             text + "[[grip]]\nname = \"a\"\nfrom = [0, 0, 0]\nto = [1, 1, 1]\n");
+    const Outcome table = run_swage({"machines", "mine.toml"}, scratch.path());
+    REQUIRE(table.code == 0);
+    const Json json =
+        Json::parse(run_swage({"machines", "mine.toml", "--json"}, scratch.path()).out);
+    for (const Json& parameter : json.at("parameters")) {
+        const auto name = parameter.at("name").get<std::string>();
+        const auto unit = parameter.at("unit").get<std::string>();
+        INFO(table.out << name);
+        std::istringstream rest(table.out.substr(table.out.find("  " + name + " ")));
+        std::string shown;
+        rest >> shown >> std::ws;
+        std::getline(rest, shown);
+        CHECK(shown.rfind((unit.empty() ? "-" : unit) + " ", 0) == 0);
+    }
+}
