@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "app/command.h"
-#include "app/scene_argument.h"
 #include "base/error.h"
 #include "base/suggest.h"
 #include "scene/key_reference.h"
@@ -12,7 +11,7 @@ namespace swage {
 namespace {
 
 struct KeysArguments {
-    std::string word, assets;
+    std::string word;
     bool machine = false, json = false;
 };
 
@@ -72,7 +71,7 @@ std::string section_text(const SectionReference& section) {
 
 int keys(const KeysArguments& given) {
     std::vector<SectionReference> all =
-        given.machine ? machine_key_reference() : scene_key_reference(asset_paths(given.assets));
+        given.machine ? machine_key_reference() : scene_key_reference();
     if (given.machine) all.push_back(expression_reference());
     if (!given.word.empty()) all = chosen(all, given.word);
     if (given.json) {
@@ -111,7 +110,6 @@ void add_keys_command(CLI::App& app, Action& chosen) {
     command->add_option("word", given.word, "a section or a key")->type_name("WORD");
     command->add_flag("--machine", given.machine,
                       "the keys of machine files and what their expressions may say instead");
-    add_assets_option(*command, given.assets);
     command->add_flag("--json", given.json, "print JSON");
 }
 

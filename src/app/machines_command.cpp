@@ -4,13 +4,14 @@
 #include "app/command.h"
 #include "app/scene_argument.h"
 #include "base/error.h"
-#include "base/suggest.h"
 #include "base/units.h"
 #include "scene/catalogue.h"
 
 namespace swage {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 struct MachinesArguments {
     std::string name, assets;
@@ -88,11 +89,10 @@ Json machine_json(const MachineSpec& machine) {
 
 bool is_file(const MachinesArguments& given) { return given.name.ends_with(".toml"); }
 
-// Of that file, or what a scene in the present folder can name.
-MachineCatalogue catalogue_for(const MachinesArguments& given) {
-    if (!is_file(given)) {
-        return machine_catalogue(asset_paths(given.assets), std::filesystem::current_path());
-    }
+// Of that file, or what a scene in `folder` can name.
+MachineCatalogue catalogue_for(const MachinesArguments& given, const AssetPaths& assets,
+                               const fs::path& folder) {
+    if (!is_file(given)) return machine_catalogue(assets, folder);
     MachineReading reading = read_machine(given.name);
     if (!reading.machine) {
         log_mistakes(reading.mistakes);
@@ -105,8 +105,15 @@ MachineCatalogue catalogue_for(const MachinesArguments& given) {
 }
 
 int machines(const MachinesArguments& given) {
-    const MachineCatalogue catalogue = catalogue_for(given);
+    const AssetPaths assets = asset_paths(given.assets);
+    const fs::path folder = fs::current_path();
+    const MachineCatalogue catalogue = catalogue_for(given, assets, folder);
     log_mistakes(catalogue.mistakes);
+    if (catalogue.machine.empty() && catalogue.mistakes.empty()) {
+        fail(ExitCode::command_line,
+             "no machine was found in {}; --assets names a folder that holds machines/",
+             names_text(machine_folders(assets, folder)));
+    }
     if (given.name.empty()) {
         Json list = Json::array();
         std::vector<std::vector<std::string>> rows;
@@ -125,10 +132,9 @@ int machines(const MachinesArguments& given) {
     const auto at = std::find_if(catalogue.machine.begin(), catalogue.machine.end(),
                                  [&](const MachineSpec& spec) { return spec.name == name; });
     if (at == catalogue.machine.end()) {
-        std::vector<std::string> names;
-        for (const MachineSpec& machine : catalogue.machine) names.push_back(machine.name);
-        fail(ExitCode::command_line, "there is no machine \"{}\"{}", given.name,
-             did_you_mean(given.name, names));
+        fail(ExitCode::command_line, "{}",
+             no_machine_text(given.name, known_machines(assets, folder),
+                             machine_folders(assets, folder)));
     }
     if (given.json) {
         put_json(machine_json(*at));

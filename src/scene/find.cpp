@@ -5,6 +5,8 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "base/suggest.h"
+#include "base/text.h"
 
 namespace swage {
 
@@ -23,6 +25,12 @@ void add_root(std::vector<fs::path>& root, const fs::path& path) {
     const fs::path whole = fs::weakly_canonical(path, error);
     const fs::path& known = error ? path : whole;
     if (std::find(root.begin(), root.end(), known) == root.end()) root.push_back(known);
+}
+
+std::vector<std::string> names_of(const std::vector<MachineFile>& machines) {
+    std::vector<std::string> names;
+    for (const MachineFile& one : machines) names.push_back(one.name);
+    return names;
 }
 
 }  // namespace
@@ -49,13 +57,16 @@ AssetPaths find_assets(const std::optional<fs::path>& given) {
     return assets;
 }
 
-std::vector<MachineFile> known_machines(const AssetPaths& assets, const fs::path& scene_folder) {
+std::vector<fs::path> machine_folders(const AssetPaths& assets, const fs::path& scene_folder) {
     std::vector<fs::path> folders;
     if (!scene_folder.empty()) folders.push_back(scene_folder / "machines");
     for (const fs::path& root : assets.root) folders.push_back(root / "machines");
+    return folders;
+}
 
+std::vector<MachineFile> known_machines(const AssetPaths& assets, const fs::path& scene_folder) {
     std::vector<MachineFile> found;
-    for (const fs::path& folder : folders) {
+    for (const fs::path& folder : machine_folders(assets, scene_folder)) {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
             const fs::path& file = entry.path();
@@ -70,6 +81,23 @@ std::vector<MachineFile> known_machines(const AssetPaths& assets, const fs::path
     std::sort(found.begin(), found.end(),
               [](const MachineFile& a, const MachineFile& b) { return a.name < b.name; });
     return found;
+}
+
+std::string names_text(const std::vector<MachineFile>& machines) {
+    return machines.empty() ? "none" : joined(names_of(machines), ", ");
+}
+
+std::string names_text(const std::vector<fs::path>& folders) {
+    std::vector<std::string> names;
+    for (const fs::path& folder : folders) names.push_back(folder.string());
+    return joined(names, ", ");
+}
+
+std::string no_machine_text(const std::string& wanted, const std::vector<MachineFile>& known,
+                            const std::vector<fs::path>& folders) {
+    const std::string hint = did_you_mean(wanted, names_of(known));
+    return fmt::format("no machine \"{}\"{}{} are {}; looked in {}", wanted, hint,
+                       hint.empty() ? "; known" : " Known", names_text(known), names_text(folders));
 }
 
 std::vector<fs::path> material_files(const AssetPaths& assets, const fs::path& scene_folder) {

@@ -24,10 +24,19 @@ struct MachineFile {
     std::filesystem::path file;
 };
 
-// The machines that a scene in `scene_folder` can name, sorted by name: those in its own folder
-// `machines/`, then those of every root; the first of a name wins. Without a folder: the roots'.
+// Where a scene in `scene_folder` finds machines, the first of a name: its own folder `machines/`,
+// then that of every root. Without a folder: the roots'.
+std::vector<std::filesystem::path> machine_folders(const AssetPaths& assets,
+                                                   const std::filesystem::path& scene_folder = {});
+// Those that lie there, sorted by name.
 std::vector<MachineFile> known_machines(const AssetPaths& assets,
                                         const std::filesystem::path& scene_folder = {});
+
+std::string names_text(const std::vector<MachineFile>& machines);  // "bend, cut", or "none"
+std::string names_text(const std::vector<std::filesystem::path>& folders);
+// To a user who asked for one that is none of those known from these folders.
+std::string no_machine_text(const std::string& wanted, const std::vector<MachineFile>& known,
+                            const std::vector<std::filesystem::path>& folders);
 
 // Material files in the order in which a name is looked up: materials.toml beside the scene, then
 // assets/materials.toml of every root.

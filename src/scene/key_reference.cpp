@@ -10,7 +10,6 @@
 #include "scene/read_inset.h"
 #include "scene/read_machine.h"
 #include "scene/read_scene.h"
-#include "scene/stage_keys.h"
 
 namespace swage {
 
@@ -55,9 +54,7 @@ KeyReference told(const KeyForm& form, const KeyHelp* help) {
 std::vector<SectionReference> reference(const Reading& reading, const std::vector<KeyHelp>& all) {
     std::vector<SectionReference> result;
     for (const auto& [section, forms] : reading.forms) {
-        // The machine's own parameters follow those of every stage.
-        const bool narrowed = section.starts_with("[[stage]] with");
-        std::string shown = narrowed ? "[[stage]]" : section;
+        std::string shown = section;
         if (const auto other = kShown.find(section); other != kShown.end()) shown = other->second;
         if (shown.empty()) continue;
         auto at = std::find_if(result.begin(), result.end(),
@@ -67,7 +64,6 @@ std::vector<SectionReference> reference(const Reading& reading, const std::vecto
         const std::vector<std::string> refused =
             shown == "[[inset]]" ? keys_of_whole_bodies() : std::vector<std::string>{};
         for (const KeyForm& form : forms) {
-            if (narrowed && !is_stage_key(form.key)) continue;
             if (std::find(refused.begin(), refused.end(), form.key) != refused.end()) continue;
             const KeyHelp* help = help_of(all, shown, form.key);
             if (help == nullptr && like != kLike.end()) {
@@ -90,17 +86,14 @@ Document document_of(const std::string& text) {
 
 }  // namespace
 
-std::vector<SectionReference> scene_key_reference(const AssetPaths& assets) {
-    const std::vector<MachineFile> machines = known_machines(assets);
-    const std::string machine = machines.empty() ? "none" : machines.front().name;
+std::vector<SectionReference> scene_key_reference() {
     MistakeList mistakes;
     Reading reading(mistakes);
     reading.describes = true;
     SceneSpec scene;
-    read_scene_document(
-        document_of("{ inset = [{}], body = [{}], stage = [{ machine = \"" + machine +
-                    "\", load = [{}] }], render = { camera = { keys = [{}] } } }"),
-        assets, reading, scene);
+    read_scene_document(document_of("{ inset = [{}], body = [{}], stage = [{ load = [{}] }], "
+                                    "render = { camera = { keys = [{}] } } }"),
+                        {}, reading, scene);
     return reference(reading, scene_key_help());
 }
 

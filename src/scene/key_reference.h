@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "scene/find.h"
-
 namespace swage {
 
 struct KeyReference {
@@ -21,8 +19,7 @@ struct SectionReference {
     std::vector<KeyReference> key;
 };
 
-// `assets`: where one machine is found.
-std::vector<SectionReference> scene_key_reference(const AssetPaths& assets);
+std::vector<SectionReference> scene_key_reference();
 std::vector<SectionReference> machine_key_reference();
 
 // What stands in expressions, of which `key` holds the writing and `help` the meaning.

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/suggest.h"
-#include "base/text.h"
 #include "scene/expressions.h"
 #include "scene/file_text.h"
 #include "scene/read_load.h"
@@ -51,12 +49,6 @@ bool is_path(const std::string& machine) {
     return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";
 }
 
-std::string names_of(const std::vector<MachineFile>& machines) {
-    std::vector<std::string> names;
-    for (const MachineFile& one : machines) names.push_back(one.name);
-    return names.empty() ? "none" : joined(names, ", ");
-}
-
 bool lie_along(const std::string& axis, const std::string& up) {
     return axis != "auto" && up != "auto" && axis.back() == up.back();
 }
@@ -100,9 +92,8 @@ StageReader::StageReader(Reading& reading, const AssetPaths& assets, fs::path sc
                          const SceneSpec& scene)
     : reading_(reading), scene_folder_(std::move(scene_folder)), scene_(scene) {
     reading_.known["[[stage]]"].insert(kStageKeys.begin(), kStageKeys.end());
+    folders_ = machine_folders(assets, scene_folder_);
     known_ = known_machines(assets, scene_folder_);
-    looked_in_.push_back((scene_folder_ / "machines").string());
-    for (const fs::path& root : assets.root) looked_in_.push_back((root / "machines").string());
 }
 
 const StageReader::Loaded* StageReader::load(const fs::path& file) {
@@ -126,12 +117,12 @@ const StageReader::Loaded* StageReader::load(const fs::path& file) {
 const StageReader::Loaded* StageReader::find_machine(TableReader& table, std::string& name) {
     std::string wanted;
     if (!table.text("machine", wanted)) {
-        table.missing("machine", "one of " + names_of(known_));
+        table.missing("machine", "one of " + names_text(known_));
         return nullptr;
     }
     if (wanted.empty()) {
         if (table.find("machine")->kind == Node::Kind::text) {
-            table.mistake("machine", "machine is empty; known are " + names_of(known_));
+            table.mistake("machine", "machine is empty; known are " + names_text(known_));
         }
         return nullptr;
     }
@@ -146,15 +137,10 @@ const StageReader::Loaded* StageReader::find_machine(TableReader& table, std::st
         return load(file);
     }
     name = wanted;
-    std::vector<std::string> names;
     for (const MachineFile& one : known_) {
         if (one.name == wanted) return load(one.file);
-        names.push_back(one.name);
     }
-    const std::string hint = did_you_mean(wanted, names);
-    table.mistake("machine", fmt::format("no machine \"{}\"{}{} are {}; looked in {}", wanted, hint,
-                                         hint.empty() ? "; known" : " Known", names_of(known_),
-                                         joined(looked_in_, ", ")));
+    table.mistake("machine", no_machine_text(wanted, known_, folders_));
     return nullptr;
 }
 
@@ -281,6 +267,8 @@ StageSpec StageReader::read(const Node& node) {
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
         read_parameters(table, *loaded, stage);
         read_loads(table, stage);
+    } else if (reading_.describes) {
+        read_loads(table, stage);  // their keys are the same with every machine
     } else {
         for (const char* key : {"load", "gravity_strength"}) table.find(key);
         table.leave_unknown();

@@ -43,7 +43,7 @@ class StageReader {
     std::filesystem::path scene_folder_;
     const SceneSpec& scene_;
     std::vector<MachineFile> known_;
-    std::vector<std::string> looked_in_;
+    std::vector<std::filesystem::path> folders_;  // where those lie
     std::map<std::filesystem::path, Loaded> loaded_;
     std::map<std::string, int> line_of_name_;
     std::vector<std::filesystem::path> inputs_;

@@ -33,3 +33,31 @@ TEST_CASE("a machine's parameters are told with the unit of a number that has no
         CHECK(shown.rfind((unit.empty() ? "-" : unit) + " ", 0) == 0);
     }
 }
+
+TEST_CASE(
+    "the program alone, without its assets, tells all keys, and where it looked for machines") {
+    const Scratch scratch;
+    const fs::path alone = scratch.path() / "swage";
+    fs::copy_file(SWAGE_BINARY, alone);
+    const auto told = [&](const std::vector<std::string>& words) {
+        return run_swage(words, scratch.path(), {{"SWAGE_ASSETS", ""}}, alone);
+    };
+    CHECK(told({"keys"}).out == run_swage({"keys"}).out);
+    CHECK(told({"keys", "pressure"}).code == 0);
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"machines"}, {"machines", "--json"}, {"machines", "bend"}}) {
+        const Outcome none = told(words);
+        INFO(none.err);
+        CHECK(none.code == 2);
+        CHECK(none.out.empty());
+        CHECK(none.err.find((scratch.path() / "machines").string()) != std::string::npos);
+    }
+    fs::create_directory(scratch.path() / "machines");
+    fs::copy_file(fs::path(SWAGE_SOURCE_DIR) / "machines/bend.toml",
+                  scratch.path() / "machines/mine.toml");
+    CHECK(told({"machines"}).out.find("mine") != std::string::npos);
+    const Outcome other = told({"machines", "bend"});
+    CHECK(other.code == 2);
+    CHECK(other.err.find("known are mine; looked in " + (scratch.path() / "machines").string()) !=
+          std::string::npos);
+}

@@ -14,7 +14,7 @@
 namespace fs = std::filesystem;
 
 RunningSwage::RunningSwage(const std::vector<std::string>& argument, fs::path folder,
-                           const std::map<std::string, std::string>& set) {
+                           const std::map<std::string, std::string>& set, const fs::path& program) {
     static std::atomic<int> count = 0;
     const std::string stem = fmt::format("swage-{}-{}", ::getpid(), ++count);
     out_ = fs::temp_directory_path() / fmt::format("{}.out", stem);
@@ -33,7 +33,7 @@ RunningSwage::RunningSwage(const std::vector<std::string>& argument, fs::path fo
         }
         ::setenv("SWAGE_ASSETS", SWAGE_SOURCE_DIR, 1);
         for (const auto& [name, value] : set) ::setenv(name.c_str(), value.c_str(), 1);
-        ::execv(SWAGE_BINARY, words.data());
+        ::execv(program.c_str(), words.data());
         ::_exit(127);
     }
 }
@@ -63,8 +63,8 @@ Outcome RunningSwage::wait() {
 }
 
 Outcome run_swage(const std::vector<std::string>& argument, const fs::path& folder,
-                  const std::map<std::string, std::string>& set) {
-    return RunningSwage(argument, folder, set).wait();
+                  const std::map<std::string, std::string>& set, const fs::path& program) {
+    return RunningSwage(argument, folder, set, program).wait();
 }
 
 std::string bytes_of(const fs::path& file) {

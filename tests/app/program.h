@@ -20,7 +20,8 @@ class RunningSwage {
     // `set` goes over the environment. Standard streams go to files in `folder`, which is also
     // where it starts.
     RunningSwage(const std::vector<std::string>& argument, std::filesystem::path folder,
-                 const std::map<std::string, std::string>& set = {});
+                 const std::map<std::string, std::string>& set = {},
+                 const std::filesystem::path& program = SWAGE_BINARY);
     ~RunningSwage();
     RunningSwage(const RunningSwage&) = delete;
     RunningSwage& operator=(const RunningSwage&) = delete;
@@ -39,7 +40,8 @@ class RunningSwage {
 
 Outcome run_swage(const std::vector<std::string>& argument,
                   const std::filesystem::path& folder = SWAGE_SOURCE_DIR,
-                  const std::map<std::string, std::string>& set = {});
+                  const std::map<std::string, std::string>& set = {},
+                  const std::filesystem::path& program = SWAGE_BINARY);
 
 std::string bytes_of(const std::filesystem::path& file);
 void put_text(const std::filesystem::path& file, const std::string& text);

@@ -4,10 +4,8 @@
 #include "scene/key_help.h"
 #include "scene/key_reference.h"
 #include "tests/catch.h"
-#include "tests/scene/scratch.h"
 
 using namespace swage;
-using namespace swage::test;
 
 namespace {
 
@@ -36,7 +34,7 @@ void check_reference(const std::vector<SectionReference>& reference,
 }  // namespace
 
 TEST_CASE("every key that a scene's readers ask for is told, and no other") {
-    check_reference(scene_key_reference(shipped()), scene_key_help());
+    check_reference(scene_key_reference(), scene_key_help());
 }
 
 TEST_CASE("every key that a machine file's reader asks for is told, and no other") {
