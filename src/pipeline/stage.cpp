@@ -140,8 +140,8 @@ class StageRun {
             if (each_frame()) keep([&] { write_meshes_of(last_frame); });
         }
         const Apparatus& apparatus = machine_.apparatus;
-        StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()),
-                           simulation.start(),
+        first_ = simulation.start();
+        StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()), first_,
                            apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size());
         for (int n = 1; n <= stage_.frames && !outcome_.stopped; ++n) {
             if (!work(simulation, n, last_frame + n, curves)) break;
@@ -262,6 +262,7 @@ class StageRun {
                            .machine = machine_,
                            .bodies = bodies_,
                            .totals = totals_,
+                           .first = first_,
                            .last = last_,
                            .first_frame = first_frame,
                            .last_frame = last_frame,
@@ -306,7 +307,7 @@ class StageRun {
     std::vector<char> cuts_;  // a body each: whether its cut is settled
     bool tears_ = false;      // whether triangles of the skin may be torn
     std::vector<fs::path> meshes_;
-    FrameReport last_;
+    FrameReport first_, last_;
     StageTotals totals_;
     WarningBook warnings_;
     StageOutcome outcome_;

@@ -24,10 +24,11 @@ double round_off(const std::vector<WorkPiece>& bodies) {
     return sum;
 }
 
-// In motion, of what the books hold by now, the share that is missing or too much. Fracture takes
-// energy: what it gives is from nowhere.
-double unaccounted(const Books& b, double least) {
-    const double in = std::abs(b.work) + std::abs(b.load_work) + std::abs(b.gravity_work);
+// In motion, of what the bodies began with and were given, or of what the books hold by now, the
+// share that is missing or too much. Fracture takes energy: what it gives is from nowhere.
+double unaccounted(const Books& first, const Books& b, double least) {
+    const double in = first.kinetic + first.elastic + std::abs(b.work) + std::abs(b.load_work) +
+                      std::abs(b.gravity_work);
     const double out = b.kinetic + b.elastic + b.contact + b.plastic + b.damped + b.friction +
                        b.drag + std::abs(b.severed_energy) + std::max(0.0, b.fracture);
     const double play = std::max(in, out);
@@ -70,9 +71,9 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             "the work-piece only, by its place, its width or its way",
             end.totals.severed));
     }
-    if (const double share = unaccounted(end.last, round_off(end.bodies));
+    if (const double share = unaccounted(end.first, end.last, round_off(end.bodies));
         sim.solver != Solver::quasistatic && std::abs(share) > kMostGain) {
-        warn(fmt::format("the energy books do not close: {:.2g} % of the energy in play is {}; {}",
+        warn(fmt::format("the energy books do not close: {:.3g} % of the energy in play is {}; {}",
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
                          how_to_close(sim.solver)));
     }

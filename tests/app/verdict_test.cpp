@@ -12,14 +12,14 @@ using swage::fixtures::together;
 
 namespace {
 
-// What a run of this body in these stages says.
-std::string told_of(const swage::TriMesh& mesh, const std::string& stages) {
+// What a run of this body in these stages says; `keys` stand in [mesh].
+std::string told_of(const swage::TriMesh& mesh, const std::string& stages,
+                    const std::string& keys = {}) {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "scene.toml";
     swage::write_obj(scratch.path() / "body.obj", mesh);
-    put_text(scene,
-             "[mesh]\nfile = \"body.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 2\n" +
-                 stages);
+    put_text(scene, "[mesh]\nfile = \"body.obj\"\n" + keys +
+                        "[material]\nname = \"rubber\"\n[mold]\nacross = 2\n" + stages);
     const Outcome outcome = run_swage(
         {"run", scene.string(), "--out", (scratch.path() / "run").string(), "--no-render"});
     INFO(outcome.err);
@@ -41,4 +41,17 @@ TEST_CASE("a blade that meets nothing is told of, and one that cuts is not") {
     const std::string cut = "[[stage]]\nmachine = \"cut\"\nframes = 2\n";
     CHECK(says(told_of(parted, cut), "has met no matter"));
     CHECK(!says(told_of(kBar, cut), "met no matter"));
+}
+
+TEST_CASE("no more energy is said to be lost than a body began with and was given") {
+    const std::string told = told_of(
+        kBar,
+        "[[stage]]\nmachine = \"floor\"\ndrop = \"20 cm\"\nframes = 20\nduration = \"10 s\"\n"
+        "solver = \"implicit\"\n",
+        "spin = [0, 0, \"60 rad/s\"]\n");
+    INFO(told);
+    const std::size_t share = told.find("do not close: ");
+    REQUIRE(share != std::string::npos);
+    CHECK(std::stod(told.substr(share + 14)) > 50);
+    CHECK(std::stod(told.substr(share + 14)) <= 100);
 }
