@@ -20,7 +20,7 @@ struct StageTotals {
          severed = 0, broken = 0;
     double shortest_step = 0;  // [s]
     double residual = 0, penetration = 0;
-    bool touched = false;  // by a tool
+    bool touched = false;  // by a tool: quasi-static at the end of a leg, in motion of any step
 
     void add(const FrameReport& report, std::size_t tools) {
         iterations += report.iterations;

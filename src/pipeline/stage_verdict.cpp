@@ -59,7 +59,11 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
         verdict.warning.push_back(name + ": " + sentence);
     };
     if (whole && !end.machine.apparatus.tool.empty() && !end.totals.touched) {
-        warn("its tools never touched the work-piece");
+        warn(sim.solver == Solver::quasistatic
+                 ? "none of its tools bears on the work-piece at the end of any frame: none "
+                   "reached it, or they parted again within a frame, as they do where nothing "
+                   "holds it"
+                 : "its tools never touched the work-piece");
     }
     if (whole && !end.machine.apparatus.blade.empty() && end.totals.severed == 0) {
         warn(

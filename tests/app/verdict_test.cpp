@@ -55,3 +55,18 @@ TEST_CASE("no more energy is said to be lost than a body began with and was give
     CHECK(std::stod(told.substr(share + 14)) > 50);
     CHECK(std::stod(told.substr(share + 14)) <= 100);
 }
+
+TEST_CASE("tools are said to have touched nothing only where that is known") {
+    const std::string apart =
+        "[[stage]]\nmachine = \"floor\"\ndrop = \"20 cm\"\nframes = 2\nduration = \"1 ms\"\n"
+        "solver = \"explicit\"\ngravity = 9.81\n";
+    CHECK(says(told_of(kBar, apart), "its tools never touched the work-piece"));
+    // The plate turns the bar, which nothing holds, out of its way: no force is left between them.
+    const std::string press =
+        "[[stage]]\nmachine = \"press\"\ndepth = 0.1\npress = 1\nrelease = 0\nframes = 4\n";
+    const std::string told = told_of(kBar, press, "turn = [0, 0, \"30 deg\"]\n");
+    INFO(told);
+    CHECK(!says(told, "never touched"));
+    CHECK(says(told, "none of its tools bears on the work-piece at the end of any frame"));
+    CHECK(!says(told_of(kBar, press), "its tools"));
+}
