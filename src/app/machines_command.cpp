@@ -94,13 +94,13 @@ MachineCatalogue catalogue_for(const MachinesArguments& given, const AssetPaths&
                                const fs::path& folder) {
     if (!is_file(given)) return machine_catalogue(assets, folder);
     MachineReading reading = read_machine(given.name);
-    if (!reading.machine) {
-        log_mistakes(reading.mistakes);
-        fail(ExitCode::scene, "{}: no machine can be made of it", given.name);
-    }
     MachineCatalogue one;
-    one.machine.push_back(std::move(*reading.machine));
     one.mistakes = std::move(reading.mistakes);
+    if (reading.machine) {
+        one.machine.push_back(std::move(*reading.machine));
+    } else {
+        one.unusable.push_back({fs::path(given.name).stem().string(), given.name});
+    }
     return one;
 }
 
@@ -109,7 +109,12 @@ int machines(const MachinesArguments& given) {
     const fs::path folder = fs::current_path();
     const MachineCatalogue catalogue = catalogue_for(given, assets, folder);
     log_mistakes(catalogue.mistakes);
-    if (catalogue.machine.empty() && catalogue.mistakes.empty()) {
+    const std::string name = is_file(given) ? fs::path(given.name).stem().string() : given.name;
+    for (const MachineFile& bad : catalogue.unusable) {
+        if (bad.name != name && (!name.empty() || !catalogue.machine.empty())) continue;
+        fail(ExitCode::scene, "{}: no machine can be made of it", bad.file.string());
+    }
+    if (catalogue.machine.empty()) {
         fail(ExitCode::command_line,
              "no machine was found in {}; --assets names a folder that holds machines/",
              names_text(machine_folders(assets, folder)));
@@ -128,7 +133,6 @@ int machines(const MachinesArguments& given) {
         }
         return 0;
     }
-    const std::string name = is_file(given) ? catalogue.machine.front().name : given.name;
     const auto at = std::find_if(catalogue.machine.begin(), catalogue.machine.end(),
                                  [&](const MachineSpec& spec) { return spec.name == name; });
     if (at == catalogue.machine.end()) {

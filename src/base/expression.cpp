@@ -312,7 +312,8 @@ class Reader {
     std::vector<Bracket> bracket_;
 };
 
-std::string sentence_for(const mu::ParserError& error) {
+// `at`: the sign of the user's text where it stands; 0 at the end.
+std::string sentence_for(const mu::ParserError& error, char at) {
     const std::string& token = error.GetToken();
     const Function* function = function_named(token);
     switch (error.GetCode()) {
@@ -325,7 +326,8 @@ std::string sentence_for(const mu::ParserError& error) {
         case mu::ecUNEXPECTED_FUN:
             return "a sign is missing before this";
         case mu::ecUNEXPECTED_PARENS:
-            return "a bracket does not belong here";
+            // Numbers are written in brackets: an opening one is often none of the user's.
+            return at == ')' ? "a bracket does not belong here" : "a sign is missing before this";
         case mu::ecUNEXPECTED_ARG_SEP:
             return "a comma does not belong here";
         case mu::ecMISPLACED_COLON:
@@ -374,7 +376,8 @@ Formula::Formula(const std::string& text, const std::vector<std::string>& variab
         compiled_->parser.SetExpr(reader.written());
         compiled_->parser.Eval();  // compiles
     } catch (const mu::ParserError& error) {
-        throw TextError(reader.origin(error.GetPos()), sentence_for(error));
+        const std::size_t at = reader.origin(error.GetPos());
+        throw TextError(at, sentence_for(error, at < text.size() ? text[at] : '\0'));
     }
 }
 

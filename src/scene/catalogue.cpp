@@ -12,7 +12,11 @@ MachineCatalogue machine_catalogue(const AssetPaths& assets,
     MachineCatalogue catalogue;
     for (const MachineFile& known : known_machines(assets, scene_folder)) {
         MachineReading reading = read_machine(known.file);
-        if (reading.machine) catalogue.machine.push_back(std::move(*reading.machine));
+        if (reading.machine) {
+            catalogue.machine.push_back(std::move(*reading.machine));
+        } else {
+            catalogue.unusable.push_back(known);
+        }
         catalogue.mistakes.insert(catalogue.mistakes.end(), reading.mistakes.begin(),
                                   reading.mistakes.end());
     }

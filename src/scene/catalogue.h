@@ -12,8 +12,9 @@
 namespace swage {
 
 struct MachineCatalogue {
-    std::vector<MachineSpec> machine;  // sorted by name
-    std::vector<Mistake> mistakes;     // of machine files that cannot be used
+    std::vector<MachineSpec> machine;   // sorted by name
+    std::vector<MachineFile> unusable;  // no machine can be made of these
+    std::vector<Mistake> mistakes;
 };
 // With a folder: also those in its machines/, which a scene there can name.
 MachineCatalogue machine_catalogue(const AssetPaths& assets,

@@ -130,18 +130,40 @@ void ExpressionReader::read_item(TableReader& table, const std::string& key, con
     for (const Node& one : item.item) expect_unit(table, key, one, quantity);
 }
 
-void ExpressionReader::expect_positive(TableReader& table, const std::string& key,
-                                       const Expression& text) {
-    try {
-        const Formula formula(text, known_);
-        if (!formula.is_constant()) return;
-        const double value = formula.evaluate(std::vector<double>(known_.size(), 0.0));
-        if (!(value > 0)) {
-            table.mistake(key, fmt::format("{} = {} has to be more than 0", key, value));
-        }
-    } catch (const TextError&) {
-        // reported when it was read
+std::optional<double> ExpressionReader::certain(const Node& node) const {
+    if (node.kind == Node::Kind::whole || node.kind == Node::Kind::real) {
+        return std::isfinite(node.number) ? std::optional(node.number) : std::nullopt;
     }
+    if (node.kind != Node::Kind::text) return std::nullopt;
+    try {
+        const Formula formula(node.text, known_);
+        if (!formula.is_constant()) return std::nullopt;
+        return formula.evaluate(std::vector<double>(known_.size(), 0.0));
+    } catch (const TextError&) {
+        return std::nullopt;  // reported when it was read
+    }
+}
+
+void ExpressionReader::expect_positive(TableReader& table, const std::string& key) {
+    const Node* given = table.find(key);
+    if (given == nullptr) return;
+    const auto judge = [&](const Node& one) {
+        const std::optional<double> value = certain(one);
+        if (!value || *value > 0) return;
+        table.reading().mistakes.add(one.place,
+                                     fmt::format("{} = {} has to be more than 0", key, *value));
+    };
+    if (given->kind != Node::Kind::array) return judge(*given);
+    for (const Node& one : given->item) judge(one);
+}
+
+void ExpressionReader::expect_direction(TableReader& table) {
+    const Node* given = table.find("axis");
+    if (given == nullptr || given->kind != Node::Kind::array || given->item.size() != 3) return;
+    for (const Node& one : given->item) {
+        if (certain(one) != 0.0) return;
+    }
+    table.mistake("axis", kNoDirection);
 }
 
 }  // namespace swage

@@ -19,6 +19,8 @@ const std::vector<std::string>& work_piece_names();
 const std::vector<std::pair<std::string, std::string>>&
 work_piece_names_told();  // and what each is
 
+inline constexpr const char* kNoDirection = "axis = [0, 0, 0] has no direction";
+
 class ExpressionReader {
   public:
     // The names that expressions see from now on, beside those of before.
@@ -37,8 +39,10 @@ class ExpressionReader {
     void read_item(TableReader& table, const std::string& key, const Node& item, Quantity quantity,
                    Expression3& into);
 
-    // Reports unless the expression, when its value is already certain, is more than 0.
-    void expect_positive(TableReader& table, const std::string& key, const Expression& text);
+    // Report where what stands there, when its value is already certain, is not more than 0, or
+    // all of three are 0.
+    void expect_positive(TableReader& table, const std::string& key);
+    void expect_direction(TableReader& table);  // of its axis
 
     // What another reader's expressions named counts as named here.
     void take_used(const ExpressionReader& other) {
@@ -48,6 +52,7 @@ class ExpressionReader {
     bool is_used(const std::string& name) const { return used_.contains(name); }
 
   private:
+    std::optional<double> certain(const Node& node) const;  // no variable has a say in it
     void read_one(TableReader& table, const std::string& key, const Node& node, Expression& into);
     void expect_unit(TableReader& table, const std::string& key, const Node& node,
                      Quantity quantity);

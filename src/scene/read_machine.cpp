@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kNoDirection = "axis = [0, 0, 0] has no direction";
-
 bool is_work_piece_name(const std::string& name) {
     const std::vector<std::string>& names = work_piece_names();
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -179,15 +177,12 @@ class MachineReader {
             if (!expression_.read(table, "size", Quantity::length, tool.size)) {
                 table.missing("size", "three lengths along x, y and z");
             }
-            for (const Expression& side : tool.size)
-                expression_.expect_positive(table, "size", side);
+            expression_.expect_positive(table, "size");
             expression_.read(table, "rounding", Quantity::length, tool.rounding);
         }
         if (tool.shape == "mesh") read_tool_mesh(table, tool.mesh);
-        if (expression_.read(table, "axis", Quantity::number, tool.axis) &&
-            tool.axis == Expression3{"0", "0", "0"}) {
-            table.mistake("axis", kNoDirection);
-        }
+        expression_.read(table, "axis", Quantity::number, tool.axis);
+        expression_.expect_direction(table);
         if (!expression_.read(table, "at", Quantity::length, tool.at)) {
             table.missing("at", "where its centre is, such as [0, \"-height\", 0]");
         }
@@ -214,7 +209,7 @@ class MachineReader {
     void read_size(TableReader& table, const std::string& key, bool is_wanted, Expression& into) {
         if (!is_wanted) return;  // and then an unknown key where it stands
         if (expression_.read(table, key, Quantity::length, into)) {
-            expression_.expect_positive(table, key, into);
+            expression_.expect_positive(table, key);
         } else {
             table.missing(key, "a length");
         }
@@ -312,7 +307,7 @@ class MachineReader {
             }
         }
         if (expression_.read(table, "thickness", Quantity::length, blade.thickness)) {
-            expression_.expect_positive(table, "thickness", blade.thickness);
+            expression_.expect_positive(table, "thickness");
         }
         read_motion(table, "[blade.motion]", blade.motion);
         table.finish();

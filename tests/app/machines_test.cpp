@@ -34,6 +34,23 @@ TEST_CASE("a machine's parameters are told with the unit of a number that has no
     }
 }
 
+TEST_CASE("a machine whose file is faulty is told to be that, not to be missing") {
+    const Scratch scratch;
+    fs::create_directory(scratch.path() / "machines");
+    const std::string grip = "[[grip]]\nname = \"a\"\nfrom = [0, 0, 0]\nto = [1, 1, \"";
+    put_text(scratch.path() / "machines/bad.toml", grip + "heigth\"]\n");
+    put_text(scratch.path() / "machines/bad2.toml", grip + "height\"]\n");
+    const Outcome bad = run_swage({"machines", "bad"}, scratch.path());
+    INFO(bad.err);
+    CHECK(bad.code == 3);
+    CHECK(bad.err.find("unknown name \"heigth\"") != std::string::npos);
+    CHECK(bad.err.find("bad.toml: no machine can be made of it") != std::string::npos);
+    CHECK(bad.err.find("bad2") == std::string::npos);
+    CHECK(run_swage({"machines", "bad2"}, scratch.path()).code == 0);
+    CHECK(run_swage({"machines"}, scratch.path()).code == 0);  // tells the others
+    CHECK(run_swage({"machines", "badd"}, scratch.path()).code == 2);
+}
+
 TEST_CASE(
     "the program alone, without its assets, tells all keys, and where it looked for machines") {
     const Scratch scratch;

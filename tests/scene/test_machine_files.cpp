@@ -284,6 +284,22 @@ TEST_CASE("mistakes in machine files are named at their letter") {
     }
 }
 
+TEST_CASE("a size or an axis that cannot be read gets no second mistake, about its value") {
+    const std::string tool = "[[tool]]\nname = \"a\"\nat = [0, 0, 0]\nshape = ";
+    const auto told_of = [&](const std::string& shape, const std::string& keys) {
+        return mistakes_in(kHead + kGrip + tool + "\"" + shape + "\"\n" + keys + "\n");
+    };
+    CHECK(told_of("sphere", "radius = \"heigth\"") ==
+          "m.toml:13:11: radius: unknown name \"heigth\", did you mean \"height\"?\n");
+    CHECK(told_of("box", "size = [1, \"2*heigth\", -1]") ==
+          "m.toml:13:15: size: unknown name \"heigth\", did you mean \"height\"?\n"
+          "m.toml:13:24: size = -1 has to be more than 0\n");
+    CHECK(told_of("box", "size = [1, 1, 1]\naxis = [\"heigth\", 0, 0]") ==
+          "m.toml:14:10: axis: unknown name \"heigth\", did you mean \"height\"?\n");
+    CHECK(told_of("sphere", "radius = 1\naxis = [0, \"1 - 1\", 0]") ==
+          "m.toml:14:8: axis = [0, 0, 0] has no direction\n");
+}
+
 TEST_CASE("a part's name in escaped or many-lined text is still placed at its text") {
     const std::string text =
         mistakes_in(kHead + kGrip + "[grip.motion]\nturn = \"\"\"\n2*qqq\"\"\"\n");
