@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/read_material.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/suggest.h"
@@ -21,10 +22,21 @@ constexpr Range kStiffness = {.low = 1e-3, .high = 1e18};  // [Pa]
 constexpr Range kDensity = {.low = 1e-3, .high = 1e12};    // [kg/m3]
 
 // Materials that never yield say so by leaving yield_stress out; a scene turns a yielding one into
-// such by `yield_stress = inf`.
+// such by `yield_stress = inf`, or in quotes as every other stress, with a unit or without.
 bool is_infinite(const Node* node) {
-    return node != nullptr && node->kind == Node::Kind::real && std::isinf(node->number) &&
-           node->number > 0;
+    if (node == nullptr) return false;
+    if (node->kind == Node::Kind::real) return std::isinf(node->number) && node->number > 0;
+    if (node->kind != Node::Kind::text) return false;
+    std::string_view text = node->text;
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    if (text.starts_with('+')) text.remove_prefix(1);
+    if (!text.starts_with("inf")) return false;
+    try {
+        parse_quantity("1 " + std::string(text.substr(3)), Quantity::stress);
+        return true;
+    } catch (const TextError&) {
+        return false;
+    }
 }
 
 // Strength and toughness make sense together only; `strength = inf` takes both away.

@@ -325,15 +325,19 @@ TEST_CASE("machines and materials beside the scene come before the shipped ones"
     CHECK(other.scene->work_piece().material.name == "copper");
 }
 
-TEST_CASE("a material that yields can be made elastic") {
+TEST_CASE("a material that yields can be made elastic, and one that breaks whole") {
     const Scratch scratch;
-    const SceneReading reading = read(scratch,
-                                      "[mesh]\nfile = \"bar.obj\"\n[material]\nname = "
-                                      "\"copper\"\nyield_stress = inf\n[[stage]]\n"
-                                      "machine = \"bend\"\n");
-    INFO(told(reading.mistakes, scratch.folder()));
-    REQUIRE(reading.scene);
-    CHECK(std::isinf(reading.scene->work_piece().material.yield_stress));
+    for (const char* infinite : {"inf", "+inf", "\"inf\"", "\"inf MPa\"", "\" +inf N/mm2 \""}) {
+        const SceneReading reading =
+            read(scratch, std::string("[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"pla\"\n") +
+                              "yield_stress = " + infinite + "\nstrength = " + infinite +
+                              "\n[[stage]]\nmachine = \"bend\"\n");
+        INFO(infinite << "\n" << told(reading.mistakes, scratch.folder()));
+        REQUIRE(reading.scene);
+        CHECK(reading.mistakes.empty());
+        CHECK(std::isinf(reading.scene->work_piece().material.yield_stress));
+        CHECK_FALSE(reading.scene->work_piece().material.breaks());
+    }
 }
 
 TEST_CASE("overrides count as if the file said so") {
