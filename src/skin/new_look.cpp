@@ -77,9 +77,10 @@ std::vector<int> charts_of(const TriMesh& mesh) {
 
 int cut_material(TriMesh& mesh, const TriMesh& like) {
     if (mesh.material.empty()) mesh.material.emplace_back();
-    const auto known =
-        std::find_if(mesh.material.begin(), mesh.material.end(),
-                     [](const SurfaceMaterial& m) { return m.name == kCutMaterial; });
+    // The mesh may have one of that name of its own, which takes colours, as all that are read do.
+    const auto known = std::find_if(
+        mesh.material.begin(), mesh.material.end(),
+        [](const SurfaceMaterial& m) { return m.name == kCutMaterial && !m.takes_colors; });
     const auto number = static_cast<int>(known - mesh.material.begin());
     if (known == mesh.material.end()) mesh.material.push_back(cut_look(like));
     return number;

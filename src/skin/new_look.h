@@ -10,7 +10,8 @@
 
 namespace swage {
 
-// Of faces that a blade or a break has laid open.
+// Of faces that a blade or a break has laid open. A material that the mesh came with may have that
+// name too: files then call the new one "cut.2".
 inline constexpr const char* kCutMaterial = "cut";
 
 // The number of that material in `mesh`, a part or a new surface of `like`. It is added where it is

@@ -176,3 +176,28 @@ TEST_CASE("metal is metal inside, a plain colour goes through, what a texture hi
     CHECK(cut_material(again, mesh) == cut_material(again, mesh));
     CHECK(again.material.size() == 2);
 }
+
+TEST_CASE("a mesh's own material that is called as that of cut faces stays its own") {
+    Aggregate block = test::make_block(8, 4, 4, 0.1, Material{});
+    TriMesh mesh = textured_box(block);
+    mesh.material[0].name = kCutMaterial;
+    mesh.material[0].color = {0, 1, 0};
+    Mount mount = mount_mesh(mesh.position, block, SkinKind::mount);
+    TriMesh mounted = mesh;
+    for (double place : {0.03, -0.13}) {  // what is cut again has one material of cut faces
+        const std::vector<std::array<Vec3, 3>> blade = {
+            {Vec3(place, -9, -9), Vec3(place, 9, -9), Vec3(place, 0, 9)}};
+        const std::vector<Vec3> position = mounted.position;
+        cut_skin(mounted, position, mount, block, blade);
+    }
+    CHECK(mounted.material.size() == mesh.material.size() + 1);
+    for (std::size_t t = 0; t < mounted.triangle.size(); ++t) {
+        const bool is_new = mounted.triangle_uv[t][0] < 0;
+        CHECK(is_new == (mounted.triangle_material[t] == 6));
+    }
+    test::sever_plane(block, {0.03, 0, 0}, Vec3::UnitX());
+    const TriMesh anew = boundary_skin(block, std::make_unique<NewLook>(mesh).get());
+    CHECK(anew.material.size() == mesh.material.size() + 1);
+    CHECK(anew.material[0].color == mesh.material[0].color);
+    CHECK(anew.material[6].color != mesh.material[0].color);
+}
