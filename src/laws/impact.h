@@ -14,11 +14,13 @@
 // NOTE: what a deformable body gives back is also what its inside does: e is that of the contact,
 // met where the contact gives way more than the bodies behind it.
 //
-// v is the highest speed of approach in the touch. NOTE: what approaches anew without having parted
-// rests or swings, and has met nothing: from then on c = 2 zeta sqrt(k m) with the point's own
-// mass, zeta = -ln e / sqrt(pi^2 + ln^2 e). With a v of its own each time, the small swings of what
-// rests had N jump between k d (1 + beta) and nothing. The same c acts along the surface and in
-// tension.
+// v is the highest speed of approach in the touch; what touches later than points beside it takes
+// theirs, or what is round would be met by its rim ever more slowly, and lose too much: with one v
+// for all, e is that of the whole, however its points come to touch. NOTE: what approaches anew
+// without having parted rests or swings, and has met nothing: from then on c = 2 zeta sqrt(k m)
+// with the point's own mass, zeta = -ln e / sqrt(pi^2 + ln^2 e). With a v of its own each time, the
+// small swings of what rests had N jump between k d (1 + beta) and nothing. The same c acts along
+// the surface and in tension.
 //
 // NOTE: c is at most 20 beta sqrt(k m), which bodies of up to 400 times the point's own mass do not
 // reach: what is let down slowly would hang in its dashpots, and N would shake with every tremor.
@@ -99,13 +101,14 @@ struct ImpactHistory {
 
 // One contact in one step. All vectors of the point relative to the other side.
 struct ImpactState {
-    double depth;   // [m]
-    Vec3 normal;    // outward of the other side, unit
-    Vec3 now;       // velocity [m/s]
-    Vec3 velocity;  // at the end of the step without this contact [m/s]
-    Vec3 reach;     // from the point to where it sticks [m]
-    double give;    // 1 / m: speed that a unit of impulse on both sides makes [1/kg]
-    double step;    // [s]
+    double depth;       // [m]
+    Vec3 normal;        // outward of the other side, unit
+    Vec3 now;           // velocity [m/s]
+    Vec3 velocity;      // at the end of the step without this contact [m/s]
+    Vec3 reach;         // from the point to where it sticks [m]
+    double give;        // 1 / m: speed that a unit of impulse on both sides makes [1/kg]
+    double step;        // [s]
+    double beside = 0;  // v of what touches beside it [m/s]
 };
 
 // What its dashpots take is -(force - elastic) . v, with the speed that all forces together leave.
@@ -136,7 +139,7 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
     next = last;
     const double rate = -at.normal.dot(at.now), approach = -at.normal.dot(at.velocity);
     next.rests = last.rests || (rate > 0 && last.parts) || (rate <= 0 && !last.touches);
-    next.speed = std::max(next.speed, rate);
+    next.speed = std::max({next.speed, rate, last.touches ? 0.0 : at.beside});
     next.parts = rate <= 0;
     next.touches = true;
 

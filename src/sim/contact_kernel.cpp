@@ -196,6 +196,7 @@ struct ContactWay::Kernel {
         Chunk& result = way.chunk_[chunk];
         result.moved.clear();
         result.took = 0;
+        result.is_met = false;
         result.held = {};
         const std::size_t begin = way.begin_of(chunk), end = way.begin_of(chunk + 1);
         for (std::size_t n = begin; n < end; ++n) {
@@ -210,6 +211,7 @@ struct ContactWay::Kernel {
                        gradient, at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
             if (meets(at) && is_twice(begin, n)) at.inverse[0][3] = at.inverse[1][3] = 0;
+            result.is_met = result.is_met || (meets(at) && !last.history.touches);
             if (!is_known(at)) result.held.gone += last.stored;
             if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
             prepare(contact, last, corner, gradient, step, at, result);
@@ -257,6 +259,11 @@ struct ContactWay::Kernel {
             const Vec4& f = b.force(contact.corner[c]);
             push -= weight[c] * f[3] * f;
         }
+        double beside = 0;
+        for (int c = 0; c < contact.carriers && !way.met_.empty(); ++c) {
+            beside =
+                std::max(beside, way.met_[std::size_t(contact.carrier[c] - way.point_push_.low)]);
+        }
         ImpactLaw law = way.law_;
         law.stiffness = way.share_ * at.inverse[2][3];
         law.hold = way.share_ * way.hold_[contact.point];
@@ -267,7 +274,8 @@ struct ContactWay::Kernel {
                                             .velocity = vec3(at.now + step * push),
                                             .reach = vec3(at.reach),
                                             .give = give,
-                                            .step = step},
+                                            .step = step,
+                                            .beside = beside},
                                            last.history);
         spread(contact, weight, vec4(f.force) - spring);
         return f;
@@ -367,6 +375,7 @@ void ContactWay::push_chunk(std::size_t chunk) {
 
 void ContactWay::respond(double step, bool again) {
     next_.resize(list_.size());
+    find_met();
     vector_width() >= 4 ? middle_respond(step, again) : Kernel{*this}.respond(step, again);
     is_found_ = true;
 }

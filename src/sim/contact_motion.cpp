@@ -112,15 +112,24 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
             bears_[by.corner[c]] += std::abs(by.weight[c]) * m.law.stiffness;
         }
     }
+    met_.resize(matter.particle_count(), 0.0);
+    for (const Meeting& m : meeting) {
+        const Pair& pair = pair_[m.pair];
+        if (!pair.history.touches || pair.history.rests) continue;
+        for (ParticleId p : surface.corner(pair.point)) {
+            met_[p] = std::max(met_[p], pair.history.speed);
+        }
+    }
     parallel_for((meeting.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
         const std::size_t end = std::min(meeting.size(), (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n) {
             Meeting& m = meeting[n];
             const Pair& pair = pair_[m.pair];
             Vec3 v = Vec3::Zero(), push = gravity;
-            double give = 0;  // S
+            double give = 0, beside = 0;  // give: S
             const auto by = surface.carriers(static_cast<std::size_t>(pair.point));
             for (int c = 0; c < 8; ++c) {
+                beside = std::max(beside, met_[by.corner[c]]);
                 const double w = by.weight[c];
                 if (w == 0) continue;
                 const ParticleId p = by.corner[c];
@@ -143,14 +152,15 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
                                      .velocity = m.speed + step * (push - give * m.spring),
                                      .reach = m.reach,
                                      .give = give,
-                                     .step = step},
+                                     .step = step,
+                                     .beside = beside},
                                     pair.history);
         }
     });
     for (const Meeting& m : meeting) {
         Pair& pair = pair_[m.pair];
         const ImpactForce& f = m.result;
-        for (ParticleId p : surface.corner(pair.point)) bears_[p] = 0;
+        for (ParticleId p : surface.corner(pair.point)) bears_[p] = met_[p] = 0;
         spread(surface, pair.point, f.force - m.spring, force);
         if (!f.history.touches) continue;
         const Pose& pose = now.world_from_tool[pair.tool];

@@ -211,6 +211,7 @@ class ContactSet {
     std::vector<Pose> world_from_tool_at_start_;
     // Of each particle, what points that touch have of stiffness on it [N/m]; 0 between.
     std::vector<double> bears_;
+    std::vector<double> met_;  // likewise, at which speed those that do not rest were met [m/s]
     std::vector<LoadSum> motion_load_;
     double motion_energy_ = 0;
 };

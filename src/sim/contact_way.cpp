@@ -200,6 +200,23 @@ void ContactWay::begin_meeting() {
     }
 }
 
+void ContactWay::find_met() {
+    met_.clear();
+    const bool is_met =
+        std::any_of(chunk_.begin(), chunk_.end(), [](const Chunk& chunk) { return chunk.is_met; });
+    if (!is_met || !(law_.loss > 0)) return;
+    met_.resize(std::size_t(point_push_.high - point_push_.low + 1), 0.0);
+    for (std::size_t n = 0; n < list_.size(); ++n) {
+        const ImpactHistory& last = list_.memory[n].history;
+        if (!last.touches || last.rests) continue;
+        const Contact& contact = list_.contact[n];
+        for (int c = 0; c < contact.carriers; ++c) {
+            double& met = met_[std::size_t(contact.carrier[c] - point_push_.low)];
+            met = std::max(met, last.speed);
+        }
+    }
+}
+
 void ContactWay::press_chunk(std::size_t chunk, Held& held) {
     for (int n : chunk_[chunk].moved) {
         Contact& contact = list_.contact[n];

@@ -117,6 +117,7 @@ class ContactWay {
     struct Chunk {
         std::vector<int> moved;  // contacts that have come into other cells
         double took = 0;         // ContactSums::took, of the one half
+        bool is_met = false;     // some touch that had not
         Held held;               // by springs of the whole stiffness
     };
     // What springs do to the particles of a patch, from the slot `low` on [N].
@@ -156,6 +157,7 @@ class ContactWay {
     void begin_meeting();
     void press_chunk(std::size_t chunk, Held& held);
     void find_chunk(std::size_t chunk, double step);
+    void find_met();
     void middle_find_chunk(std::size_t chunk, double step);
     void push_chunk(std::size_t chunk);
     void middle_push_chunk(std::size_t chunk);
@@ -180,6 +182,9 @@ class ContactWay {
     bool is_found_ = false;              // since the last commit
     std::vector<Chunk> chunk_;
     Pushed point_push_{}, cell_push_{};
+    // The speed at which what touches was met and does not rest, of each slot that carries it, from
+    // the lowest of point_push_ on [m/s]; empty: nothing touches that had not.
+    std::vector<double> met_{};
     ContactSums sums_{};
 };
 

@@ -74,6 +74,47 @@ TEST_CASE("a mass keeps the asked share of its speed, whatever its size, speed a
     CHECK(rebound(0, 1, 1e4, 1) == Approx(kDullest).epsilon(0.01));
 }
 
+TEST_CASE("what is round keeps the asked share too, though its points come to touch one by one") {
+    // `told`: those that touch anew know how fast those beside them were met.
+    const auto share = [](double e, bool told) {
+        constexpr int kPoints = 24;
+        constexpr double kMass = 2, kStiffness = 1e4, kSpeed = 3;
+        const double step = 1e-4 * std::sqrt(kMass / (kPoints * kStiffness));
+        const ImpactLaw law = law_of(kStiffness, e);
+        std::array<ImpactHistory, kPoints> history;
+        double y = 1e-9, v = -kSpeed;
+        for (int n = 0; n < 1'000'000 && (n < 1000 || y <= 0); ++n) {
+            double met = 0, push = 0;
+            for (const ImpactHistory& h : history) {
+                if (told && h.touches && !h.rests) met = std::max(met, h.speed);
+            }
+            for (int p = 0; p < kPoints; ++p) {
+                const Vec3 now(0, v, 0);
+                const ImpactForce f = impact_force(law,
+                                                   {.depth = -y - 5e-4 * p,
+                                                    .normal = Vec3::UnitY(),
+                                                    .now = now,
+                                                    .velocity = now,
+                                                    .reach = Vec3::Zero(),
+                                                    .give = 1 / kMass,
+                                                    .step = step,
+                                                    .beside = met},
+                                                   history[p]);
+                push += f.force.y();
+                history[p] = f.history;
+            }
+            v += step / kMass * push;
+            y += step * v;
+        }
+        return v / kSpeed;
+    };
+    for (double e : {0.2, 0.5, 0.8}) {
+        INFO(e);
+        CHECK(std::abs(share(e, true) - e) < 0.002 * e);
+        CHECK(share(e, false) < 0.996 * e);
+    }
+}
+
 TEST_CASE("the loss is the root of its relation") {
     for (double e : {kDullest, 0.2, 0.5, 0.8, 0.99}) {
         const double beta = restitution_loss(e);

@@ -69,11 +69,11 @@ TEST_CASE("what tumbling bodies leave in the books' remainder falls with the ste
         return most / energy;
     };
     for (double friction : {0.0, 0.3}) {
-        const double coarse = worst(friction, 0.4), fine = worst(friction, 0.05);
+        const double coarse = worst(friction, 0.4), fine = worst(friction, 0.025);
         INFO("friction " << friction << ": " << coarse << ' ' << fine);
         CHECK(coarse < 4e-3);
-        CHECK(fine < 4e-4);
-        CHECK(fine < 0.25 * coarse);
+        CHECK(fine < 2e-4);
+        CHECK(fine < 0.125 * coarse);
     }
 }
 
