@@ -36,9 +36,11 @@ Mat3 nearest_rotation(const Mat3& m) {
 
 Vec3 solve_symmetric(const Mat3& m, const Vec3& right) { return m.ldlt().solve(right); }
 
+// Eigen's own has a singular value decomposition in it, which takes as long to compile as all else
+// here.
 Quat turn_onto(const Vec3& from, const Vec3& to) {
     const Vec3 a = from.normalized(), b = to.normalized();
-    const double twice = (a + b).norm();  // the cosine of half the angle
+    const double twice = (a + b).norm();  // 2 cos of half the angle
     Quat turn;
     if (twice < 1e-6) {  // opposite ones have no plane of their own
         turn.w() = 0;

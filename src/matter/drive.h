@@ -61,9 +61,9 @@ struct Load {
     std::vector<int> point;     // into Aggregate::surface
     std::vector<double> share;  // of each one's area that a pressure acts on; empty: all of each
     std::vector<Vec3> force;    // on each at full strength, in the world [N]; empty: a pressure
-    double pressure = 0;      // at full strength [Pa]; less than zero sucks
-    bool closed = false;      // the points make up whole closed surfaces
-    int body = 0;             // which it pushes, whose surface the points are of
+    double pressure = 0;        // at full strength [Pa]; less than zero sucks
+    bool closed = false;        // the points make up whole closed surfaces
+    int body = 0;               // which it pushes, whose surface the points are of
 };
 
 struct Apparatus {

@@ -113,9 +113,12 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
         }
     }
     met_.resize(matter.particle_count(), 0.0);
+    const bool is_met = std::any_of(meeting.begin(), meeting.end(), [&](const Meeting& m) {
+        return !pair_[m.pair].history.touches;
+    });
     for (const Meeting& m : meeting) {
         const Pair& pair = pair_[m.pair];
-        if (!pair.history.touches || pair.history.rests) continue;
+        if (!is_met || !pair.history.touches || pair.history.rests) continue;
         for (ParticleId p : surface.corner(pair.point)) {
             met_[p] = std::max(met_[p], pair.history.speed);
         }
