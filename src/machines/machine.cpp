@@ -151,41 +151,54 @@ Box box_between(const Setting& setting, const Expression3& from, const Expressio
     return {box.low - slack, box.high + slack};
 }
 
-void add_grip(Machine& machine, const Setting& setting, const GripSpec& spec,
-              std::vector<int>& grip_of_point) {
+const std::string& grip_that_holds(const Apparatus& apparatus, std::size_t point) {
+    const auto holds = [&](const Grip& grip) {
+        return std::ranges::find(grip.point, int(point)) != grip.point.end();
+    };
+    return std::ranges::find_if(apparatus.grip, holds)->name;
+}
+
+// `held`: by point, how much of its patch grips hold already.
+void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
+              const GripSpec& spec, std::vector<double>& held) {
+    constexpr double kLeastShare = 0.01, kSlack = 1e-6;  // of a patch
     const Box region = box_between(setting, spec.from, spec.to);
+    const Mat3 work_from_world =
+        setting.frame.world_from_work.rotation.conjugate().toRotationMatrix();
     Grip grip;
     grip.name = spec.name;
-    Box held;
-    const int self = static_cast<int>(machine.apparatus.grip.size());
+    Box jaws;
     for (std::size_t p = 0; p < setting.point.size(); ++p) {
-        const Vec3& point = setting.point[p];
-        if ((point.array() < region.low.array()).any()) continue;
-        if ((point.array() > region.high.array()).any()) continue;
-        if (grip_of_point[p] >= 0) {
+        const Box patch = patch_box(matter, work_from_world, p, setting.point[p]);
+        const double share = share_within(patch, region);
+        if (share < kLeastShare) continue;
+        if (held[p] + share > 1 + kSlack) {
             refuse(setting, fmt::format("grips {} and {} would hold the same points; make one of "
                                         "them smaller",
-                                        machine.apparatus.grip[grip_of_point[p]].name, spec.name));
+                                        grip_that_holds(machine.apparatus, p), spec.name));
         }
-        grip_of_point[p] = self;
+        held[p] += share;
         grip.point.push_back(static_cast<int>(p));
-        held.grow(point);
+        grip.share.push_back(share);
+        jaws.grow(patch.low.cwiseMax(region.low));
+        jaws.grow(patch.high.cwiseMin(region.high));
     }
     if (grip.point.empty()) {
         refuse(setting, fmt::format("grip {} holds nothing: no point of the work-piece's surface "
                                     "lies in its box",
                                     spec.name));
     }
-    const Pose work_from_grip{Quat::Identity(), held.center()};
-    for (int p : grip.point) grip.anchor.push_back(setting.point[p] - held.center());
+    const Vec3 center = jaws.center();
+    const Pose work_from_grip{Quat::Identity(), center};
+    for (int p : grip.point) grip.anchor.push_back(setting.point[p] - center);
     for (int axis = 0; axis < 3; ++axis) grip.hold[axis] = spec.along[axis];
-    grip.jaw = clamp_around({held.low - held.center(), held.high - held.center()},
-                            kClampClearance * setting.spacing);
+    grip.jaw =
+        clamp_around({jaws.low - center, jaws.high - center}, kClampClearance * setting.spacing);
 
     Motion motion(spec.motion, setting.known);
     const Pose start = motion.at(0);
     const double size = setting.frame.size.norm();
-    if ((start * held.center() - held.center()).norm() > kAtRest * size ||
+    if ((start * center - center).norm() > kAtRest * size ||
         rotation_of(start.rotation).norm() > 10 * kAtRest) {
         refuse(setting, fmt::format("the motion of grip {} does not start at rest: at t = 0 it has "
                                     "to be 0",
@@ -245,14 +258,12 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
                                     "looks that way and lies in its box",
                                     spec.name));
     }
-    const bool are_whole =
-        std::count(load.share.begin(), load.share.end(), 1.0) == std::ptrdiff_t(load.share.size());
-    load.closed = are_whole && is_closed(matter, load.point);
+    load.closed = load.share.empty() && is_closed(matter, load.point);
     if (spec.force) {
         const Vec3 force = setting.frame.world_from_work.turn(evaluate(*spec.force, setting.known));
         std::vector<double> area;
         for (std::size_t n = 0; n < load.point.size(); ++n) {
-            area.push_back(load.share[n] * matter.surface.area(load.point[n]));
+            area.push_back(load.share_of(n) * matter.surface.area(load.point[n]));
         }
         const double all = std::accumulate(area.begin(), area.end(), 0.0);
         for (double own : area) load.force.push_back(own / all * force);
@@ -341,8 +352,8 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
     for (const ToolSpec& tool : spec.tool) {
         machine.tool_motion.emplace_back(tool.motion, setting.known);
     }
-    std::vector<int> grip_of_point(setting.point.size(), -1);
-    for (const GripSpec& grip : spec.grip) add_grip(machine, setting, grip, grip_of_point);
+    std::vector<double> held(setting.point.size(), 0);
+    for (const GripSpec& grip : spec.grip) add_grip(machine, setting, matter, grip, held);
     for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
     for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
     if (!spec.gravity_strength.empty()) {

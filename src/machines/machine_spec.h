@@ -67,8 +67,8 @@ struct ToolSpec {
     MotionSpec motion;
 };
 
-// Surface points whose position in the work frame lies in the box [from, to] are held, along those
-// axes of it that are named: all three clamp, one is a smooth plane.
+// What of the surface lies in the box [from, to] of the work frame is held, along those axes of it
+// that are named: all three clamp, one is a smooth plane.
 struct GripSpec {
     std::string name;
     Expression3 from, to;

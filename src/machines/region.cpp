@@ -23,27 +23,32 @@ Side side_of(const Vec3& normal) {
     return kSides[2 * axis + (normal[axis] > 0)];
 }
 
-// How far the patch of a point goes along each axis now: half a cell across its normal, as far
-// along it as it slants, less where it is cut off.
-Vec3 patch_size(const Aggregate& matter, const Mat3& work_from_world, std::size_t p) {
+}  // namespace
+
+// Half a cell across the normal, as far along it as it slants, less where it is cut off.
+Box patch_box(const Aggregate& matter, const Mat3& frame_from_world, std::size_t point,
+              const Vec3& in_frame) {
     const double half = 0.5 * matter.lattice.spacing;
-    const Vec3 normal = matter.surface.normal(p).cwiseAbs();
+    const Vec3 normal = matter.surface.normal(point).cwiseAbs();
     int steepest;
     const double steep = normal.maxCoeff(&steepest);
-    const double width = half * std::min(1.0, std::sqrt(matter.surface.area(p) * steep) / half);
+    const double width = half * std::min(1.0, std::sqrt(matter.surface.area(point) * steep) / half);
     Vec3 size = Vec3::Constant(width);
     size[steepest] = std::min(half, width * (normal.sum() - steep) / steep);
-    const Mat3 along = work_from_world * matter.surface_gradient(p) * size.asDiagonal();
-    return along.cwiseAbs().rowwise().sum();
+    const Mat3 along = frame_from_world * matter.surface_gradient(point) * size.asDiagonal();
+    const Vec3 reach = 0.5 * along.cwiseAbs().rowwise().sum();
+    return {in_frame - reach, in_frame + reach};
 }
 
-double share_within(double at, double size, double low, double high) {
-    if (!(size > 0)) return at >= low && at <= high ? 1 : 0;
-    const double within = std::min(at + 0.5 * size, high) - std::max(at - 0.5 * size, low);
-    return std::clamp(within / size, 0.0, 1.0);
+double share_within(const Box& patch, const Box& region) {
+    double share = 1;
+    for (int i = 0; i < 3; ++i) {
+        const double low = patch.low[i], high = patch.high[i], size = high - low;
+        const double within = std::min(high, region.high[i]) - std::max(low, region.low[i]);
+        share *= size > 0 ? std::clamp(within / size, 0.0, 1.0) : within >= 0;
+    }
+    return share;
 }
-
-}  // namespace
 
 Region find_region(const Aggregate& matter, const Pose& world_from_work,
                    const std::vector<Vec3>& in_work, Side side, const Box* box) {
@@ -51,13 +56,11 @@ Region find_region(const Aggregate& matter, const Pose& world_from_work,
     const Quat work_from_world = world_from_work.rotation.conjugate();
     const Mat3 turn = work_from_world.toRotationMatrix();
     Region region;
+    bool is_whole = true;
     for (std::size_t p = 0; p < in_work.size(); ++p) {
         double share = 1;
         if (box != nullptr) {
-            const Vec3 size = patch_size(matter, turn, p);
-            for (int i = 0; i < 3; ++i) {
-                share *= share_within(in_work[p][i], size[i], box->low[i], box->high[i]);
-            }
+            share = share_within(patch_box(matter, turn, p, in_work[p]), *box);
             if (share < kNothing) continue;
         }
         if (side != Side::all) {
@@ -66,8 +69,10 @@ Region find_region(const Aggregate& matter, const Pose& world_from_work,
             if (side_of(work_from_world * normal) != side) continue;
         }
         region.point.push_back(static_cast<int>(p));
-        region.share.push_back(share > 1 - kNothing ? 1 : share);
+        region.share.push_back(share);
+        is_whole &= share > 1 - kNothing;
     }
+    if (is_whole) region.share.clear();
     return region;
 }
 

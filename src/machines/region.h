@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of the work-piece's surface, as loads choose them.
+// Parts of the work-piece's surface, as grips and loads choose them.
 #pragma once
 
 #include <vector>
@@ -11,15 +11,22 @@
 
 namespace swage {
 
+// The box around the patch of a surface point, as it lies now.
+// NOTE: exact for flat sides along the lattice; that of a slanted one goes over into the next
+// evenly.
+Box patch_box(const Aggregate& matter, const Mat3& frame_from_world, std::size_t point,
+              const Vec3& in_frame);
+
+// How much of the patch lies in the region, 0 to 1.
+double share_within(const Box& patch, const Box& region);
+
 struct Region {
     std::vector<int> point;
-    std::vector<double> share;  // of each one's patch of the surface, more than 0
+    std::vector<double> share;  // of each one's patch of the surface, more than 0; empty: all
 };
 
 // What of the surface looks to the side now and lies in the box (null: anywhere), both in the work
 // frame. `in_work`: where the surface's points are in it.
-// NOTE: a patch counts as the box around it, which is exact for flat sides along the lattice; that
-// of a slanted one goes over into the next evenly.
 Region find_region(const Aggregate& matter, const Pose& world_from_work,
                    const std::vector<Vec3>& in_work, Side side, const Box* box);
 

@@ -45,6 +45,11 @@ double GripSet::stiffness(const Aggregate& matter, int point) const {
     return limit_.empty() ? k : std::min(k, limit_[point]);
 }
 
+double GripSet::stiffness(const Aggregate& matter, const Grip& grip, std::size_t n) const {
+    const double share = grip.share_of(n);
+    return share * share * stiffness(matter, grip.point[n]);
+}
+
 void GripSet::limit_stiffness(const Aggregate& matter, double step) {
     limit_.clear();
     std::vector<double> all;
@@ -64,7 +69,7 @@ void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Ac
         for (std::size_t n = 0; n < grip.point.size(); ++n) {
             const int point = grip.point[n];
             if (is_torn(point)) continue;
-            const double k = stiffness(matter, point);
+            const double k = stiffness(matter, grip, n);
             const Vec3 x = matter.surface_position(point);
             Vec3 force;
             if (wholly) {
@@ -81,9 +86,11 @@ void GripSet::for_each_point(const Aggregate& matter, const Drive& now, const Ac
 void GripSet::add_stiffness(const Aggregate& matter, std::vector<double>& stiffness) const {
     for (std::size_t g = 0; g < apparatus_->grip.size(); ++g) {
         if (!holds(g)) continue;
-        for (int point : apparatus_->grip[g].point) {
+        const Grip& grip = apparatus_->grip[g];
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const int point = grip.point[n];
             if (is_torn(point)) continue;
-            spread_stiffness(matter.surface, point, this->stiffness(matter, point), stiffness);
+            spread_stiffness(matter.surface, point, this->stiffness(matter, grip, n), stiffness);
         }
     }
 }
@@ -95,9 +102,10 @@ void GripSet::add_held_points(const Aggregate& matter, const Drive& now,
         const Grip& grip = apparatus_->grip[g];
         const Mat3 turn = now.world_from_grip[g].rotation.toRotationMatrix();
         const Mat3 hold = turn * grip.hold.asDiagonal() * turn.transpose();
-        for (int point : grip.point) {
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const int point = grip.point[n];
             if (is_torn(point)) continue;
-            held.push_back(held_point(matter.surface, point, stiffness(matter, point) * hold));
+            held.push_back(held_point(matter.surface, point, stiffness(matter, grip, n) * hold));
         }
     }
 }

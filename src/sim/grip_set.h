@@ -2,6 +2,11 @@
 // Grips: points of a body's true surface, each held by a spring to its place in a frame that moves.
 // Forces act on the particles that carry a point, with the point's own weights, so that force and
 // moment are kept exactly. A point whose carriers hang together no more is let go.
+//
+// Of a patch that a grip's edge cuts a share s is held, its spring by s^2 softer: what the edge
+// leaves free bends and stretches as one that ends there, to a tenth of a cell. By s alone it would
+// be up to a quarter of a cell too short, for what holds the cell at the edge grows with the area
+// held and with how far that reaches into the cell.
 #pragma once
 
 #include <vector>
@@ -56,7 +61,9 @@ class GripSet {
 
     bool holds(std::size_t grip) const { return apparatus_->grip[grip].body == body_; }
     bool is_torn(int point) const { return !torn_.empty() && torn_[std::size_t(point)]; }
-    double stiffness(const Aggregate& matter, int point) const;  // [N/m]
+    double stiffness(const Aggregate& matter, int point) const;  // of a whole patch [N/m]
+    // Of the grip's n-th point [N/m].
+    double stiffness(const Aggregate& matter, const Grip& grip, std::size_t n) const;
 
     const Apparatus* apparatus_;
     int body_;

@@ -25,8 +25,6 @@ Vec3 centre_of(const std::vector<double>& area, const std::vector<Vec3>& positio
     return all > 0 ? Vec3(sum / all) : sum;
 }
 
-double share_of(const Load& load, std::size_t n) { return load.share.empty() ? 1 : load.share[n]; }
-
 PushSum sum_of(const std::vector<double>& area, const std::vector<Vec3>& position,
                const std::vector<Vec3>& force) {
     PushSum sum;
@@ -151,7 +149,7 @@ std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter)
     for (std::size_t n = 0; n < load.point.size(); ++n) {
         const int p = load.point[n];
         const bool is_off = presses && parted_ != nullptr && parted_->is_off[p];
-        area.push_back(is_off ? 0 : share_of(load, n) * matter.surface.area(p));
+        area.push_back(is_off ? 0 : load.share_of(n) * matter.surface.area(p));
     }
     const double whole = matter.lattice.spacing * matter.lattice.spacing;
     for (const OpenFace& face : faces_of(load)) area.push_back(face.share * whole);
@@ -210,7 +208,7 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
         const std::size_t end = std::min(points, (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n) {
             if (area[n] == 0) continue;
-            force[n] = share_of(load, n) *
+            force[n] = load.share_of(n) *
                        pressure_force(pressure, surface_area_vector(matter, load.point[n]));
         }
     });

@@ -216,6 +216,44 @@ TEST_CASE("a grip holds the points in its box where they are") {
     }
 }
 
+TEST_CASE("a grip holds what lies in its box, wherever its edge runs, and its jaws end there") {
+    const Aggregate body = bar(0, {4, 4, 4});
+    const Box box = box_of(surface_positions(body));
+    const double around = 2 * (box.size().y() + box.size().z());
+    for (const double edge : {-0.4, -0.396, -0.39, -0.3871, -0.31}) {
+        MachineSpec spec = vice();
+        spec.grip[0].to[0] = fmt::format("{}*length", edge);
+        const Machine machine = set_up(spec, body);
+        const Grip& grip = machine.apparatus.grip[0];
+        double area = 0;
+        for (std::size_t n = 0; n < grip.point.size(); ++n) {
+            const int p = grip.point[n];
+            if (std::abs(body.surface.normal(p).x()) > 0.5) continue;  // of the end
+            area += grip.share_of(n) * body.surface.area(p);
+        }
+        const double length = (edge + 0.5) * box.size().x();
+        CHECK(area == Approx(around * length).epsilon(0.01 * 0.0125 / length + 1e-6));
+        Box jaws;
+        for (const Vec3& x : grip.jaw.position) jaws.grow(x);
+        CHECK(jaws.size().x() >= length - 1e-9);
+    }
+}
+
+TEST_CASE("two grips may meet at an edge, and are refused where they hold the same") {
+    const Aggregate body = bar(0, {4, 4, 4});
+    MachineSpec spec = vice();
+    spec.grip[0].to[0] = spec.grip[1].from[0] = "0.2034*length";
+    CHECK(set_up(spec, body).apparatus.grip.size() == 2);
+    spec.grip[1].from[0] = "0.19*length";
+    try {
+        set_up(spec, body);
+        FAIL("it should be refused");
+    } catch (const Error& error) {
+        CHECK(std::string(error.what()).find("grips hold and turn would hold the same points") !=
+              std::string::npos);
+    }
+}
+
 TEST_CASE("a grip turns its points by the whole angle, also past a full turn") {
     const Aggregate body = bar(0, {4, 4, 4});
     const Machine machine = set_up(vice(), body);
