@@ -17,16 +17,10 @@ namespace {
 
 constexpr std::size_t kChunk = 8192;  // triangles
 
-std::size_t chunk_count(std::size_t count) { return (count + kChunk - 1) / kChunk; }
-
 template <typename Term>
 double sum_over_triangles(const TriMesh& mesh, const Term& term) {
-    return ordered_sum(chunk_count(mesh.triangle.size()), [&](std::size_t chunk) {
-        const std::size_t end = std::min(mesh.triangle.size(), (chunk + 1) * kChunk);
-        double sum = 0;
-        for (std::size_t t = chunk * kChunk; t < end; ++t) sum += term(mesh.triangle[t]);
-        return sum;
-    });
+    return ordered_sum_of(mesh.triangle.size(), kChunk,
+                          [&](std::size_t t) { return term(mesh.triangle[t]); });
 }
 
 }  // namespace
@@ -125,21 +119,18 @@ void smooth_by_crease_angle(TriMesh& mesh, double crease_angle) {
 std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& position) {
     const std::size_t count = mesh.triangle.size();
     std::vector<std::array<Vec3, 3>> share(count);
-    parallel_for(chunk_count(count), [&](std::size_t chunk) {
-        const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-        for (std::size_t t = chunk * kChunk; t < end; ++t) {
-            const Corners& c = mesh.triangle[t];
-            const std::array<Vec3, 3> p = {position[c[0]], position[c[1]], position[c[2]]};
-            const Vec3 cross = (p[1] - p[0]).cross(p[2] - p[0]);
-            const double twice_area = cross.norm();
-            for (int k = 0; k < 3; ++k) {
-                const Vec3 out = p[(k + 1) % 3] - p[k];
-                const Vec3 in = p[(k + 2) % 3] - p[k];
-                share[t][k] =
-                    twice_area > 0
-                        ? Vec3(cross * (portable::atan2(twice_area, out.dot(in)) / twice_area))
-                        : Vec3(Vec3::Zero());
-            }
+    parallel_each(count, kChunk, [&](std::size_t t) {
+        const Corners& c = mesh.triangle[t];
+        const std::array<Vec3, 3> p = {position[c[0]], position[c[1]], position[c[2]]};
+        const Vec3 cross = (p[1] - p[0]).cross(p[2] - p[0]);
+        const double twice_area = cross.norm();
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 out = p[(k + 1) % 3] - p[k];
+            const Vec3 in = p[(k + 2) % 3] - p[k];
+            share[t][k] =
+                twice_area > 0
+                    ? Vec3(cross * (portable::atan2(twice_area, out.dot(in)) / twice_area))
+                    : Vec3(Vec3::Zero());
         }
     });
     std::vector<Vec3> normal(mesh.smooth_group_count, Vec3::Zero());

@@ -22,17 +22,17 @@ constexpr double kResolution = 1e-10;   // the same
 double nearest_distance(const Shape& shape, const Pose& points_from_tool,
                         const std::vector<Vec3>& points) {
     const Pose tool_from_points = points_from_tool.inverse();
-    const std::size_t chunks = (points.size() + kPointsPerChunk - 1) / kPointsPerChunk;
-    std::vector<double> nearest(chunks, std::numeric_limits<double>::infinity());
-    parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t end = std::min(points.size(), (chunk + 1) * kPointsPerChunk);
-        for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
-            nearest[chunk] =
-                std::min(nearest[chunk], distance_to(shape, tool_from_points * points[p]).value);
+    const auto nearest_of = [&](std::size_t begin, std::size_t end) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t p = begin; p < end; ++p) {
+            nearest = std::min(nearest, distance_to(shape, tool_from_points * points[p]).value);
         }
-    });
+        return nearest;
+    };
     double smallest = std::numeric_limits<double>::infinity();
-    for (double value : nearest) smallest = std::min(smallest, value);
+    for (double value : parallel_parts(points.size(), kPointsPerChunk, nearest_of)) {
+        smallest = std::min(smallest, value);
+    }
     return smallest;
 }
 

@@ -135,29 +135,23 @@ bool CellFlow::is_far_from_yield(const Aggregate& matter) const {
     if (!matter.cell_plastic[0].empty()) return false;
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const double least = (1 - kNearYield) * std::sqrt(yield_distortion_);
-    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
-    std::vector<char> far(chunks, 1);
-    parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
-        for (std::size_t r = chunk * kRunsPerChunk; r < end && far[chunk]; ++r) {
-            far[chunk] = most_distorted(matter, runs[r]) < least;
-        }
-    });
+    const auto are_far = [&](std::size_t begin, std::size_t end) -> char {
+        return std::all_of(runs.begin() + begin, runs.begin() + end,
+                           [&](const CellRun& run) { return most_distorted(matter, run) < least; });
+    };
+    const std::vector<char> far = parallel_parts(runs.size(), kRunsPerChunk, are_far);
     return std::all_of(far.begin(), far.end(), [](char one) { return one != 0; });
 }
 
 void CellFlow::find_strains(const Aggregate& matter) {
     const Vec3Array& x = matter.particle_position;
     const std::vector<Span>& spans = matter.lattice.span;
-    parallel_for((spans.size() + kSpansPerChunk - 1) / kSpansPerChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(spans.size(), (chunk + 1) * kSpansPerChunk);
-        for (std::size_t n = chunk * kSpansPerChunk; n < end; ++n) {
-            const Span& s = spans[n];
-            strain_block(x.x.data() + s.lower, x.y.data() + s.lower, x.z.data() + s.lower,
-                         x.x.data() + s.upper, x.y.data() + s.upper, x.z.data() + s.upper, s.count,
-                         1 / reference_length(matter.lattice, s.direction),
-                         strain_[s.direction].data() + s.lower);
-        }
+    parallel_each(spans.size(), kSpansPerChunk, [&](std::size_t n) {
+        const Span& s = spans[n];
+        strain_block(x.x.data() + s.lower, x.y.data() + s.lower, x.z.data() + s.lower,
+                     x.x.data() + s.upper, x.y.data() + s.upper, x.z.data() + s.upper, s.count,
+                     1 / reference_length(matter.lattice, s.direction),
+                     strain_[s.direction].data() + s.lower);
     });
 }
 
@@ -165,13 +159,10 @@ void CellFlow::find_flowing(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const bool fresh = matter.cell_plastic[0].empty();
     const std::array<float, kCellBlock> unyielded{};
-    const std::size_t chunks = (runs.size() + kRunsPerChunk - 1) / kRunsPerChunk;
-    std::vector<std::vector<FlowingCell>> part(chunks);
-    parallel_for(chunks, [&](std::size_t chunk) {
+    const auto find = [&](std::size_t first, std::size_t last, std::vector<FlowingCell>& flowing) {
         double theta[kCellBlock], distortion[kCellBlock];
         float weight[kCellBlock];
-        const std::size_t end = std::min(runs.size(), (chunk + 1) * kRunsPerChunk);
-        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
+        for (std::size_t r = first; r < last; ++r) {
             const CellRun& run = runs[r];
             for (int at = 0; at < run.count; at += kCellBlock) {
                 const int count = std::min(kCellBlock, run.count - at);
@@ -202,13 +193,12 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                                      d_alpha};
                     for (ParticleId& p : cell.row) p += at + n;
                     if (!cell_is_sound(matter, id, cell.row)) continue;  // has no size any more
-                    part[chunk].push_back(cell);
+                    flowing.push_back(cell);
                 }
             }
         }
-    });
-    flowing_.clear();
-    for (const auto& p : part) flowing_.insert(flowing_.end(), p.begin(), p.end());
+    };
+    flowing_ = parallel_collect<FlowingCell>(runs.size(), kRunsPerChunk, find);
 }
 
 // How much the cell's plastic strain of one of its connections grows.

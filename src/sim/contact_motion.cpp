@@ -39,12 +39,10 @@ void ContactSet::begin_step(const Drive& from) {
 
 std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matter,
                                                            const Drive& now, bool anew) {
-    std::vector<std::vector<Meeting>> part((pair_.size() + kChunk - 1) / kChunk);
     std::vector<Pose> tool_from_world;
     for (const Pose& pose : now.world_from_tool) tool_from_world.push_back(pose.inverse());
-    parallel_for(part.size(), [&](std::size_t chunk) {
-        const std::size_t end = std::min(pair_.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < end; ++n) {
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Meeting>& met) {
+        for (std::size_t n = begin; n < end; ++n) {
             Pair& pair = pair_[n];
             if (pair.gone) continue;
             const Tool& tool = apparatus_->tool[pair.tool];
@@ -76,12 +74,10 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             const double limit = (pair.history.slides ? m.law.friction : m.law.holding) * bears / k;
             const double size = m.reach.norm();
             m.spring = N * m.normal + k * std::min(1.0, size > 0 ? limit / size : 1.0) * m.reach;
-            part[chunk].push_back(m);
+            met.push_back(m);
         }
-    });
-    std::vector<Meeting> all;
-    for (const std::vector<Meeting>& p : part) all.insert(all.end(), p.begin(), p.end());
-    return all;
+    };
+    return parallel_collect<Meeting>(pair_.size(), kChunk, find);
 }
 
 void ContactSet::add_motion_forces(const Aggregate& matter, const Drive& now, double step,
@@ -123,42 +119,39 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
             met_[p] = std::max(met_[p], pair.history.speed);
         }
     }
-    parallel_for((meeting.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(meeting.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            Meeting& m = meeting[n];
-            const Pair& pair = pair_[m.pair];
-            Vec3 v = Vec3::Zero(), push = gravity;
-            double give = 0, beside = 0;  // give: S
-            const auto by = surface.carriers(static_cast<std::size_t>(pair.point));
-            for (int c = 0; c < 8; ++c) {
-                beside = std::max(beside, met_[by.corner[c]]);
-                const double w = by.weight[c];
-                if (w == 0) continue;
-                const ParticleId p = by.corner[c];
-                const double lightness = w / matter.particle_mass[p];
-                v += w * matter.particle_velocity.at(p);
-                push += lightness * force.at(p);
-                give += std::abs(lightness) * bears_[p];
-            }
-            give /= m.law.stiffness;
-            if (way_step_ > 0) {
-                const ToolWay& way = tool_way_[pair.tool];
-                v -= (way.to * pair.next.local - way.from * pair.next.local) / way_step_;
-            }
-            if (!m.has_speed) m.speed = v;
-            // The law takes its own spring off again.
-            m.result = impact_force(m.law,
-                                    {.depth = m.depth,
-                                     .normal = m.normal,
-                                     .now = m.speed,
-                                     .velocity = m.speed + step * (push - give * m.spring),
-                                     .reach = m.reach,
-                                     .give = give,
-                                     .step = step,
-                                     .beside = beside},
-                                    pair.history);
+    parallel_each(meeting.size(), kChunk, [&](std::size_t n) {
+        Meeting& m = meeting[n];
+        const Pair& pair = pair_[m.pair];
+        Vec3 v = Vec3::Zero(), push = gravity;
+        double give = 0, beside = 0;  // give: S
+        const auto by = surface.carriers(static_cast<std::size_t>(pair.point));
+        for (int c = 0; c < 8; ++c) {
+            beside = std::max(beside, met_[by.corner[c]]);
+            const double w = by.weight[c];
+            if (w == 0) continue;
+            const ParticleId p = by.corner[c];
+            const double lightness = w / matter.particle_mass[p];
+            v += w * matter.particle_velocity.at(p);
+            push += lightness * force.at(p);
+            give += std::abs(lightness) * bears_[p];
         }
+        give /= m.law.stiffness;
+        if (way_step_ > 0) {
+            const ToolWay& way = tool_way_[pair.tool];
+            v -= (way.to * pair.next.local - way.from * pair.next.local) / way_step_;
+        }
+        if (!m.has_speed) m.speed = v;
+        // The law takes its own spring off again.
+        m.result = impact_force(m.law,
+                                {.depth = m.depth,
+                                 .normal = m.normal,
+                                 .now = m.speed,
+                                 .velocity = m.speed + step * (push - give * m.spring),
+                                 .reach = m.reach,
+                                 .give = give,
+                                 .step = step,
+                                 .beside = beside},
+                                pair.history);
     });
     for (const Meeting& m : meeting) {
         Pair& pair = pair_[m.pair];

@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::size_t kChunk = 2048;  // particles
 
-std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
-
 }  // namespace
 
 void ContactPatch::clear() {
@@ -46,28 +44,27 @@ void ContactPatch::read(std::size_t begin, std::size_t end) {
 
 void ContactPatch::read(const Vec3Array& force) {
     others_ = &force;
-    parallel_for(chunks(particle_.size()), [&](std::size_t chunk) {
-        read(chunk * kChunk, std::min(particle_.size(), (chunk + 1) * kChunk));
-    });
+    parallel_chunks(particle_.size(), kChunk,
+                    [&](std::size_t begin, std::size_t end) { read(begin, end); });
 }
 
 void ContactPatch::write(Vec3Array& force, const Vec3& gravity, double step, ContactSums& sums) {
     struct Power {
         double came = 0, goes = 0;
     };
-    std::vector<Power> power(chunks(particle_.size()));
-    parallel_for(power.size(), [&](std::size_t chunk) {
-        const std::size_t stop = std::min(particle_.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) {
+    const auto write_some = [&](std::size_t begin, std::size_t end) {
+        Power power;
+        for (std::size_t n = begin; n < end; ++n) {
             const ParticleId p = particle_[n];
             const Vec3 all = vec3(force_[n].force), done = all - force.at(p);
             const Vec3 v = vec3(motion_[n].speed);
-            power[chunk].came += done.dot(v);
-            power[chunk].goes += done.dot(v + step * (gravity + force_[n].force[3] * all));
+            power.came += done.dot(v);
+            power.goes += done.dot(v + step * (gravity + force_[n].force[3] * all));
             force.set(p, all);
         }
-    });
-    for (const Power& one : power) {
+        return power;
+    };
+    for (const Power& one : parallel_parts(particle_.size(), kChunk, write_some)) {
         sums.came += one.came;
         sums.goes += one.goes;
     }

@@ -25,14 +25,9 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
     // New surface lies up to half a cell outside the cells that hold it.
     const bool is_broken = onto.points().size() > onto.own_points();
     margin += (is_broken ? 0.5 : kSliver) * other.lattice.spacing;
-    const std::size_t points = from.points().size();
-    std::vector<Vec3> point(points);
-    parallel_for((points + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t stop = std::min(points, (chunk + 1) * kChunk);
-        for (std::size_t p = chunk * kChunk; p < stop; ++p) {
-            point[p] = from.position(static_cast<int>(p));
-        }
-    });
+    std::vector<Vec3> point(from.points().size());
+    parallel_each(point.size(), kChunk,
+                  [&](std::size_t p) { point[p] = from.position(static_cast<int>(p)); });
     Box all = box_of(point);
     all.low.array() -= margin;
     all.high.array() += margin;

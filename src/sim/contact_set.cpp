@@ -115,12 +115,8 @@ void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
     tool_from_world_at_start_.clear();
     if (apparatus_->tool.empty()) return;
     start_position_.resize(points().size());
-    const std::size_t chunks = (start_position_.size() + kPointsPerChunk - 1) / kPointsPerChunk;
-    parallel_for(chunks, [&](std::size_t chunk) {
-        const std::size_t end = std::min(start_position_.size(), (chunk + 1) * kPointsPerChunk);
-        for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
-            start_position_[p] = points().position(std::size_t(p), matter.particle_position);
-        }
+    parallel_each(start_position_.size(), kPointsPerChunk, [&](std::size_t p) {
+        start_position_[p] = points().position(p, matter.particle_position);
     });
     for (const Pose& pose : from.world_from_tool)
         tool_from_world_at_start_.push_back(pose.inverse());
@@ -128,8 +124,6 @@ void ContactSet::begin_move(const Aggregate& matter, const Drive& from) {
 
 void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
     if (touch_ == nullptr) return;
-    const std::size_t count = points().size();
-    const std::size_t chunks = (count + kPointsPerChunk - 1) / kPointsPerChunk;
     std::vector<Pair> found;
     std::vector<double> clearances;
     const auto keep = [&](const Pair& pair) {
@@ -153,13 +147,10 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
             return p < start_position_.size() && t < tool_from_world_at_start_.size() &&
                    (local - tool_from_world_at_start_[t] * start_position_[p]).norm() >= thin;
         };
-        std::vector<std::vector<Near>> near(chunks);
-        parallel_for(chunks, [&](std::size_t chunk) {
-            const std::size_t end = std::min(count, (chunk + 1) * kPointsPerChunk);
-            for (std::size_t p = chunk * kPointsPerChunk; p < end; ++p) {
+        const auto find_near = [&](std::size_t begin, std::size_t end, std::vector<Near>& near) {
+            for (std::size_t p = begin; p < end; ++p) {
                 if (!touch_->meets(int(p))) continue;
-                const Vec3 local =
-                    tool_from_world * points().position(std::size_t(p), matter.particle_position);
+                const Vec3 local = tool_from_world * points().position(p, matter.particle_position);
                 if ((local.array() < reach.low.array()).any() ||
                     (local.array() > reach.high.array()).any()) {
                     continue;
@@ -170,29 +161,26 @@ void ContactSet::find_candidates(const Aggregate& matter, const Drive& now) {
                 for (double w : points().carriers(p).weight) carried += std::abs(w);
                 const double sure =
                     may_be_through(p, local) ? 0 : kSureShare * distance / std::sqrt(3.0);
-                near[chunk].push_back({static_cast<int>(p), sure / carried, distance});
+                near.push_back({static_cast<int>(p), sure / carried, distance});
             }
-        });
+        };
         const int tool_id = static_cast<int>(t);
-        for (const std::vector<Near>& part : near) {
-            for (const auto& [p, clearance, distance] : part) {
-                for (;
-                     old != pair_.end() && std::pair(old->tool, old->point) < std::pair(tool_id, p);
-                     ++old) {
-                    if (old->stuck) keep(*old);
-                }
-                clearances.push_back(clearance);
-                if (old != pair_.end() && old->tool == tool_id && old->point == p) {
-                    if (old->stuck) clearances.back() = 0;
-                    found.push_back(*old++);
-                } else {
-                    Pair& pair = found.emplace_back(Pair{tool_id, p, false, Vec3::Zero()});
-                    const bool is_new_surface = static_cast<std::size_t>(p) >= touch_->own();
-                    if (is_new_surface) pair.deep = std::max(0.0, -distance);
-                    pair.last.local = pair.next.local =
-                        tool_from_world *
-                        points().position(std::size_t(p), matter.particle_position);
-                }
+        for (const auto& [p, clearance, distance] :
+             parallel_collect<Near>(points().size(), kPointsPerChunk, find_near)) {
+            for (; old != pair_.end() && std::pair(old->tool, old->point) < std::pair(tool_id, p);
+                 ++old) {
+                if (old->stuck) keep(*old);
+            }
+            clearances.push_back(clearance);
+            if (old != pair_.end() && old->tool == tool_id && old->point == p) {
+                if (old->stuck) clearances.back() = 0;
+                found.push_back(*old++);
+            } else {
+                Pair& pair = found.emplace_back(Pair{tool_id, p, false, Vec3::Zero()});
+                const bool is_new_surface = static_cast<std::size_t>(p) >= touch_->own();
+                if (is_new_surface) pair.deep = std::max(0.0, -distance);
+                pair.last.local = pair.next.local =
+                    tool_from_world * points().position(std::size_t(p), matter.particle_position);
             }
         }
     }
@@ -300,7 +288,7 @@ void ContactSet::for_each_touch(const Aggregate& matter, const Drive& now, const
     constexpr std::size_t kAtOnce = kChunksAtOnce * kPairsPerChunk;
     for (std::size_t first = 0; first < pair_.size(); first += kAtOnce) {
         const std::size_t last = std::min(pair_.size(), first + kAtOnce);
-        const std::size_t chunks = (last - first + kPairsPerChunk - 1) / kPairsPerChunk;
+        const std::size_t chunks = chunks_of(last - first, kPairsPerChunk);
         parallel_for(chunks, [&](std::size_t chunk) {
             const std::size_t begin = first + chunk * kPairsPerChunk;
             find_touches(matter, frame, moved, begin, std::min(last, begin + kPairsPerChunk),

@@ -111,10 +111,9 @@ void ContactSide::find_near() {
         own_place_[p] = ((at - lattice.origin) / lattice.spacing).cast<float>();
     }
     near_.assign(home.size(), {});
-    parallel_for((home.size() + kSets - 1) / kSets, [&](std::size_t chunk) {
-        const std::size_t stop = std::min(home.size(), (chunk + 1) * kSets);
+    parallel_chunks(home.size(), kSets, [&](std::size_t begin, std::size_t end) {
         std::vector<Vec3i> open;
-        for (std::size_t s = chunk * kSets; s < stop; ++s) {
+        for (std::size_t s = begin; s < end; ++s) {
             auto& set = near_[s];
             const auto visit = [&](const Vec3i& at) {
                 if (!in_box(at)) return false;

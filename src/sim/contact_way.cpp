@@ -32,8 +32,6 @@ std::array<float, 8> shares_at(const Vec3& place) {
     return share;
 }
 
-std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
-
 }  // namespace
 
 std::size_t ContactWay::begin_of(std::size_t chunk) const {
@@ -194,7 +192,7 @@ void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {
 
 void ContactWay::begin_meeting() {
     meeting_.resize(list_.size());
-    chunk_.resize(chunks(list_.size()));
+    chunk_.resize(chunks_of(list_.size(), kChunk));
     for (Pushed* pushed : {&point_push_, &cell_push_}) {
         pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
     }

@@ -124,16 +124,13 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
                                const std::vector<float>* carried) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const std::size_t count = only ? only->size() : runs.size();
-    const std::size_t chunks = (count + kRunsPerChunk - 1) / kRunsPerChunk;
     const bool springs = matter.material.mechanics == Mechanics::springs;
     const double far = strain_measure_at(laws.watched_onset());
     const std::vector<MaterialLaw> material =
         matter.mixed_cell.empty() ? std::vector<MaterialLaw>() : material_laws(matter);
-    std::vector<std::vector<Beyond>> part(chunks);
-    parallel_for(chunks, [&](std::size_t chunk) {
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Beyond>& beyond) {
         std::vector<double> measure;
-        const std::size_t end = std::min(count, (chunk + 1) * kRunsPerChunk);
-        for (std::size_t r = chunk * kRunsPerChunk; r < end; ++r) {
+        for (std::size_t r = begin; r < end; ++r) {
             const CellRun& run = only ? *(*only)[r] : runs[r];
             if (!springs) strain_measures(matter, run, measure);
             for (int n = 0; n < run.count; ++n) {
@@ -150,20 +147,18 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
                 if (!carried && !cell_is_sound(matter, cell, row)) continue;
                 if (const MixedCell* two = matter.mixed_at(cell)) {
                     const double share = mixed_share(matter, laws, material, *two);
-                    if (share >= 1) part[chunk].push_back({&run, n, share});
+                    if (share >= 1) beyond.push_back({&run, n, share});
                     continue;
                 }
                 double strain = springs ? 0 : material_strain(matter, run, n, onset);
                 if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
                     strain = std::max(strain, largest_connection_strain(matter, row));
                 }
-                if (strain >= onset) part[chunk].push_back({&run, n, strain / onset});
+                if (strain >= onset) beyond.push_back({&run, n, strain / onset});
             }
         }
-    });
-    std::vector<Beyond> beyond;
-    for (const auto& p : part) beyond.insert(beyond.end(), p.begin(), p.end());
-    return beyond;
+    };
+    return parallel_collect<Beyond>(count, kRunsPerChunk, find);
 }
 
 }  // namespace

@@ -92,32 +92,31 @@ double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
     const std::vector<Span>& spans = matter.lattice.span;
     const Vec3Array& x = matter.particle_position;
     const int particles = static_cast<int>(x.size());
-    return ordered_sum(
-        (spans.size() + kSpansPerChunk - 1) / kSpansPerChunk, [&](std::size_t chunk) {
-            const std::size_t end = std::min(spans.size(), (chunk + 1) * kSpansPerChunk);
-            double sum = 0;
-            float weight[kBlock + kLanes], flowed[kBlock + kLanes] = {};
-            for (std::size_t s = chunk * kSpansPerChunk; s < end; ++s) {
-                const Span& span = spans[s];
-                const std::vector<float>& plastic = matter.connection[span.direction].plastic;
-                const double length = reference_length(matter.lattice, span.direction);
-                double own = 0;
-                for (int begin = 0; begin < span.count; begin += kBlock) {
-                    const int count = std::min(kBlock, span.count - begin);
-                    const ParticleId low = span.lower + begin, high = span.upper + begin;
-                    for (int n = count / kLanes * kLanes; n < count + kLanes; ++n) weight[n] = 0;
-                    shares.copy(matter, span.direction, low, count, weight);
-                    if (!plastic.empty()) std::copy_n(plastic.data() + low, count, flowed);
-                    const SpanPlaces at{{x.x.data() + low, x.y.data() + low, x.z.data() + low},
-                                        {x.x.data() + high, x.y.data() + high, x.z.data() + high},
-                                        weight,
-                                        flowed};
-                    own += block_energy(at, count, particles - std::max(low, high), length);
-                }
-                sum += 0.5 * law.stiffness * length * length * own;
+    return ordered_sum(chunks_of(spans.size(), kSpansPerChunk), [&](std::size_t chunk) {
+        const std::size_t end = std::min(spans.size(), (chunk + 1) * kSpansPerChunk);
+        double sum = 0;
+        float weight[kBlock + kLanes], flowed[kBlock + kLanes] = {};
+        for (std::size_t s = chunk * kSpansPerChunk; s < end; ++s) {
+            const Span& span = spans[s];
+            const std::vector<float>& plastic = matter.connection[span.direction].plastic;
+            const double length = reference_length(matter.lattice, span.direction);
+            double own = 0;
+            for (int begin = 0; begin < span.count; begin += kBlock) {
+                const int count = std::min(kBlock, span.count - begin);
+                const ParticleId low = span.lower + begin, high = span.upper + begin;
+                for (int n = count / kLanes * kLanes; n < count + kLanes; ++n) weight[n] = 0;
+                shares.copy(matter, span.direction, low, count, weight);
+                if (!plastic.empty()) std::copy_n(plastic.data() + low, count, flowed);
+                const SpanPlaces at{{x.x.data() + low, x.y.data() + low, x.z.data() + low},
+                                    {x.x.data() + high, x.y.data() + high, x.z.data() + high},
+                                    weight,
+                                    flowed};
+                own += block_energy(at, count, particles - std::max(low, high), length);
             }
-            return sum;
-        });
+            sum += 0.5 * law.stiffness * length * length * own;
+        }
+        return sum;
+    });
 }
 
 double LatticeSweep::branch_energy(const Aggregate& matter, const LatticeLaw& law,

@@ -11,16 +11,6 @@ namespace {
 
 constexpr std::size_t kRunsPerChunk = 64;
 
-std::size_t chunks_of(std::size_t runs) { return (runs + kRunsPerChunk - 1) / kRunsPerChunk; }
-
-template <typename Act>
-void for_each_chunked(std::size_t count, const Act& act) {
-    parallel_for(chunks_of(count), [&](std::size_t chunk) {
-        const std::size_t end = std::min(count, (chunk + 1) * kRunsPerChunk);
-        for (std::size_t n = chunk * kRunsPerChunk; n < end; ++n) act(n);
-    });
-}
-
 int run_holding(const std::vector<ParticleRun>& runs, int i, int j, int k) {
     const auto after = std::upper_bound(runs.begin(), runs.end(), std::array{k, j, i},
                                         [](const std::array<int, 3>& at, const ParticleRun& r) {
@@ -78,7 +68,7 @@ LatticeTransfer::LatticeTransfer(const Lattice& fine, const Lattice& coarse, con
 }
 
 void LatticeTransfer::add_prolonged(const Vec3Array& coarse, Vec3Array& fine) const {
-    for_each_chunked(stretch_.size(), [&](std::size_t n) {
+    parallel_each(stretch_.size(), kRunsPerChunk, [&](std::size_t n) {
         const Stretch& s = stretch_[n];
         const auto add = [&](const std::vector<double>& from, std::vector<double>& to) {
             int phase = s.phase;
@@ -104,7 +94,7 @@ void LatticeTransfer::add_prolonged(const Vec3Array& coarse, Vec3Array& fine) co
 void LatticeTransfer::restricted(const Vec3Array& fine, Vec3Array& coarse) const {
     const std::size_t count = coarse_run_.back().first + coarse_run_.back().count;
     coarse.resize(count);
-    for_each_chunked(coarse_run_.size(), [&](std::size_t r) {
+    parallel_each(coarse_run_.size(), kRunsPerChunk, [&](std::size_t r) {
         const ParticleRun& run = coarse_run_[r];
         const auto take = [&](const std::vector<double>& from, std::vector<double>& to) {
             std::fill_n(to.begin() + run.first, run.count, 0.0);

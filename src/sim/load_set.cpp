@@ -80,12 +80,7 @@ void LoadSet::connections_changed(const Aggregate& matter) {
     const std::size_t count = matter.surface.size();
     Parted parted;
     parted.is_off.resize(count);
-    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-        for (std::size_t p = chunk * kChunk; p < end; ++p) {
-            parted.is_off[p] = is_parted(matter, p);
-        }
-    });
+    parallel_each(count, kChunk, [&](std::size_t p) { parted.is_off[p] = is_parted(matter, p); });
     if (std::find(parted.is_off.begin(), parted.is_off.end(), 1) != parted.is_off.end()) {
         parted.pieces = find_pieces(matter);
         const std::vector<OpenFace> open = laid_open(matter);
@@ -204,13 +199,10 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
     const double pressure = strength * load.pressure;
     if (pressure == 0) return force;
     const std::vector<double> area = areas_of(load, matter);
-    parallel_for((points + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(points, (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            if (area[n] == 0) continue;
-            force[n] = load.share_of(n) *
-                       pressure_force(pressure, surface_area_vector(matter, load.point[n]));
-        }
+    parallel_each(points, kChunk, [&](std::size_t n) {
+        if (area[n] == 0) return;
+        force[n] = load.share_of(n) *
+                   pressure_force(pressure, surface_area_vector(matter, load.point[n]));
     });
     for (std::size_t n = 0; n < face.size(); ++n) {
         force[points + n] = pressure_force(pressure, face[n].outward(matter.particle_position));

@@ -187,23 +187,19 @@ void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>
 void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                             Vec3Array& force) {
     if (batches_.cell.empty()) return;
-    const std::size_t batches = batches_.count();
     const int width = vector_width();
-    parallel_for((batches + kBatchesPerChunk - 1) / kBatchesPerChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(batches, (chunk + 1) * kBatchesPerChunk);
-        for (std::size_t b = chunk * kBatchesPerChunk; b < end; ++b) {
-            MixedBatch batch{};
-            batch.matter = &matter;
-            batch.count = batches_.first[b + 1] - batches_.first[b];
-            for (int n = 0; n < batch.count; ++n) {
-                batch.cell[n] = &matter.mixed_cell[batches_.cell[batches_.first[b] + n]];
-                batch.corner[n] = &batches_.corner[batches_.first[b] + n];
-            }
-            for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
-            batch.push = &push_[batches_.first[b]];
-            batch.seen = &seen_[batches_.first[b]];
-            (width == 8 ? wide_batch : width == 4 ? middle_batch : narrow_batch)(batch);
+    parallel_each(batches_.count(), kBatchesPerChunk, [&](std::size_t b) {
+        MixedBatch batch{};
+        batch.matter = &matter;
+        batch.count = batches_.first[b + 1] - batches_.first[b];
+        for (int n = 0; n < batch.count; ++n) {
+            batch.cell[n] = &matter.mixed_cell[batches_.cell[batches_.first[b] + n]];
+            batch.corner[n] = &batches_.corner[batches_.first[b] + n];
         }
+        for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
+        batch.push = &push_[batches_.first[b]];
+        batch.seen = &seen_[batches_.first[b]];
+        (width == 8 ? wide_batch : width == 4 ? middle_batch : narrow_batch)(batch);
     });
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         for (int c = 0; c < 8; ++c) {
@@ -273,13 +269,7 @@ double MixedCells::elastic_energy(const Aggregate& matter,
         }
         return sum;
     };
-    const std::size_t count = batches_.cell.size();
-    return ordered_sum((count + kCellsPerChunk - 1) / kCellsPerChunk, [&](std::size_t chunk) {
-        double sum = 0;
-        const std::size_t end = std::min(count, (chunk + 1) * kCellsPerChunk);
-        for (std::size_t n = chunk * kCellsPerChunk; n < end; ++n) sum += energy_of(n);
-        return sum;
-    });
+    return ordered_sum_of(batches_.cell.size(), kCellsPerChunk, energy_of);
 }
 
 }  // namespace swage

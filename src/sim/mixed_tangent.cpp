@@ -107,27 +107,23 @@ void MixedTangent::add_product(const Aggregate& matter, TangentKind kind,
                                const Vec3Array& direction, Vec3Array& result) {
     if (empty()) return;
     const std::vector<CellMatrix>& matrix = matrices(matter, kind);
-    parallel_for(
-        (batches_.cell.size() + kCellsPerChunk - 1) / kCellsPerChunk, [&](std::size_t chunk) {
-            const std::size_t end = std::min(batches_.cell.size(), (chunk + 1) * kCellsPerChunk);
-            for (std::size_t n = chunk * kCellsPerChunk; n < end; ++n) {
-                double way[24], sum[24] = {};
-                for (int c = 0; c < 8; ++c) {
-                    const Vec3 v = direction.at(batches_.corner[n][c]);
-                    for (int i = 0; i < 3; ++i) way[3 * c + i] = v[i];
-                }
-                const double* own = matrix[n].upper.data();
-                for (int column = 0; column < 24; ++column) {
-                    double mine = 0;
-                    for (int row = 0; row < column; ++row, ++own) {
-                        mine += *own * way[row];
-                        sum[row] += *own * way[column];
-                    }
-                    sum[column] += mine + *own++ * way[column];
-                }
-                std::copy_n(sum, 24, push_[n].begin());
+    parallel_each(batches_.cell.size(), kCellsPerChunk, [&](std::size_t n) {
+        double way[24], sum[24] = {};
+        for (int c = 0; c < 8; ++c) {
+            const Vec3 v = direction.at(batches_.corner[n][c]);
+            for (int i = 0; i < 3; ++i) way[3 * c + i] = v[i];
+        }
+        const double* own = matrix[n].upper.data();
+        for (int column = 0; column < 24; ++column) {
+            double mine = 0;
+            for (int row = 0; row < column; ++row, ++own) {
+                mine += *own * way[row];
+                sum[row] += *own * way[column];
             }
-        });
+            sum[column] += mine + *own++ * way[column];
+        }
+        std::copy_n(sum, 24, push_[n].begin());
+    });
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         for (int c = 0; c < 8; ++c) {
             result.add(batches_.corner[n][c],

@@ -73,18 +73,14 @@ void NodeStiffness::add_diagonal(ParticleId p, double stiffness) {
 }
 
 void NodeStiffness::product(const Vec3Array& x, Vec3Array& result) const {
-    const std::size_t count = size();
-    result.resize(count);
-    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-        for (std::size_t p = chunk * kChunk; p < end; ++p) {
-            Vec3 sum = Vec3::Zero();
-            for (int near = 0; near < kNear; ++near) {
-                const ParticleId q = neighbour_[p * kNear + near];
-                if (q >= 0) sum += block_[p * kNear + near] * x.at(q);
-            }
-            result.set(p, sum);
+    result.resize(size());
+    parallel_each(size(), kChunk, [&](std::size_t p) {
+        Vec3 sum = Vec3::Zero();
+        for (int near = 0; near < kNear; ++near) {
+            const ParticleId q = neighbour_[p * kNear + near];
+            if (q >= 0) sum += block_[p * kNear + near] * x.at(q);
         }
+        result.set(p, sum);
     });
 }
 

@@ -33,14 +33,6 @@ double at_end(double distance) {
 
 Vec3i floor_of(const Vec3& g) { return g.array().floor().cast<int>(); }
 
-template <typename Body>
-void in_chunks(std::size_t count, const Body& body) {
-    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t stop = std::min(count, (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < stop; ++n) body(n);
-    });
-}
-
 }  // namespace
 
 SurfaceDepth interpolate_depth(const std::array<float, 8>& d, const Vec3& p) {
@@ -238,7 +230,7 @@ void RestSurface::measure_corners(const Lattice& lattice) {
         }
     }
     std::vector<float> value(corner.size());
-    in_chunks(corner.size(), [&](std::size_t n) {
+    parallel_each(corner.size(), kChunk, [&](std::size_t n) {
         value[n] = static_cast<float>(distance(corner[n].cast<double>()));
         bool is_outer = false;
         for (int c = 0; c < 8; ++c) {
@@ -283,7 +275,7 @@ bool RestSurface::is_flat(int slot, const Near& near) const {
 
 // Cells whose corners do not tell enough: a gentle error, but not in what lies deep.
 void RestSurface::find_fine(std::vector<char>& is_fine) const {
-    in_chunks(site_.size(), [&](std::size_t n) {
+    parallel_each(site_.size(), kChunk, [&](std::size_t n) {
         const auto [low, high] = std::minmax_element(corner_[n].begin(), corner_[n].end());
         if (*high < -kDeep && -4 < *low) return;
         const Vec3 site = site_[n].cast<double>();
@@ -312,7 +304,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
         slot.push_back(static_cast<int>(n));
     }
     fine_.assign(slot.size(), {});
-    in_chunks(slot.size(), [&](std::size_t f) {
+    parallel_each(slot.size(), kChunk, [&](std::size_t f) {
         const int n = slot[f];
         const Vec3 site = site_[n].cast<double>();
         // Neighbours that are sampled at their corners only.

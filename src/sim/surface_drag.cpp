@@ -35,7 +35,7 @@ SurfaceDrag::SurfaceDrag(const Aggregate& matter, const SimSettings& settings, d
     }
     connections_changed(matter);
     push_.resize(cell_.size());
-    chunk_.resize((cell_.size() + kChunk - 1) / kChunk);
+    chunk_.resize(chunks_of(cell_.size(), kChunk));
 }
 
 void SurfaceDrag::connections_changed(const Aggregate& matter) {

@@ -166,12 +166,8 @@ LooseParticles find_loose(const Aggregate& matter) {
     for (const SliverCorner& sliver : slivers) cells.push_back(sliver.cell);
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    parallel_for((cells.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(cells.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            around[cells[n]] = firm_around(matter, cells[n]);
-        }
-    });
+    parallel_each(cells.size(), kChunk,
+                  [&](std::size_t n) { around[cells[n]] = firm_around(matter, cells[n]); });
     for (std::size_t begin = 0, end = 0; begin < slivers.size(); begin = end) {
         const ParticleId particle = slivers[begin].particle;
         while (end < slivers.size() && slivers[end].particle == particle) ++end;
@@ -211,28 +207,24 @@ std::vector<Vec3> loose_displacements(const LooseParticles& loose, const Aggrega
         return std::span(all).subspan(first[n], first[n + 1] - first[n]);
     };
     std::vector<Vec3> moved(loose.particle.size());
-    parallel_for((moved.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(moved.size(), (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            const ParticleId own = loose.particle[n];
-            moved[n] = displacement(own);
-            Vec3 should = sum(part(loose.share, loose.first_share, n));
-            if ((moved[n] - should).squaredNorm() <= most * most) continue;
-            const std::span<const CellId> need = part(loose.need, loose.first_need, n);
-            const bool hangs = std::all_of(need.begin(), need.end(), [&](CellId cell) {
-                return all_edges_hold(matter, cell);
-            });
-            if (!hangs) {
-                const std::vector<CellId> firm =
-                    firm_left(matter, own, need.first(loose.sliver_count[n]));
-                if (firm.empty()) continue;
-                std::vector<LooseParticles::Share> share;
-                add_shares(matter, firm, reference.at(own), share);
-                should = sum(share);
-            }
-            const Vec3 away = moved[n] - should;
-            if (away.squaredNorm() > most * most) moved[n] = should + most / away.norm() * away;
+    parallel_each(moved.size(), kChunk, [&](std::size_t n) {
+        const ParticleId own = loose.particle[n];
+        moved[n] = displacement(own);
+        Vec3 should = sum(part(loose.share, loose.first_share, n));
+        if ((moved[n] - should).squaredNorm() <= most * most) return;
+        const std::span<const CellId> need = part(loose.need, loose.first_need, n);
+        const bool hangs = std::all_of(need.begin(), need.end(),
+                                       [&](CellId cell) { return all_edges_hold(matter, cell); });
+        if (!hangs) {
+            const std::vector<CellId> firm =
+                firm_left(matter, own, need.first(loose.sliver_count[n]));
+            if (firm.empty()) return;
+            std::vector<LooseParticles::Share> share;
+            add_shares(matter, firm, reference.at(own), share);
+            should = sum(share);
         }
+        const Vec3 away = moved[n] - should;
+        if (away.squaredNorm() > most * most) moved[n] = should + most / away.norm() * away;
     });
     return moved;
 }

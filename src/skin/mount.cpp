@@ -64,12 +64,8 @@ Mount mount_mesh(const std::vector<Vec3>& reference, const Aggregate& matter, Sk
     mount.reference = reference;
     mount.cell.resize(reference.size());
     constexpr std::size_t kPlaces = 4096;
-    parallel_for((reference.size() + kPlaces - 1) / kPlaces, [&](std::size_t chunk) {
-        const std::size_t end = std::min(reference.size(), (chunk + 1) * kPlaces);
-        for (std::size_t v = chunk * kPlaces; v < end; ++v) {
-            mount.cell[v] = carrying_cell(matter, reference[v]);
-        }
-    });
+    parallel_each(reference.size(), kPlaces,
+                  [&](std::size_t v) { mount.cell[v] = carrying_cell(matter, reference[v]); });
     mount.side.assign(reference.size(), kAllCorners);
     finish_mount(mount, matter);
     return mount;
@@ -117,10 +113,9 @@ template <typename Visit>
 void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& visit) {
     std::vector<ParticleFrame> frame;
     particle_frames(matter, mount.stencil, mount.particle, frame);
-    parallel_for((mount.group.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(mount.group.size(), (chunk + 1) * kChunk);
+    parallel_chunks(mount.group.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         std::vector<Vec3> moved;
-        for (std::size_t g = chunk * kChunk; g < end; ++g) {
+        for (std::size_t g = begin; g < end; ++g) {
             const Mount::CellGroup& group = mount.group[g];
             std::array<ParticleId, 8> corner;
             CellFrames cell;

@@ -146,17 +146,11 @@ NewLook::Face NewLook::look_of(const std::array<Vec3, 4>& place,
 }
 
 void NewLook::paint(const std::vector<Vec3>& place, TriMesh& mesh) const {
-    const auto for_each = [](std::size_t count, const auto& act) {
-        parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-            const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-            for (std::size_t n = chunk * kChunk; n < end; ++n) act(n);
-        });
-    };
     std::vector<TriangleTree::Nearest> near(place.size());
-    for_each(place.size(), [&](std::size_t v) { near[v] = tree_.nearest(place[v]); });
+    parallel_each(place.size(), kChunk, [&](std::size_t v) { near[v] = tree_.nearest(place[v]); });
     const std::size_t count = mesh.triangle.size() / 2;
     std::vector<Face> face(count);
-    for_each(count, [&](std::size_t f) {
+    parallel_each(count, kChunk, [&](std::size_t f) {
         if (mesh.triangle_material[2 * f] == 1) {
             face[f].like = near[mesh.triangle[2 * f][0]].triangle;
             return;

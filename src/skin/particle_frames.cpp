@@ -176,18 +176,13 @@ FrameStencil make_frame_stencil(const Aggregate& matter) {
 
 void particle_frames(const Aggregate& matter, const FrameStencil& stencil,
                      const std::vector<ParticleId>& particle, std::vector<ParticleFrame>& frame) {
-    const std::size_t count = particle.size();
-    frame.resize(count);
+    frame.resize(particle.size());
     Field field{matter, stencil, {}};
     if (!stencil.loose.particle.empty()) {
         field.loose = loose_displacements(stencil.loose, matter, stencil.reference);
     }
-    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < end; ++n) {
-            frame[n] = particle_frame(field, particle[n]);
-        }
-    });
+    parallel_each(particle.size(), kChunk,
+                  [&](std::size_t n) { frame[n] = particle_frame(field, particle[n]); });
 }
 
 }  // namespace swage

@@ -45,14 +45,6 @@ class Placer {
   private:
     std::size_t count() const { return surface_.site.size(); }
 
-    template <typename F>
-    void for_each_point(const F& f) {
-        parallel_for((count() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-            const std::size_t end = std::min(count(), (chunk + 1) * kChunk);
-            for (std::size_t s = chunk * kChunk; s < end; ++s) f(s);
-        });
-    }
-
     void start() {
         place_.resize(count());
         const CellBox box = cell_box(matter_, 0);
@@ -188,7 +180,7 @@ class Placer {
         const auto moves = [&](std::size_t s) { return outer_[s] && !exact_[s] && !on_cut_[s]; };
         for (int round = 0; round < kEvenRounds; ++round) {
             std::vector<Vec3> next = place_;
-            for_each_point([&](std::size_t s) {
+            parallel_each(count(), kChunk, [&](std::size_t s) {
                 if (moves(s)) next[s] += 0.5 * (mean_of_neighbors(s) - place_[s]);
             });
             place_ = std::move(next);
@@ -207,7 +199,7 @@ class Placer {
 
     void settle(bool relax, bool only_at_cuts) {
         std::vector<Vec3> next = place_;
-        for_each_point([&](std::size_t s) {
+        parallel_each(count(), kChunk, [&](std::size_t s) {
             if (only_at_cuts && !slides_[s]) return;
             Vec3& p = next[s];
             const bool cut = target_[s].has_value();

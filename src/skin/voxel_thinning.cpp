@@ -103,19 +103,15 @@ class Thinning {
     // The farthest out first.
     void find_outside(const SurfaceSamples& samples) {
         const std::vector<CellRun>& runs = matter_.lattice.cell_run;
-        std::vector<std::vector<Candidate>> found((runs.size() + kChunk - 1) / kChunk);
-        parallel_for(found.size(), [&](std::size_t chunk) {
-            const std::size_t end = std::min(runs.size(), (chunk + 1) * kChunk);
-            for (std::size_t r = chunk * kChunk; r < end; ++r) {
+        const auto find = [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
+            for (std::size_t r = begin; r < end; ++r) {
                 for (int n = 0; n < runs[r].count; ++n) {
                     find_in_cell(samples, runs[r].first + n, {runs[r].i + n, runs[r].j, runs[r].k},
-                                 found[chunk]);
+                                 found);
                 }
             }
-        });
-        for (const auto& part : found) {
-            candidate_.insert(candidate_.end(), part.begin(), part.end());
-        }
+        };
+        candidate_ = parallel_collect<Candidate>(runs.size(), kChunk, find);
         std::stable_sort(
             candidate_.begin(), candidate_.end(),
             [](const Candidate& p, const Candidate& q) { return p.height > q.height; });
