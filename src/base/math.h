@@ -18,6 +18,11 @@ using Quat = Eigen::Quaterniond;
 
 inline constexpr double kPi = std::numbers::pi;
 
+// From a cell's lowest corner to corner c: bit 0 along x, bit 1 along y, bit 2 along z.
+inline Vec3i corner_step(int c) { return {c & 1, c >> 1 & 1, c >> 2}; }
+// To the n-th of the 27 sites around a site, itself (n = 13) among them.
+inline Vec3i neighbor_step(int n) { return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}; }
+
 // A rigid placement: `world_from_tool * point_in_tool` is a point in the world.
 struct Pose {
     Quat rotation = Quat::Identity();

@@ -138,8 +138,7 @@ class Nets {
                     Cell cell;
                     cell.at = {i, j, k};
                     for (int c = 0; c < 8; ++c)
-                        if (inside(cell.at + Vec3i(c & 1, c >> 1 & 1, c >> 2)))
-                            cell.inside |= 1 << c;
+                        if (inside(cell.at + corner_step(c))) cell.inside |= 1 << c;
                     if (cell.inside == 0 || cell.inside == 255) continue;
                     cell.find_sheets();
                     cell_at(cell.at) = static_cast<int>(cells_.size());

@@ -2,7 +2,8 @@
 #include "machines/region.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <unordered_map>
 
 #include "laws/pressure.h"
 
@@ -82,23 +83,20 @@ bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
     const double a = matter.lattice.spacing;
     std::vector<Vec3> place;
     for (std::size_t p = 0; p < surface.size(); ++p) place.push_back(matter.surface_reference(p));
-    using Bin = std::array<int, 3>;
-    const auto bin_of = [&](std::size_t p) -> Bin {
-        const Vec3 at = (place[p] - matter.lattice.origin) / a;
-        return {int(std::floor(at.x())), int(std::floor(at.y())), int(std::floor(at.z()))};
+    const auto site_of = [&](std::size_t p) -> Vec3i {
+        return ((place[p] - matter.lattice.origin) / a).array().floor().cast<int>();
     };
-    std::map<Bin, std::vector<int>> chosen;
+    std::unordered_map<std::uint64_t, std::vector<int>> chosen;  // looked up only
     std::vector<char> is_chosen(surface.size(), 0);
     for (int p : points) {
-        chosen[bin_of(p)].push_back(p);
+        chosen[key_of(site_of(p))].push_back(p);
         is_chosen[p] = 1;
     }
     for (std::size_t p = 0; p < surface.size(); ++p) {
         if (is_chosen[p]) continue;
-        const Bin home = bin_of(p);
+        const Vec3i home = site_of(p);
         for (int n = 0; n < 27; ++n) {
-            const auto at =
-                chosen.find({home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1});
+            const auto at = chosen.find(key_of(home + neighbor_step(n)));
             if (at == chosen.end()) continue;
             for (int q : at->second) {
                 const double way = (place[p] - place[q]).norm();

@@ -146,9 +146,7 @@ CellId Lattice::cell_at(int i, int j, int k) const {
         k >= cell_count.z()) {
         return -1;
     }
-    const std::size_t row = j + static_cast<std::size_t>(cell_count.y()) * k;
-    for (int r = cell_row_begin[row]; r < cell_row_begin[row + 1]; ++r) {
-        const CellRun& run = cell_run[r];
+    for (const CellRun& run : cell_runs(j, k)) {
         if (i >= run.i && i < run.i + run.count) return run.first + (i - run.i);
     }
     return -1;
@@ -170,9 +168,7 @@ Vec3i Lattice::cell_site(CellId cell) const {
 
 std::array<ParticleId, 4> Lattice::cell_row(CellId cell) const {
     const CellRun& run = run_of_cell(cell_run, cell);
-    std::array<ParticleId, 4> row = run.row;
-    for (ParticleId& p : row) p += cell - run.first;
-    return row;
+    return run.row_at(cell - run.first);
 }
 
 std::vector<CellId> Lattice::cells_by_low_corner() const {

@@ -91,6 +91,11 @@ struct CellRun {
     CellId first;
     int count;
     std::array<ParticleId, 4> row;
+
+    // The first of cell n's two in each row.
+    std::array<ParticleId, 4> row_at(int n) const {
+        return {row[0] + n, row[1] + n, row[2] + n, row[3] + n};
+    }
 };
 
 // Those of one (y, z), of runs in the order of a lattice's.
@@ -107,12 +112,17 @@ struct Lattice {
         cell_row_begin;  // for (j, k) = j + cell_count.y() * k: first cell_run; one more at the end
 
     double cell_volume() const { return spacing * spacing * spacing; }
+    // Those of one (y, z) within the box.
+    std::span<const CellRun> cell_runs(int j, int k) const {
+        const std::size_t row = j + static_cast<std::size_t>(cell_count.y()) * k;
+        return {cell_run.data() + cell_row_begin[row], cell_run.data() + cell_row_begin[row + 1]};
+    }
     // The cell at this site, or -1.
     CellId cell_at(int i, int j, int k) const;
     Vec3i cell_site(CellId cell) const;
     // Corner c has bit 0 along x, bit 1 along y, bit 2 along z.
     std::array<ParticleId, 8> cell_corners(CellId cell) const;
-    std::array<ParticleId, 4> cell_row(CellId cell) const;  // the lower ends, as CellRun::row
+    std::array<ParticleId, 4> cell_row(CellId cell) const;  // CellRun::row_at
     // Of each particle the cell whose lowest corner it is, or -1.
     std::vector<CellId> cells_by_low_corner() const;
 };

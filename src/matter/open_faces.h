@@ -13,9 +13,7 @@ inline std::vector<char> whole_cells(const Aggregate& matter) {
     std::vector<char> whole(matter.cell_fill.size(), 0);
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
-            whole[run.first + n] = cell_is_whole(matter, row);
+            whole[run.first + n] = cell_is_whole(matter, run.row_at(n));
         }
     }
     return whole;

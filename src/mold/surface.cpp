@@ -62,7 +62,7 @@ CellId firm_cell(const Lattice& lattice, const std::vector<float>& fill, const V
     CellId best = -1;
     double best_distance = 0;
     for (int n = 0; n < 27; ++n) {
-        const Vec3i site = home + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const Vec3i site = home + neighbor_step(n);
         const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
         if (cell < 0) continue;
         const double d = distance_squared(point, site);

@@ -189,9 +189,8 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                     const double d_alpha =
                         flow(law_, distortion[n], fresh ? 0.0 : double(matter.cell_hardening[id]));
                     if (!(d_alpha > 0)) continue;
-                    FlowingCell cell{id, run.row, theta[n], flow_share(distortion[n], d_alpha),
-                                     d_alpha};
-                    for (ParticleId& p : cell.row) p += at + n;
+                    FlowingCell cell{id, run.row_at(at + n), theta[n],
+                                     flow_share(distortion[n], d_alpha), d_alpha};
                     if (!cell_is_sound(matter, id, cell.row)) continue;  // has no size any more
                     flowing.push_back(cell);
                 }

@@ -208,9 +208,7 @@ void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* tu
     const std::vector<CellRun>& runs = this->runs(matter);
     for_each_cell(matter, 0, matter.lattice.cell_run.size(),
                   [&](const CellRun& run, int n, CellId cell) {
-                      std::array<ParticleId, 4> row = run.row;
-                      for (ParticleId& p : row) p += n;
-                      if (cell_is_sound(matter, cell, row)) return;
+                      if (cell_is_sound(matter, cell, run.row_at(n))) return;
                       fill_[cell] = 0;
                       if (turned && carried[cell] > 0) {
                           turned->push_back({&run, n, energy_of(matter, run, n)});

@@ -106,9 +106,7 @@ void add_cells_below(const Aggregate& matter, const CellRun& run, double limit,
                 volume[n] = material_gradient(matter, run, at + n).determinant();
             }
             if (!(volume[n] < limit)) continue;
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += at + n;
-            if (!cell_is_sound(matter, run.first + at + n, row)) continue;
+            if (!cell_is_sound(matter, run.first + at + n, run.row_at(at + n))) continue;
             found.push_back({&run, at + n, volume[n]});
         }
     }

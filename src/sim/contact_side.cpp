@@ -128,7 +128,7 @@ void ContactSide::find_near() {
             };
             // A sliver may be no cell: then its neighbours begin.
             if (!visit(Vec3i::Zero())) {
-                for (int n = 0; n < 27; ++n) visit({n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
+                for (int n = 0; n < 27; ++n) visit(neighbor_step(n));
             }
             while (!open.empty()) {
                 const Vec3i at = open.back();

@@ -33,9 +33,7 @@ void for_cells_near(const Lattice& lattice, const Vec3i& site, double reach, con
          k <= std::min(lattice.cell_count.z() - 1, site.z() + most); ++k) {
         for (int j = std::max(0, site.y() - most);
              j <= std::min(lattice.cell_count.y() - 1, site.y() + most); ++j) {
-            const std::size_t row = j + std::size_t(lattice.cell_count.y()) * k;
-            for (int r = lattice.cell_row_begin[row]; r < lattice.cell_row_begin[row + 1]; ++r) {
-                const CellRun& run = lattice.cell_run[r];
+            for (const CellRun& run : lattice.cell_runs(j, k)) {
                 const int end = std::min(run.count, site.x() + most + 1 - run.i);
                 for (int n = std::max(0, site.x() - most - run.i); n < end; ++n) {
                     const Vec3i way = Vec3i(run.i + n, j, k) - site;
@@ -47,9 +45,7 @@ void for_cells_near(const Lattice& lattice, const Vec3i& site, double reach, con
 }
 
 bool is_sound(const Aggregate& matter, const CellRun& run, int n) {
-    std::array<ParticleId, 4> row = run.row;
-    for (ParticleId& p : row) p += n;
-    return cell_is_sound(matter, run.first + n, row);
+    return cell_is_sound(matter, run.first + n, run.row_at(n));
 }
 
 Mat3 stretch_of(const Aggregate& matter, const CellRun& run, int n) {

@@ -142,8 +142,7 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
                 if (carried && (*carried)[cell] <= 0) continue;
                 const double onset = laws.of_cell(matter, cell).onset;
                 if (!(onset > 0)) continue;
-                std::array<ParticleId, 4> row = run.row;
-                for (ParticleId& p : row) p += n;
+                const std::array<ParticleId, 4> row = run.row_at(n);
                 if (!carried && !cell_is_sound(matter, cell, row)) continue;
                 if (const MixedCell* two = matter.mixed_at(cell)) {
                     const double share = mixed_share(matter, laws, material, *two);
@@ -172,11 +171,7 @@ std::vector<const CellRun*> cells_beside(
             for (int k = std::max(0, run->k - 1); k <= run->k && k < lattice.cell_count.z(); ++k) {
                 for (int j = std::max(0, run->j - 1); j <= run->j && j < lattice.cell_count.y();
                      ++j) {
-                    const std::size_t row = j + std::size_t(lattice.cell_count.y()) * k;
-                    for (int r = lattice.cell_row_begin[row]; r < lattice.cell_row_begin[row + 1];
-                         ++r) {
-                        runs.push_back(&lattice.cell_run[r]);
-                    }
+                    for (const CellRun& one : lattice.cell_runs(j, k)) runs.push_back(&one);
                 }
             }
         }

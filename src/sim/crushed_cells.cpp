@@ -206,9 +206,7 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
                        z = f.col(0).cross(f.col(1));
             const double cofactor = x.squaredNorm() + y.squaredNorm() + z.squaredNorm();
             if (cofactor < kSqueezed) continue;
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
-            if (!cell_is_sound(matter, id, row)) continue;
+            if (!cell_is_sound(matter, id, run.row_at(n))) continue;
             const double volume = f.col(0).dot(x), slope = guarded_strain(volume).slope;
             const double more = cofactor * slope * slope - 3;
             if (!(volume > 0) || !(more > 0)) continue;

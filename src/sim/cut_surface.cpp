@@ -32,7 +32,7 @@ CutSurface::CutSurface(const Lattice& lattice, const std::vector<char>& is_whole
         const Vec3i site(run.i + n, run.j, run.k);
         for (int c = 0; c < 8; ++c) {
             if ((c >> (face >> 1) & 1) != (face & 1)) continue;
-            open.emplace_back(site + Vec3i(c & 1, c >> 1 & 1, c >> 2));
+            open.emplace_back(site + corner_step(c));
         }
         if (!skin_.empty() && skin_.back() == run.first + n) return;
         skin_.push_back(run.first + n);
@@ -54,7 +54,7 @@ CutSurface::CutSurface(const Lattice& lattice, const std::vector<char>& is_whole
             slot_[cell] = static_cast<int>(corner_.size());
             corner_.emplace_back();
             for (int c = 0; c < 8; ++c) {
-                const auto found = depth.find(key_of(at + Vec3i(c & 1, c >> 1 & 1, c >> 2)));
+                const auto found = depth.find(key_of(at + corner_step(c)));
                 corner_.back()[c] = found == depth.end() ? kDeep : found->second;
             }
         });

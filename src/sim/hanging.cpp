@@ -190,8 +190,7 @@ Pieces find_firm_pieces(const Aggregate& matter, const std::vector<HeldPoint>& h
     std::vector<char> joined(matter.particle_count(), 0);
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
-            std::array<ParticleId, 4> row = run.row;
-            for (ParticleId& p : row) p += n;
+            const std::array<ParticleId, 4> row = run.row_at(n);
             if (!cell_is_whole(matter, row)) continue;
             for (ParticleId p : row) {
                 sets.unite(row[0], p);

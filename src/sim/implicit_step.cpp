@@ -21,10 +21,10 @@ const char* ImplicitStep::cannot(const Aggregate& matter) {
     }
     if (matter.breaks()) return "matter that breaks has no exact tangent";
     for (const CellRun& run : matter.lattice.cell_run) {
-        std::array<ParticleId, 4> row = run.row;
         for (int n = 0; n < run.count; ++n) {
-            if (!cell_is_whole(matter, row)) return "matter that is cut has no exact tangent";
-            for (ParticleId& p : row) ++p;
+            if (!cell_is_whole(matter, run.row_at(n))) {
+                return "matter that is cut has no exact tangent";
+            }
         }
     }
     return nullptr;

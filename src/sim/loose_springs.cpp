@@ -56,9 +56,7 @@ void LooseSprings::connections_changed(const Aggregate& matter, const std::vecto
     if (beside_sweep_ && !laws_.break_any()) return;
     const auto is_sound = [&](const CellRun& run, int n) {
         if (carried) return (*carried)[run.first + n] > 0;
-        std::array<ParticleId, 4> row = run.row;
-        for (ParticleId& p : row) p += n;
-        return cell_is_sound(matter, run.first + n, row);
+        return cell_is_sound(matter, run.first + n, run.row_at(n));
     };
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {

@@ -222,7 +222,7 @@ void RestSurface::measure_corners(const Lattice& lattice) {
     std::vector<std::array<int, 8>> of_cell(site_.size());
     for (std::size_t n = 0; n < site_.size(); ++n) {
         for (int c = 0; c < 8; ++c) {
-            const Vec3i at = site_[n] + Vec3i(c & 1, c >> 1 & 1, c >> 2);
+            const Vec3i at = site_[n] + corner_step(c);
             const auto [entry, is_new] =
                 number.try_emplace(key_of(at), static_cast<int>(corner.size()));
             if (is_new) corner.push_back(at);
@@ -234,7 +234,7 @@ void RestSurface::measure_corners(const Lattice& lattice) {
         value[n] = static_cast<float>(distance(corner[n].cast<double>()));
         bool is_outer = false;
         for (int c = 0; c < 8; ++c) {
-            const Vec3i at = corner[n] - Vec3i(c & 1, c >> 1 & 1, c >> 2);
+            const Vec3i at = corner[n] - corner_step(c);
             is_outer = is_outer || lattice.cell_at(at.x(), at.y(), at.z()) < 0;
         }
         if (is_outer) value[n] = static_cast<float>(at_end(value[n]));
@@ -263,7 +263,7 @@ bool RestSurface::is_flat(int slot, const Near& near) const {
     for (int q = 0; q < planes; ++q) {
         bool is_this = true;
         for (int c = 0; c < 8; ++c) {
-            const Vec3 at = site_[slot].cast<double>() + Vec3(c & 1, c >> 1 & 1, c >> 2);
+            const Vec3 at = (site_[slot] + corner_step(c)).cast<double>();
             const double off = normal_[plane[q]].dot(at - point_[plane[q]]) - corner_[slot][c];
             if (off > kRounds) return false;
             is_this = is_this && off > -kRounds;
@@ -310,7 +310,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
         // Neighbours that are sampled at their corners only.
         std::array<bool, 27> coarse, none;
         for (int m = 0; m < 27; ++m) {
-            const Vec3i at = site_[n] + Vec3i(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
+            const Vec3i at = site_[n] + neighbor_step(m);
             const CellId cell = lattice.cell_at(at.x(), at.y(), at.z());
             none[m] = cell < 0;
             coarse[m] = cell >= 0 && slot_[cell] >= 0 && !is_fine[slot_[cell]];
@@ -335,7 +335,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
             const Vec3 p = at.cast<double>() / kFine;
             bool is_coarse = false, is_outer = false;
             for (int m = 0; m < 27; ++m) {
-                const Vec3i to(m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1);
+                const Vec3i to = neighbor_step(m);
                 const bool shares = (to.x() == 0 || to.x() == side(0)) &&
                                     (to.y() == 0 || to.y() == side(1)) &&
                                     (to.z() == 0 || to.z() == side(2));

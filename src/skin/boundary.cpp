@@ -186,8 +186,7 @@ void part_touching(const Aggregate& matter, const VoxelSurface& surface,
         const int p = point[v];
         if (p < 0 || !shared[p] || cut[p]) continue;
         const CellBox box = cell_box(matter, owner[v].cell);
-        const int c = owner[v].corner;
-        const Vec3 half(c & 1, c >> 1 & 1, c >> 2);
+        const Vec3 half = corner_step(owner[v].corner).cast<double>();
         const Vec3 middle = Vec3::Constant(0.25) + 0.5 * half;  // of the voxel, in the cell
         const Vec3 way = box.low + middle.cwiseProduct(box.size) - reference[v];
         const double far = way.norm();

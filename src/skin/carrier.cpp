@@ -44,16 +44,12 @@ CellId carrying_cell(const Aggregate& matter, const Vec3& place) {
     const auto offer = [&](CellId cell, double d) {
         if (d < least || (d == least && cell < nearest)) least = d, nearest = cell;
     };
-    for (int k = -1; k <= 1; ++k) {
-        for (int j = -1; j <= 1; ++j) {
-            for (int i = -1; i <= 1; ++i) {
-                const Vec3i next = site + Vec3i(i, j, k);
-                const CellId cell = lattice.cell_at(next.x(), next.y(), next.z());
-                if (cell < 0) continue;
-                const Vec3 low = next.cast<double>(), high = low + Vec3::Ones();
-                offer(cell, (at - at.cwiseMax(low).cwiseMin(high)).squaredNorm());
-            }
-        }
+    for (int n = 0; n < 27; ++n) {
+        const Vec3i next = site + neighbor_step(n);
+        const CellId cell = lattice.cell_at(next.x(), next.y(), next.z());
+        if (cell < 0) continue;
+        const Vec3 low = next.cast<double>(), high = low + Vec3::Ones();
+        offer(cell, (at - at.cwiseMax(low).cwiseMin(high)).squaredNorm());
     }
     if (nearest >= 0 && least <= 1) return nearest;
     for (const CellRun& run : lattice.cell_run) {

@@ -257,7 +257,7 @@ class PlaneCut {
         CellId best = -1;
         CornerMask best_side = 0;
         for (int n = 0; n < 27; ++n) {
-            const Vec3i at = site + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            const Vec3i at = site + neighbor_step(n);
             const CellId cell = matter_.lattice.cell_at(at.x(), at.y(), at.z());
             if (cell < 0) continue;
             const CornerMask side =

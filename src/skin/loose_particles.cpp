@@ -46,14 +46,12 @@ std::vector<SliverCorner> sliver_corners(const Aggregate& matter) {
     return sliver;
 }
 
-Vec3i step_to(int neighbor) { return {neighbor % 3 - 1, neighbor / 3 % 3 - 1, neighbor / 9 - 1}; }
-
 // A bit for each of the 27 cells around this one that is firm.
 std::uint32_t firm_around(const Aggregate& matter, CellId cell) {
     const Vec3i site = matter.lattice.cell_site(cell);
     std::uint32_t firm = 0;
     for (int n = 0; n < 27; ++n) {
-        const Vec3i at = site + step_to(n);
+        const Vec3i at = site + neighbor_step(n);
         const CellId next = matter.lattice.cell_at(at.x(), at.y(), at.z());
         if (next >= 0 && is_firm(matter, next)) firm |= 1u << n;
     }
@@ -69,10 +67,10 @@ std::vector<CellId> nearest_firm(const Aggregate& matter, std::span<const Sliver
     for (const SliverCorner& sliver : slivers) {
         const std::uint32_t firm = around[sliver.cell];
         if (firm == 0) return {};
-        const Vec3 own(sliver.corner & 1, sliver.corner >> 1 & 1, sliver.corner >> 2);
+        const Vec3 own = corner_step(sliver.corner).cast<double>();
         for (int n = 0; n < 27; ++n) {
             if (!(firm >> n & 1)) continue;
-            const Vec3i step = step_to(n);
+            const Vec3i step = neighbor_step(n);
             const double d = (own - step.cast<double>() - Vec3::Constant(0.5)).squaredNorm();
             if (d > least) continue;
             if (d < least) nearest.clear(), least = d;
@@ -134,12 +132,12 @@ std::vector<CellId> firm_left(const Aggregate& matter, ParticleId particle,
         const int own = corner_of(matter, sliver, particle);
         const CornerMask held = corner_groups(matter, matter.lattice.cell_corners(sliver))[own];
         const Vec3i site = matter.lattice.cell_site(sliver);
-        const Vec3 at(own & 1, own >> 1 & 1, own >> 2);
+        const Vec3 at = corner_step(own).cast<double>();
         for (int n = 0; n < 27; ++n) {
-            const Vec3i step = step_to(n), next = site + step;
+            const Vec3i step = neighbor_step(n), next = site + step;
             bool shares = false;
             for (int c = 0; c < 8 && !shares; ++c) {
-                const Vec3i in_next = Vec3i(c & 1, c >> 1 & 1, c >> 2) - step;
+                const Vec3i in_next = corner_step(c) - step;
                 shares = (held >> c & 1) && in_next.minCoeff() >= 0 && in_next.maxCoeff() <= 1;
             }
             const double d = (at - step.cast<double>() - Vec3::Constant(0.5)).squaredNorm();

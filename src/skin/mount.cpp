@@ -168,7 +168,7 @@ double flowed_around(const Aggregate& matter, CellId cell) {
     float most = 0;
     const Vec3i site = matter.lattice.cell_site(cell);
     for (int n = 0; n < 27; ++n) {
-        const Vec3i at = site + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const Vec3i at = site + neighbor_step(n);
         const CellId near = matter.lattice.cell_at(at.x(), at.y(), at.z());
         if (near >= 0) most = std::max(most, matter.cell_hardening[near]);
     }

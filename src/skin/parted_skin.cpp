@@ -49,16 +49,13 @@ std::vector<BrokenFace> faces_to_part(const Aggregate& matter, const Mount& moun
     const auto add = [&](const Vec3i& site, int axis) {
         if (known.insert(key_of(site, axis)).second) faces.push_back({site, axis});
     };
-    const auto corner_site = [](const Vec3i& cell, int c) -> Vec3i {
-        return cell + Vec3i(c & 1, c >> 1 & 1, c >> 2);
-    };
     const std::size_t broken = faces.size();
     for (std::size_t f = 0; f < broken; ++f) {
         const BrokenFace face = faces[f];
         const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3, end = 1 << face.axis;
         for (int own = 0; own < 4; ++own) {  // the connection's place in a cell around it
             const auto corner = [&](int at) { return (at & 1) << a | (at >> 1) << b; };
-            const Vec3i low = face.site - corner_site(Vec3i::Zero(), corner(own));
+            const Vec3i low = face.site - corner_step(corner(own));
             const CellId cell = matter.lattice.cell_at(low.x(), low.y(), low.z());
             if (cell < 0) continue;
             const CornerGroups group =
@@ -67,7 +64,7 @@ std::vector<BrokenFace> faces_to_part(const Aggregate& matter, const Mount& moun
             for (int at = 0; at < 4; ++at) {
                 const bool here = group[corner(own)] >> corner(at) & 1 &&
                                   group[corner(own) | end] >> (corner(at) | end) & 1;
-                if (!here) add(corner_site(low, corner(at)), face.axis);
+                if (!here) add(low + corner_step(corner(at)), face.axis);
             }
         }
     }
@@ -158,7 +155,7 @@ PartedSkin::Mask PartedSkin::group_of(int v, const Vec3i& site) const {
             if (!(group >> c & 1)) continue;
             for (int d = 0; d < 3; ++d) {
                 if (!(way >> d & 1)) continue;
-                Vec3i at = low + Vec3i(c & 1, c >> 1 & 1, c >> 2);
+                Vec3i at = low + corner_step(c);
                 at[d] = low[d];
                 if (joined(at, d)) group |= static_cast<Mask>(1 << (c ^ 1 << d));
             }
@@ -213,7 +210,7 @@ void PartedSkin::take_sides(int copy, int v, const Vec3i& site, Mask group) {
     int side = 0;
     for (int c = 0; c < 8; ++c) {
         if (!(group >> c & 1)) continue;
-        const Vec3i at = low + Vec3i(c & 1, c >> 1 & 1, c >> 2) - cell;
+        const Vec3i at = low + corner_step(c) - cell;
         if ((at.array() < 0).any() || (at.array() > 1).any()) continue;
         side |= 1 << (at.x() + 2 * at.y() + 4 * at.z());
     }
@@ -221,7 +218,7 @@ void PartedSkin::take_sides(int copy, int v, const Vec3i& site, Mask group) {
         before = side;
         for (int c = 0; c < 8; ++c) {
             for (int d = 0; d < 3 && side >> c & 1; ++d) {
-                Vec3i at = cell + Vec3i(c & 1, c >> 1 & 1, c >> 2);
+                Vec3i at = cell + corner_step(c);
                 at[d] = cell[d];
                 if (joined(at, d)) side |= 1 << (c ^ 1 << d);
             }
@@ -252,9 +249,6 @@ void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
         const Vec3i n = at - low;
         return (n.array() < 0).any() || (n.array() > 3).any() ? -1 : n[0] + 4 * (n[1] + 4 * n[2]);
     };
-    const auto corner_site = [&](const Vec3i& cell, int c) -> Vec3i {
-        return cell + Vec3i(c & 1, c >> 1 & 1, c >> 2);
-    };
     struct Near {
         CellId cell;
         Vec3i site;
@@ -270,7 +264,7 @@ void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
         for (int c = 0; c < 8; ++c) {
             for (int d = 0; d < 3; ++d) {
                 if (c >> d & 1) continue;
-                const Vec3i lower = corner_site(at, c), upper = lower + Vec3i::Unit(d);
+                const Vec3i lower = at + corner_step(c), upper = lower + Vec3i::Unit(d);
                 if (joined(lower, d)) uncracked.unite(number(lower), number(upper));
                 if (uncracked_->matter.connection[d].weight[corner[c]] > 0) {
                     uncut.unite(number(lower), number(upper));
@@ -284,17 +278,17 @@ void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
         if (plane_[v][d] != kNoPlane) cube[d] = plane_[v][d];
     }
     for (int c = 0; c < 8; ++c) {
-        const int own = number(corner_site(cube, c));
+        const int own = number(cube + corner_step(c));
         if (group >> c & 1 && own >= 0) in_group[uncracked.root(own)] = 1;
         if (whole_side_[v] >> c & 1) {
-            on_side[uncut.root(number(corner_site(low + Vec3i::Ones(), c)))] = 1;
+            on_side[uncut.root(number(low + Vec3i::Ones() + corner_step(c)))] = 1;
         }
     }
     double least = std::numeric_limits<double>::infinity();
     for (const Near& other : near) {
         CornerMask side = 0;
         for (int c = 0; c < 8; ++c) {
-            const int own = number(corner_site(other.site, c));
+            const int own = number(other.site + corner_step(c));
             const bool is = in_group[uncracked.root(own)] && on_side[uncut.root(own)];
             side |= static_cast<CornerMask>(is << c);
         }

@@ -121,7 +121,7 @@ class Thinning {
                       std::vector<Candidate>& found) const {
         if (matter_.cell_fill[cell] >= kFull || !lies_by_full(site)) return;
         for (int corner = 0; corner < 8; ++corner) {
-            const Vec3i half(corner & 1, corner >> 1 & 1, corner >> 2);
+            const Vec3i half = corner_step(corner);
             const Vec3 middle = (site.cast<double>() + 0.5 * half.cast<double>()).array() + 0.25;
             const double height =
                 samples.height(matter_.lattice.origin + matter_.lattice.spacing * middle);
@@ -135,8 +135,7 @@ class Thinning {
     std::array<CellId, 8> cells_beside(const Vec3i& site, const Vec3i& half) const {
         std::array<CellId, 8> beside;
         for (int n = 0; n < 8; ++n) {
-            const Vec3i leaves(n & 1, n >> 1 & 1, n >> 2);
-            const Vec3i at = site + leaves.cwiseProduct(2 * half - Vec3i::Ones());
+            const Vec3i at = site + corner_step(n).cwiseProduct(2 * half - Vec3i::Ones());
             beside[n] = matter_.lattice.cell_at(at.x(), at.y(), at.z());
         }
         return beside;
@@ -152,7 +151,7 @@ class Thinning {
     // NOTE: of parts thinner than cells nothing may be left to hold what is taken away.
     bool lies_by_full(const Vec3i& site) const {
         for (int n = 0; n < 27; ++n) {
-            const Vec3i at = site + Vec3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            const Vec3i at = site + neighbor_step(n);
             const CellId cell = matter_.lattice.cell_at(at.x(), at.y(), at.z());
             if (cell >= 0 && matter_.cell_fill[cell] >= kFull) return true;
         }

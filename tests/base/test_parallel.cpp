@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "tests/catch.h"
 
@@ -92,14 +95,53 @@ TEST_CASE("what is thrown in a loop reaches its caller, and loops go on after it
     set_thread_count(0);
 }
 
+TEST_CASE("chunks cover all numbers once, and what they give stands in their order") {
+    for (const int cores : {1, 3}) {
+        set_thread_count(cores);
+        for (const std::size_t count : {0, 1, 4, 5, 8, 23}) {
+            constexpr std::size_t kSize = 4;
+            INFO(cores << " cores, " << count << " numbers");
+            using Chunk = std::pair<std::size_t, std::size_t>;
+            std::vector<Chunk> all;
+            for (std::size_t n = 0; n < count; n += kSize) {
+                all.emplace_back(n, std::min(count, n + kSize));
+            }
+            CHECK(chunks_of(count, kSize) == all.size());
+            std::vector<Chunk> called(all.size());
+            parallel_chunks(count, kSize, [&](std::size_t begin, std::size_t end) {
+                called[begin / kSize] = {begin, end};
+            });
+            CHECK(called == all);
+            const auto both = [](std::size_t begin, std::size_t end) { return Chunk(begin, end); };
+            CHECK(parallel_parts(count, kSize, both) == all);
+            std::vector<int> calls(count);
+            parallel_each(count, kSize, [&](std::size_t n) { ++calls[n]; });
+            CHECK(calls == std::vector<int>(count, 1));
+            std::vector<std::size_t> odd;
+            for (std::size_t n = 1; n < count; n += 2) odd.push_back(n);
+            const auto find = [](std::size_t begin, std::size_t end,
+                                 std::vector<std::size_t>& found) {
+                for (std::size_t n = begin; n < end; ++n) {
+                    if (n % 2 == 1) found.push_back(n);
+                }
+            };
+            CHECK(parallel_collect<std::size_t>(count, kSize, find) == odd);
+        }
+    }
+    set_thread_count(0);
+}
+
 TEST_CASE("a sum has the same bits for any number of threads") {
     const auto part = [](std::size_t n) { return 1.0 / (3.0 + double(n)); };
     set_thread_count(1);
-    const double alone = ordered_sum(1000, part);
+    const double alone = ordered_sum(1000, part), by_chunks = ordered_sum_of(1000, 32, part);
     for (const int cores : {2, 3, 8}) {
         set_thread_count(cores);
         CHECK(ordered_sum(1000, part) == alone);
         CHECK(ordered_sum(1000, 2, part) == alone);
+        CHECK(ordered_sum_of(1000, 1, part) == alone);
+        CHECK(ordered_sum_of(1000, 1000, part) == alone);
+        CHECK(ordered_sum_of(1000, 32, part) == by_chunks);
     }
     set_thread_count(0);
 }
