@@ -169,13 +169,6 @@ SWAGE_INLINE void add_flow(BookTask& task) {
     }
 }
 
-SWAGE_WIDE_VECTORS void wide_energy(BookTask& task) { add_energy<8>(task); }
-SWAGE_MIDDLE_VECTORS void middle_energy(BookTask& task) { add_energy<4>(task); }
-void narrow_energy(BookTask& task) { add_energy<2>(task); }
-SWAGE_WIDE_VECTORS void wide_flow(BookTask& task) { add_flow<8>(task); }
-SWAGE_MIDDLE_VECTORS void middle_flow(BookTask& task) { add_flow<4>(task); }
-void narrow_flow(BookTask& task) { add_flow<2>(task); }
-
 }  // namespace
 
 // The sum over slabs of act(task, slab) for each of the runs that `of` has, or else for all.
@@ -207,7 +200,6 @@ double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const
 double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) const {
     if (!yields_) return 0;
     if (growths) growths->resize(slab_.size() + 1);
-    const int width = vector_width();
     const SlabRuns* const of = seen ? &yielding_ : nullptr;
     RestGrowths* const mixed_growths = growths ? &growths->back() : nullptr;
     const auto sum = [&](Aggregate* flows) {
@@ -215,7 +207,7 @@ double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) con
             if (task.law->kind != CellKind::yielding) return;
             task.flows = flows;
             if (growths) task.growths = &(*growths)[slab];
-            (width == 8 ? wide_flow : width == 4 ? middle_flow : narrow_flow)(task);
+            by_width([&]<int kWidth>() __attribute__((always_inline)) { add_flow<kWidth>(task); });
         });
     };
     if (matter.cell_plastic_stretch[0].empty()) {
@@ -244,9 +236,8 @@ double CellSweep::energy_of(const Aggregate& matter, const CellRun& run, int n) 
 }
 
 double CellSweep::elastic_energy(const Aggregate& matter) const {
-    const int width = vector_width();
     const double swept = sum_of_runs(matter, nullptr, [&](BookTask& task, std::size_t) {
-        (width == 8 ? wide_energy : width == 4 ? middle_energy : narrow_energy)(task);
+        by_width([&]<int kWidth>() __attribute__((always_inline)) { add_energy<kWidth>(task); });
     });
     return swept + mixed_.elastic_energy(matter, law_);
 }

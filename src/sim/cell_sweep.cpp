@@ -149,23 +149,9 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
 }
 
 template <CellKind kKind, bool kWatched>
-SWAGE_WIDE_VECTORS void wide_slab(SlabTask& task) {
-    slab_forces<8, kKind, kWatched>(task);
-}
-template <CellKind kKind, bool kWatched>
-SWAGE_MIDDLE_VECTORS void middle_slab(SlabTask& task) {
-    slab_forces<4, kKind, kWatched>(task);
-}
-template <CellKind kKind, bool kWatched>
-void narrow_slab(SlabTask& task) {
-    slab_forces<2, kKind, kWatched>(task);
-}
-template <CellKind kKind, bool kWatched>
 void slab_of(SlabTask& task) {
-    const int width = vector_width();
-    width == 8   ? wide_slab<kKind, kWatched>(task)
-    : width == 4 ? middle_slab<kKind, kWatched>(task)
-                 : narrow_slab<kKind, kWatched>(task);
+    by_width([&]<int kWidth>()
+                 __attribute__((always_inline)) { slab_forces<kWidth, kKind, kWatched>(task); });
 }
 template <bool kWatched>
 void slab_by_kind(CellKind kind, SlabTask& task) {

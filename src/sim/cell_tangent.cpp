@@ -220,23 +220,8 @@ SWAGE_INLINE void act(const MatrixTask& task) {
 }
 
 template <CellKind kKind, typename T>
-SWAGE_WIDE_VECTORS void act_wide(const T& task) {
-    act<kKind, 8>(task);
-}
-template <CellKind kKind, typename T>
-SWAGE_MIDDLE_VECTORS void act_middle(const T& task) {
-    act<kKind, 4>(task);
-}
-template <CellKind kKind, typename T>
-void act_narrow(const T& task) {
-    act<kKind, 2>(task);
-}
-template <CellKind kKind, typename T>
 void do_kind(const T& task) {
-    const int width = vector_width();
-    width == 8   ? act_wide<kKind>(task)
-    : width == 4 ? act_middle<kKind>(task)
-                 : act_narrow<kKind>(task);
+    by_width([&]<int kWidth>() __attribute__((always_inline)) { act<kKind, kWidth>(task); });
 }
 template <typename T>
 void do_task(CellKind kind, const T& task) {

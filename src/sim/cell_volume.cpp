@@ -53,9 +53,6 @@ SWAGE_INLINE void find_volumes(const VolumeTask& task) {
         std::memcpy(task.volume + begin, &volume, sizeof volume);
     }
 }
-SWAGE_WIDE_VECTORS void wide_volumes(const VolumeTask& task) { find_volumes<8>(task); }
-SWAGE_MIDDLE_VECTORS void middle_volumes(const VolumeTask& task) { find_volumes<4>(task); }
-void narrow_volumes(const VolumeTask& task) { find_volumes<2>(task); }
 
 // Runs with any cell below a volume, at the cells' middles.
 struct SmallRunsTask {
@@ -84,9 +81,6 @@ SWAGE_INLINE void find_small_runs(const SmallRunsTask& task) {
         if (small) task.found.push_back(run);
     }
 }
-SWAGE_WIDE_VECTORS void wide_small_runs(const SmallRunsTask& task) { find_small_runs<8>(task); }
-SWAGE_MIDDLE_VECTORS void middle_small_runs(const SmallRunsTask& task) { find_small_runs<4>(task); }
-void narrow_small_runs(const SmallRunsTask& task) { find_small_runs<2>(task); }
 
 // Whether a cell's law looks at it from its middle.
 bool is_centred(const Aggregate& matter, CellId cell) {
@@ -129,10 +123,8 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit) {
         }
         std::vector<const CellRun*> small;
         const SmallRunsTask task{matter, begin, end, limit * full * (1 + 1e-12), small};
-        const int width = vector_width();
-        width == 8   ? wide_small_runs(task)
-        : width == 4 ? middle_small_runs(task)
-                     : narrow_small_runs(task);
+        by_width([&]<int kWidth>()
+                     __attribute__((always_inline)) { find_small_runs<kWidth>(task); });
         for (const CellRun* run : small) add_cells_below(matter, *run, limit, part[chunk]);
     });
     std::vector<SmallCell> found;
@@ -144,8 +136,7 @@ void cell_volumes(const Aggregate& matter, const CellRun& run, int at, int count
     const double spacing = matter.lattice.spacing;
     const VolumeTask task{rows_of(matter, run, at), count, room_of(matter, run, at),
                           1 / (64 * spacing * spacing * spacing), volume};
-    const int width = vector_width();
-    width == 8 ? wide_volumes(task) : width == 4 ? middle_volumes(task) : narrow_volumes(task);
+    by_width([&]<int kWidth>() __attribute__((always_inline)) { find_volumes<kWidth>(task); });
 }
 
 Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {

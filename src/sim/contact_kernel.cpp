@@ -351,32 +351,21 @@ struct ContactWay::Kernel {
     }
 };
 
-SWAGE_MIDDLE_VECTORS void ContactWay::middle_find_chunk(std::size_t chunk, double step) {
-    from_ == onto_ ? Kernel{*this}.find_chunk<true>(chunk, step)
-                   : Kernel{*this}.find_chunk<false>(chunk, step);
-}
-SWAGE_MIDDLE_VECTORS void ContactWay::middle_push_chunk(std::size_t chunk) {
-    Kernel{*this}.push_chunk(chunk);
-}
-SWAGE_MIDDLE_VECTORS void ContactWay::middle_respond(double step, bool again) {
-    Kernel{*this}.respond(step, again);
-}
-
 void ContactWay::find_chunk(std::size_t chunk, double step) {
-    if (vector_width() >= 4) return middle_find_chunk(chunk, step);
-    from_ == onto_ ? Kernel{*this}.find_chunk<true>(chunk, step)
-                   : Kernel{*this}.find_chunk<false>(chunk, step);
+    by_fours([&]() __attribute__((always_inline)) {
+        from_ == onto_ ? Kernel{*this}.find_chunk<true>(chunk, step)
+                       : Kernel{*this}.find_chunk<false>(chunk, step);
+    });
 }
 
 void ContactWay::push_chunk(std::size_t chunk) {
-    if (vector_width() >= 4) return middle_push_chunk(chunk);
-    Kernel{*this}.push_chunk(chunk);
+    by_fours([&]() __attribute__((always_inline)) { Kernel{*this}.push_chunk(chunk); });
 }
 
 void ContactWay::respond(double step, bool again) {
     next_.resize(list_.size());
     find_met();
-    vector_width() >= 4 ? middle_respond(step, again) : Kernel{*this}.respond(step, again);
+    by_fours([&]() __attribute__((always_inline)) { Kernel{*this}.respond(step, again); });
     is_found_ = true;
 }
 

@@ -158,10 +158,7 @@ class ContactWay {
     void press_chunk(std::size_t chunk, Held& held);
     void find_chunk(std::size_t chunk, double step);
     void find_met();
-    void middle_find_chunk(std::size_t chunk, double step);
     void push_chunk(std::size_t chunk);
-    void middle_push_chunk(std::size_t chunk);
-    void middle_respond(double step, bool again);
 
     ContactSide *from_, *onto_;
     Solver solver_;

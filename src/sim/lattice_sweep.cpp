@@ -197,23 +197,9 @@ SWAGE_INLINE void slab_forces(SpringTask& task) {
 }
 
 template <bool kSprings, bool kDamped>
-SWAGE_WIDE_VECTORS void wide_slab(SpringTask& task) {
-    slab_forces<8, kSprings, kDamped>(task);
-}
-template <bool kSprings, bool kDamped>
-SWAGE_MIDDLE_VECTORS void middle_slab(SpringTask& task) {
-    slab_forces<4, kSprings, kDamped>(task);
-}
-template <bool kSprings, bool kDamped>
-void narrow_slab(SpringTask& task) {
-    slab_forces<2, kSprings, kDamped>(task);
-}
-template <bool kSprings, bool kDamped>
 void slab_of(SpringTask& task) {
-    const int width = vector_width();
-    width == 8   ? wide_slab<kSprings, kDamped>(task)
-    : width == 4 ? middle_slab<kSprings, kDamped>(task)
-                 : narrow_slab<kSprings, kDamped>(task);
+    by_width([&]<int kWidth>()
+                 __attribute__((always_inline)) { slab_forces<kWidth, kSprings, kDamped>(task); });
 }
 
 }  // namespace

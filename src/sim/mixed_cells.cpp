@@ -88,10 +88,6 @@ SWAGE_INLINE void batch_forces(const MixedBatch& b) {
     }
 }
 
-SWAGE_WIDE_VECTORS void wide_batch(const MixedBatch& b) { batch_forces<8>(b); }
-SWAGE_MIDDLE_VECTORS void middle_batch(const MixedBatch& b) { batch_forces<4>(b); }
-void narrow_batch(const MixedBatch& b) { batch_forces<2>(b); }
-
 // One cell as plain numbers.
 struct OneMixed {
     Phase<double> phase[2]{};
@@ -186,7 +182,6 @@ void MixedCells::cells_changed(const Aggregate& matter, const std::vector<float>
 void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                             Vec3Array& force) {
     if (batches_.cell.empty()) return;
-    const int width = vector_width();
     parallel_each(batches_.count(), kBatchesPerChunk, [&](std::size_t b) {
         MixedBatch batch{};
         batch.matter = &matter;
@@ -198,7 +193,8 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
         for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
         batch.push = &push_[batches_.first[b]];
         batch.seen = &seen_[batches_.first[b]];
-        (width == 8 ? wide_batch : width == 4 ? middle_batch : narrow_batch)(batch);
+        by_width([&]<int kWidth>()
+                     __attribute__((always_inline)) { batch_forces<kWidth>(batch); });
     });
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         for (int c = 0; c < 8; ++c) {

@@ -63,9 +63,6 @@ template <int kWidth>
 SWAGE_INLINE void all_matrices(const TangentBatch& b) {
     for (int first = 0; first < b.count; first += kWidth) some_matrices<kWidth>(b, first);
 }
-SWAGE_WIDE_VECTORS void wide_matrices(const TangentBatch& b) { all_matrices<8>(b); }
-SWAGE_MIDDLE_VECTORS void middle_matrices(const TangentBatch& b) { all_matrices<4>(b); }
-void narrow_matrices(const TangentBatch& b) { all_matrices<2>(b); }
 
 }  // namespace
 
@@ -86,7 +83,6 @@ const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
     }
     known_.push_back({kind, std::vector<CellMatrix>(batches_.cell.size())});
     std::vector<CellMatrix>& matrix = known_.back().matrix;
-    const int width = vector_width();
     parallel_for(batches_.count(), [&](std::size_t b) {
         TangentBatch batch{};
         batch.matter = &matter;
@@ -98,7 +94,7 @@ const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
         }
         for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
         batch.to = matrix.data() + batches_.first[b];
-        (width == 8 ? wide_matrices : width == 4 ? middle_matrices : narrow_matrices)(batch);
+        by_width([&]<int kWidth>() __attribute__((always_inline)) { all_matrices<kWidth>(batch); });
     });
     return matrix;
 }

@@ -118,18 +118,10 @@ struct SurfaceDrag::Kernel {
     }
 };
 
-SWAGE_MIDDLE_VECTORS void SurfaceDrag::middle_find_chunk(const Aggregate& matter,
-                                                         std::size_t chunk) {
-    Kernel{*this, matter}.find(chunk);
-}
-
-void SurfaceDrag::find_chunk(const Aggregate& matter, std::size_t chunk) {
-    if (vector_width() >= 4) return middle_find_chunk(matter, chunk);
-    Kernel{*this, matter}.find(chunk);
-}
-
 double SurfaceDrag::add_forces(const Aggregate& matter, Vec3Array& force) {
-    parallel_for(chunk_.size(), [&](std::size_t chunk) { find_chunk(matter, chunk); });
+    parallel_for(chunk_.size(), [&](std::size_t chunk) {
+        by_fours([&]() __attribute__((always_inline)) { Kernel{*this, matter}.find(chunk); });
+    });
     double power = 0;
     for (const Chunk& one : chunk_) {
         held_ = held_ || one.held;

@@ -54,8 +54,6 @@ class SurfaceDrag {
     // `outward`: area vector [m2]; `most`: force over speed [N s/m].
     Vec3 force_on(const Vec3& outward, const Vec3& velocity, double most, bool& held) const;
     double add_open_forces(const Aggregate& matter, Vec3Array& force);
-    void find_chunk(const Aggregate& matter, std::size_t chunk);
-    void middle_find_chunk(const Aggregate& matter, std::size_t chunk);
 
     AmbientDrag ambient_;
     DirectionalDrag facing_;

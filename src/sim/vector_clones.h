@@ -18,4 +18,36 @@ int vector_width();
 // Kernels of at most this width from now on; 0: as wide as the machine has them.
 void limit_vector_width(int width);
 
+// Kernels in functions that are built for one width: what they do has to be inlined all the way.
+template <typename Kernel>
+SWAGE_WIDE_VECTORS void in_wide(const Kernel& kernel) {
+    kernel.template operator()<8>();
+}
+template <typename Kernel>
+SWAGE_MIDDLE_VECTORS void in_middle(const Kernel& kernel) {
+    kernel.template operator()<4>();
+}
+template <typename Kernel>
+void in_narrow(const Kernel& kernel) {
+    kernel.template operator()<2>();
+}
+// Does a kernel of any width by that of this machine:
+// by_width([&]<int kWidth>() __attribute__((always_inline)) { ... })
+template <typename Kernel>
+void by_width(const Kernel& kernel) {
+    const int width = vector_width();
+    width == 8 ? in_wide(kernel) : width == 4 ? in_middle(kernel) : in_narrow(kernel);
+}
+
+// The same of one that is of four numbers everywhere:
+// by_fours([&]() __attribute__((always_inline)) { ... })
+template <typename Kernel>
+SWAGE_MIDDLE_VECTORS void in_fours(const Kernel& kernel) {
+    kernel();
+}
+template <typename Kernel>
+void by_fours(const Kernel& kernel) {
+    vector_width() >= 4 ? in_fours(kernel) : kernel();
+}
+
 }  // namespace swage
