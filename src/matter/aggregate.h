@@ -98,9 +98,10 @@ struct Aggregate {
     const Material& material_at(std::size_t number) const {
         return number == 0 ? material : inset[number - 1];
     }
-    const Material& material_of(CellId cell) const {
-        return cell_material.empty() ? material : material_at(cell_material[cell]);
+    std::size_t material_number(CellId cell) const {
+        return cell_material.empty() ? 0 : cell_material[cell];
     }
+    const Material& material_of(CellId cell) const { return material_at(material_number(cell)); }
     bool breaks() const;                   // any of its materials
     double mean_modulus() const;           // Young's, by volume [Pa]
     std::size_t connection_count() const;  // unsevered ones

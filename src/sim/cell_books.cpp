@@ -174,23 +174,22 @@ SWAGE_INLINE void add_flow(BookTask& task) {
 // The sum over slabs of act(task, slab) for each of the runs that `of` has, or else for all.
 template <typename Act>
 double CellSweep::sum_of_runs(const Aggregate& matter, const SlabRuns* of, const Act& act) const {
-    const std::vector<CellRun>& all = runs(matter);
     return ordered_sum(slab_.size(), [&](std::size_t s) {
         BookTask task{.matter = &matter, .history = HistoryRows(matter), .share = share_.data()};
         const std::int32_t* batch = batch_.data() + slab_batch_[s];
         std::size_t next = 0;
-        for (std::size_t r = slab_run_[s]; r < slab_run_[s + 1]; ++r) {
-            task.run = &all[r];
+        for (const CellRun& run : pieces_.of_slab(matter, s)) {
+            task.run = &run;
             task.batch = batch;
             // What other slabs' cells have flowed is theirs to change meanwhile.
-            task.history.cells = all[r].first + all[r].count;
-            batch += batches_of(all[r]);
+            task.history.cells = run.first + run.count;
+            batch += batches_of(run);
             if (of != nullptr) {
                 if (next == (*of)[s].size()) break;
-                if ((*of)[s][next] != task.run) continue;
+                if ((*of)[s][next] != &run) continue;
                 ++next;
             }
-            task.law = &law_of(matter, task.run->first);
+            task.law = &law_of(matter, run.first);
             act(task, s);
         }
         return task.sum;

@@ -17,6 +17,17 @@ inline constexpr std::int32_t kWholeCells = -1;
 inline constexpr int kCellShares = 4;  // fill and centroid, eight of each
 inline int batches_of(const CellRun& run) { return (run.count + kLanes - 1) / kLanes; }
 
+// Whether the batch of a run that begins with this cell of it is of full cells, seen from their
+// middles.
+inline bool is_whole_batch(const Aggregate& matter, const std::vector<float>& fill,
+                           const CellRun& run, int begin) {
+    for (int n = begin; n < std::min(run.count, begin + kLanes); ++n) {
+        const CellId cell = run.first + n;
+        if (fill[cell] != 1 || !matter.cell_centroid[cell].isZero(0)) return false;
+    }
+    return true;
+}
+
 // The committed history of all cells.
 struct HistoryRows {
     const float *strain[kCellStrains] = {}, *modes[kCellModes] = {};

@@ -174,24 +174,16 @@ void for_each_cell(const Aggregate& matter, std::size_t begin, std::size_t end, 
 }  // namespace
 
 CellSweep::CellSweep(const Aggregate& matter)
-    : law_(material_laws(matter)), slab_(cell_slabs(matter)) {
+    : law_(material_laws(matter)), slab_(cell_slabs(matter)), pieces_(matter, slab_) {
     for (SlabRuns* runs : {&crushed_, &strained_, &yielding_}) runs->resize(slab_.size());
     yields_ = std::any_of(law_.begin(), law_.end(),
                           [](const MaterialLaw& law) { return law.kind == CellKind::yielding; });
-    for (const RowSlab& slab : slab_) {
-        slab_run_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
-        for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
-            add_pieces(matter, matter.lattice.cell_run[r], piece_);
-        }
-    }
-    slab_run_.push_back(runs(matter).size());
     cells_changed(matter);
 }
 
 void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* turned) {
     const std::vector<float> carried = turned ? swept() : std::vector<float>();
     fill_ = matter.cell_fill;
-    const std::vector<CellRun>& runs = this->runs(matter);
     for_each_cell(matter, 0, matter.lattice.cell_run.size(),
                   [&](const CellRun& run, int n, CellId cell) {
                       if (cell_is_sound(matter, cell, run.row_at(n))) return;
@@ -210,19 +202,15 @@ void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* tu
     slab_batch_.clear();
     for (std::size_t slab = 0; slab < slab_.size(); ++slab) {
         slab_batch_.push_back(batch_.size());
-        for (std::size_t r = slab_run_[slab]; r < slab_run_[slab + 1]; ++r) {
-            for (int begin = 0; begin < runs[r].count; begin += kLanes) {
-                const int count = std::min(kLanes, runs[r].count - begin);
-                bool whole = true;
-                for (CellId c = runs[r].first + begin; c < runs[r].first + begin + count; ++c) {
-                    whole = whole && fill[c] == 1 && matter.cell_centroid[c].isZero(0);
-                }
+        for (const CellRun& run : pieces_.of_slab(matter, slab)) {
+            for (int begin = 0; begin < run.count; begin += kLanes) {
+                const bool whole = is_whole_batch(matter, fill, run, begin);
                 batch_.push_back(whole ? kWholeCells : static_cast<std::int32_t>(share_.size()));
                 if (whole) continue;
                 const std::size_t at = share_.size();
                 share_.resize(at + kCellShares * kLanes, 0.0f);
-                for (int n = 0; n < count; ++n) {
-                    const CellId c = runs[r].first + begin + n;
+                for (int n = 0; n < std::min(kLanes, run.count - begin); ++n) {
+                    const CellId c = run.first + begin + n;
                     share_[at + n] = fill[c];
                     for (int i = 0; i < 3; ++i) {
                         share_[at + (i + 1) * kLanes + n] = 2 * matter.cell_centroid[c][i];
@@ -234,19 +222,14 @@ void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* tu
 }
 
 void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
-    std::vector<MaterialLaw> laws = law_;
+    std::vector<MaterialLaw> laws = material_laws(matter, flow);
     std::vector<CellConstants> constants;
+    const bool is_plain = flow == Flow::none && matter.cell_hardening.empty() &&
+                          matter.mixed_cell.empty();  // nothing has flowed or will
     for (MaterialLaw& law : laws) {
-        if (flow == Flow::none) {
-            law.moduli.yield_stress = kNeverYields;
-            if (law.kind == CellKind::yielding && matter.cell_hardening.empty() &&
-                matter.mixed_cell.empty()) {
-                law.kind = CellKind::elastic;
-            }
-        }
+        if (is_plain && law.kind == CellKind::yielding) law.kind = CellKind::elastic;
         constants.emplace_back(law.moduli);
     }
-    const std::vector<CellRun>& runs = this->runs(matter);
     const Vec3Array& x = matter.particle_position;
     force.resize(x.size());
     SlabTask whole{.crushed = kMaybeCrushed * 64 * matter.lattice.cell_volume(),
@@ -264,15 +247,16 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
         for (SlabRuns* runs : {&crushed_, &strained_, &yielding_}) (*runs)[index].clear();
         task.crushed_run = &crushed_[index], task.strained_run = &strained_[index];
         task.yielding_run = &yielding_[index];
-        const CellRun* const end = runs.data() + slab_run_[index + 1];
-        task.run_end = runs.data() + slab_run_[index];
+        const std::span<const CellRun> runs = pieces_.of_slab(matter, index);
+        const CellRun* const end = runs.data() + runs.size();
+        task.run_end = runs.data();
         while (task.run_end != end) {
             task.run = task.run_end;
-            const std::size_t material = piece_.empty() ? 0 : matter.cell_material[task.run->first];
+            const std::size_t material = matter.material_number(task.run->first);
             do {
                 ++task.run_end;
             } while (task.run_end != end &&
-                     (piece_.empty() || matter.cell_material[task.run_end->first] == material));
+                     matter.material_number(task.run_end->first) == material);
             task.constants = &constants[material];
             sweep_slab(laws[material].kind, task);
         }

@@ -48,14 +48,9 @@ class CellSweep {
     const SlabRuns& strained_runs() const { return strained_; }
 
   private:
-    // The lattice's runs, or their pieces of one material each where there are several.
-    const std::vector<CellRun>& runs(const Aggregate& matter) const {
-        return piece_.empty() ? matter.lattice.cell_run : piece_;
-    }
     const MaterialLaw& law_of(const Aggregate& matter, CellId cell) const {
-        return matter.cell_material.empty() ? law_[0] : law_[matter.cell_material[cell]];
+        return law_[matter.material_number(cell)];
     }
-
     double energy_of(const Aggregate& matter, const CellRun& run, int n) const;  // of one cell [J]
     template <typename Act>
     double sum_of_runs(const Aggregate& matter, const SlabRuns* of, const Act& act) const;
@@ -66,10 +61,9 @@ class CellSweep {
     const std::vector<float>& swept() const { return swept_.empty() ? fill_ : swept_; }
     std::vector<float> fill_, swept_;
     std::vector<RowSlab> slab_;  // of the lattice's runs
-    std::vector<CellRun> piece_;
-    std::vector<std::size_t> slab_run_;  // first of runs() in each slab; the end
-    // By batches of eight cells of a run: kWholeCells, or where their fills and centroids, -1 to 1
-    // in the cell, begin in share_.
+    CellPieces pieces_;
+    // By batches of eight cells of a piece: kWholeCells, or where their fills and centroids, -1 to
+    // 1 in the cell, begin in share_.
     std::vector<std::int32_t> batch_;
     std::vector<float> share_;
     std::vector<std::size_t> slab_batch_;     // first batch of each slab

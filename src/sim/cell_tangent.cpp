@@ -233,14 +233,7 @@ void do_task(CellKind kind, const T& task) {
 }  // namespace
 
 CellTangent::CellTangent(const Aggregate& matter, const std::vector<float>& fill)
-    : mixed_(matter, fill), fill_(fill), slab_(cell_slabs(matter)) {
-    for (const RowSlab& slab : slab_) {
-        slab_run_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
-        for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
-            add_pieces(matter, matter.lattice.cell_run[r], piece_);
-        }
-    }
-    slab_run_.push_back(runs(matter).size());
+    : slab_(cell_slabs(matter)), pieces_(matter, slab_), mixed_(matter, fill), fill_(fill) {
     for (const MixedCell& cell : matter.mixed_cell) fill_[cell.cell] = 0;
     fill_.resize(fill.size() + kLanes);
     for (int i = 0; i < 3; ++i) {
@@ -249,15 +242,10 @@ CellTangent::CellTangent(const Aggregate& matter, const std::vector<float>& fill
         }
         at_[i].resize(at_[i].size() + kLanes);
     }
-    for (const CellRun& run : runs(matter)) {
+    for (const CellRun& run : pieces_.all(matter)) {
         batch_.push_back(whole_.size());
         for (int begin = 0; begin < run.count; begin += kLanes) {
-            bool whole = true;
-            for (int n = begin; n < std::min(run.count, begin + kLanes); ++n) {
-                const CellId cell = run.first + n;
-                whole = whole && fill_[cell] == 1 && matter.cell_centroid[cell].isZero(0);
-            }
-            whole_.push_back(whole);
+            whole_.push_back(is_whole_batch(matter, fill_, run, begin));
         }
     }
 }
@@ -269,19 +257,12 @@ struct CellTangent::Law {
 
 std::vector<CellTangent::Law> CellTangent::laws_for(const Aggregate& matter, Flow flow) const {
     std::vector<Law> laws;
-    for (MaterialLaw& law : material_laws(matter)) {
-        if (law.kind == CellKind::yielding && flow == Flow::none) {
-            law.moduli.yield_stress = kNeverYields;
-            if (matter.cell_hardening.empty()) law.kind = CellKind::elastic;
-        }
-        laws.push_back({CellConstants(law.moduli), law.kind});
+    const bool is_plain = flow == Flow::none && matter.cell_hardening.empty();
+    for (const auto& [moduli, kind] : material_laws(matter, flow)) {
+        const bool is_elastic = is_plain && kind == CellKind::yielding;
+        laws.push_back({CellConstants(moduli), is_elastic ? CellKind::elastic : kind});
     }
     return laws;
-}
-
-const CellTangent::Law& CellTangent::law_of(const Aggregate& matter, const std::vector<Law>& laws,
-                                            const CellRun& run) const {
-    return piece_.empty() ? laws[0] : laws[matter.cell_material[run.first]];
 }
 
 namespace {
@@ -313,7 +294,7 @@ RunView view_of(const Aggregate& matter, const CellRun& run, const std::vector<f
 void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& direction,
                           Vec3Array& result) {
     const std::vector<Law> laws = laws_for(matter, kind.flow);
-    const std::vector<CellRun>& all = runs(matter);
+    const std::vector<CellRun>& all = pieces_.all(matter);
     result.resize(matter.particle_count());
     parallel_for(slab_.size(), [&](std::size_t index) {
         RowSlab& slab = slab_[index];
@@ -321,9 +302,9 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
         for (double* component : to.own) {
             std::fill(component + slab.begin, component + slab.end, 0.0);
         }
-        for (std::size_t r = slab_run_[index]; r < slab_run_[index + 1]; ++r) {
+        for (std::size_t r = pieces_.first_of(index); r < pieces_.first_of(index + 1); ++r) {
             const CellRun& run = all[r];
-            const Law& law = law_of(matter, laws, run);
+            const Law& law = laws[matter.material_number(run.first)];
             const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
             ProductTask task{{law.constants, view, kind.geometric}, rows_of(direction, run)};
             for (int q = 0; q < 4; ++q) {
@@ -343,7 +324,7 @@ void CellTangent::product(const Aggregate& matter, Kind kind, const Vec3Array& d
 
 std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) const {
     const std::vector<Law> laws = laws_for(matter, kind.flow);
-    const std::vector<CellRun>& all = runs(matter);
+    const std::vector<CellRun>& all = pieces_.all(matter);
     std::vector<Mat3> own(matter.particle_count(), Mat3::Zero());
     // Rows of cells share particles with the next ones only: every other row of every other plane
     // at a time.
@@ -357,7 +338,7 @@ std::vector<Mat3> CellTangent::own_blocks(const Aggregate& matter, Kind kind) co
             Lanes matrix[std::tuple_size_v<decltype(CellMatrix::upper)>];
             for (std::size_t r : rows.of(2 * (row % across) + j, 2 * (row / across) + k)) {
                 const CellRun& run = all[r];
-                const Law& law = law_of(matter, laws, run);
+                const Law& law = laws[matter.material_number(run.first)];
                 const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
                 for (int done = 0; done < run.count; done += kLanes) {
                     MatrixTask task{{law.constants, view, kind.geometric}, done, {}, {}, matrix};
@@ -430,7 +411,7 @@ void add_followed(const CellMatrix& own, const Vec3i& low, const Vec3i& ratio, C
 std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind kind,
                                                   const Lattice& coarse, const Vec3i& ratio) const {
     const std::vector<Law> laws = laws_for(matter, kind.flow);
-    const std::vector<CellRun>& all = runs(matter);
+    const std::vector<CellRun>& all = pieces_.all(matter);
     std::size_t count = 0;
     for (const CellRun& run : coarse.cell_run) count += run.count;
     std::vector<CellMatrix> sum(count);
@@ -439,7 +420,7 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
         Lanes matrix[std::tuple_size_v<decltype(CellMatrix::upper)>];
         for (std::size_t r : rows.of(row)) {
             const CellRun& run = all[r];
-            const Law& law = law_of(matter, laws, run);
+            const Law& law = laws[matter.material_number(run.first)];
             const RunView view = view_of(matter, run, fill_, at_, whole_.data() + batch_[r]);
             const Vec3i site(run.i, run.j, run.k);
             for (int done = 0; done < run.count; done += kLanes) {

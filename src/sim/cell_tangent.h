@@ -39,21 +39,14 @@ class CellTangent {
   private:
     struct Law;
     std::vector<Law> laws_for(const Aggregate& matter, Flow flow) const;  // by material
-    // The lattice's runs, or their pieces of one material each where there are several.
-    const std::vector<CellRun>& runs(const Aggregate& matter) const {
-        return piece_.empty() ? matter.lattice.cell_run : piece_;
-    }
-    const Law& law_of(const Aggregate& matter, const std::vector<Law>& laws,
-                      const CellRun& run) const;
 
-    std::vector<CellRun> piece_;
-    std::vector<std::size_t> slab_run_;  // first of runs() in each slab; the end
-    MixedTangent mixed_;                 // cells of two materials, beside the sweep
-    std::vector<float> fill_;            // these two with room for a batch behind
+    std::vector<RowSlab> slab_;
+    CellPieces pieces_;
+    MixedTangent mixed_;       // cells of two materials, beside the sweep
+    std::vector<float> fill_;  // these two with room for a batch behind
     std::array<std::vector<float>, 3> at_;
     std::vector<char> whole_;         // of each batch of cells: full, and centred
-    std::vector<std::size_t> batch_;  // first one of each run
-    std::vector<RowSlab> slab_;
+    std::vector<std::size_t> batch_;  // first one of each piece
 };
 
 }  // namespace swage

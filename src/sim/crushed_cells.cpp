@@ -22,25 +22,14 @@ Columns<double> columns(const Mat3& m) {
 }
 
 std::vector<MaterialLaw> guard_laws(const Aggregate& matter, Flow flow) {
-    std::vector<MaterialLaw> laws = material_laws(matter);
+    std::vector<MaterialLaw> laws = material_laws(matter, flow);
     for (std::size_t n = 0; n < laws.size(); ++n) {
-        MaterialLaw& law = laws[n];
         const Material& m = matter.material_at(n);
-        if (m.mechanics == Mechanics::springs) {
-            const CellModuli is = law.moduli;
-            law.moduli =
-                cell_moduli(m.young_modulus, 0.25, is.spacing, is.yield_stress, is.hardening);
-        }
-        if (law.kind != CellKind::yielding || flow == Flow::none) {
-            law.moduli.yield_stress = kNeverYields;
-        }
+        if (m.mechanics != Mechanics::springs) continue;
+        CellModuli& law = laws[n].moduli;
+        law = cell_moduli(m.young_modulus, 0.25, law.spacing, law.yield_stress, law.hardening);
     }
     return laws;
-}
-
-const MaterialLaw& law_of(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
-                          CellId cell) {
-    return laws[matter.cell_material.empty() ? 0 : matter.cell_material[cell]];
 }
 
 // One crushed cell.
@@ -60,7 +49,7 @@ struct Crushed {
 
     Crushed(const Aggregate& matter, const std::vector<MaterialLaw>& laws, const SmallCell& cell) {
         const CellId id = cell.id();
-        const MaterialLaw& own = law_of(matter, laws, id);
+        const MaterialLaw& own = laws[matter.material_number(id)];
         const double a = matter.lattice.spacing;
         law = &own.moduli;
         fades = matter.material.mechanics == Mechanics::cells && own.kind != CellKind::rubber &&
@@ -190,7 +179,7 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
         for (int c = 0; c < 8; ++c) stiffness[run.row[c >> 1] + n + (c & 1)] += own;
     };
     for (const SmallCell& cell : cells_below(matter, 0)) {
-        const CellModuli& law = law_of(matter, laws, cell.id()).moduli;
+        const CellModuli& law = laws[matter.material_number(cell.id())].moduli;
         const double volume = matter.cell_fill[cell.id()] * a * a * a;
         add(*cell.run, cell.n,
             thinned(flowed_stretch(matter, cell.id())) * volume *
@@ -211,8 +200,8 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
             const double more = cofactor * slope * slope - 3;
             if (!(volume > 0) || !(more > 0)) continue;
             add(run, n,
-                0.5 * matter.cell_fill[id] * a * law_of(matter, laws, id).moduli.bulk * more *
-                    thinned(flowed));
+                0.5 * matter.cell_fill[id] * a * laws[matter.material_number(id)].moduli.bulk *
+                    more * thinned(flowed));
         }
     }
 }

@@ -2,7 +2,6 @@
 #include "sim/force_slabs.h"
 
 #include <algorithm>
-#include <span>
 
 #include "base/parallel.h"
 #include "sim/vector_clones.h"
@@ -32,7 +31,31 @@ void make_seam(RowSlab& slab) {
     slab.seam.resize(seam > 0 ? static_cast<std::size_t>(slab.room + seam + kSeamRoom) : 0);
 }
 
+// Adds a run in pieces of one material each.
+void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces) {
+    for (int n = 0; n < run.count; ++n) {
+        const CellId cell = run.first + n;
+        if (n == 0 || matter.cell_material[cell] != matter.cell_material[cell - 1]) {
+            CellRun piece = run;
+            piece.i += n, piece.first = cell, piece.count = 0;
+            for (ParticleId& row : piece.row) row += n;
+            pieces.push_back(piece);
+        }
+        ++pieces.back().count;
+    }
+}
+
 }  // namespace
+
+CellPieces::CellPieces(const Aggregate& matter, const std::vector<RowSlab>& slabs) {
+    for (const RowSlab& slab : slabs) {
+        first_.push_back(matter.inset.empty() ? slab.run_begin : piece_.size());
+        for (std::size_t r = slab.run_begin; r < slab.run_end && !matter.inset.empty(); ++r) {
+            add_pieces(matter, matter.lattice.cell_run[r], piece_);
+        }
+    }
+    first_.push_back(all(matter).size());
+}
 
 std::vector<RowSlab> cell_slabs(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;

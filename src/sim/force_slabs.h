@@ -4,6 +4,7 @@
 // any number of threads.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "matter/aggregate.h"
@@ -24,6 +25,25 @@ struct RowSlab {
 
 // By the lattice's runs of cells.
 std::vector<RowSlab> cell_slabs(const Aggregate& matter);
+
+// The lattice's runs of cells, or their pieces of one material each where there are several.
+class CellPieces {
+  public:
+    CellPieces(const Aggregate& matter, const std::vector<RowSlab>& slabs);  // of cell_slabs()
+
+    const std::vector<CellRun>& all(const Aggregate& matter) const {
+        return piece_.empty() ? matter.lattice.cell_run : piece_;
+    }
+    // The first of a slab's; behind the last slab, their number.
+    std::size_t first_of(std::size_t slab) const { return first_[slab]; }
+    std::span<const CellRun> of_slab(const Aggregate& matter, std::size_t slab) const {
+        return std::span(all(matter)).subspan(first_[slab], first_[slab + 1] - first_[slab]);
+    }
+
+  private:
+    std::vector<CellRun> piece_;
+    std::vector<std::size_t> first_;
+};
 
 // Consecutive particles of one row, with the same offsets to their neighbours in the rows above.
 struct SpringRun {

@@ -17,7 +17,8 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kBatchesPerChunk = 8, kCellsPerChunk = 64;
-constexpr double kNearYield = 1e-6;  // of the yield stress: lanes round otherwise
+constexpr double kNearYield = 1e-6;     // of the yield stress: lanes round otherwise
+constexpr double kNeverYields = 1e100;  // [Pa]
 
 // What a batch of cells is read from, and where its forces on the corners go: component, corner.
 struct MixedBatch {
@@ -119,30 +120,20 @@ Columns<double> gradient_of(const OneMixed& one, const MixedCell& cell, int p) {
 
 }  // namespace
 
-std::vector<MaterialLaw> material_laws(const Aggregate& matter) {
+std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
     std::vector<MaterialLaw> laws;
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
         const Material& m = matter.material_at(n);
-        const bool yields = std::isfinite(m.yield_stress);
+        const CellKind kind = m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
+                              : std::isfinite(m.yield_stress)         ? CellKind::yielding
+                                                                      : CellKind::elastic;
+        const bool yields = kind == CellKind::yielding;
         laws.push_back({cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
-                                    yields ? m.yield_stress : 0, yields ? m.hardening : 0),
-                        m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
-                        : yields                                ? CellKind::yielding
-                                                                : CellKind::elastic});
+                                    yields && flow == Flow::trial ? m.yield_stress : kNeverYields,
+                                    yields ? m.hardening : 0),
+                        kind});
     }
     return laws;
-}
-
-void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces) {
-    for (int n = 0; n < run.count; ++n) {
-        const CellId cell = run.first + n;
-        if (n == 0 || matter.cell_material[cell] != matter.cell_material[cell - 1]) {
-            CellRun piece = run;
-            piece.i += n, piece.first = cell, piece.count = 0, piece.row = run.row_at(n);
-            pieces.push_back(piece);
-        }
-        ++pieces.back().count;
-    }
 }
 
 std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,

@@ -6,6 +6,7 @@
 
 #include "laws/cell_forces.h"
 #include "matter/aggregate.h"
+#include "sim/loose_springs.h"
 #include "sim/rest_lengths.h"
 
 namespace swage {
@@ -15,11 +16,8 @@ struct MaterialLaw {
     CellModuli moduli;
     CellKind kind;
 };
-inline constexpr double kNeverYields = 1e100;  // [Pa]
-std::vector<MaterialLaw> material_laws(const Aggregate& matter);
-
-// Adds a run in pieces of one material each.
-void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun>& pieces);
+// By material; without flow none yields.
+std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow = Flow::trial);
 
 // The cells of two materials in batches of the same two. Those with `carried` 0 are left out.
 struct MixedBatches {

@@ -77,10 +77,7 @@ const std::vector<CellMatrix>& MixedTangent::matrices(const Aggregate& matter,
     for (const Known& known : known_) {
         if (known.kind == kind) return known.matrix;
     }
-    std::vector<MaterialLaw> laws = material_laws(matter);
-    for (MaterialLaw& law : laws) {
-        if (kind.flow == Flow::none) law.moduli.yield_stress = kNeverYields;
-    }
+    const std::vector<MaterialLaw> laws = material_laws(matter, kind.flow);
     known_.push_back({kind, std::vector<CellMatrix>(batches_.cell.size())});
     std::vector<CellMatrix>& matrix = known_.back().matrix;
     parallel_for(batches_.count(), [&](std::size_t b) {
