@@ -246,8 +246,8 @@ double CellFlow::plastic_work(const Aggregate& matter, int d, ParticleId lower,
                               double growth) const {
     const double reference = reference_length(matter.lattice, d);
     const double elastic = portable::exp(double(strain_[d][lower])) - 1 - rest_[d][lower];
-    return lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing) *
-           matter.connection[d].weight[lower] * reference * reference * elastic * growth;
+    return lattice_stiffness(matter) * matter.connection[d].weight[lower] * reference * reference *
+           elastic * growth;
 }
 
 double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {

@@ -110,7 +110,7 @@ double fastest_swing_squared(const Aggregate& of) {
 SwingBound::SwingBound(const Aggregate& matter, bool parts)
     : found_(kRoom * fastest_swing_squared(matter)) {
     if (parts) {
-        const std::vector<double> springs = stiffness_bound(matter, lattice_law(matter));
+        const std::vector<double> springs = stiffness_bound(matter);
         found_ = std::max(found_, largest_ratio(springs, matter));
     }
     bool flows = false;

@@ -37,8 +37,7 @@ void add_pieces(const Aggregate& matter, const CellRun& run, std::vector<CellRun
         const CellId cell = run.first + n;
         if (n == 0 || matter.cell_material[cell] != matter.cell_material[cell - 1]) {
             CellRun piece = run;
-            piece.i += n, piece.first = cell, piece.count = 0;
-            for (ParticleId& row : piece.row) row += n;
+            piece.i += n, piece.first = cell, piece.count = 0, piece.row = run.row_at(n);
             pieces.push_back(piece);
         }
         ++pieces.back().count;

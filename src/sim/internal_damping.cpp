@@ -68,8 +68,8 @@ void InternalDamping::add_stiffness_bound(const Aggregate& matter,
                                           std::vector<double>& bound) const {
     const std::vector<DampedMaterials> damped = damped_materials(matter);
     for (std::size_t n = 0; n < branches_.size(); ++n) {
-        const std::vector<double> more = stiffness_bound(
-            matter, lattice_law(matter), ConnectionShares(matter, damped[n].counts));
+        const std::vector<double> more =
+            stiffness_bound(matter, ConnectionShares(matter, damped[n].counts));
         for (std::size_t p = 0; p < bound.size(); ++p) {
             bound[p] += (fast_stiffness(branches_[n]) - 1) * more[p];
         }
@@ -125,8 +125,7 @@ double InternalDamping::stored_energy(const Aggregate& matter, LatticeForces& la
     for (std::size_t n = 0; n < matter.branch_memory.size(); ++n) {
         const auto& [branches, strain] = matter.branch_memory[n];
         if (strain.empty()) continue;
-        stored +=
-            lattice.sweep(matter, n).branch_energy(matter, lattice_law(matter), branches, strain);
+        stored += lattice.sweep(matter, n).branch_energy(matter, branches, strain);
     }
     return stored;
 }

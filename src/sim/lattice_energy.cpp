@@ -87,8 +87,8 @@ double slab_energy(const BranchPlaces& own) {
 
 }  // namespace
 
-double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
-                      const ConnectionShares& shares) {
+double elastic_energy(const Aggregate& matter, const ConnectionShares& shares) {
+    const double stiffness = lattice_stiffness(matter);
     const std::vector<Span>& spans = matter.lattice.span;
     const Vec3Array& x = matter.particle_position;
     const int particles = static_cast<int>(x.size());
@@ -113,21 +113,20 @@ double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
                                     flowed};
                 own += block_energy(at, count, particles - std::max(low, high), length);
             }
-            sum += 0.5 * law.stiffness * length * length * own;
+            sum += 0.5 * stiffness * length * length * own;
         }
         return sum;
     });
 }
 
-double LatticeSweep::branch_energy(const Aggregate& matter, const LatticeLaw& law,
-                                   const DampingBranches& branches,
+double LatticeSweep::branch_energy(const Aggregate& matter, const DampingBranches& branches,
                                    const std::vector<float>& strain) const {
     BranchPlaces whole{.count = branches.count};
     for (int j = 0; j < branches.count; ++j) whole.inverse_share[j] = 1 / branches.share[j];
     whole.weight = branches_soften() ? softened_.data() : weight_.data();
     for (int d = 0; d < kForwardCount; ++d) {
         const double length = reference_length(matter.lattice, d);
-        whole.scale[d] = 0.5 * law.stiffness * length * length;
+        whole.scale[d] = 0.5 * lattice_stiffness(matter) * length * length;
     }
     const std::size_t each = kForwardCount * kLanes * static_cast<std::size_t>(branches.count);
     return ordered_sum(slab_.size(), [&](std::size_t index) {
@@ -140,17 +139,17 @@ double LatticeSweep::branch_energy(const Aggregate& matter, const LatticeLaw& la
     });
 }
 
-std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law,
-                                    const ConnectionShares& shares) {
+std::vector<double> stiffness_bound(const Aggregate& matter, const ConnectionShares& shares) {
     // A spring's energy k (n.(u1 - u2))^2 / 2 is at most k ((n.u1)^2 + (n.u2)^2): each end may be
     // given the matrix 2 k n n^T of its own. Bounded by the row sums of their sum.
+    const double stiffness = lattice_stiffness(matter);
     std::vector<Mat3> block(matter.particle_count(), Mat3::Zero());
     for (const Span& span : matter.lattice.span) {
         const auto& f = kForward[span.direction];
         const Vec3 n = Vec3(f[0], f[1], f[2]).normalized();
         const Mat3 dyad = n * n.transpose();
         for (int i = 0; i < span.count; ++i) {
-            const double k = law.stiffness * shares.of(matter, span.direction, span.lower + i);
+            const double k = stiffness * shares.of(matter, span.direction, span.lower + i);
             block[span.lower + i] += 2 * k * dyad;
             block[span.upper + i] += 2 * k * dyad;
         }

@@ -21,7 +21,7 @@ constexpr double kMostBent = 3;
 }  // namespace
 
 LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
-    : in_motion_(in_motion), spring_law_(lattice_law(matter)), loose_(matter) {
+    : in_motion_(in_motion), loose_(matter) {
     const bool springs = matter.material.mechanics == Mechanics::springs;
     if (springs) spring_sweep_ = std::make_unique<LatticeSweep>(matter);
     if (!springs) cells_ = std::make_unique<CellSweep>(matter);
@@ -85,7 +85,7 @@ double LatticeForces::add_branches(const Aggregate& matter, std::span<const Bran
     double work = 0;
     for (std::size_t n = 0; n < branches.size(); ++n) {
         LatticeSweep& own = branch_sweep_.empty() ? *spring_sweep_ : branch_sweep_[n];
-        work += own.add_branches(matter, spring_law_, branches[n], force);
+        work += own.add_branches(matter, branches[n], force);
     }
     return work;
 }
@@ -104,9 +104,8 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
     const FractureLaws& laws = loose_.laws();
     const double limit = laws.break_any() ? kNearOnset * laws.least_onset() : 1e100;
     const bool apart = spring_sweep_->branches_soften() || !branch_sweep_.empty();
-    double work =
-        spring_sweep_->forces(matter, spring_law_, rest, force,
-                              apart || branches.empty() ? nullptr : branches.data(), limit);
+    double work = spring_sweep_->forces(
+        matter, rest, force, apart || branches.empty() ? nullptr : branches.data(), limit);
     if (apart) work = add_branches(matter, branches, force);
     if (!branches.empty()) *given += work;
     loose_.add_forces(matter, flow, rest, force);
@@ -197,8 +196,7 @@ double LatticeForces::elastic_energy(const Aggregate& matter) {
 }
 
 double LatticeForces::energy_found(const Aggregate& matter) {
-    const double lattice =
-        cells_ ? cells_->elastic_energy(matter) : swage::elastic_energy(matter, spring_law_);
+    const double lattice = cells_ ? cells_->elastic_energy(matter) : swage::elastic_energy(matter);
     return lattice + loose_.elastic_energy() + guard_energy_of(matter);
 }
 
@@ -208,7 +206,7 @@ std::vector<double> LatticeForces::stiffness_bound(const Aggregate& matter) cons
         bound.assign(matter.particle_count(), 0.0);
         cells_->add_stiffness_bound(matter, bound);
     } else {
-        bound = swage::stiffness_bound(matter, spring_law_);
+        bound = swage::stiffness_bound(matter);
     }
     loose_.add_stiffness_bound(bound);
     return bound;

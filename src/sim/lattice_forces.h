@@ -96,7 +96,6 @@ class LatticeForces {
     double energy_found(const Aggregate& matter);
 
     bool in_motion_;
-    LatticeLaw spring_law_;
     std::unique_ptr<LatticeSweep> spring_sweep_;  // where springs or branches act
     std::vector<LatticeSweep> branch_sweep_;      // the branches' own, of several materials
     std::unique_ptr<CellFlow> spring_flow_;       // springs that yield

@@ -204,8 +204,8 @@ void slab_of(SpringTask& task) {
 
 }  // namespace
 
-LatticeLaw lattice_law(const Aggregate& matter) {
-    return {lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing)};
+double lattice_stiffness(const Aggregate& matter) {
+    return lattice_stiffness(matter.material.young_modulus, matter.lattice.spacing);
 }
 
 LatticeSweep::LatticeSweep(const Aggregate& matter, ConnectionShares shares)
@@ -262,8 +262,7 @@ void LatticeSweep::soften(const Aggregate& matter) {
     }
 }
 
-double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const Wanted& wanted,
-                           Vec3Array& force) {
+double LatticeSweep::sweep(const Aggregate& matter, const Wanted& wanted, Vec3Array& force) {
     const double a = matter.lattice.spacing;
     const Vec3Array &x = matter.particle_position, &v = matter.particle_velocity;
     SpringTask whole;
@@ -278,7 +277,7 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
         whole.rest[d] = (wanted.rest ? (*wanted.rest)[d] : own.plastic).data();
     }
     whole.weight = (wanted.springs || !branches_soften() ? weight_ : softened_).data();
-    whole.stiffness = law.stiffness;
+    whole.stiffness = lattice_stiffness(matter);
     whole.inverse_square[0] = 1 / (a * a), whole.inverse_square[1] = 0.5 / (a * a);
     whole.slack_limit = slack_at(wanted.limit);
     if (const BranchStep* step = wanted.branches) {
@@ -320,7 +319,7 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
         }
         double work = 0;
         for (double lane : task.work) work += lane;
-        work_[index] = law.stiffness * a * a * work;
+        work_[index] = whole.stiffness * a * a * work;
     });
     add_seams(slab_, force);
     double work = 0;
@@ -328,14 +327,14 @@ double LatticeSweep::sweep(const Aggregate& matter, const LatticeLaw& law, const
     return work;
 }
 
-double LatticeSweep::forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
-                            Vec3Array& force, const BranchStep* branches, double limit) {
-    return sweep(matter, law, {true, rest, branches, limit}, force);
+double LatticeSweep::forces(const Aggregate& matter, const RestStrains* rest, Vec3Array& force,
+                            const BranchStep* branches, double limit) {
+    return sweep(matter, {true, rest, branches, limit}, force);
 }
 
-double LatticeSweep::add_branches(const Aggregate& matter, const LatticeLaw& law,
-                                  const BranchStep& branches, Vec3Array& force) {
-    return sweep(matter, law, {false, nullptr, &branches, 1e100}, force);
+double LatticeSweep::add_branches(const Aggregate& matter, const BranchStep& branches,
+                                  Vec3Array& force) {
+    return sweep(matter, {false, nullptr, &branches, 1e100}, force);
 }
 
 }  // namespace swage

@@ -15,11 +15,7 @@
 
 namespace swage {
 
-// Constants of the sweep, derived once from material and spacing.
-struct LatticeLaw {
-    double stiffness;  // of a full connection [N/m]
-};
-LatticeLaw lattice_law(const Aggregate& matter);
+double lattice_stiffness(const Aggregate& matter);  // of a full connection [N/m]
 
 // rest_length / reference_length - 1 of every connection, by direction and lower particle.
 using RestStrains = std::array<std::vector<float>, kForwardCount>;
@@ -53,18 +49,17 @@ class LatticeSweep {
     // force = sum of the connections' forces on each particle [N], with the given rest strains or
     // else the committed ones. A strain above `limit` is told by stretched_runs(). With branches,
     // these are moved on and pull too; returns the work done on them in the step [J].
-    double forces(const Aggregate& matter, const LatticeLaw& law, const RestStrains* rest,
-                  Vec3Array& force, const BranchStep* branches = nullptr, double limit = 1e100);
+    double forces(const Aggregate& matter, const RestStrains* rest, Vec3Array& force,
+                  const BranchStep* branches = nullptr, double limit = 1e100);
     // Adds those of the branches alone.
-    double add_branches(const Aggregate& matter, const LatticeLaw& law, const BranchStep& branches,
-                        Vec3Array& force);
+    double add_branches(const Aggregate& matter, const BranchStep& branches, Vec3Array& force);
 
     std::size_t branch_floats(int count) const {
         return batch_.size() * kForwardCount * static_cast<std::size_t>(count) * kLanes;
     }
     // Energy stored in branches with these strains [J].
-    double branch_energy(const Aggregate& matter, const LatticeLaw& law,
-                         const DampingBranches& branches, const std::vector<float>& strain) const;
+    double branch_energy(const Aggregate& matter, const DampingBranches& branches,
+                         const std::vector<float>& strain) const;
 
     // Runs of the last sweep with a strain above the limit, slab by slab.
     const std::vector<std::vector<const SpringRun*>>& stretched_runs() const { return stretched_; }
@@ -93,17 +88,14 @@ class LatticeSweep {
         const BranchStep* branches;
         double limit;
     };
-    double sweep(const Aggregate& matter, const LatticeLaw& law, const Wanted& wanted,
-                 Vec3Array& force);
+    double sweep(const Aggregate& matter, const Wanted& wanted, Vec3Array& force);
 };
 
 // Elastic energy stored in the connections [J].
-double elastic_energy(const Aggregate& matter, const LatticeLaw& law,
-                      const ConnectionShares& shares = {});
+double elastic_energy(const Aggregate& matter, const ConnectionShares& shares = {});
 
 // For each particle a stiffness [N/m] such that no motion of the lattice is faster than the fastest
 // of these on their own masses: w_max^2 <= max(bound / mass). Zero without connections.
-std::vector<double> stiffness_bound(const Aggregate& matter, const LatticeLaw& law,
-                                    const ConnectionShares& shares = {});
+std::vector<double> stiffness_bound(const Aggregate& matter, const ConnectionShares& shares = {});
 
 }  // namespace swage

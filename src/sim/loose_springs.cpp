@@ -47,7 +47,7 @@ constexpr std::array<int, kCellConnectionCount> kPartner = [] {
 LooseSprings::LooseSprings(const Aggregate& matter)
     : laws_(matter),
       beside_sweep_(matter.material.mechanics == Mechanics::springs),
-      stiffness_(lattice_law(matter).stiffness) {
+      stiffness_(lattice_stiffness(matter)) {
     for (int d = 0; d < kForwardCount; ++d) reference_[d] = reference_length(matter.lattice, d);
 }
 

@@ -21,7 +21,7 @@ void strain_uniformly(Aggregate& m, const Mat3& gradient) {
 // Cauchy stress of a uniformly strained block from the forces on its particles (virial).
 Mat3 stress_of(const Aggregate& m, CellFlow& flow) {
     Vec3Array f;
-    LatticeSweep(m).forces(m, lattice_law(m), &flow.rest_strains(m), f);
+    LatticeSweep(m).forces(m, &flow.rest_strains(m), f);
     Mat3 sum = Mat3::Zero();
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         sum -= f.at(p) * m.particle_position.at(p).transpose();

@@ -26,7 +26,7 @@ void deform(Aggregate& m, double size) {
 
 Vec3Array forces_of(const Aggregate& m) {
     Vec3Array f;
-    LatticeSweep(m).forces(m, lattice_law(m), nullptr, f);
+    LatticeSweep(m).forces(m, nullptr, f);
     return f;
 }
 
@@ -35,7 +35,6 @@ Vec3Array forces_of(const Aggregate& m) {
 TEST_CASE("lattice forces are the gradient of the elastic energy") {
     Aggregate m = test::make_block(3, 2, 2, 0.1, Material{});
     deform(m, 0.004);
-    const LatticeLaw law = lattice_law(m);
     const Vec3Array f = forces_of(m);
     const double h = 1e-7;
     for (std::size_t p = 0; p < m.particle_count(); p += 5) {
@@ -43,9 +42,9 @@ TEST_CASE("lattice forces are the gradient of the elastic energy") {
              {&m.particle_position.x, &m.particle_position.y, &m.particle_position.z}) {
             const double here = (*x)[p];
             (*x)[p] = here + h;
-            const double up = elastic_energy(m, law);
+            const double up = elastic_energy(m);
             (*x)[p] = here - h;
-            const double down = elastic_energy(m, law);
+            const double down = elastic_energy(m);
             (*x)[p] = here;
             const std::vector<double>& component = x == &m.particle_position.x   ? f.x
                                                    : x == &m.particle_position.y ? f.y
@@ -186,7 +185,7 @@ bool same_bytes(const Vec3Array& a, const Vec3Array& b) {
 
 TEST_CASE("each connection pulls its two ends, whatever is missing around it, at any width") {
     Aggregate m = sponge();
-    const LatticeLaw law = lattice_law(m);
+    const double stiffness = lattice_stiffness(m);
     DampingBranches branches = damping_branches(0.1, 10, 2000);
     const double step = 4e-4;
     BranchStep steps{.count = branches.count, .step = step};
@@ -207,7 +206,7 @@ TEST_CASE("each connection pulls its two ends, whatever is missing around it, at
                 const ConnectionArrays& c = m.connection[span.direction];
                 const Vec3 way = m.particle_position.at(upper) - m.particle_position.at(lower);
                 const Vec3 speed = m.particle_velocity.at(upper) - m.particle_velocity.at(lower);
-                const double k = law.stiffness * double(c.weight[lower]);
+                const double k = stiffness * double(c.weight[lower]);
                 const double rest = length * (1 + c.plastic_of(lower));
                 const double gone2 = (step * speed).squaredNorm();
                 const double turn = 0.5 * gone2 * std::max(0.0, 1 - gone2 / way.squaredNorm());
@@ -232,10 +231,10 @@ TEST_CASE("each connection pulls its two ends, whatever is missing around it, at
             steps.strain = &strain;
             Vec3Array f;
             for (const double work : {first, second}) {
-                CHECK(sweep.forces(m, law, nullptr, f, &steps, 0.999 * largest) ==
+                CHECK(sweep.forces(m, nullptr, f, &steps, 0.999 * largest) ==
                       Approx(work).epsilon(1e-5));
             }
-            CHECK(farthest_apart(f, pulls) < 1e-6 * law.stiffness * m.lattice.spacing);
+            CHECK(farthest_apart(f, pulls) < 1e-6 * stiffness * m.lattice.spacing);
             if (width == 8) expected = f;
             CHECK(same_bytes(f, expected));
             std::size_t stretched = 0;
@@ -259,7 +258,7 @@ TEST_CASE("forces inside a body of any outline are in balance, over however many
         test::make_shape(distance, Vec3::Constant(-0.5 * cells + 0.13), Vec3i::Constant(cells), 1);
     REQUIRE(m.particle_count() > 1500);
     deform(m, 0.03);
-    const LatticeLaw law = lattice_law(m);
+    const double stiffness = lattice_stiffness(m);
     Vec3Array pulls;
     pulls.resize(m.particle_count());
     for (const Span& span : m.lattice.span) {
@@ -267,11 +266,11 @@ TEST_CASE("forces inside a body of any outline are in balance, over however many
         for (int n = 0; n < span.count; ++n) {
             const ParticleId lower = span.lower + n, upper = span.upper + n;
             const Vec3 way = m.particle_position.at(upper) - m.particle_position.at(lower);
-            const double k = law.stiffness * double(m.connection[span.direction].weight[lower]);
+            const double k = stiffness * double(m.connection[span.direction].weight[lower]);
             const Vec3 pull =
                 spring_tension(SpringDamper{k, 0, length}, way.norm(), 0.0) / way.norm() * way;
             pulls.add(lower, pull), pulls.add(upper, -pull);
         }
     }
-    CHECK(farthest_apart(forces_of(m), pulls) < 1e-9 * law.stiffness);
+    CHECK(farthest_apart(forces_of(m), pulls) < 1e-9 * stiffness);
 }
