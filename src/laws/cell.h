@@ -89,6 +89,21 @@ SWAGE_INLINE void spread_corners(const N& x, const N& y, const N& z, const N& xy
     c[0] = a0 - d0, c[1] = a0 + d0, c[2] = a1 - d1, c[3] = a1 + d1;
     c[4] = a2 - d2, c[5] = a2 + d2, c[6] = a3 - d3, c[7] = a3 + d3;
 }
+// The same of all three components.
+template <typename N>
+SWAGE_INLINE CornerSums<N> sum_corners(const N (&c)[3][8]) {
+    CornerSums<N> s;
+    sum_corners(c[0], s.x.x, s.y.x, s.z.x, s.xy.x, s.yz.x, s.zx.x, s.xyz.x);
+    sum_corners(c[1], s.x.y, s.y.y, s.z.y, s.xy.y, s.yz.y, s.zx.y, s.xyz.y);
+    sum_corners(c[2], s.x.z, s.y.z, s.z.z, s.xy.z, s.yz.z, s.zx.z, s.xyz.z);
+    return s;
+}
+template <typename N>
+SWAGE_INLINE void spread_corners(const CornerSums<N>& s, N (&c)[3][8]) {
+    spread_corners(s.x.x, s.y.x, s.z.x, s.xy.x, s.yz.x, s.zx.x, s.xyz.x, c[0]);
+    spread_corners(s.x.y, s.y.y, s.z.y, s.xy.y, s.yz.y, s.zx.y, s.xyz.y, c[1]);
+    spread_corners(s.x.z, s.y.z, s.z.z, s.xy.z, s.yz.z, s.zx.z, s.xyz.z, c[2]);
+}
 
 // The modes of the corners in the material's axes.
 template <typename N>

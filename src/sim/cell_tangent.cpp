@@ -105,13 +105,6 @@ SWAGE_INLINE CornerSums<V> tangent_forces(const Task& task, int begin, const Cor
     return result;
 }
 
-template <typename V>
-SWAGE_INLINE void spread(const CornerSums<V>& r, V (&force)[3][8]) {
-    spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, force[0]);
-    spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, force[1]);
-    spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, force[2]);
-}
-
 struct ProductTask : Task {
     CornerRows<const double> direction;
     CornerRows<double> result{};
@@ -170,7 +163,7 @@ SWAGE_INLINE void forces_along(const Task& task, int begin, const CornerSums<V>&
     };
     const CornerSums<V> direction{along(sum[0]), along(sum[1]), along(sum[2]), along(sum[3]),
                                   along(sum[4]), along(sum[5]), along(sum[6])};
-    spread(tangent_forces<kKind>(task, begin, x, direction), force);
+    spread_corners(tangent_forces<kKind>(task, begin, x, direction), force);
 }
 
 template <CellKind kKind, int kWidth>

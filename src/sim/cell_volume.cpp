@@ -151,17 +151,13 @@ Mat3 cell_gradient(const Aggregate& matter, const CellRun& run, int n) {
 }
 
 CornerSums<double> corner_sums(const Aggregate& matter, const CellRun& run, int n) {
-    CornerSums<double> c;
-    double v[8];
-    const auto component = [&](const std::vector<double>& x) -> const double(&)[8] {
-        for (int q = 0; q < 8; ++q) v[q] = x[run.row[q >> 1] + n + (q & 1)];
-        return v;
-    };
     const Vec3Array& x = matter.particle_position;
-    sum_corners(component(x.x), c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-    sum_corners(component(x.y), c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-    sum_corners(component(x.z), c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    return c;
+    double at[3][8];
+    for (int c = 0; c < 8; ++c) {
+        const ParticleId p = run.row[c >> 1] + n + (c & 1);
+        at[0][c] = x.x[p], at[1][c] = x.y[p], at[2][c] = x.z[p];
+    }
+    return sum_corners(at);
 }
 
 Triple<double> material_place(const Aggregate& matter, CellId cell) {

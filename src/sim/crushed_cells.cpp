@@ -97,13 +97,10 @@ int resist(const Aggregate& matter, Flow flow, const std::vector<SmallCell>& cru
     int mirrored = 0;
     for (const SmallCell& cell : crushed) {
         mirrored += cell.volume < 0;
-        const CornerSums<double> r = Crushed(matter, laws, cell).forces();
-        double x[8], y[8], z[8];
-        spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, x);
-        spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, y);
-        spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, z);
+        double own[3][8];
+        spread_corners(Crushed(matter, laws, cell).forces(), own);
         for (int c = 0; c < 8; ++c) {
-            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), {x[c], y[c], z[c]});
+            force.add(cell.run->row[c >> 1] + cell.n + (c & 1), {own[0][c], own[1][c], own[2][c]});
         }
     }
     return mirrored;

@@ -42,20 +42,4 @@ SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
     }
 }
 
-template <typename N>
-SWAGE_INLINE CornerSums<N> corner_sums(const N (&at)[3][8]) {
-    CornerSums<N> c;
-    sum_corners(at[0], c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-    sum_corners(at[1], c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-    sum_corners(at[2], c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    return c;
-}
-
-template <typename N>
-SWAGE_INLINE void corner_forces(const CornerSums<N>& r, N (&at)[3][8]) {
-    spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, at[0]);
-    spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, at[1]);
-    spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, at[2]);
-}
-
 }  // namespace swage

@@ -70,11 +70,11 @@ SWAGE_INLINE void batch_forces(const MixedBatch& b) {
             set_guess(guess, l, b.seen[n]);
         }
         const double spacing = b.matter->lattice.spacing;
-        const CornerSums<V> c = corner_sums(at);
+        const CornerSums<V> c = sum_corners(at);
         Laminate<V> found;
         laminate(c, phase, normal, spacing, found, guess);
         const CornerSums<V> r = laminate_forces(c, phase, found, spacing);
-        corner_forces(r, at);
+        spread_corners(r, at);
         for (int l = 0; l < kWidth && begin + l < b.count; ++l) {
             for (int n = 0; n < 24; ++n) b.push[begin + l][n] = at[n / 8][n % 8][l];
             MixedCells::Seen& seen = b.seen[begin + l];
@@ -105,7 +105,7 @@ OneMixed one_mixed(const Aggregate& matter, const std::vector<MaterialLaw>& laws
         one.phase[p].kind = laws[cell.material[p]].kind;
     }
     read_mixed(matter.particle_position, cell, corner, 0, at, one.phase, normal);
-    one.sums = corner_sums(at);
+    one.sums = sum_corners(at);
     laminate(one.sums, one.phase, normal, matter.lattice.spacing, one.found);
     return one;
 }

@@ -38,17 +38,17 @@ SWAGE_INLINE void some_matrices(const TangentBatch& b, int first) {
         read_mixed(b.matter->particle_position, *b.cell[n], *b.corner[n], l, at, phase, normal);
     }
     const double spacing = b.matter->lattice.spacing;
-    const CornerSums<V> c = corner_sums(at);
+    const CornerSums<V> c = sum_corners(at);
     Laminate<V> found;
     laminate(c, phase, normal, spacing, found);
     const Columns<V> inverse = inverse_of(jump_slope(phase, normal, found, b.turning));
     for (int column = 0; column < CellMatrix::kSize; ++column) {
         V alone[3][8]{};
         alone[column % 3][column / 3] += 1.0;
-        const CornerSums<V> r = laminate_slope(c, corner_sums(alone), phase, normal, spacing,
+        const CornerSums<V> r = laminate_slope(c, sum_corners(alone), phase, normal, spacing,
                                                found.jump, inverse, b.turning);
         V force[3][8];
-        corner_forces(r, force);
+        spread_corners(r, force);
         for (int row = 0; row <= column; ++row) {
             const V& f = force[row % 3][row / 3];
             for (int l = 0; l < std::min(kWidth, b.count - first); ++l) {

@@ -25,26 +25,20 @@ Corners cube() {
 }
 
 CornerSums<double> sums_of(const Corners& x) {
-    CornerSums<double> c;
-    double v[8];
-    for (int q = 0; q < 8; ++q) v[q] = x(0, q);
-    sum_corners(v, c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-    for (int q = 0; q < 8; ++q) v[q] = x(1, q);
-    sum_corners(v, c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-    for (int q = 0; q < 8; ++q) v[q] = x(2, q);
-    sum_corners(v, c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-    return c;
+    double at[3][8];
+    for (int i = 0; i < 3; ++i) {
+        for (int c = 0; c < 8; ++c) at[i][c] = x(i, c);
+    }
+    return sum_corners(at);
 }
 
 Corners forces_of(const CornerSums<double>& r) {
     Corners f;
-    double v[8];
-    spread_corners(r.x.x, r.y.x, r.z.x, r.xy.x, r.yz.x, r.zx.x, r.xyz.x, v);
-    for (int q = 0; q < 8; ++q) f(0, q) = v[q];
-    spread_corners(r.x.y, r.y.y, r.z.y, r.xy.y, r.yz.y, r.zx.y, r.xyz.y, v);
-    for (int q = 0; q < 8; ++q) f(1, q) = v[q];
-    spread_corners(r.x.z, r.y.z, r.z.z, r.xy.z, r.yz.z, r.zx.z, r.xyz.z, v);
-    for (int q = 0; q < 8; ++q) f(2, q) = v[q];
+    double own[3][8];
+    spread_corners(r, own);
+    for (int i = 0; i < 3; ++i) {
+        for (int c = 0; c < 8; ++c) f(i, c) = own[i][c];
+    }
     return f;
 }
 

@@ -128,10 +128,7 @@ TEST_CASE("a cell whose strain measure is small has no strain that reaches the b
             for (int i = 0; i < 3; ++i) x[c][i] += (round % 2) * bend * a * draw(engine);
             for (int i = 0; i < 3; ++i) at[i][c] = x[c][i];
         }
-        CornerSums<double> s;
-        sum_corners(at[0], s.x.x, s.y.x, s.z.x, s.xy.x, s.yz.x, s.zx.x, s.xyz.x);
-        sum_corners(at[1], s.x.y, s.y.y, s.z.y, s.xy.y, s.yz.y, s.zx.y, s.xyz.y);
-        sum_corners(at[2], s.x.z, s.y.z, s.z.z, s.xy.z, s.yz.z, s.zx.z, s.xyz.z);
+        const CornerSums<double> s = sum_corners(at);
         const double measure = strain_measure(s, gram, kInMiddle);
         const Triple<double> off = {(engine() % 3) - 1.0, (engine() % 3) - 1.0,
                                     (engine() % 3) - 1.0};

@@ -25,13 +25,7 @@ struct Cell {
             m[p] = {&law[p], kind[p], fill[p], place[p], history[p]};
         }
     }
-    CornerSums<double> sums() const {
-        CornerSums<double> c;
-        sum_corners(at[0], c.x.x, c.y.x, c.z.x, c.xy.x, c.yz.x, c.zx.x, c.xyz.x);
-        sum_corners(at[1], c.x.y, c.y.y, c.z.y, c.xy.y, c.yz.y, c.zx.y, c.xyz.y);
-        sum_corners(at[2], c.x.z, c.y.z, c.z.z, c.xy.z, c.yz.z, c.zx.z, c.xyz.z);
-        return c;
-    }
+    CornerSums<double> sums() const { return sum_corners(at); }
     Laminate<double> solved() const {
         Phase<double> m[2];
         phases(m);
@@ -173,9 +167,7 @@ TEST_CASE(
                 const Laminate<double> r = cell.solved();
                 const CornerSums<double> f = laminate_forces(cell.sums(), m, r, kSpacing);
                 double force[3][8], largest = 0;
-                spread_corners(f.x.x, f.y.x, f.z.x, f.xy.x, f.yz.x, f.zx.x, f.xyz.x, force[0]);
-                spread_corners(f.x.y, f.y.y, f.z.y, f.xy.y, f.yz.y, f.zx.y, f.xyz.y, force[1]);
-                spread_corners(f.x.z, f.y.z, f.z.z, f.xy.z, f.yz.z, f.zx.z, f.xyz.z, force[2]);
+                spread_corners(f, force);
                 for (const auto& row : force) {
                     for (double v : row) largest = std::max(largest, std::abs(v));
                 }
