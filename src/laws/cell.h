@@ -56,6 +56,8 @@
 // bending and torsion on coarse lattices.
 #pragma once
 
+#include <array>
+
 #include "laws/cell_moduli.h"
 #include "laws/lane_tensor.h"
 
@@ -337,6 +339,24 @@ struct CellHistory {
     CellModes<N> modes;    // p [m]
     N alpha;
 };
+// Where its numbers are, in the order in which they are kept.
+template <typename History>
+SWAGE_INLINE auto numbers_of(History& history) {
+    auto& [e, q, alpha] = history;
+    return std::array{&e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,   &e.zx,   &q.xy.x,
+                      &q.xy.y, &q.xy.z,  &q.yz.x,  &q.yz.y,  &q.yz.z, &q.zx.x, &q.zx.y,
+                      &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &alpha};
+}
+// Of the numbers at(n) in that order.
+template <typename N, typename At>
+SWAGE_INLINE CellHistory<N> history_from(const At& at) {
+    const auto triple = [&](int n) __attribute__((always_inline)) {
+        return Triple<N>{at(n), at(n + 1), at(n + 2)};
+    };
+    return {{at(0), at(1), at(2), at(3), at(4), at(5)},
+            {triple(6), triple(9), triple(12), triple(15)},
+            at(18)};
+}
 template <typename N>  // A
 SWAGE_INLINE Symmetric<N> taken_back(const CellHistory<N>& history) {
     return plus_unit(history.stretch, 1.0);

@@ -26,6 +26,22 @@ bool Aggregate::breaks() const {
                                             [](const Material& m) { return m.breaks(); });
 }
 
+bool Aggregate::yields() const {
+    return material.yields() || std::any_of(inset.begin(), inset.end(),
+                                            [](const Material& m) { return m.yields(); });
+}
+
+bool Aggregate::has_flowed() const {
+    return !cell_history.empty() ||
+           std::any_of(mixed_cell.begin(), mixed_cell.end(),
+                       [](const MixedCell& cell) { return cell.hardening() > 0; });
+}
+
+float Aggregate::hardening_of(CellId cell) const {
+    const MixedCell* mixed = mixed_at(cell);
+    return std::max(mixed ? mixed->hardening() : 0, cell_history.hardening_of(cell));
+}
+
 double Aggregate::mean_modulus() const {
     if (inset.empty()) return material.young_modulus;
     double sum = 0, cells = 0;
@@ -124,12 +140,10 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(lattice.cell_run) + bytes_of(lattice.cell_row_begin) +
                       bytes_of(particle_position) + bytes_of(particle_velocity) +
                       bytes_of(particle_mass) + bytes_of(cell_fill) + cell_centroid.bytes() +
-                      bytes_of(cell_cracked) + bytes_of(cell_set) + bytes_of(cell_hardening) +
-                      bytes_of(inset) + bytes_of(cell_material) + bytes_of(mixed_cell) +
-                      surface.bytes();
+                      bytes_of(cell_cracked) + bytes_of(cell_set) + bytes_of(inset) +
+                      bytes_of(cell_material) + bytes_of(mixed_cell) + surface.bytes();
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
-    for (const std::vector<float>& v : cell_plastic_stretch) sum += bytes_of(v);
-    for (const std::vector<float>& v : cell_plastic_modes) sum += bytes_of(v);
+    for (const std::vector<float>& row : cell_history.row) sum += bytes_of(row);
     for (const ConnectionArrays& direction : connection) {
         sum += direction.weight.bytes() + bytes_of(direction.plastic) + bytes_of(direction.damage);
     }
@@ -182,13 +196,9 @@ std::uint64_t state_hash(const Aggregate& matter) {
     for (const std::vector<float>& slot : matter.cell_plastic) {
         hasher.add(std::span<const float>(slot));
     }
-    for (const std::vector<float>& v : matter.cell_plastic_stretch) {
-        hasher.add(std::span<const float>(v));
+    for (const std::vector<float>& row : matter.cell_history.row) {
+        hasher.add(std::span<const float>(row));
     }
-    for (const std::vector<float>& v : matter.cell_plastic_modes) {
-        hasher.add(std::span<const float>(v));
-    }
-    hasher.add(std::span<const float>(matter.cell_hardening));
     for (const MixedCell& cell : matter.mixed_cell) {
         for (const auto& part : cell.flowed) hasher.add(std::span<const float>(part));
     }

@@ -3,6 +3,7 @@
 // by component. No law is called here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -28,15 +29,41 @@ struct ConnectionArrays {
     std::vector<float> damage;
 };
 
+// Numbers of a cell's history (laws/cell.h), in this order: inverse of the plastic stretch less
+// one, xx, yy, zz, xy, yz, zx; plastic part of the modes xy, yz, zx, xyz, three components each
+// [m]; hardening, which is accumulated plastic strain.
+inline constexpr int kCellHistory = 19;
+
+// The committed history of all cells, a row for each of its numbers. Mechanics of springs keep the
+// hardening alone, and the rest is empty.
+struct CellHistories {
+    std::array<std::vector<float>, kCellHistory> row;
+
+    std::vector<float>& hardening() { return row.back(); }
+    const std::vector<float>& hardening() const { return row.back(); }
+    bool empty() const { return hardening().empty(); }
+    float hardening_of(CellId cell) const { return empty() ? 0 : hardening()[cell]; }
+    void assign(std::size_t cells) {  // none has flowed
+        for (std::vector<float>& v : row) v.assign(cells, 0.0f);
+    }
+    void clear() {
+        for (std::vector<float>& v : row) v.clear();
+    }
+};
+
+// What has flowed in each of the materials of a cell of two, committed.
+using MixedHistory = std::array<std::array<float, kCellHistory>, 2>;
+
 // A cell through which the boundary of two materials runs.
 struct MixedCell {
-    static constexpr int kHistory = 19;  // as of a cell: stretch, modes, hardening
     CellId cell;
-    std::array<std::uint8_t, 2> material;                 // as cell_material
-    std::array<float, 2> fill;                            // shares of the cell's volume
-    std::array<Eigen::Vector3f, 2> centroid;              // of these, in the cell, each -0.5 to 0.5
-    Eigen::Vector3f normal;                               // of the boundary between them, unit
-    std::array<std::array<float, kHistory>, 2> flowed{};  // committed
+    std::array<std::uint8_t, 2> material;     // as cell_material
+    std::array<float, 2> fill;                // shares of the cell's volume
+    std::array<Eigen::Vector3f, 2> centroid;  // of these, in the cell, each -0.5 to 0.5
+    Eigen::Vector3f normal;                   // of the boundary between them, unit
+    MixedHistory flowed{};
+
+    float hardening() const { return std::max(flowed[0].back(), flowed[1].back()); }
 };
 
 // What the connections of a cell are at rest with, beside what has flowed: l' = (1 + strain) l.
@@ -76,14 +103,10 @@ struct Aggregate {
     // Of cells that have turned into springs: strain that is at rest, by slot; in the cells' order.
     std::vector<CellSet> cell_set;
 
-    // History of the cells, committed; all empty while nothing has ever yielded.
-    std::vector<float> cell_hardening;  // accumulated plastic strain
-    // Mechanics of cells (laws/cell.h): inverse of the plastic stretch less one, xx, yy, zz, xy,
-    // yz, zx, and plastic part of the modes xy, yz, zx, xyz, three components each [m].
-    std::array<std::vector<float>, 6> cell_plastic_stretch;
-    std::array<std::vector<float>, 12> cell_plastic_modes;
+    // Of cells of one material; empty while none of these has ever yielded.
+    CellHistories cell_history;
     // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24
-    // connections, by slot (kCellConnection), then cell.
+    // connections, by slot (kCellConnection), then cell. Empty likewise.
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
 
     std::vector<BranchMemory> branch_memory;  // empty: it has come to rest
@@ -102,13 +125,16 @@ struct Aggregate {
         return cell_material.empty() ? 0 : cell_material[cell];
     }
     const Material& material_of(CellId cell) const { return material_at(material_number(cell)); }
-    bool breaks() const;                   // any of its materials
-    double mean_modulus() const;           // Young's, by volume [Pa]
-    std::size_t connection_count() const;  // unsevered ones
-    double volume() const;                 // of the material at molding [m3]
-    double mass() const;                   // [kg]
-    Vec3 centre() const;                   // of mass [m]
-    Vec3 mean_velocity() const;            // of mass [m/s]
+    bool breaks() const;                    // any of its materials
+    bool yields() const;                    // likewise
+    bool has_flowed() const;                // cells of two materials included
+    float hardening_of(CellId cell) const;  // of two materials in it the more
+    double mean_modulus() const;            // Young's, by volume [Pa]
+    std::size_t connection_count() const;   // unsevered ones
+    double volume() const;                  // of the material at molding [m3]
+    double mass() const;                    // [kg]
+    Vec3 centre() const;                    // of mass [m]
+    Vec3 mean_velocity() const;             // of mass [m/s]
     Vec3 surface_position(std::size_t point) const {
         return surface.position(point, particle_position);
     }
@@ -135,7 +161,8 @@ struct Pieces {
 };
 Pieces find_pieces(const Aggregate& matter);
 
-// Hash of everything that a later stage depends on.
+// Hash of the particles, their connections, and what cells and damping remember. Of what molding
+// makes for good the cells' shares and boundaries, the surface, lattice and materials are left out.
 std::uint64_t state_hash(const Aggregate& matter);
 
 }  // namespace swage

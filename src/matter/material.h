@@ -19,6 +19,7 @@ enum class Elasticity {
 
 struct Material {
     bool breaks() const { return strength < std::numeric_limits<double>::infinity(); }
+    bool yields() const { return yield_stress < std::numeric_limits<double>::infinity(); }
 
     std::string name = "custom";
     Mechanics mechanics = Mechanics::cells;

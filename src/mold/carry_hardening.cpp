@@ -7,7 +7,7 @@
 namespace swage {
 
 void carry_hardening(const Aggregate& from, Aggregate& to) {
-    if (from.cell_hardening.empty()) return;
+    if (from.cell_history.empty()) return;
     const std::size_t count = to.cell_fill.size();
     std::vector<Vec3> place;
     for (std::size_t c = 0; c < count; ++c) {
@@ -15,16 +15,16 @@ void carry_hardening(const Aggregate& from, Aggregate& to) {
                         to.lattice.spacing * to.cell_centroid[c].cast<double>());
     }
     const std::vector<CellId> like = cells_there(from, place);
-    to.cell_hardening.assign(count, 0.0f);
-    for (std::size_t c = 0; c < count; ++c) {
-        to.cell_hardening[c] = from.cell_hardening[static_cast<std::size_t>(like[c])];
-    }
+    std::vector<float>& hardening = to.cell_history.hardening();
     if (to.material.mechanics == Mechanics::springs) {
         for (auto& slot : to.cell_plastic) slot.assign(count, 0.0f);
-        return;
+        hardening.resize(count);
+    } else {
+        to.cell_history.assign(count);
     }
-    for (auto& part : to.cell_plastic_stretch) part.assign(count, 0.0f);
-    for (auto& part : to.cell_plastic_modes) part.assign(count, 0.0f);
+    for (std::size_t c = 0; c < count; ++c) {
+        hardening[c] = from.cell_history.hardening()[static_cast<std::size_t>(like[c])];
+    }
 }
 
 }  // namespace swage

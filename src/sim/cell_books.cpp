@@ -152,20 +152,12 @@ SWAGE_INLINE void add_flow(BookTask& task) {
             if (flows[l] > 0) task.sum += lost[l];
         }
         const CellHistory<V> after = flowed_on(c.history, r, c.gradient, c.sums);
-        const Symmetric<V>& a = after.stretch;
-        const CellModes<V>& m = after.modes;
-        const V stretch[kCellStrains] = {a.xx, a.yy, a.zz, a.xy, a.yz, a.zx};
-        const V modes[kCellModes] = {m.xy.x, m.xy.y, m.xy.z, m.yz.x,  m.yz.y,  m.yz.z,
-                                     m.zx.x, m.zx.y, m.zx.z, m.xyz.x, m.xyz.y, m.xyz.z};
         if (task.growths) add_growths(task, begin, count, c, after, flows);
         const CellId first = task.run->first + begin;
-        for (int n = 0; n < kCellStrains; ++n) {
-            keep(stretch[n], flows, count, task.flows->cell_plastic_stretch[n].data() + first);
+        const auto number = numbers_of(after);
+        for (int n = 0; n < kCellHistory; ++n) {
+            keep(*number[n], flows, count, task.flows->cell_history.row[n].data() + first);
         }
-        for (int n = 0; n < kCellModes; ++n) {
-            keep(modes[n], flows, count, task.flows->cell_plastic_modes[n].data() + first);
-        }
-        keep(after.alpha, flows, count, task.flows->cell_hardening.data() + first);
     }
 }
 
@@ -209,11 +201,9 @@ double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) con
             by_width([&]<int kWidth>() __attribute__((always_inline)) { add_flow<kWidth>(task); });
         });
     };
-    if (matter.cell_plastic_stretch[0].empty()) {
+    if (matter.cell_history.empty()) {
         if (sum(nullptr) == 0) return mixed_.commit(matter, law_, seen, mixed_growths);
-        for (auto& v : matter.cell_plastic_stretch) v.assign(fill_.size(), 0.0f);
-        for (auto& v : matter.cell_plastic_modes) v.assign(fill_.size(), 0.0f);
-        matter.cell_hardening.assign(fill_.size(), 0.0f);
+        matter.cell_history.assign(fill_.size());
     }
     const double lost = sum(&matter);
     return lost + mixed_.commit(matter, law_, seen, mixed_growths);

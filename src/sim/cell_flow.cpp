@@ -158,6 +158,7 @@ void CellFlow::find_strains(const Aggregate& matter) {
 void CellFlow::find_flowing(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const bool fresh = matter.cell_plastic[0].empty();
+    const std::vector<float>& hardening = matter.cell_history.hardening();
     const std::array<float, kCellBlock> unyielded{};
     const auto find = [&](std::size_t first, std::size_t last, std::vector<FlowingCell>& flowing) {
         double theta[kCellBlock], distortion[kCellBlock];
@@ -187,7 +188,7 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                     if (!(distortion[n] > yield_distortion_)) continue;
                     const CellId id = run.first + at + n;
                     const double d_alpha =
-                        flow(law_, distortion[n], fresh ? 0.0 : double(matter.cell_hardening[id]));
+                        flow(law_, distortion[n], fresh ? 0.0 : double(hardening[id]));
                     if (!(d_alpha > 0)) continue;
                     FlowingCell cell{id, run.row_at(at + n), theta[n],
                                      flow_share(distortion[n], d_alpha), d_alpha};
@@ -263,7 +264,8 @@ double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
     }
     for (std::vector<float>& slot : matter.cell_plastic) slot.resize(matter.cell_fill.size());
     for (ConnectionArrays& c : matter.connection) c.plastic.resize(matter.particle_count());
-    matter.cell_hardening.resize(matter.cell_fill.size());
+    std::vector<float>& hardening = matter.cell_history.hardening();
+    hardening.resize(matter.cell_fill.size());
     for (std::size_t n = 0; n < flowing_.size(); ++n) {
         const FlowingCell& cell = flowing_[n];
         for (int slot = 0; slot < kCellConnectionCount; ++slot) {
@@ -283,7 +285,7 @@ double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
             }
             matter.cell_plastic[slot][cell.cell] += static_cast<float>(flow[n][slot]);
         }
-        matter.cell_hardening[cell.cell] += static_cast<float>(cell.d_alpha);
+        hardening[cell.cell] += static_cast<float>(cell.d_alpha);
     }
     flowing_.clear();
     return lost;

@@ -224,7 +224,7 @@ void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* tu
 void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     std::vector<MaterialLaw> laws = material_laws(matter, flow);
     std::vector<CellConstants> constants;
-    const bool is_plain = flow == Flow::none && matter.cell_hardening.empty() &&
+    const bool is_plain = flow == Flow::none && matter.cell_history.empty() &&
                           matter.mixed_cell.empty();  // nothing has flowed or will
     for (MaterialLaw& law : laws) {
         if (is_plain && law.kind == CellKind::yielding) law.kind = CellKind::elastic;

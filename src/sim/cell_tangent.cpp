@@ -55,7 +55,7 @@ SWAGE_INLINE CornerSums<V> minus_slopes(const Task& task, int begin, const Corne
     using N = Dual<V>;
     const CornerSums<N> c = pair(x, way);
     CornerSums<N> r;
-    const bool flowed = kKind == CellKind::yielding && run.history.alpha != nullptr;
+    const bool flowed = kKind == CellKind::yielding && run.history.hardening() != nullptr;
     if (run.whole[begin / kLanes]) {
         const CellShare<N> all{};
         r = flowed ? cell_forces<kKind, false, true>(constants, c, all, history_of<V>(run, begin),
@@ -250,7 +250,7 @@ struct CellTangent::Law {
 
 std::vector<CellTangent::Law> CellTangent::laws_for(const Aggregate& matter, Flow flow) const {
     std::vector<Law> laws;
-    const bool is_plain = flow == Flow::none && matter.cell_hardening.empty();
+    const bool is_plain = flow == Flow::none && matter.cell_history.empty();
     for (const auto& [moduli, kind] : material_laws(matter, flow)) {
         const bool is_elastic = is_plain && kind == CellKind::yielding;
         laws.push_back({CellConstants(moduli), is_elastic ? CellKind::elastic : kind});

@@ -167,15 +167,8 @@ Triple<double> material_place(const Aggregate& matter, CellId cell) {
 }
 
 CellHistory<double> committed_history(const Aggregate& matter, CellId cell) {
-    if (matter.cell_hardening.empty()) return {};
-    const auto& e = matter.cell_plastic_stretch;
-    const auto& q = matter.cell_plastic_modes;
-    const auto triple = [&](int m) {
-        return Triple<double>{q[m][cell], q[m + 1][cell], q[m + 2][cell]};
-    };
-    return {{e[0][cell], e[1][cell], e[2][cell], e[3][cell], e[4][cell], e[5][cell]},
-            {triple(0), triple(3), triple(6), triple(9)},
-            matter.cell_hardening[cell]};
+    if (matter.cell_history.empty()) return {};
+    return history_from<double>([&](int n) { return double(matter.cell_history.row[n][cell]); });
 }
 
 Mat3 matrix_of(const Columns<double>& f) {

@@ -31,7 +31,7 @@ constexpr std::size_t kTracksAtOnce = 64;
 double material_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
     const Mat3 f = material_gradient(matter, run, n);
     Mat3 c = f.transpose() * f;
-    if (matter.cell_plastic_stretch[0].empty()) {
+    if (matter.cell_history.empty()) {
         // No eigenvalue is farther from 1 than the whole of C - I is from 0.
         if ((c - Mat3::Identity()).norm() < 2 * least) return 0;
     } else {
@@ -136,8 +136,7 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
             for (int n = 0; n < run.count; ++n) {
                 const CellId cell = run.first + n;
                 // Where a cell has flowed its connections do not tell its elastic strain.
-                const bool flowed =
-                    !springs && !matter.cell_hardening.empty() && matter.cell_hardening[cell] > 0;
+                const bool flowed = !springs && matter.cell_history.hardening_of(cell) > 0;
                 if (!springs && !flowed && measure[n] < far) continue;
                 if (carried && (*carried)[cell] <= 0) continue;
                 const double onset = laws.of_cell(matter, cell).onset;

@@ -48,9 +48,7 @@ Aggregate as_molded(Aggregate matter) {
     matter.particle_position = matter.particle_reference.all();
     matter.material.yield_stress = std::numeric_limits<double>::infinity();
     for (Material& inset : matter.inset) inset.yield_stress = matter.material.yield_stress;
-    matter.cell_hardening.clear();
-    for (auto& part : matter.cell_plastic_stretch) part.clear();
-    for (auto& part : matter.cell_plastic_modes) part.clear();
+    matter.cell_history.clear();
     for (auto& part : matter.cell_plastic) part.clear();
     for (MixedCell& mixed : matter.mixed_cell) mixed.flowed = {};
     for (ConnectionArrays& along : matter.connection) along.plastic.clear();
@@ -113,11 +111,7 @@ SwingBound::SwingBound(const Aggregate& matter, bool parts)
         const std::vector<double> springs = stiffness_bound(matter);
         found_ = std::max(found_, largest_ratio(springs, matter));
     }
-    bool flows = false;
-    for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        flows = flows || std::isfinite(matter.material_at(m).yield_stress);
-    }
-    if (!flows) return;
+    if (!matter.yields()) return;
     const Aggregate molded = as_molded(matter);
     const std::vector<double> bound = LatticeForces(molded).stiffness_bound(molded);
     molded_.assign(bound.begin(), bound.end());

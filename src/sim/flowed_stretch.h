@@ -18,7 +18,7 @@ Mat3 flowed_stretch(const Kept& kept) {
 
 // Of a cell of one material.
 inline Mat3 flowed_stretch(const Aggregate& matter, CellId cell) {
-    const auto& kept = matter.cell_plastic_stretch;
+    const auto& kept = matter.cell_history.row;
     if (kept[0].empty()) return Mat3::Identity();
     return flowed_stretch([&](int n) { return double(kept[n][cell]); });
 }

@@ -34,13 +34,13 @@ LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
 
 void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
     const bool in_excess = in_motion_ && matter.breaks();
-    const bool at_rest = severed && !matter.cell_hardening.empty();
+    const bool at_rest = severed && matter.has_flowed();
     std::vector<HeldCell> turned, flowed;
     if (cells_) cells_->cells_changed(matter, in_excess || at_rest ? &turned : nullptr);
     if (at_rest) {
         const auto first = std::stable_partition(
             turned.begin(), turned.end(),
-            [&](const HeldCell& c) { return matter.cell_hardening[c.id()] == 0; });
+            [&](const HeldCell& c) { return matter.hardening_of(c.id()) == 0; });
         flowed.assign(first, turned.end());
         turned.erase(first, turned.end());
     }

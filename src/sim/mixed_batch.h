@@ -32,13 +32,8 @@ SWAGE_INLINE void read_mixed(const Vec3Array& x, const MixedCell& cell,
         set_lane(m.at.x, lane, 2 * cell.centroid[p].x());
         set_lane(m.at.y, lane, 2 * cell.centroid[p].y());
         set_lane(m.at.z, lane, 2 * cell.centroid[p].z());
-        Symmetric<N>& e = m.history.stretch;
-        CellModes<N>& q = m.history.modes;
-        N* const slot[MixedCell::kHistory] = {
-            &e.xx,   &e.yy,    &e.zz,    &e.xy,    &e.yz,           &e.zx,   &q.xy.x,
-            &q.xy.y, &q.xy.z,  &q.yz.x,  &q.yz.y,  &q.yz.z,         &q.zx.x, &q.zx.y,
-            &q.zx.z, &q.xyz.x, &q.xyz.y, &q.xyz.z, &m.history.alpha};
-        for (int n = 0; n < MixedCell::kHistory; ++n) set_lane(*slot[n], lane, cell.flowed[p][n]);
+        const auto number = numbers_of(m.history);
+        for (int n = 0; n < kCellHistory; ++n) set_lane(*number[n], lane, cell.flowed[p][n]);
     }
 }
 

@@ -208,18 +208,13 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
             const CellFlowed<double>& r = one.found.phase[p].flowed;
             if (one.phase[p].kind != CellKind::yielding || !(r.d_alpha > 0)) continue;
             const CellModuli& law = *one.phase[p].law;
-            auto& flowed = cell.flowed[p];
             lost +=
                 volume * one.phase[p].fill * r.d_alpha *
                 (law.yield_stress + law.hardening * (one.phase[p].history.alpha + 0.5 * r.d_alpha));
             const CellHistory<double> after =
                 flowed_on(one.phase[p].history, r, one.found.phase[p].gradient, one.sums);
-            const Symmetric<double>& e = after.stretch;
-            const CellModes<double>& q = after.modes;
-            const double now[] = {e.xx,   e.yy,    e.zz,    e.xy,    e.yz,       e.zx,   q.xy.x,
-                                  q.xy.y, q.xy.z,  q.yz.x,  q.yz.y,  q.yz.z,     q.zx.x, q.zx.y,
-                                  q.zx.z, q.xyz.x, q.xyz.y, q.xyz.z, after.alpha};
-            for (int s = 0; s < MixedCell::kHistory; ++s) flowed[s] = static_cast<float>(now[s]);
+            const auto now = numbers_of(after);
+            for (int s = 0; s < kCellHistory; ++s) cell.flowed[p][s] = static_cast<float>(*now[s]);
         }
         if (growths == nullptr) continue;
         const SlotLengths is = rest_lengths(matter, cell.cell, &cell);

@@ -108,13 +108,9 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       drag_(matter, settings, step_),
       load_(apparatus.tool.size() + apparatus.grip.size()),
       touches_(!apparatus.tool.empty()),
-      remembers_(false),
+      remembers_(breaks_ || matter.yields()),
       implicit_(settings.solver == Solver::implicit_steps),
       saves_branches_(settings.solver == Solver::energy_stepped) {
-    for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        const Material& material = matter.material_at(m);
-        remembers_ = remembers_ || material.breaks() || std::isfinite(material.yield_stress);
-    }
     if (implicit_) let_go();
 }
 
@@ -350,29 +346,12 @@ double MovingBody::present_step() {
 }
 
 void MovingBody::save(State& state) const {
-    const Aggregate& m = matter_;
-    state.position = m.particle_position;
-    state.velocity = m.particle_velocity;
-    if (remembers_) {
-        for (int d = 0; d < kForwardCount; ++d) {
-            state.connection[d].plastic = m.connection[d].plastic;
-            if (!breaks_) continue;
-            state.connection[d].weight = m.connection[d].weight;
-            state.connection[d].damage = m.connection[d].damage;
-        }
-        state.plastic = m.cell_plastic;
-        state.cracked = m.cell_cracked;
-        state.set = m.cell_set;
-        state.strain = m.cell_plastic_stretch;
-        state.modes = m.cell_plastic_modes;
-        state.hardening = m.cell_hardening;
-        state.mixed = m.mixed_cell;
-    }
-    state.contacts.assign(1, contacts_);
-    state.pushes.assign(1, pushes_);
+    state.matter.save(matter_);
+    state.contacts = contacts_;
+    state.pushes = pushes_;
     if (saves_branches_) {
-        state.damping.assign(1, damping_);
-        state.memory = m.branch_memory;
+        state.damping = damping_;
+        state.memory = matter_.branch_memory;
     }
     state.load = load_;
     state.gone = gone_;
@@ -380,30 +359,16 @@ void MovingBody::save(State& state) const {
 }
 
 void MovingBody::restore(const State& state, BodyOutcome& outcome) {
-    matter_.particle_position = state.position;
-    matter_.particle_velocity = state.velocity;
+    state.matter.restore(matter_);
     if (remembers_) {
-        for (int d = 0; d < kForwardCount; ++d) {
-            matter_.connection[d].plastic = state.connection[d].plastic;
-            if (!breaks_) continue;
-            matter_.connection[d].weight = state.connection[d].weight;
-            matter_.connection[d].damage = state.connection[d].damage;
-        }
-        matter_.cell_plastic = state.plastic;
-        matter_.cell_cracked = state.cracked;
-        matter_.cell_set = state.set;
-        matter_.cell_plastic_stretch = state.strain;
-        matter_.cell_plastic_modes = state.modes;
-        matter_.cell_hardening = state.hardening;
-        matter_.mixed_cell = state.mixed;
         flowed_ = true;
         lattice_.take_in(matter_);
     }
-    contacts_ = state.contacts[0];
-    pushes_ = state.pushes[0];
+    contacts_ = *state.contacts;
+    pushes_ = *state.pushes;
     if (breaks_) drag_.connections_changed(matter_);
     if (saves_branches_) {
-        damping_ = state.damping[0];
+        damping_ = *state.damping;
         matter_.branch_memory = state.memory;
         branch_energy_ = -1;
     } else {

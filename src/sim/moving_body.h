@@ -2,8 +2,10 @@
 // One body in motion by explicit steps: its matter, and all that acts on it except other bodies.
 #pragma once
 
-#include "matter/aggregate.h"
+#include <optional>
+
 #include "matter/drive.h"
+#include "matter/matter_state.h"
 #include "sim/contact_set.h"
 #include "sim/fastest_swing.h"
 #include "sim/internal_damping.h"
@@ -118,18 +120,10 @@ class MovingBody {
 
     // All that a step changes.
     struct State {
-        Vec3Array position, velocity;
-        std::array<ConnectionArrays, kForwardCount> connection;
-        std::array<std::vector<float>, kCellConnectionCount> plastic;
-        std::vector<char> cracked;
-        std::vector<CellSet> set;
-        std::array<std::vector<float>, 6> strain;
-        std::array<std::vector<float>, 12> modes;
-        std::vector<float> hardening;
-        std::vector<MixedCell> mixed;
-        std::vector<ContactSet> contacts;      // one
-        std::vector<LoadSet> pushes;           // one
-        std::vector<InternalDamping> damping;  // one, or none
+        MatterState matter;
+        std::optional<ContactSet> contacts;
+        std::optional<LoadSet> pushes;
+        std::optional<InternalDamping> damping;  // none, nor memory: no copy is kept
         std::vector<BranchMemory> memory;
         std::vector<LoadSum> load;
         double gone, turned;

@@ -74,9 +74,7 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       load_(apparatus.tool.size() + apparatus.grip.size()) {
     velocity_.resize(matter.particle_count());
     matter_.branch_memory.clear();
-    for (std::size_t m = 0; m < matter.material_count(); ++m) {
-        yields_ = yields_ || std::isfinite(matter.material_at(m).yield_stress);
-    }
+    yields_ = matter.yields();
     find_bounds();
 }
 

@@ -21,8 +21,8 @@ double square_along(const Vec3& n, const Symmetric<double>& c) {
 }
 
 Symmetric<double> metric_of(const MixedCell& mixed, int part) {
-    const auto& e = mixed.flowed[static_cast<std::size_t>(part)];
-    return flowed_metric(Symmetric<double>{e[0], e[1], e[2], e[3], e[4], e[5]});
+    const auto& kept = mixed.flowed[static_cast<std::size_t>(part)];
+    return flowed_metric(history_from<double>([&](int n) { return double(kept[n]); }).stretch);
 }
 
 double mixed_ratio(const Aggregate& matter, const MixedCell& mixed,
@@ -57,7 +57,7 @@ SlotLengths rest_lengths(const Aggregate& matter, CellId cell, const MixedCell* 
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {
         lengths[slot] = along[kCellConnection[slot].direction];
     }
-    if (mixed || matter.cell_hardening.empty() || matter.cell_hardening[cell] == 0) return lengths;
+    if (mixed || matter.cell_history.hardening_of(cell) == 0) return lengths;
     const CellRest<double> rest =
         cell_rest(committed_history(matter, cell), material_place(matter, cell), a);
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {

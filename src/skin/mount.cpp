@@ -170,7 +170,7 @@ double flowed_around(const Aggregate& matter, CellId cell) {
     for (int n = 0; n < 27; ++n) {
         const Vec3i at = site + neighbor_step(n);
         const CellId near = matter.lattice.cell_at(at.x(), at.y(), at.z());
-        if (near >= 0) most = std::max(most, matter.cell_hardening[near]);
+        if (near >= 0) most = std::max(most, matter.hardening_of(near));
     }
     return most;
 }
@@ -184,7 +184,7 @@ void skin_positions(const Mount& mount, const Aggregate& matter, std::vector<Vec
 }
 
 void hold_places(Mount& mount, const Aggregate& matter, const std::vector<Vec3>& place) {
-    if (matter.cell_hardening.empty()) return;
+    if (!matter.has_flowed()) return;
     const double a = matter.lattice.spacing;
     for_each_vertex(mount, matter, [&](int v, const Vec3& at, CellId cell, const auto& turn) {
         const Vec3 gap = place[v] - at;

@@ -49,13 +49,12 @@ void body(const char* name, double wanted, const Material& material) {
     to.time = 2.5 * explicit_step(m, settings);
     solver.advance(from, to);
     const double stepped = resident();
-    double weight = 0, plastic = 0, history = bytes_of(m.cell_hardening);
+    double weight = 0, plastic = 0, history = 0;
     for (const ConnectionArrays& c : m.connection) {
         weight += static_cast<double>(c.weight.bytes()), plastic += bytes_of(c.plastic);
         history += bytes_of(c.damage);
     }
-    for (const auto& v : m.cell_plastic_stretch) history += bytes_of(v);
-    for (const auto& v : m.cell_plastic_modes) history += bytes_of(v);
+    for (const auto& v : m.cell_history.row) history += bytes_of(v);
     for (const auto& v : m.cell_plastic) history += bytes_of(v);
     fmt::print(
         "{:<9}{:>8.0f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>10.1f}{:>9.1f}{:>10.1f}"

@@ -128,7 +128,7 @@ TEST_CASE("whether springs flow is seen from the first cell on, and none flows b
             CellFlow looks(m), flowed(m);
             Aggregate other = m;
             for (auto& slot : other.cell_plastic) slot.resize(m.cell_fill.size());
-            other.cell_hardening.resize(m.cell_fill.size());
+            other.cell_history.hardening().resize(m.cell_fill.size());
             looks.rest_strains(m);
             flowed.rest_strains(other);  // looks at every cell
             CHECK(looks.flows() == flowed.flows());

@@ -32,8 +32,8 @@ Aggregate shaken_block(const Material& material, bool flowed) {
     }
     if (flowed) {
         const std::size_t cells = m.cell_fill.size();
-        auto& stretch = m.cell_plastic_stretch;
-        for (auto& v : stretch) v.resize(cells);
+        m.cell_history.assign(cells);
+        auto& stretch = m.cell_history.row;
         for (std::size_t c = 0; c < cells; ++c) {
             const double x = draw(-1, 1), y = draw(-1, 1);
             stretch[0][c] = static_cast<float>(std::expm1(x));
@@ -41,12 +41,10 @@ Aggregate shaken_block(const Material& material, bool flowed) {
             stretch[2][c] = static_cast<float>(std::expm1(-x - y));
             for (int n = 3; n < 6; ++n) stretch[n][c] = static_cast<float>(draw(-0.1, 0.1));
         }
-        for (auto& v : m.cell_plastic_modes) {
-            for (std::size_t c = 0; c < cells; ++c) {
-                v.push_back(static_cast<float>(draw(-0.2, 0.2) * kSide));
-            }
+        for (int n = 6; n < 18; ++n) {
+            for (float& v : m.cell_history.row[n]) v = static_cast<float>(draw(-0.2, 0.2) * kSide);
         }
-        m.cell_hardening.assign(cells, 1.0f);
+        m.cell_history.hardening().assign(cells, 1.0f);
     }
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         const Vec3 x = m.particle_reference.at(p).cwiseProduct(Vec3(1.1, 0.35, 0.9));

@@ -148,7 +148,7 @@ TEST_CASE("matter that has flowed carries nothing where a blade has been, howeve
     for (int n = 0; n < 40; ++n) {
         LatticeForces forces(m);
         forces.commit(m);
-        for (float& alpha : m.cell_hardening) alpha = 1e-6f;
+        for (float& alpha : m.cell_history.hardening()) alpha = 1e-6f;
         m.material.yield_stress *= 0.5;
     }
     const double whole = material.young_modulus * m.volume();
@@ -169,24 +169,23 @@ TEST_CASE("a cell that was bent for good is at rest where it lay when a connecti
     m.cell_centroid.set(0, {0.1f, -0.2f, 0.05f});
     std::mt19937 engine(5);
     std::uniform_real_distribution<double> draw(-1, 1);
-    m.cell_hardening = {1.0f};
-    for (auto& v : m.cell_plastic_stretch) v = {static_cast<float>(0.1 * draw(engine))};
-    float& last = m.cell_plastic_stretch[2][0];
+    auto& row = m.cell_history.row;
+    for (int n = 0; n < 6; ++n) row[n] = {static_cast<float>(0.1 * draw(engine))};
+    m.cell_history.hardening() = {1.0f};
+    float& last = row[2][0];
     last = 0;
     for (int n = 0; n < 20; ++n) {  // to a volume of one
         last += static_cast<float>(1 - flowed_stretch(m, 0).determinant());
     }
-    for (auto& v : m.cell_plastic_modes) {
-        v = {static_cast<float>(0.3 * kSpacing * draw(engine))};
-    }
-    const auto& e = m.cell_plastic_stretch;
-    const auto& q = m.cell_plastic_modes;
-    const auto triple = [&](int n) { return Triple<double>{q[n][0], q[n + 1][0], q[n + 2][0]}; };
-    const CellRest<double> rest =
-        cell_rest(CellHistory<double>{{e[0][0], e[1][0], e[2][0], e[3][0], e[4][0], e[5][0]},
-                                      {triple(0), triple(3), triple(6), triple(9)},
-                                      1.0},
-                  Triple<double>{2 * 0.1f, 2 * -0.2f, 2 * 0.05f}, kSpacing);
+    for (int n = 6; n < 18; ++n) row[n] = {static_cast<float>(0.3 * kSpacing * draw(engine))};
+    const auto triple = [&](int n) {
+        return Triple<double>{row[n][0], row[n + 1][0], row[n + 2][0]};
+    };
+    const CellRest<double> rest = cell_rest(
+        CellHistory<double>{{row[0][0], row[1][0], row[2][0], row[3][0], row[4][0], row[5][0]},
+                            {triple(6), triple(9), triple(12), triple(15)},
+                            1.0},
+        Triple<double>{2 * 0.1f, 2 * -0.2f, 2 * 0.05f}, kSpacing);
     const Symmetric<double>& c = rest.metric;
     Mat3 metric;
     metric << c.xx, c.xy, c.zx, c.xy, c.yy, c.yz, c.zx, c.yz, c.zz;

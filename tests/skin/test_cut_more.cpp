@@ -136,7 +136,7 @@ TEST_CASE(
         const Vec3 p1(0.0137, 0, 0), n1 = Vec3(1, .3, .1 * n).normalized();
         f.cut(sweep_of(p1, n1, 3));
         test::sever_plane(f.matter, p1, n1);
-        f.matter.cell_hardening.assign(f.matter.cell_fill.size(), 1);
+        f.matter.cell_history.hardening().assign(f.matter.cell_fill.size(), 1);
         test::deform(f.matter, [&](const Vec3& p) -> Vec3 {
             return p + Vec3(noise(random), noise(random), noise(random));
         });

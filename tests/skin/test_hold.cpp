@@ -33,7 +33,7 @@ struct Fixture {
 
     Fixture(SkinKind kind, bool flowed) {
         mount = mount_mesh(mesh.position, matter, kind);
-        if (flowed) matter.cell_hardening.assign(matter.cell_fill.size(), .3f);
+        if (flowed) matter.cell_history.hardening().assign(matter.cell_fill.size(), .3f);
         test::deform(matter, uneven);
         follow();
     }

@@ -15,7 +15,14 @@ namespace {
 
 constexpr double kSpacing = 0.25;
 
-// A bar, of another material from `boundary` on, cut along a plane that holds its length.
+// Along a plane that holds its length.
+void cut(Aggregate& m) {
+    const double far = 10, y = 0.4;
+    sever(m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
+              {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}});
+}
+
+// A bar, of another material from `boundary` on.
 Aggregate cut_bar(const Material& left, const Material& right, double boundary,
                   bool severed = true) {
     MoldSettings settings;
@@ -24,11 +31,7 @@ Aggregate cut_bar(const Material& left, const Material& right, double boundary,
     std::vector<Inset> insets;
     if (boundary < size.x()) insets = {{box_mesh({boundary, 0, 0}, size), right}};
     Aggregate m = mold(box_mesh(Vec3::Zero(), size), left, settings, insets);
-    const double far = 10, y = 0.4;
-    if (severed) {
-        sever(m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
-                  {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}});
-    }
+    if (severed) cut(m);
     return m;
 }
 
@@ -83,9 +86,7 @@ TEST_CASE("a cut bar of two materials pushes by minus the gradient of its energy
         shake(m, 0.02);
         if (flowed) CHECK(LatticeForces(m).commit(m).plastic > 0);
         m.material.yield_stress = m.inset[0].yield_stress = 1e9;  // and no more
-        const double far = 10, y = 0.4;
-        sever(m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
-                  {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}});
+        cut(m);
         LatticeForces forces(m);
         Vec3Array f;
         forces.find(m, Flow::none, f);
@@ -143,12 +144,11 @@ TEST_CASE("what flowed before the cut stays bent after it, across the boundary t
             m.particle_position.set(p, grown.cwiseProduct(m.particle_reference.at(p)));
         }
         if (flowed != 0) {
-            for (auto& v : m.cell_plastic_stretch) v.resize(m.cell_fill.size());
-            for (auto& v : m.cell_plastic_modes) v.assign(m.cell_fill.size(), 0.0f);
-            m.cell_hardening.assign(m.cell_fill.size(), 1e-3f);
+            m.cell_history.assign(m.cell_fill.size());
+            m.cell_history.hardening().assign(m.cell_fill.size(), 1e-3f);
             for (int i = 0; i < 3; ++i) {
                 const float e = static_cast<float>(std::expm1(-strain[i]));
-                std::fill(m.cell_plastic_stretch[i].begin(), m.cell_plastic_stretch[i].end(), e);
+                m.cell_history.row[i].assign(m.cell_fill.size(), e);
                 for (MixedCell& cell : m.mixed_cell) cell.flowed[0][i] = cell.flowed[1][i] = e;
             }
         }

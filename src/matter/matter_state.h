@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What steps change of a body of matter, to go back to.
+#pragma once
+
+#include "matter/aggregate.h"
+
+namespace swage {
+
+// Each as in Aggregate. What its materials never change is not kept: of what only swings there are
+// places and speeds, of what yields or breaks history too, and of what breaks its connections
+// whole.
+struct MatterState {
+    Vec3Array particle_position, particle_velocity;
+    std::array<ConnectionArrays, kForwardCount> connection;
+    std::vector<char> cell_cracked;
+    std::vector<CellSet> cell_set;
+    CellHistories cell_history;
+    std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
+    std::vector<MixedHistory> mixed_flowed;  // of each of its mixed cells
+
+    void save(const Aggregate& matter);
+    void restore(Aggregate& matter) const;
+};
+
+}  // namespace swage
