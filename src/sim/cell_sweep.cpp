@@ -182,14 +182,15 @@ CellSweep::CellSweep(const Aggregate& matter)
 }
 
 void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* turned) {
-    const std::vector<float> carried = turned ? swept() : std::vector<float>();
+    const std::vector<float> carried = turned ? fill_ : std::vector<float>();
     fill_ = matter.cell_fill;
     for_each_cell(matter, 0, matter.lattice.cell_run.size(),
                   [&](const CellRun& run, int n, CellId cell) {
                       if (cell_is_sound(matter, cell, run.row_at(n))) return;
                       fill_[cell] = 0;
                       if (turned && carried[cell] > 0) {
-                          turned->push_back({&run, n, energy_of(matter, run, n)});
+                          const bool one = matter.mixed_at(cell) == nullptr;
+                          turned->push_back({&run, n, one ? energy_of(matter, run, n) : 0});
                       }
                   });
     mixed_.cells_changed(matter, fill_);

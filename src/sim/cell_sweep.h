@@ -24,8 +24,8 @@ class CellSweep {
     // Cells with such a strain are told from now on: of their material, or of a connection.
     void watch_strain(double onset) { onset_ = onset; }
 
-    // Cells that are not whole any more carry nothing from now on. Adds those of one material that
-    // have carried until now to `turned`, where that is asked for.
+    // Cells that are not whole any more carry nothing from now on. Adds those that have carried
+    // until now to `turned`, where that is asked for, without the energy of those of two materials.
     void cells_changed(const Aggregate& matter, std::vector<HeldCell>* turned = nullptr);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole
 

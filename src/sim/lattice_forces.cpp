@@ -44,6 +44,8 @@ void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
         flowed.assign(first, turned.end());
         turned.erase(first, turned.end());
     }
+    // What a cell of two materials held is not told.
+    std::erase_if(turned, [&](const HeldCell& c) { return matter.mixed_at(c.id()) != nullptr; });
     if (in_excess) loose_.take_over(matter, turned);
     loose_.lay_to_rest(matter, flowed);
     others_changed(matter);

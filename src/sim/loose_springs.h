@@ -25,7 +25,7 @@ struct Broken {
 struct HeldCell {
     const CellRun* run;
     int n;          // of the run
-    double energy;  // [J]
+    double energy;  // [J]; 0 of two materials
 
     CellId id() const { return run->first + n; }
 };

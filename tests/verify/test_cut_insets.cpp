@@ -5,6 +5,7 @@
 #include "geometry/box_mesh.h"
 #include "mold/mold.h"
 #include "sim/lattice_forces.h"
+#include "sim/rest_lengths.h"
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/sim/force_checks.h"
@@ -157,4 +158,36 @@ TEST_CASE("what flowed before the cut stays bent after it, across the boundary t
         left[flowed] = largest_of(f);
     }
     CHECK(left[1] < 2e-3 * left[0]);
+}
+
+TEST_CASE(
+    "where a blade severs a cell of two materials that has flowed, it is at rest as it lies") {
+    Material soft = with_modulus(1e5), stiff = with_modulus(3e6);
+    soft.yield_stress = stiff.yield_stress = 1e9;
+    for (bool flowed : {false, true}) {
+        Aggregate m = cut_bar(soft, stiff, 2.1, false);
+        shake(m, 0.02);
+        LatticeForces forces(m);
+        for (MixedCell& cell : m.mixed_cell) cell.flowed[0].back() = flowed ? 1e-3f : 0.0f;
+        cut(m);
+        forces.connections_changed(m, true);
+        int severed = 0;
+        for (const MixedCell& cell : m.mixed_cell) {
+            const auto corner = m.lattice.cell_corners(cell.cell);
+            if (cell_is_whole(m, {corner[0], corner[2], corner[4], corner[6]})) continue;
+            ++severed;
+            const CellSet* set = m.set_of(cell.cell);
+            REQUIRE((set != nullptr) == flowed);
+            if (!flowed) continue;
+            const SlotLengths rest = rest_lengths(m, cell.cell, &cell);
+            for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+                const CellConnection& c = kCellConnection[slot];
+                const ParticleId lower = corner[c.corner], upper = corner[upper_corner(c)];
+                if (m.connection[c.direction].weight[lower] <= 0) continue;
+                const Vec3 way = m.particle_position.at(upper) - m.particle_position.at(lower);
+                CHECK(rest[slot] * (1 + set->strain[slot]) == Approx(way.norm()).epsilon(1e-6));
+            }
+        }
+        CHECK(severed > 0);
+    }
 }
