@@ -111,13 +111,11 @@ int LatticeForces::find(const Aggregate& matter, Flow flow, Vec3Array& force,
     if (apart) work = add_branches(matter, branches, force);
     if (!branches.empty()) *given += work;
     loose_.add_forces(matter, flow, rest, force);
-    const int mirrored = add_guard_forces(matter, flow, force);
-    mirrored_ = mirrored > 0;
-    return mirrored;
+    return add_guard_forces(matter, flow, force);
 }
 
 bool LatticeForces::saw_crushed() const {
-    if (!cells_) return mirrored_;
+    if (!cells_) return false;
     for (const auto& runs : cells_->crushed_runs()) {
         if (!runs.empty()) return true;
     }

@@ -52,7 +52,8 @@ class LatticeForces {
     // Whose branches find() moves on, of these of damped_materials().
     const LatticeSweep& sweep(const Aggregate& matter, std::size_t damped);
 
-    // Whether any cell may have been below half of its volume then.
+    // Whether any cell may have been below half of its volume then. Springs never say so: they are
+    // left to themselves until cells are inside out, which find() tells.
     bool saw_crushed() const;
 
     // Remembers the flow and softening of a converged state. In motion find() was last called at
@@ -100,7 +101,6 @@ class LatticeForces {
     std::vector<LatticeSweep> branch_sweep_;      // the branches' own, of several materials
     std::unique_ptr<CellFlow> spring_flow_;       // springs that yield
     std::unique_ptr<CellSweep> cells_;            // null: springs
-    bool mirrored_ = false;                       // springs: some cells are inside out
     LooseSprings loose_;                          // of cells that are not sound
 };
 
