@@ -20,8 +20,8 @@ constexpr double kTrackReach = 5.5;
 constexpr double kPullReach = 2.5;
 // The middles of cells that an oblique plane crosses lie off it by a quarter of a face's diagonal.
 constexpr double kOnTrack = 0.35;
-// At 8 a crack at 11 degrees leaves its line by 1.7 spacings over 46; the larger, the more a crack at
-// 34 degrees asks (at 16 1.25 of its toughness).
+// At 8 a crack at 11 degrees leaves its line by 1.7 spacings over 46; the larger, the more a crack
+// at 34 degrees asks (at 16 1.25 of its toughness).
 constexpr double kOffTrack = 16;
 constexpr double kMostSpared = 2;
 
@@ -107,7 +107,8 @@ double off_track_factor(const Aggregate& matter, const FractureLaws& laws,
                        const Vec3 along = c.eigenvectors().col(2);
                        pull += most * most * most * most * along * along.transpose();
                    });
-    const Vec3 across = largest_direction(pull);
+    // Nothing about it may be drawn out: pressed, it has reached its strength off its middle.
+    const Vec3 across = pull.isZero(0) ? cell.pull : largest_direction(pull);
     const auto off_track = [&](const Vec3& way) -> double {
         return std::max(0.0, std::abs((way_to_broken - way).dot(across)) - kOnTrack);
     };
