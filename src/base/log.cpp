@@ -76,8 +76,8 @@ void Progress::advance(int done, const std::string& note) {
         const int width = 30, filled = static_cast<int>(1.0 * width * done / total_);
         std::string bar(static_cast<std::size_t>(filled), '=');
         bar.resize(width, ' ');
-        const std::string text = fmt::format("\r\x1b[K{} [{}] {}/{}  {} left  {}", title_, bar, done,
-                                             total_, duration_text(left), note);
+        const std::string text = fmt::format("\r\x1b[K{} [{}] {}/{}  {} left  {}", title_, bar,
+                                             done, total_, duration_text(left), note);
         std::fputs(text.c_str(), stderr);
         std::fflush(stderr);
         bar_is_drawn = true;
@@ -86,7 +86,8 @@ void Progress::advance(int done, const std::string& note) {
     const int tenth = 10 * done / total_;
     if (tenth == last_tenth_) return;
     last_tenth_ = tenth;
-    put_line(fmt::format("{}: {}/{}, {} left  {}", title_, done, total_, duration_text(left), note));
+    put_line(
+        fmt::format("{}: {}/{}, {} left  {}", title_, done, total_, duration_text(left), note));
 }
 
 }  // namespace swage

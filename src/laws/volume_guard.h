@@ -10,11 +10,12 @@
 //            below s_t = 1/3, where e is steepest,
 //            e(s_t) - e'(s_t) d / (1 + d/L), d = s_t - s, L = 1/2    rising for every s
 //
-// J = det F, s the principal stretches: of F_e where a cell has flowed. Where J < 0 each of the three may be the one that is
-// turned: H(g) is the mean of the three, weighed by 1/s_i^2, which next to J = 0 leaves the
-// smallest (taken alone, as by Irving, Teran, Fedkiw, "Invertible finite elements", SCA 2004, the
-// force would jump where two are equal). Cells of the cell law give up what their own law says,
-// W_law, by the share b, for H(g) + K g(J)^2 / 2, and so rest in one shape alone. Springs and rubber keep theirs, for which W_law stands for 0.
+// J = det F, s the principal stretches: of F_e where a cell has flowed. Where J < 0 each of the
+// three may be the one that is turned: H(g) is the mean of the three, weighed by 1/s_i^2, which
+// next to J = 0 leaves the smallest (taken alone, as by Irving, Teran, Fedkiw, "Invertible finite
+// elements", SCA 2004, the force would jump where two are equal). Cells of the cell law give up
+// what their own law says, W_law, by the share b, for H(g) + K g(J)^2 / 2, and so rest in one shape
+// alone. Springs and rubber keep theirs, for which W_law stands for 0.
 //
 // Nothing above half the volume feels any of this: it changes no answer that can be trusted.
 //

@@ -15,7 +15,8 @@ void read_color(TableReader& table, std::optional<Vec3>& color) {
                                            "each 0 to 1",
                                            seen.x(), seen.y(), seen.z()));
     }
-    color = Vec3(linear_from_srgb(seen.x()), linear_from_srgb(seen.y()), linear_from_srgb(seen.z()));
+    color =
+        Vec3(linear_from_srgb(seen.x()), linear_from_srgb(seen.y()), linear_from_srgb(seen.z()));
 }
 
 }  // namespace swage

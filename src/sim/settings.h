@@ -39,8 +39,8 @@ struct SimSettings {
     double tolerance = 1e-2;     // residual (1-norm) over the largest tool force; 1e-4 to 0.1
     int iteration_limit = 6000;  // a sub-increment that needs more is halved; 100 to 1e6
     int halving_limit = 4;       // 0 to 8
-    // k_n = this * E * area / spacing, E of sim/surface_modulus.h; 0.01 to 100. 0: 2, or what a tool
-    // says where nothing moves.
+    // k_n = this * E * area / spacing, E of sim/surface_modulus.h; 0.01 to 100. 0: 2, or what a
+    // tool says where nothing moves.
     double contact_stiffness = 0;
     double grip_stiffness = 20;  // the same for gripped points; 1 to 100
     bool self_contact = false;   // a body's surface meets what is not its neighbourhood in the

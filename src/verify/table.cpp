@@ -58,10 +58,12 @@ std::vector<Row> rows_of(const Verified& one) {
 constexpr const char* kPageHead = R"(<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>swage verify</title><style>
 body{font:14px system-ui,sans-serif;margin:2rem;color:#222;background:#fff}
-table{border-collapse:collapse}td,th{padding:.2rem .7rem;text-align:right;border-bottom:1px solid #ddd}
+table{border-collapse:collapse}
+td,th{padding:.2rem .7rem;text-align:right;border-bottom:1px solid #ddd}
 td:first-child,th:first-child,td:nth-child(8),th:nth-child(8){text-align:left}
 .missed td{background:#fde0dc}div{display:flex;flex-wrap:wrap;gap:1rem}svg{width:320px}
-.t{font-size:12px;font-weight:600}.n{font-size:10px;text-anchor:end}.m{font-size:10px;text-anchor:middle}
+.t{font-size:12px;font-weight:600}.n{font-size:10px;text-anchor:end}
+.m{font-size:10px;text-anchor:middle}
 .g{stroke:#e4e4e4}.e{stroke:#1f5f99;fill:none;stroke-width:1.6}
 .b{stroke:#b3541e;fill:none;stroke-dasharray:4 3}circle{fill:#1f5f99}
 </style></head><body><h1>swage verify</h1>

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kSpacing = 0.1;
 
-// A box with a hole through it and a corner gone: rows in parts, nodes that no particle follows, and
-// beside the hole two where splines as coarse as it stand once.
+// A box with a hole through it and a corner gone: rows in parts, nodes that no particle follows,
+// and beside the hole two where splines as coarse as it stand once.
 Lattice pierced_lattice(const Vec3i& count) {
     std::vector<Vec3i> cells;
     for (int k = 0; k < count.z(); ++k) {

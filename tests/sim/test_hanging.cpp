@@ -46,7 +46,8 @@ void cut(Aggregate& m, double x, Left left) {
 
 std::vector<HeldPoint> held_beyond(const Aggregate& m, double left, double right) {
     std::vector<HeldPoint> held;
-    for (int point : points_where(m, [&](const Vec3& x) { return x.x() < left || x.x() > right; })) {
+    const auto beyond = [&](const Vec3& x) { return x.x() < left || x.x() > right; };
+    for (int point : points_where(m, beyond)) {
         held.push_back(held_point(m.surface, point, 1e4 * Mat3::Identity()));
     }
     return held;
