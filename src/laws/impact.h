@@ -22,6 +22,10 @@
 // small swings of what rests had N jump between k d (1 + beta) and nothing. The same c acts along
 // the surface and in tension.
 //
+// What sticks pulls by k |d| until that is all it holds, then by that, to twice as far (as
+// Dugdale's zone does, J. Mech. Phys. Solids 8, 1960): points of which some are half as stiff as
+// others, as steps make those that little mass carries, hold together what each of them would.
+//
 // NOTE: c is at most 20 beta sqrt(k m), which bodies of up to 400 times the point's own mass do not
 // reach: what is let down slowly would hang in its dashpots, and N would shake with every tremor.
 //
@@ -51,6 +55,7 @@ namespace swage {
 inline constexpr double kSlow = 0.5;  // of the speed of a swing along the surface: does not slide
 
 inline constexpr double kMostDamping = 20;
+inline constexpr double kLetsGo = 2;  // over how far a bond goes until it holds no more
 
 // NOTE: less is taken as this. beta goes as 1 / e, the way in which a body is stopped as its root,
 // and a contact whose dashpots stop it in a tenth of its springs' way is a wall to elastic bodies:
@@ -116,6 +121,7 @@ struct ImpactForce {
     Vec3 force = Vec3::Zero();    // on the point [N]
     Vec3 elastic = Vec3::Zero();  // of the springs alone, that hold `stored` [N]
     Vec3 bond = Vec3::Zero();     // of that, what breaks when the contact ends [N]
+    double bound = 0;             // and what it holds of `stored` [J]
     double normal = 0;            // N [N], less than zero where it pulls
     Vec3 reach = Vec3::Zero();    // to keep: across the normal, along the friction [m]
     double stored = 0;            // in the springs [J]
@@ -123,18 +129,31 @@ struct ImpactForce {
     ImpactHistory history;        // to commit
 };
 
-// What is lost where a contact has ended in a step [s]: what its bond holds, less what it no longer
+// Of the spring across the surface: its push [N] and what it holds [J].
+SWAGE_INLINE double spring_push(double stiffness, double depth, double hold) {
+    return std::max(stiffness * depth, -hold);
+}
+SWAGE_INLINE double spring_energy(double stiffness, double depth, double hold) {
+    const double push = spring_push(stiffness, depth, hold);
+    return push * (depth - 0.5 * push / stiffness);
+}
+
+// Whether a bond still holds, however it pulls.
+SWAGE_INLINE bool is_bound(double stiffness, double depth, double hold) {
+    return hold > 0 && stiffness * depth >= -kLetsGo * hold;
+}
+
+// What is lost where a contact has ended in a step [s]: what its bond held, less what it no longer
 // does on the way, from the velocity then, of the point relative to the other side [J].
-inline double parting_loss(double stiffness, const Vec3& bond, const Vec3& velocity, double step) {
-    return 0.5 * bond.dot(bond / stiffness - step * velocity);
+inline double parting_loss(double bound, const Vec3& bond, const Vec3& velocity, double step) {
+    return bound - 0.5 * step * bond.dot(velocity);
 }
 
 SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& at,
                                       const ImpactHistory& last) {
     ImpactForce result;
     const double k = law.stiffness;
-    if (at.depth <= 0 && !(last.touches && law.hold > 0 && k * at.depth >= -law.hold))
-        return result;
+    if (at.depth <= 0 && !(last.touches && is_bound(k, at.depth, law.hold))) return result;
     ImpactHistory& next = result.history;
     next = last;
     const double rate = -at.normal.dot(at.now), approach = -at.normal.dot(at.velocity);
@@ -148,7 +167,7 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
     const double most = kMostDamping * law.loss * std::sqrt(k / at.give);
     const double met = next.speed > 0 ? std::min(most, law.loss * k * at.depth / next.speed) : 0;
     const double c = at.depth > 0 && !next.rests ? met : swing, along = std::max(c, swing);
-    const double elastic = k * at.depth, m = at.step * at.give;
+    const double elastic = spring_push(k, at.depth, law.hold), m = at.step * at.give;
     const double push = elastic + c * (approach - m * elastic) / (1 + c * m);
     const double N = result.normal = std::max(push, -law.hold);
 
@@ -177,7 +196,10 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
                     : k * slip.dot(result.reach);
         }
     }
-    result.stored = 0.5 * k * (at.depth * at.depth + result.reach.squaredNorm());
+    const double across_it = spring_energy(k, at.depth, law.hold);
+    const double along_it = 0.5 * k * result.reach.squaredNorm();
+    result.stored = across_it + along_it;
+    result.bound = along_it + (at.depth < 0 ? across_it : 0);
     result.force = N * at.normal + T;
     result.bond = k * result.reach + std::min(elastic, 0.0) * at.normal;
     result.elastic = k * result.reach + elastic * at.normal;

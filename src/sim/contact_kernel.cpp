@@ -26,7 +26,7 @@ struct ContactWay::Kernel {
     // Whether it presses, or sticks and is not torn off.
     static bool acts(const Meeting& at, const ContactMemory& last, double hold) {
         return at.normal[3] > 0 ||
-               (last.history.touches && hold > 0 && at.inverse[2][3] * at.normal[3] >= -hold);
+               (last.history.touches && is_bound(at.inverse[2][3], at.normal[3], hold));
     }
 
     // How deep the point lies as it goes on from where it has met; false where it has left the
@@ -149,7 +149,7 @@ struct ContactWay::Kernel {
         if (is_known(at) && (last.is_new || last.sunk > 0)) take_off_sunk(last, step, hold, at);
         if (!meets(at)) return;
         const double k = at.inverse[2][3];
-        const double push = std::max(k * at.normal[3], -hold);
+        const double push = spring_push(k, at.normal[3], hold);
         at.spring = push * at.normal;
         at.reach = Vec4{};
         if (last.history.touches) {
@@ -179,6 +179,7 @@ struct ContactWay::Kernel {
         at.spring[3] = 0;
         at.reach[3] = give;
         sums.held.now += 0.5 / k * dot3(at.spring, at.spring);
+        if (push > k * at.normal[3]) sums.held.now += push * (at.normal[3] - push / k);
     }
 
     // Whether an earlier contact of its point has come into the same cell by another way: of one
@@ -287,13 +288,14 @@ struct ContactWay::Kernel {
     SWAGE_INLINE ImpactForce same_as(const Contact& contact, const ContactMemory& last,
                                      const Meeting& at) const {
         const double k = way.share_ * at.inverse[2][3];
+        const double hold = way.share_ * way.hold_[contact.point];
         const Vec3 normal = vec3(at.normal), reach = vec3(at.reach);
         ImpactForce f;
         f.reach = reach - normal * normal.dot(reach);
-        f.elastic = k * (f.reach + at.normal[3] * normal);
+        f.elastic = k * f.reach + spring_push(k, at.normal[3], hold) * normal;
         f.force = f.elastic + contact.dashed;
         f.bond = last.bond;
-        f.stored = 0.5 / k * f.elastic.squaredNorm();
+        f.stored = 0.5 * k * f.reach.squaredNorm() + spring_energy(k, at.normal[3], hold);
         f.history = last.history;
         spread(contact, trilinear_weights(contact.place), vec4(f.force) - way.share_ * at.spring);
         return f;
@@ -333,7 +335,7 @@ struct ContactWay::Kernel {
                                   dot3(at.inverse[2], reach));
                 const double k = at.inverse[2][3], pulled = std::min(at.normal[3], 0.0);
                 next.held = 0.5 * k * dot3(reach, reach);
-                next.bound = next.held + 0.5 * k * pulled * pulled;
+                next.bound = next.held + spring_energy(k, pulled, way.hold_[contact.point]);
                 sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
                 sums.stored += 0.5 * f.stored;
                 sums.friction += 0.5 * f.friction;

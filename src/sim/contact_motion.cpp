@@ -67,8 +67,9 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             m.law.friction = friction;
             m.law.holding = friction == law_.friction ? holding_ : ratio_ * friction;
             m.law.hold = hold;
-            const double k = m.law.stiffness, N = k * m.depth, bears = N + hold;
-            if (bears < 0) continue;  // torn off
+            const double k = m.law.stiffness;
+            if (d.value >= 0 && !is_bound(k, m.depth, hold)) continue;  // torn off
+            const double N = spring_push(k, m.depth, hold), bears = N + hold;
             const Vec3 way = pair.history.touches ? Vec3(pose * pair.anchor - x) : Vec3::Zero();
             m.reach = way - m.normal * m.normal.dot(way);
             const double limit = (pair.history.slides ? m.law.friction : m.law.holding) * bears / k;
@@ -164,7 +165,7 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
         next.speed = m.speed;
         next.dashpot = f.force - f.elastic;
         next.bond = f.bond;
-        next.stiffness = m.law.stiffness;
+        next.bound = f.bound;
         next.friction = f.friction;
         next.stored = f.stored;
         next.history = f.history;
@@ -188,8 +189,7 @@ ToolLosses ContactSet::commit_motion(const Drive& now) {
             lost.damped -= 0.5 * (last.dashpot + next.dashpot).dot(way);
             lost.friction += next.friction;
             if (last.history.touches && !next.history.touches) {
-                lost.damped +=
-                    parting_loss(last.stiffness, last.bond, way / last_step_, last_step_);
+                lost.damped += parting_loss(last.bound, last.bond, way / last_step_, last_step_);
             }
         }
         // What its spring held when its cell broke.

@@ -134,7 +134,7 @@ class ContactSet {
         Vec3 speed = Vec3::Zero();    // against the tool, of those that touch [m/s]
         Vec3 dashpot = Vec3::Zero();  // its force [N]
         Vec3 bond = Vec3::Zero();     // ImpactForce::bond [N]
-        double stiffness = 0;         // [N/m]
+        double bound = 0;             // ImpactForce::bound [J]
         double friction = 0;          // taken in the step [J]
         double stored = 0;            // in its spring [J]
         ImpactHistory history{};      // to commit

@@ -35,10 +35,10 @@ struct Stone {
         const Vec3 pushed = mass * gravity + pull, dashed = f.force - f.elastic;
         given += pending_given + 0.5 * step * pushed.dot(was);
         damped += pending_damped - 0.5 * step * dashed.dot(was);
-        if (!f.history.touches) damped += parting_loss(law.stiffness, bond, was, step);
+        if (!f.history.touches) damped += parting_loss(bound, bond, was, step);
         pending_given = 0.5 * step * pushed.dot(v);
         pending_damped = -0.5 * step * dashed.dot(v);
-        bond = f.bond;
+        bond = f.bond, bound = f.bound;
         friction += f.friction;
         stored = f.stored;
         normal = f.normal;
@@ -47,7 +47,7 @@ struct Stone {
         books_begun = true;
     }
     double energy() const { return 0.5 * mass * v.squaredNorm(); }
-    double given = 0, pending_given = 0, pending_damped = 0, kinetic = 0, start = 0;
+    double given = 0, pending_given = 0, pending_damped = 0, kinetic = 0, start = 0, bound = 0;
     Vec3 bond = Vec3::Zero();
     bool books_begun = false;
     double left_over() const { return start + given - kinetic - stored - damped - friction; }
@@ -215,6 +215,42 @@ TEST_CASE("what sticks holds up to its tension and then lets go for good") {
     const Stone gone = pulled(1.03 * hold);
     CHECK_FALSE(gone.history.touches);
     CHECK(gone.x.y() > 0.1);
+}
+
+TEST_CASE("points of unequal stiffness that stick hold together what each of them would") {
+    const std::array<double, 4> stiffness = {1e4, 0.9e4, 0.7e4, 0.53e4};
+    constexpr double kHold = 5, kStep = 1e-4;
+    double y = 0, v = 1e-3, most = 0;  // pulled off slowly
+    std::array<ImpactHistory, 4> history;
+    for (ImpactHistory& h : history) h.touches = true;
+    for (int n = 0; n < 20'000; ++n, y += kStep * v) {
+        double pull = 0;
+        for (int p = 0; p < 4; ++p) {
+            const Vec3 now(0, v, 0);
+            const ImpactForce f =
+                impact_force(law_of(stiffness[p], 1, 0.3, 0.3, kHold),
+                             {-y, Vec3::UnitY(), now, now, Vec3::Zero(), 1, kStep}, history[p]);
+            pull -= f.normal;
+            history[p] = f.history;
+        }
+        most = std::max(most, pull);
+    }
+    CHECK(most == Approx(4 * kHold).epsilon(0.01));  // letting go at all it holds: 15.7
+    CHECK(y > 2 * kHold / 0.53e4);
+    for (const ImpactHistory& h : history) CHECK_FALSE(h.touches);
+}
+
+TEST_CASE("what a bond holds is the work that has drawn it out, also where it gives way") {
+    constexpr double kStiffness = 2e3, kHold = 5;
+    double work = 0;
+    for (int n = 0; n < 1000; ++n) {
+        const double from = -n * 5e-6, to = from - 5e-6;
+        work -= spring_push(kStiffness, 0.5 * (from + to), kHold) * 5e-6;
+        REQUIRE(spring_energy(kStiffness, to, kHold) == Approx(work).epsilon(1e-4));
+    }
+    CHECK(is_bound(kStiffness, -0.00499, kHold));
+    CHECK_FALSE(is_bound(kStiffness, -0.00501, kHold));
+    CHECK_FALSE(is_bound(kStiffness, -1e-9, 0));
 }
 
 TEST_CASE("dashpots of any size are stable in steps that the spring alone allows") {
