@@ -101,7 +101,7 @@ TEST_CASE("a small block presses on a face alike on its points and between them"
     CHECK(pressed({&small, &big}).total(0).y() == Approx(alone * k * depth).epsilon(0.03));
 
     // Down between the points, along to one of them and up: what it took it gives back.
-    const int steps = 400;
+    const int steps = 200;
     double work = 0, most = 0;
     Vec3 last = Vec3::Zero(), f_last = Vec3::Zero();
     const auto way = [&](Vec3 from, Vec3 to) {
