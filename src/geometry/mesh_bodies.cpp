@@ -370,8 +370,11 @@ class Settler {
         Shell &a = shells_[x], &b = shells_[y];
         TriMesh united;
         std::vector<int> origin;
-        if (!unite(a.mesh, b.mesh, united, origin)) return !enters(a, b) && !enters(b, a);
+        const bool is_united = unite(a.mesh, b.mesh, united, origin);
         const double sum = a.volume + b.volume, volume = signed_volume(united);
+        // Faces that lie on each other but for rounding may cut each other so that parts are lost.
+        const double least = (1 - kOnSurface) * std::max(a.volume, b.volume);
+        if (!is_united || volume < least) return !enters(a, b) && !enters(b, a);
         // Nothing in common: they only touch, and stay as they are.
         if (std::abs(volume - sum) <= 1e-9 * std::abs(sum)) return true;
         a.mesh = dress_pieces(std::move(united), origin, a.mesh, b.mesh, mesh_.uv);

@@ -27,30 +27,43 @@ constexpr double kNoArea = 1e-10;    // of the longest side squared
 // face the same way only `keep_common` ones do.
 std::vector<char> outer_patches(const CutSurface& cut, const TriMesh& other, double gap,
                                 bool keep_common) {
-    std::vector<int> largest;  // triangle of each patch: in the middle of it as far as may be
+    const TriangleTree tree(other);
+    std::vector<std::vector<int>> of_patch;
     std::vector<double> area;
     for (std::size_t t = 0; t < cut.patch.size(); ++t) {
         const auto p = static_cast<std::size_t>(cut.patch[t]);
-        if (p >= area.size()) {
-            area.resize(p + 1, -1);
-            largest.resize(p + 1, 0);
-        }
-        const double own = area_vector(cut.mesh.position, cut.mesh.triangle[t]).norm();
-        if (own <= area[p]) continue;
-        area[p] = own;
-        largest[p] = static_cast<int>(t);
+        if (p >= of_patch.size()) of_patch.resize(p + 1);
+        of_patch[p].push_back(static_cast<int>(t));
+        area.push_back(area_vector(cut.mesh.position, cut.mesh.triangle[t]).norm());
     }
-    const TriangleTree tree(other);
-    std::vector<char> outer;
-    for (const int t : largest) {
+    const auto middle_of = [&](int t) -> Vec3 {
         const Corners& c = cut.mesh.triangle[t];
-        const Vec3 middle =
-            (cut.mesh.position[c[0]] + cut.mesh.position[c[1]] + cut.mesh.position[c[2]]) / 3;
-        if (tree.distance(middle) > gap) {
-            outer.push_back(std::abs(tree.winding_number(middle)) < 0.5);
+        return (cut.mesh.position[c[0]] + cut.mesh.position[c[1]] + cut.mesh.position[c[2]]) / 3;
+    };
+    const auto is_off = [&](int t) { return tree.distance(middle_of(t)) > gap; };
+    const auto is_smaller = [&](int s, int t) { return area[s] < area[t]; };
+    std::vector<char> outer;
+    for (std::vector<int>& patch : of_patch) {
+        int t = *std::ranges::max_element(patch, is_smaller);
+        bool off = is_off(t);
+        if (!off) {
+            // A face that lies on the other but for rounding may not be parted from the body that
+            // it bounds, most of whose surface then lies elsewhere.
+            const auto on = std::partition(patch.begin(), patch.end(), is_off);
+            double beside = 0, all = 0;
+            for (auto at = patch.begin(); at != patch.end(); ++at) {
+                all += area[*at];
+                beside += at < on ? area[*at] : 0;
+            }
+            off = beside > 0.5 * all;
+            if (off) t = *std::max_element(patch.begin(), on, is_smaller);
+        }
+        if (off) {
+            outer.push_back(std::abs(tree.winding_number(middle_of(t))) < 0.5);
             continue;
         }
-        const Corners& beneath = other.triangle[tree.nearest(middle).triangle];
+        const Corners& c = cut.mesh.triangle[t];
+        const Corners& beneath = other.triangle[tree.nearest(middle_of(t)).triangle];
         const bool agree =
             area_vector(cut.mesh.position, c).dot(area_vector(other.position, beneath)) > 0;
         outer.push_back(agree && keep_common);

@@ -307,6 +307,49 @@ TEST_CASE("a union has no triangles without width where faces nearly lie on each
     CHECK(smallest_height(united) > 1e-5);
 }
 
+TEST_CASE("bodies whose faces touch but for rounding are not lost, whatever their rounding") {
+    // Two bars that end in one slanted face, whose triangles are the largest of both.
+    const auto bar_from_to = [](double from, double to, double from_tilt, double to_tilt) {
+        constexpr int kRings = 20;
+        TriMesh bar;
+        for (int n = 0; n <= kRings; ++n) {
+            const double share = double(n) / kRings;
+            for (const auto& [y, z] : {std::pair(-1.0, -1.0), {-1.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}})
+                bar.position.push_back(
+                    {(1 - share) * (from + from_tilt * y) + share * (to + to_tilt * y), y, z});
+        }
+        for (int n = 0; n < kRings; ++n)
+            for (int k = 0; k < 4; ++k) {
+                const int a = 4 * n + k, c = 4 * n + (k + 1) % 4;
+                bar.triangle.push_back({a, c, c + 4});
+                bar.triangle.push_back({a, c + 4, a + 4});
+            }
+        const int e = 4 * kRings;
+        for (const Corners& c : {Corners{0, 2, 1}, {0, 3, 2}, {e, e + 1, e + 2}, {e, e + 2, e + 3}})
+            bar.triangle.push_back(c);
+        if (signed_volume(bar) < 0)
+            for (Corners& c : bar.triangle) std::swap(c[1], c[2]);
+        return bar;
+    };
+    const double tilt = std::tan(35 * std::numbers::pi / 180);
+    for (const double rounding : {1e-15, 1e-13, 1e-11, 1e-10})
+        for (unsigned seed = 0; seed < 12; ++seed) {
+            TriMesh both = bar_from_to(-10, 2, 0, tilt);
+            TriMesh other = bar_from_to(2, 10, tilt, 0);
+            std::mt19937 random(seed);
+            for (int p = 0; p < 4; ++p)
+                for (double& x : other.position[p])
+                    x += rounding * (2.0 * random() / double(random.max()) - 1);
+            append(both, other);
+            const TriMesh apart = box_mesh({-3, 5, -1}, {3, 7, 1});
+            append(both, apart);
+            const TriMesh settled = repair_mesh(both).mesh;
+            CAPTURE(rounding, seed);
+            CHECK(signed_volume(settled) == Approx(80 + 24).epsilon(1e-6));
+            CHECK(check_mesh(settled).bounds_a_volume());
+        }
+}
+
 TEST_CASE("what only touches, itself or another, stays as it is") {
     const Block one = {{0, 0, 0}, {2, 2, 2}};
     for (const Block& other : {Block{{2, 0, 0}, {4, 2, 2}},   // along a face
