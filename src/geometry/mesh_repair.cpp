@@ -180,7 +180,7 @@ class Repairer {
         const auto sorted = by_corners();
         std::vector<char> without_walls(mesh_.triangle.size(), 1),
             one_each(mesh_.triangle.size(), 1);
-        std::size_t walls = 0, copies = 0;
+        std::size_t walls = 0;
         for (std::size_t begin = 0, end; begin < sorted.size(); begin = end) {
             end = begin + 1;
             while (end < sorted.size() && sorted[end].first == sorted[begin].first) ++end;
@@ -188,22 +188,23 @@ class Repairer {
             for (std::size_t i = begin + 1; i < end; ++i) {
                 without_walls[sorted[i].second] = one_each[sorted[i].second] = 0;
                 both_ways = both_ways || even(sorted[i].second) != even(sorted[begin].second);
-                ++copies;
             }
             if (both_ways) {
                 without_walls[sorted[begin].second] = 0;
                 walls += end - begin;
             }
         }
-        if (copies == 0) return;
+        if (std::count(one_each.begin(), one_each.end(), 0) == 0) return;
         const bool doubled = 2 * walls > mesh_.triangle.size();
-        keep_triangles(mesh_, doubled ? one_each : without_walls);
+        const std::vector<char>& keep = doubled ? one_each : without_walls;
+        const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
+        keep_triangles(mesh_, keep);
         if (doubled || walls == 0)
             say(fmt::format("left out {}",
-                            counted(copies, "duplicate triangle", "duplicate triangles")));
+                            counted(dropped, "duplicate triangle", "duplicate triangles")));
         else
             say(fmt::format("left out {} of inner walls and duplicates",
-                            counted(walls + copies - walls / 2, "triangle", "triangles")));
+                            counted(dropped, "triangle", "triangles")));
     }
 
     void stitch() {

@@ -413,6 +413,17 @@ TEST_CASE("every face given twice, back to back, becomes one closed surface") {
     CHECK(signed_volume(repair.mesh) == Approx(1));
 }
 
+TEST_CASE("of a wall given three times as many triangles are told as are left out") {
+    TriMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+    TriMesh wall;
+    wall.position = {{2, 0, 0}, {3, 0, 0}, {2, 1, 0}};
+    wall.triangle = {{0, 1, 2}, {0, 2, 1}, {0, 1, 2}};
+    append(mesh, wall);
+    const Repair repair = repair_mesh(mesh);
+    CHECK(told(repair, "left out 3 triangles of inner walls"));
+    CHECK(repair.mesh.triangle.size() == 12);
+}
+
 TEST_CASE("an open sheet is refused with what to do; beside a body it is left out") {
     TriMesh sheet;
     for (int y = 0; y <= 10; ++y)
