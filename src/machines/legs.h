@@ -22,10 +22,10 @@ struct Legs {
 };
 
 // On no leg a turn of more than a quarter, nor anything beside its straight way by more than
-// `slack` at the work-piece [m], nor a load, at any of 256 times a frame, by more than a hundredth
-// of its full strength. What jumps does so within the shortest leg, a 64th of a frame. In motion,
-// where what a load does goes by how long it does it, a load may be off by a thousandth, and one
-// that jumps does so within a 4096th.
+// `slack` at the work-piece [m], nor a load, at any of 256 times a frame (fewer, but at least 4,
+// where that were over a million in all), by more than a hundredth of its full strength. What jumps
+// does so within the shortest leg, a 64th of a frame. In motion, where what a load does goes by how
+// long it does it, a load may be off by a thousandth, and one that jumps does so within a 4096th.
 Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion);
 
 // At the start and at the end of each of `steps` parts of each leg, of a stage of `duration` [s].

@@ -54,7 +54,8 @@ struct SimSettings {
     // What the medium around does to the surface (laws/ambient_drag.h, laws/directional_drag.h);
     // explicit steps only.
     double medium_density = 0;    // [kg/m3], >= 0; 0: none; air 1.2, water 1000
-    double drag_coefficient = 1;  // >= 0; ball 0.5, cube 1, thin plate 1.2
+    double drag_coefficient = 1;  // >= 0, over a quarter of the surface: ball 0.5, cube 0.7, thin
+                                  // plate face on 2.4
     double directional_drag = 0;  // [Pa s/m], >= 0; 0: none; what stops at v: weight over area v
     DragAlong directional_drag_along = DragAlong::motion;
 
