@@ -163,7 +163,7 @@ void EnergySteps::meet(const Group& group, double step, bool again) {
     std::vector<Vec3Array*> force;
     for (Mover& m : mover_) force.push_back(&m.body.force());
     contact_.renew(all_but(group));
-    contact_.add_forces(force, mover_[0].body.gravity(), step, all_but(group), met_, again);
+    contact_.add_forces(force, mover_[group[0]].body.gravity(), step, all_but(group), met_, again);
 }
 
 std::vector<Stored> EnergySteps::stored(const Group& group, const Drive& now) {

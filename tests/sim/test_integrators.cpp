@@ -249,6 +249,28 @@ TEST_CASE("bodies far apart take their own steps, those that may meet the same")
     CHECK(steps(10) != steps(0.35));
 }
 
+TEST_CASE(
+    "what gravity gives two bodies in contact is booked as it grows, whatever stands before") {
+    const Aggregate block = make_block(2, 2, 2, 0.01, kSpringy);
+    const auto passed = [&](bool behind) {
+        std::vector<Aggregate> body(3, block);
+        place(body[0], {Quat::Identity(), Vec3(0, 1, 0)});
+        place(body[2], {Quat::Identity(), Vec3(0.0201, 0, 0)});
+        for (double& v : body[1].particle_velocity.x) v = 1;
+        std::vector<Aggregate*> bodies = {&body[1], &body[2]};
+        bodies.insert(behind ? bodies.end() : bodies.begin(), &body[0]);
+        SimSettings settings = motion_settings(Solver::energy_stepped);
+        settings.gravity = {100, 0, 0};
+        Simulation simulation(bodies, kNothing, settings);
+        Drive from = still(0), to = still(0.001);
+        from.gravity_strength = 0;
+        return simulation.advance(from, to).body[behind ? 0 : 1].passed;
+    };
+    const double alone = passed(true);
+    REQUIRE(alone != 0);
+    CHECK(passed(false) == Approx(alone).epsilon(1e-9));
+}
+
 TEST_CASE("steps that energy chooses follow what a drive does within a frame, also after a pause") {
     Aggregate start = make_block(3, 3, 3, 0.01, kSpringy);
     Apparatus pull;
