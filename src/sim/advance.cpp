@@ -142,7 +142,7 @@ struct Simulation::Rooms {
     }
 
     std::vector<PushSum> push_sums(const Drive& now) const;
-    int sever(std::size_t b, const Drive& from, const Drive& to);
+    int cut(std::size_t b, const Drive& from, const Drive& to);
     void count_pieces(std::size_t b, const char* who, std::vector<std::string>& warning);
     void book(const MoveOutcome& outcome, FrameReport& report);
 };
@@ -165,8 +165,8 @@ std::vector<PushSum> Simulation::Rooms::push_sums(const Drive& now) const {
     return all;
 }
 
-// Severs what the blades sweep on this way; returns the number of connections.
-int Simulation::Rooms::sever(std::size_t b, const Drive& from, const Drive& to) {
+// Cuts what the blades sweep on this way; returns the number of connections.
+int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     WorkedBody& at = body[b];
     std::vector<SeverEvent> events;
     if (at.plan.empty()) {
@@ -174,10 +174,14 @@ int Simulation::Rooms::sever(std::size_t b, const Drive& from, const Drive& to) 
     } else {
         events = std::move(at.plan.front());
         at.plan.pop_front();
+        // A crack may have run ahead of the blade since.
+        std::erase_if(events, [&](const SeverEvent& e) {
+            return at.matter->connection[e.direction].weight[e.lower] <= 0;
+        });
     }
     if (events.empty()) return 0;
     const double before = elastic(b);
-    for (const SeverEvent& e : events) at.matter->connection[e.direction].weight.set(e.lower, 0);
+    sever(*at.matter, events);
     connections_changed(b);
     at.books.severed_energy += before - elastic(b);
     return static_cast<int>(events.size());
@@ -265,9 +269,7 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
     at.plan.clear();
     for (std::size_t n = 0; n + each < way.size(); n += each) {
         at.plan.push_back(rooms_->crossed(ahead, way.subspan(n, each + 1)));
-        for (const SeverEvent& e : at.plan.back()) {
-            ahead.connection[e.direction].weight.set(e.lower, 0);
-        }
+        sever(ahead, at.plan.back());
     }
     keep_crumbs(ahead, at.plan);
 }
@@ -341,7 +343,7 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     FrameReport report;
     report.time = to.time;
     for (std::size_t b = 0; b < r.body.size(); ++b) {
-        const int severed = r.sever(b, from, to);
+        const int severed = r.cut(b, from, to);
         report.severed += severed;
         if (severed > 0) r.count_pieces(b, "the blade", report.warning);
     }

@@ -113,10 +113,8 @@ std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
     return events;
 }
 
-std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<Triangle>& swept) {
-    std::vector<SeverEvent> events = crossed_connections(matter, swept);
+void sever(Aggregate& matter, std::span<const SeverEvent> events) {
     for (const SeverEvent& e : events) matter.connection[e.direction].weight.set(e.lower, 0);
-    return events;
 }
 
 }  // namespace swage

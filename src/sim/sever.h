@@ -30,7 +30,6 @@ std::vector<std::array<Vec3, 3>> swept_triangles(const Apparatus& apparatus,
 std::vector<SeverEvent> crossed_connections(const Aggregate& matter,
                                             const std::vector<std::array<Vec3, 3>>& swept);
 
-// Sets the weight of every crossed connection to zero; returns them.
-std::vector<SeverEvent> sever(Aggregate& matter, const std::vector<std::array<Vec3, 3>>& swept);
+void sever(Aggregate& matter, std::span<const SeverEvent> events);
 
 }  // namespace swage

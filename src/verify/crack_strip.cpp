@@ -34,7 +34,8 @@ void notch(Aggregate& matter, const Vec3& along, const Vec3& across, double end)
         return Vec3(1e-4 * across + x * along + z * Vec3::UnitZ());
     };
     const double far = -1e3;
-    sever(matter, {{at(far, -9), at(end, -9), at(end, 9)}, {at(far, -9), at(end, 9), at(far, 9)}});
+    sever(matter, crossed_connections(matter, {{at(far, -9), at(end, -9), at(end, 9)},
+                                               {at(far, -9), at(end, 9), at(far, 9)}}));
 }
 
 Tip tip_of(const Aggregate& m, const Vec3& along, const Vec3& across, double until) {

@@ -241,9 +241,9 @@ TEST_CASE("the cutter parts a rod however its cells lie in it, and however they 
                 body.particle_position.set(p, turn * body.particle_position.at(p));
             }
             const Machine machine = at_bar("cut", {}, body);
-            sever(body,
-                  swept_triangles(machine.apparatus,
-                                  drives_of(machine, legs_of(machine, 40, 1, false).leg, 1, 1)));
+            const std::vector<Drive> way =
+                drives_of(machine, legs_of(machine, 40, 1, false).leg, 1, 1);
+            sever(body, crossed_connections(body, swept_triangles(machine.apparatus, way)));
             CHECK(find_pieces(body).count == 2);
         }
     }

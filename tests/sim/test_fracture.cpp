@@ -105,6 +105,26 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("a blade severs nothing where a crack ran ahead of it since its cut was planned") {
+    Bar bar(brittle(Mechanics::cells), 2);
+    bar.apparatus.blade.push_back({"blade", {Vec3(0.002, 0, -1), Vec3(0.002, 0, 1)}, {}});
+    bar.drive.world_from_blade = {Pose{Quat::Identity(), Vec3(0, 0.5, 0)}};
+    bar.start();
+    constexpr int kFrames = 20;
+    std::vector<Drive> way(kFrames + 1, bar.drive);
+    way.push_back(bar.drive);
+    way.back().world_from_blade[0].translation.y() = -0.5;
+    bar.simulation->plan_cuts(0, way, 1);
+    FrameReport r;
+    for (int n = 1; n <= kFrames; ++n) r = bar.pull_to(kOpening * n / kFrames);
+    REQUIRE(r.pieces == 2);
+    Drive through = bar.drive;
+    through.world_from_blade[0].translation.y() = -0.5;
+    r = bar.simulation->advance(bar.drive, through);
+    CHECK(r.severed == 0);
+    CHECK(r.severed_energy == 0);
+}
+
 TEST_CASE("a bar half torn unloads to the origin, and goes on from where it was") {
     Bar bar(brittle(Mechanics::cells), 2);
     double torn = 0;

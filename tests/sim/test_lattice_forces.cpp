@@ -43,8 +43,9 @@ Aggregate shaken_block(const Material& material, int seed, double by = 0.08) {
 // Severs everything that crosses the plane x = 0.02.
 void cut(Aggregate& m) {
     const double far = 10;
-    sever(m, {{Vec3(0.02, -far, -far), Vec3(0.02, far, -far), Vec3(0.02, far, far)},
-              {Vec3(0.02, -far, -far), Vec3(0.02, far, far), Vec3(0.02, -far, far)}});
+    sever(m, crossed_connections(
+                 m, {{Vec3(0.02, -far, -far), Vec3(0.02, far, -far), Vec3(0.02, far, far)},
+                     {Vec3(0.02, -far, -far), Vec3(0.02, far, far), Vec3(0.02, -far, far)}}));
 }
 
 double largest_force(const Aggregate& m) {

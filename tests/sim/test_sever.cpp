@@ -22,7 +22,7 @@ void cut_along(Aggregate& m, const Vec3& point, const Vec3& normal, double reach
             return Pose{world_from_plane,
                         point + world_from_plane * Vec3(0, 0, reach * (2.0 * step / sweeps - 1))};
         };
-        sever(m, swept_triangles(blade, pose(s), pose(s + 1)));
+        sever(m, crossed_connections(m, swept_triangles(blade, pose(s), pose(s + 1))));
     }
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("a blade that misses, or rests, severs nothing") {
     const std::size_t all = m.connection_count();
     cut_along(m, Vec3(0.5, 0, 0), Vec3::UnitX(), 3, 4);
     const Blade blade{"blade", {Vec3(0, -1, 0), Vec3(0, 1, 0)}, {}};
-    CHECK(sever(m, swept_triangles(blade, Pose{}, Pose{})).empty());
+    CHECK(crossed_connections(m, swept_triangles(blade, Pose{}, Pose{})).empty());
     CHECK(m.connection_count() == all);
 }
 
@@ -62,7 +62,8 @@ TEST_CASE("half a sweep severs only what the blade has passed") {
     Aggregate m = make_block(8, 4, 4, 0.1, Material{});
     const Blade blade{"blade", {Vec3(0.01, 0, -1), Vec3(0.01, 0, 1)}, {}};
     const auto pose = [](double y) { return Pose{Quat::Identity(), Vec3(0, y, 0)}; };
-    const auto events = sever(m, swept_triangles(blade, pose(1), pose(0.001)));
+    const auto events = crossed_connections(m, swept_triangles(blade, pose(1), pose(0.001)));
+    sever(m, events);
     CHECK_FALSE(events.empty());
     CHECK(find_pieces(m).count == 1);
     for (const SeverEvent& e : events) {
@@ -70,7 +71,7 @@ TEST_CASE("half a sweep severs only what the blade has passed") {
         CHECK(e.weight > 0);
         CHECK(m.particle_reference.at(e.lower).y() > -0.11);
     }
-    sever(m, swept_triangles(blade, pose(0.001), pose(-1)));
+    sever(m, crossed_connections(m, swept_triangles(blade, pose(0.001), pose(-1))));
     CHECK(find_pieces(m).count == 2);
 }
 

@@ -19,8 +19,9 @@ constexpr double kSpacing = 0.25;
 // Along a plane that holds its length.
 void cut(Aggregate& m) {
     const double far = 10, y = 0.4;
-    sever(m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
-              {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}});
+    sever(m, crossed_connections(
+                 m, {{Vec3(-far, y, -far), Vec3(far, y, -far), Vec3(far, y, far)},
+                     {Vec3(-far, y, -far), Vec3(far, y, far), Vec3(-far, y, far)}}));
 }
 
 // A bar, of another material from `boundary` on.
