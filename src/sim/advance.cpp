@@ -70,21 +70,17 @@ using AnySolver = std::variant<QuasistaticSolver, ExplicitSolver, EnergySteps>;
 
 AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                         const SimSettings& settings) {
-    if (settings.solver == Solver::quasistatic) {
-        return QuasistaticSolver(*bodies[0], apparatus, settings);
+    const bool quasistatic = settings.solver == Solver::quasistatic;
+    if (bodies.size() > 1 && (quasistatic || settings.solver == Solver::implicit_steps)) {
+        fail(ExitCode::stopped, "{}: solver = \"{}\" moves one body: use solver = \"explicit\"",
+             apparatus.name, name_of(settings.solver));
     }
+    if (quasistatic) return QuasistaticSolver(*bodies[0], apparatus, settings);
     if (settings.solver == Solver::energy_stepped) return EnergySteps(bodies, apparatus, settings);
     if (settings.solver == Solver::implicit_steps) {
-        if (bodies.size() > 1) {
-            fail(ExitCode::stopped,
-                 "{}: solver = \"implicit\" moves one body: use solver = \"explicit\"",
-                 apparatus.name);
-        }
-        for (const Aggregate* body : bodies) {
-            if (const char* why = ImplicitStep::cannot(*body)) {
-                fail(ExitCode::stopped, "{}: solver = \"implicit\" cannot move this body: {}",
-                     apparatus.name, why);
-            }
+        if (const char* why = ImplicitStep::cannot(*bodies[0])) {
+            fail(ExitCode::stopped, "{}: solver = \"implicit\" cannot move this body: {}",
+                 apparatus.name, why);
         }
     }
     return ExplicitSolver(bodies, apparatus, settings);

@@ -68,7 +68,7 @@ struct FrameReport : Books {  // of all bodies
 class Simulation {
   public:
     // Keeps references to the bodies and the apparatus; they must outlive it. Several bodies move
-    // by explicit steps only.
+    // by explicit or energy-stepped solvers; the others refuse them with Error(stopped).
     Simulation(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                const SimSettings& settings);
     Simulation(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings)

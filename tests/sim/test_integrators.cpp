@@ -203,6 +203,14 @@ TEST_CASE("implicit steps refuse what they cannot move") {
     CHECK(std::string(ImplicitStep::cannot(cut)) == "matter that is cut has no exact tangent");
 }
 
+TEST_CASE("solvers that move one body refuse several") {
+    Aggregate one = make_block(1, 1, 1, 0.1, kSpringy), other = one;
+    for (double& x : other.particle_position.x) x += 1;
+    for (const Solver solver : {Solver::quasistatic, Solver::implicit_steps}) {
+        CHECK_THROWS_AS(Simulation({&one, &other}, kNothing, motion_settings(solver)), Error);
+    }
+}
+
 TEST_CASE("steps that energy chooses never gain any, lose none either, and few are taken back") {
     Material material = kSpringy;
     material.damping_ratio = 0.1;
