@@ -116,9 +116,9 @@ std::string csv_text(const StageCurves& curves) {
               report.severed_energy, report.fracture, report.set_free, report.remainder}) {
             cells.push_back(number(energy));
         }
-        for (long count : {long(report.severed), long(report.broken), long(report.pieces),
-                           long(report.iterations), long(report.increments), long(report.halvings),
-                           report.steps, report.rejected}) {
+        for (long count :
+             {long(report.severed), long(report.broken), long(report.pieces), report.iterations,
+              report.increments, report.halvings, report.steps, report.rejected}) {
             cells.push_back(std::to_string(count));
         }
         cells.push_back(number(report.residual));

@@ -15,27 +15,15 @@
 namespace swage {
 
 // Over all frames of a stage.
-struct StageTotals {
-    long iterations = 0, increments = 0, halvings = 0, steps = 0, rejected = 0, rescued = 0,
-         severed = 0, broken = 0;
-    double shortest_step = 0;  // [s]
-    double residual = 0, penetration = 0;
-    bool touched = false;  // by a tool: quasi-static at the end of a leg, in motion of any step
+struct StageTotals : StepCounts {
+    long severed = 0, broken = 0;
+    double penetration = 0;  // [m]
+    bool touched = false;    // by a tool: quasi-static at the end of a leg, in motion of any step
 
     void add(const FrameReport& report, std::size_t tools) {
-        iterations += report.iterations;
-        increments += report.increments;
-        halvings += report.halvings;
-        steps += report.steps;
-        rejected += report.rejected;
-        rescued += report.rescued;
-        if (report.steps > 0) {
-            shortest_step = shortest_step > 0 ? std::min(shortest_step, report.shortest_step)
-                                              : report.shortest_step;
-        }
+        count(report);
         severed += report.severed;
         broken += report.broken;
-        residual = std::max(residual, report.residual);
         for (std::size_t n = 0; n < report.load.size(); ++n) {
             penetration = std::max(penetration, report.load[n].penetration);
             touched = touched || (n < tools && report.load[n].touched);

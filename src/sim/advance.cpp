@@ -7,64 +7,21 @@
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <map>
 #include <utility>
 #include <variant>
 
 #include "base/error.h"
+#include "sim/crumbs.h"
 #include "sim/energy_steps.h"
 #include "sim/explicit_steps.h"
 #include "sim/lattice_forces.h"
+#include "sim/move_warnings.h"
 #include "sim/quasistatic.h"
 #include "sim/sever.h"
 
 namespace swage {
 
 namespace {
-
-constexpr int kCrumb = 8;  // a piece of fewer particles is less than one cell
-
-// Of each piece, whether it is less than a cell.
-std::vector<char> crumbs_of(const Pieces& pieces) {
-    std::vector<int> size(pieces.count, 0);
-    for (int piece : pieces.particle_piece) ++size[piece];
-    std::vector<char> crumb;
-    for (int particles : size) crumb.push_back(particles < kCrumb);
-    return crumb;
-}
-
-// How many particles are in such pieces.
-std::ptrdiff_t particles_in_crumbs(const Pieces& pieces) {
-    const std::vector<char> crumb = crumbs_of(pieces);
-    return std::count_if(pieces.particle_piece.begin(), pieces.particle_piece.end(),
-                         [&](int piece) { return crumb[piece] != 0; });
-}
-
-// What would fall off as a crumb stays with one side that it is cut from, that which held it by
-// most; with both it would join them. `cut`: the matter with all of the plan severed.
-void keep_crumbs(const Aggregate& cut, std::deque<std::vector<SeverEvent>>& plan) {
-    const Pieces pieces = find_pieces(cut);
-    const std::vector<char> crumb = crumbs_of(pieces);
-    const std::vector<int>& of = pieces.particle_piece;
-    std::map<std::pair<int, int>, double> held;  // of a crumb by a piece: weights
-    for (const std::vector<SeverEvent>& events : plan) {
-        for (const SeverEvent& e : events) {
-            const int a = of[e.lower], b = of[e.upper];
-            if (crumb[a] && !crumb[b]) held[{a, b}] += e.weight;
-            if (crumb[b] && !crumb[a]) held[{b, a}] += e.weight;
-        }
-    }
-    std::vector<int> side(pieces.count, -1);
-    std::vector<double> most(pieces.count, 0.0);
-    for (const auto& [pair, weight] : held) {
-        if (weight > most[pair.first]) most[pair.first] = weight, side[pair.first] = pair.second;
-    }
-    const auto stays = [&](const SeverEvent& e) {
-        const int a = of[e.lower], b = of[e.upper];
-        return (crumb[a] && (a == b || side[a] == b)) || (crumb[b] && side[b] == a);
-    };
-    for (std::vector<SeverEvent>& events : plan) std::erase_if(events, stays);
-}
 
 using AnySolver = std::variant<QuasistaticSolver, ExplicitSolver, EnergySteps>;
 
@@ -138,6 +95,7 @@ struct Simulation::Rooms {
     }
 
     std::vector<PushSum> push_sums(const Drive& now) const;
+    std::vector<ToolLoad> loads(const Drive& now, const std::vector<PushSum>& pushes) const;
     int cut(std::size_t b, const Drive& from, const Drive& to);
     void count_pieces(std::size_t b, const char* who, std::vector<std::string>& warning);
     void book(const MoveOutcome& outcome, FrameReport& report);
@@ -159,6 +117,30 @@ std::vector<PushSum> Simulation::Rooms::push_sums(const Drive& now) const {
         mass += own;
     }
     return all;
+}
+
+std::vector<ToolLoad> Simulation::Rooms::loads(const Drive& now,
+                                               const std::vector<PushSum>& pushes) const {
+    std::vector<ToolLoad> loads;
+    const auto add = [&](const auto& parts, const std::vector<Pose>& pose) {
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            loads.emplace_back();
+            loads.back().name = parts[n].name;
+            loads.back().pose = pose[n];
+        }
+    };
+    add(apparatus.tool, now.world_from_tool);
+    add(apparatus.grip, now.world_from_grip);
+    add(apparatus.blade, now.world_from_blade);
+    std::vector<Pose> middle;
+    for (const PushSum& push : pushes) middle.push_back({Quat::Identity(), push.centre});
+    add(apparatus.load, middle);
+    if (pushes.size() > apparatus.load.size()) {
+        loads.emplace_back();
+        loads.back().name = "gravity";
+        loads.back().pose = middle.back();
+    }
+    return loads;
 }
 
 // Cuts what the blades sweep on this way; returns the number of connections.
@@ -271,29 +253,7 @@ void Simulation::plan_cuts(std::size_t body, std::span<const Drive> way, int ste
 }
 
 std::vector<ToolLoad> Simulation::loads(const Drive& now) const {
-    std::vector<ToolLoad> loads;
-    const auto add = [&](const auto& parts, const std::vector<Pose>& pose) {
-        for (std::size_t n = 0; n < parts.size(); ++n) {
-            loads.emplace_back();
-            loads.back().name = parts[n].name;
-            loads.back().pose = pose[n];
-        }
-    };
-    const Apparatus& apparatus = rooms_->apparatus;
-    add(apparatus.tool, now.world_from_tool);
-    add(apparatus.grip, now.world_from_grip);
-    add(apparatus.blade, now.world_from_blade);
-    std::vector<Pose> middle;
-    for (const PushSum& push : rooms_->push_sums(now)) {
-        middle.push_back({Quat::Identity(), push.centre});
-    }
-    add(apparatus.load, middle);
-    if (rooms_->pushes(0).has_gravity()) {
-        loads.emplace_back();
-        loads.back().name = "gravity";
-        loads.back().pose = middle.back();
-    }
-    return loads;
+    return rooms_->loads(now, rooms_->push_sums(now));
 }
 
 FrameReport Simulation::start() const {
@@ -316,14 +276,9 @@ FrameReport Simulation::start() const {
 }
 
 void FrameReport::go_on(FrameReport next) {
-    next.iterations += iterations;
-    next.increments += increments;
-    next.halvings += halvings;
-    next.steps += steps;
-    next.rejected += rejected;
-    next.rescued += rescued;
-    if (steps > 0) next.shortest_step = std::min(next.shortest_step, shortest_step);
-    next.residual = std::max(next.residual, residual);
+    StepCounts counts = *this;
+    counts.count(next);
+    static_cast<StepCounts&>(next) = counts;
     next.severed += severed;
     next.broken += broken;
     for (std::size_t n = 0; n < load.size(); ++n) {
@@ -353,75 +308,15 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         if (outcome.body[b].broken > 0) r.count_pieces(b, "fracture", report.warning);
         report.pieces += r.body[b].pieces;
     }
-    report.iterations = outcome.iterations;
-    report.increments = outcome.increments;
-    report.halvings = outcome.halvings;
-    report.steps = outcome.steps;
-    report.rescued = outcome.rescued;
+    static_cast<StepCounts&>(report) = outcome;
     report.asleep = outcome.asleep;
-    report.rejected = outcome.rejected;
-    report.shortest_step = outcome.shortest_step;
-    report.residual = outcome.residual;
-    if (!outcome.lost.empty()) {
-        std::string names;
-        for (std::size_t n = 0; n < outcome.lost.size(); ++n) {
-            if (n > 0) names += n + 1 == outcome.lost.size() ? " and " : ", ";
-            names += outcome.lost[n];
-        }
-        report.warning.push_back(
-            fmt::format("the work-piece slipped away from {} although no tool drew back", names));
-    }
-    if (outcome.afloat > 0) {
-        const bool one = outcome.afloat == 1;
-        report.warning.push_back(fmt::format(
-            "{} would fall, for nothing holds {} against gravity and loads: equilibria have no "
-            "fall (solver = \"explicit\" has), so from here on these leave {} alone",
-            one ? "a piece" : fmt::format("{} pieces", outcome.afloat), one ? "it" : "them",
-            one ? "it" : "them"));
-    }
-    if (outcome.hanging > 0) {
-        const bool one = outcome.hanging == 1;
-        report.warning.push_back(fmt::format(
-            "{} by less than a whole cell, which cannot bear {} against gravity and loads: from "
-            "here on these leave {} alone",
-            one ? "a piece hangs" : fmt::format("{} pieces hang", outcome.hanging),
-            one ? "it" : "them", one ? "it" : "them"));
-    }
-    if (outcome.let_be > 0) {
-        report.warning.push_back(fmt::format(
-            "no equilibrium is found with {} point{} of the work-piece's surface that lie deeper "
-            "than a fifth of a cell in it: from here on these go through it",
-            outcome.let_be, outcome.let_be == 1 ? "" : "s"));
-    }
-    if (outcome.left_over > 0) {
-        report.warning.push_back(
-            fmt::format("what was cut, broken or let go of does not come to rest as exactly as the "
-                        "loads ask: from here on {:.2g} N of forces may be out of balance",
-                        outcome.left_over));
-    }
-    if (outcome.drag_held) {
-        report.warning.push_back(
-            "the drag is so strong that it stops some of the surface within a few steps; there it "
-            "is held to what a step can follow");
-    }
-    if (outcome.rescued > 0) {
-        report.warning.push_back(fmt::format(
-            "explicit steps went wrong however short they were: {} implicit ones stand in for them",
-            outcome.rescued));
-    }
-    if (outcome.inside_out > 0) {
-        report.warning.push_back(fmt::format(
-            "{} cell{} turned inside out, which shorter steps did not keep from it: the matter is "
-            "crushed harder than its stiffness can hold",
-            outcome.inside_out, outcome.inside_out == 1 ? "" : "s"));
-    }
-    if (outcome.buckled) {
-        report.warning.push_back(
-            "the work-piece buckled: it left its shape for one that bears less");
+    for (std::string& sentence : move_warnings(outcome)) {
+        report.warning.push_back(std::move(sentence));
     }
 
     r.book(outcome, report);
-    report.load = loads(to);
+    const std::vector<PushSum> pushes = r.push_sums(to);
+    report.load = r.loads(to, pushes);
     for (std::size_t n = 0; n < r.work.size(); ++n) {
         ToolLoad& load = report.load[n];
         for (const BodyOutcome& body : outcome.body) {
@@ -434,7 +329,6 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
         }
         load.work = r.work[n];
     }
-    const std::vector<PushSum> pushes = r.push_sums(to);
     const std::size_t first = report.load.size() - pushes.size();
     for (std::size_t n = 0; n < pushes.size(); ++n) {
         for (const BodyOutcome& body : outcome.body) r.push_work[n] += body.push_work[n];

@@ -10,6 +10,7 @@
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/settings.h"
+#include "sim/step_counts.h"
 
 namespace swage {
 
@@ -47,18 +48,13 @@ struct Books {
     void add(const Books& other);
 };
 
-struct FrameReport : Books {  // of all bodies
+struct FrameReport : Books, StepCounts {  // of all bodies
     std::vector<Books> body;
-    double time = 0;  // [s] since the stage began
-    int iterations = 0, increments = 0, halvings = 0;
-    long steps = 0, rejected = 0;  // in motion: kept, and taken back
-    double shortest_step = 0;      // likewise [s]
-    int asleep = 0;                // bodies at rest at the end of it
-    long rescued = 0;              // of those kept: implicit ones where explicit ones went wrong
-    double residual = 0;           // over the largest push; quasi-static only
-    std::vector<ToolLoad> load;    // tools, then grips, then blades, then loads, then gravity
-    int severed = 0, broken = 0;   // connections, in this frame: by blades, by load
-    int pieces = 1;                // of all bodies
+    double time = 0;              // [s] since the stage began
+    int asleep = 0;               // bodies at rest at the end of it; in motion only
+    std::vector<ToolLoad> load;   // tools, then grips, then blades, then loads, then gravity
+    int severed = 0, broken = 0;  // connections, in this frame: by blades, by load
+    int pieces = 1;               // of all bodies
     std::vector<std::string> warning;
 
     // What comes next belongs to the same frame. To be begun with an empty one.

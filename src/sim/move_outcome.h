@@ -9,6 +9,7 @@
 
 #include "sim/contact_set.h"
 #include "sim/contact_sums.h"
+#include "sim/step_counts.h"
 
 namespace swage {
 
@@ -57,16 +58,8 @@ struct BodyOutcome {
     }
 };
 
-struct MoveOutcome {
+struct MoveOutcome : StepCounts {
     std::vector<BodyOutcome> body;
-    int iterations = 0;
-    int increments = 0;
-    int halvings = 0;
-    long steps = 0;               // kept; in motion only
-    long rejected = 0;            // steps taken back; in motion only
-    long rescued = 0;             // implicit steps where explicit ones went wrong
-    double shortest_step = 0;     // [s]; in motion only
-    double residual = 0;          // of the last increment, over its reference force
     bool drag_held = false;       // was more than a step can follow; in motion only
     int asleep = 0;               // bodies at rest at the end; in motion only
     int inside_out = 0;           // cells at once that shorter steps did not keep from it
