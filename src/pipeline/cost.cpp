@@ -2,6 +2,7 @@
 #include "pipeline/cost.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -184,24 +185,33 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
                       meshes * vertices * kMeshBytesPerVertex;
 }
 
-double read_number(const fs::path& file) {
+// The number that comes first in a file, or next after a word; `otherwise`: there is none.
+double number_in(const fs::path& file, double otherwise, const std::string& word = {}) {
     std::ifstream in(file);
+    for (std::string read; read != word && in >> read;) {
+    }
     double value = 0;
-    return in >> value ? value : std::numeric_limits<double>::infinity();
+    return in >> value ? value : otherwise;
 }
 
 // What this process may still allocate.
 double free_memory() {
-    double bytes = std::numeric_limits<double>::infinity();
-    std::ifstream in("/proc/meminfo");
-    for (std::string line; std::getline(in, line);) {
-        if (line.rfind("MemAvailable:", 0) == 0) bytes = 1024 * std::stod(line.substr(13));
-    }
+    constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+    double bytes = 1024 * number_in("/proc/meminfo", kUnlimited, "MemAvailable:");
     rlimit limit = {};
     if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-        bytes = std::min(bytes, static_cast<double>(limit.rlim_cur));
+        const double page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+        bytes = std::min(
+            bytes, static_cast<double>(limit.rlim_cur) - page * number_in("/proc/self/statm", 0));
     }
-    return std::min(bytes, read_number("/sys/fs/cgroup/memory.max"));
+    // Of a group of processes; what it keeps of files it lets go of where that is asked for.
+    const fs::path group = "/sys/fs/cgroup";
+    double taken = number_in(group / "memory.current", 0);
+    for (const char* kept : {"inactive_file", "active_file", "slab_reclaimable"}) {
+        taken -= number_in(group / "memory.stat", 0, kept);
+    }
+    bytes = std::min(bytes, number_in(group / "memory.max", kUnlimited) - std::max(0.0, taken));
+    return std::max(0.0, bytes);
 }
 
 double free_disk(fs::path folder) {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/cost.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
 #include <limits>
 
+#include "base/error.h"
 #include "geometry/box_mesh.h"
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
@@ -176,4 +181,23 @@ TEST_CASE("a body that makes all steps far shorter than others need is told, wit
                     "foam 30 times; ") == 0);
     CHECK(note_of(9, Solver::explicit_steps).empty());
     CHECK(note_of(900, Solver::implicit_steps).empty());
+}
+
+TEST_CASE("what a process has taken already is not free for its run") {
+    double taken = 0;
+    std::ifstream("/proc/self/statm") >> taken;
+    taken *= static_cast<double>(::sysconf(_SC_PAGESIZE));
+    constexpr double kRoom = 1e9;
+    rlimit before = {};
+    ::getrlimit(RLIMIT_AS, &before);
+    const rlimit limit = {static_cast<rlim_t>(taken + kRoom), before.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_AS, &limit) == 0);
+    RunOptions options;
+    options.out = ".";
+    RunCost cost;
+    cost.memory_bytes = kRoom + 0.5 * taken;
+    CHECK_THROWS_AS(refuse_excess(cost, options), Error);
+    cost.memory_bytes = 0.1 * kRoom;
+    CHECK_NOTHROW(refuse_excess(cost, options));
+    ::setrlimit(RLIMIT_AS, &before);
 }
