@@ -99,18 +99,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
                          "{:.3g} cells thick",
                          cost.tool_give, 100 * cost.tool_give / thickness, thickness));
     }
-    std::vector<std::string> told;  // insets may be of one material
-    for (std::size_t b = 0; b < scene.body.size(); ++b) {
-        for (const Material* of : scene.body[b].materials()) {
-            const std::string strength = strength_warning(
-                *of, cost.body[b].spacing, cost.body[b].across, fineness_section(scene, b));
-            if (strength.empty() || std::find(told.begin(), told.end(), strength) != told.end()) {
-                continue;
-            }
-            line("strength", strength);
-            told.push_back(strength);
-        }
-    }
+    for (const std::string& strength : cost.warning.strength) line("strength", strength);
     line("stages", std::to_string(scene.stage.size()));
     line("frames", count_text(cost.frames));
     line("steps", "about " + count_text(cost.steps));
@@ -163,7 +152,7 @@ int check(const CheckArguments& given) {
         json["cost"] = cost_json(cost);
         add_accuracy(*reading.scene, cost, json);
         if (!given.json) {
-            for (const std::string& warning : cost.warning) log_warning("{}", warning);
+            for (const std::string& warning : cost.warning.bodies) log_warning("{}", warning);
             if (log_level() != LogLevel::quiet) put_out(cost_text(*reading.scene, input, cost));
         }
         refuse_excess(cost, options);

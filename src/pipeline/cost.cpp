@@ -13,8 +13,8 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "machines/machine.h"
+#include "pipeline/accuracy.h"
 #include "pipeline/stage_machine.h"
-#include "pipeline/start_overlap.h"
 #include "sim/advance.h"
 
 namespace swage {
@@ -223,6 +223,22 @@ double free_disk(fs::path folder) {
     return error ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
+// Of a body's mesh and of its strength.
+void add_warnings(const SceneSpec& scene, std::size_t b, const InputMesh& input, RunCost& cost) {
+    StartWarnings& told = cost.warning;
+    told.mesh.insert(told.mesh.end(), input.finding.begin(), input.finding.end());
+    const std::string section =
+        b == 0 ? "[mold]" : fmt::format("[[body]] \"{}\"", scene.body[b].name);
+    for (const Material* material : scene.body[b].materials()) {
+        const std::string strength =
+            strength_warning(*material, cost.body[b].spacing, cost.body[b].across, section);
+        // Bodies and insets may be of one material.
+        const bool known =
+            std::find(told.strength.begin(), told.strength.end(), strength) != told.strength.end();
+        if (!strength.empty() && !known) told.strength.push_back(strength);
+    }
+}
+
 }  // namespace
 
 int frame_count(const SceneSpec& scene) {
@@ -239,6 +255,7 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         const int across = mold.cell_count.minCoeff();
         cost.body.push_back({mold.spacing, mold.active_cells, across,
                              thickness_of(input[b].to_mold(), mold.spacing, across)});
+        add_warnings(scene, b, input[b], cost);
         if (b == 0) {
             cost.mold = mold;
             continue;
@@ -274,7 +291,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (std::size_t b = 0; b < matter.size(); ++b) {
         named.push_back({scene.body[b].name, &matter[b]});
     }
-    cost.warning = start_overlaps(named);
+    cost.warning.bodies = warnings_of_bodies(scene, named);
     const std::string steps = step_note(scene, matter);
     if (!steps.empty()) cost.note.push_back(steps);
     const StageSpec& first = scene.stage.front();
@@ -283,10 +300,8 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const Machine machine = stage_machine(first, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     for (std::string& amiss : tool_overlaps(machine, named)) {
-        cost.warning.push_back(std::move(amiss));
+        cost.warning.bodies.push_back(std::move(amiss));
     }
-    const std::vector<std::string> mistakes = foreseen_mistakes(scene, matter[0]);
-    cost.warning.insert(cost.warning.end(), mistakes.begin(), mistakes.end());
     const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), matter[0]);
     const long equilibria =
         first.sim.solver == Solver::quasistatic
@@ -297,10 +312,6 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
             : 0;
     add_up(cost, scene, input, options, matter, equilibria);
     return cost;
-}
-
-std::string fineness_section(const SceneSpec& scene, std::size_t body) {
-    return body == 0 ? "[mold]" : fmt::format("[[body]] \"{}\"", scene.body[body].name);
 }
 
 std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
@@ -350,7 +361,7 @@ Json cost_json(const RunCost& cost) {
             {"bodies", bodies},
             {"tool_give_cells", cost.tool_give},
             {"notes", cost.note},
-            {"warnings", cost.warning}};
+            {"warnings", cost.warning.all()}};
 }
 
 void refuse_excess(const RunCost& cost, const RunOptions& options) {

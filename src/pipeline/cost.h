@@ -8,6 +8,7 @@
 #include "mold/mold.h"
 #include "pipeline/json.h"
 #include "pipeline/run_options.h"
+#include "pipeline/start_warnings.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
 
@@ -26,16 +27,17 @@ struct BodyCost {
 struct RunCost {
     MoldEstimate mold;  // sums over all bodies; spacing and cell_count are the work-piece's
     std::vector<BodyCost> body;
-    bool counted = false;              // the mold was made, so its numbers are no estimate
-    double tool_give = 0;              // what the softest tool gives way by, in cells; 0: no tools
-    int frames = 0;                    // stills, the start included
-    double steps = 0;                  // relaxation iterations and steps of motion, about
-    double seconds = 0;                // of simulation and drawing on this machine, about
-    std::string slow;                  // what may take ten times that; empty: nothing
-    double memory_bytes = 0;           // at the peak, about
-    double disk_bytes = 0;             // of the run directory, about
-    std::vector<std::string> note;     // of the first machine at the work-piece; of steps
-    std::vector<std::string> warning;  // what a run warns of before its first stage
+    bool counted = false;           // the mold was made, so its numbers are no estimate
+    double tool_give = 0;           // what the softest tool gives way by, in cells; 0: no tools
+    int frames = 0;                 // stills, the start included
+    double steps = 0;               // relaxation iterations and steps of motion, about
+    double seconds = 0;             // of simulation and drawing on this machine, about
+    std::string slow;               // what may take ten times that; empty: nothing
+    double memory_bytes = 0;        // at the peak, about
+    double disk_bytes = 0;          // of the run directory, about
+    std::vector<std::string> note;  // of the first machine at the work-piece; of steps
+    // Of bodies only where the mold was made; then of those in the first machine's tools, too.
+    StartWarnings warning;
 
     const BodyCost& work_piece() const { return body.front(); }
 };
@@ -50,9 +52,6 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
 // finds the mistakes that only show there. Throws what these throw.
 RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
                    const RunOptions& options);
-
-// Where a scene says how fine a body is molded: "[mold]", or `[[body]] "name"`.
-std::string fineness_section(const SceneSpec& scene, std::size_t body);
 
 // Which of several bodies makes explicit steps far shorter than others need; empty: none does.
 std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matter);

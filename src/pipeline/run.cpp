@@ -6,7 +6,6 @@
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "base/log.h"
-#include "pipeline/accuracy.h"
 #include "pipeline/cost.h"
 #include "pipeline/draw.h"
 #include "pipeline/frame_store.h"
@@ -14,8 +13,7 @@
 #include "pipeline/plot.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
-#include "pipeline/stage_machine.h"
-#include "pipeline/start_overlap.h"
+#include "pipeline/start_warnings.h"
 
 namespace swage {
 
@@ -50,9 +48,10 @@ struct Ended {
     bool early() const { return stopped || interrupted; }
 };
 
-// All stages; the motion file and run.json stand when it returns.
-Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, RunDirectory& directory,
-               Json& record, Stopwatch& watch) {
+// All stages; the motion file and run.json stand when it returns. `at_start`: what can be said
+// before anything is molded.
+Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
+               RunDirectory& directory, Json& record, Stopwatch& watch) {
     const bool can_plot = gnuplot_is_present();
     if (!can_plot) {
         log_warning(
@@ -60,7 +59,6 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, RunD
             "(apt-get install gnuplot-nox)");
     }
     std::vector<WorkPiece> bodies;
-    std::vector<std::string> warnings;
     for (std::size_t b = 0; b < input.size(); ++b) {
         {
             const auto lap = watch.lap("mold");
@@ -72,31 +70,12 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, RunD
                  input.size() == 1 ? "molded" : "molded " + bodies[b].name, matter.cell_fill.size(),
                  1e3 * matter.lattice.spacing, matter.particle_count(), matter.connection_count(),
                  matter.mass());
-        warnings.insert(warnings.end(), input[b].finding.begin(), input[b].finding.end());
-        for (const Material* material : scene.body[b].materials()) {
-            const std::string strength =
-                strength_warning(*material, matter.lattice.spacing,
-                                 matter.lattice.cell_count.minCoeff(), fineness_section(scene, b));
-            // Bodies and insets may be of one material.
-            if (strength.empty() ||
-                std::find(warnings.begin(), warnings.end(), strength) != warnings.end()) {
-                continue;
-            }
-            log_warning("{}", strength);
-            warnings.push_back(strength);
-        }
     }
-
-    std::vector<NamedMatter> named;
-    for (const WorkPiece& body : bodies) named.push_back({body.name, &body.matter});
-    std::vector<std::string> at_start = start_overlaps(named);
-    for (std::string& mistake : foreseen_mistakes(scene, bodies.front().matter)) {
-        at_start.push_back(std::move(mistake));
+    at_start.bodies = warnings_of_bodies(scene, named(bodies));
+    for (const auto* untold : {&at_start.strength, &at_start.bodies}) {
+        for (const std::string& warning : *untold) log_warning("{}", warning);
     }
-    for (const std::string& warning : at_start) {
-        log_warning("{}", warning);
-        warnings.push_back(warning);
-    }
+    std::vector<std::string> warnings = at_start.all();
 
     MotionRecorder recorder(directory.store());
     Progress progress("simulate", frame_count(scene) - 1);
@@ -180,7 +159,7 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
         outcome.record = *earlier;
     } else {
         outcome.record = begin_record(scene, options, identity, input);
-        ended = simulate(scene, input, directory, outcome.record, watch);
+        ended = simulate(scene, input, cost.warning, directory, outcome.record, watch);
     }
     const int reached = outcome.record.at("frames").get<int>();
     if (ended.interrupted) {

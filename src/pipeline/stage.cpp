@@ -16,7 +16,7 @@
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/stage_verdict.h"
-#include "pipeline/start_overlap.h"
+#include "pipeline/start_warnings.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
@@ -114,9 +114,7 @@ class StageRun {
           ahead_(way_),
           cuts_(bodies.size(), 0) {
         for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
-        std::vector<NamedMatter> named;
-        for (const WorkPiece& body : bodies) named.push_back({body.name, &body.matter});
-        for (const std::string& warning : tool_overlaps(machine_, named)) {
+        for (const std::string& warning : tool_overlaps(machine_, named(bodies))) {
             outcome_.warning.push_back(fmt::format("{}: {}", stage.name, warning));
             log_warning("{}", outcome_.warning.back());
         }

@@ -459,6 +459,10 @@ TEST_CASE("check tells of every body how fine it is, and what it would need") {
     CHECK(json.at("strength").at(0).at("body") == "pane");
     CHECK(json.at("bodies").at("pane").at("accuracy").contains("bending"));
     CHECK(json.at("cost").at("bodies").size() == 2);
-    const Outcome run = run_swage({"run", scene.string(), "--no-render"}, scratch.path());
+    const fs::path out = scratch.path() / "run";
+    const Outcome run = run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
     CHECK(run.err.find("[[body]] \"pane\" across = ") != std::string::npos);
+    const Json record = Json::parse(bytes_of(out / "run.json"));
+    REQUIRE_FALSE(json.at("cost").at("warnings").empty());
+    CHECK(json.at("cost").at("warnings").at(0) == record.at("warnings").at(0));
 }

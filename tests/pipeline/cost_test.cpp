@@ -183,6 +183,17 @@ TEST_CASE("a body that makes all steps far shorter than others need is told, wit
     CHECK(note_of(900, Solver::implicit_steps).empty());
 }
 
+TEST_CASE("what is odd about a mesh, and what is too coarse to break as it should, is told") {
+    BarScene bar(6);
+    bar.scene.body[0].material.strength = 1e4;
+    bar.scene.body[0].material.toughness = 1e-3;
+    bar.input.finding = {"the bar is odd"};
+    const RunCost cost = bar.cost();
+    REQUIRE(cost.warning.strength.size() == 1);
+    CHECK(cost_json(cost).at("warnings") ==
+          Json::array({"the bar is odd", cost.warning.strength[0]}));
+}
+
 TEST_CASE("what a process has taken already is not free for its run") {
     double taken = 0;
     std::ifstream("/proc/self/statm") >> taken;
