@@ -143,8 +143,7 @@ class StageRun {
                            apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size());
         for (int n = 1; n <= stage_.frames && !outcome_.stopped; ++n) {
             if (!work(simulation, n, last_frame + n, curves)) break;
-            dress(last_frame + n);
-            keep([&] { record(last_frame + n, curves); });
+            keep([&] { record(last_frame + n); });
         }
         const auto lap = context_.watch.lap("write");
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -180,13 +179,15 @@ class StageRun {
 
     bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
 
-    // The machine goes through the n-th frame; false where that was given up.
+    // The machine goes through the n-th frame; false where that was given up. What legs of it were
+    // done is on the books and in the skins either way.
     bool work(Simulation& simulation, int n, int number, StageCurves& curves) {
+        const std::size_t begun = leg_;
+        FrameReport frame;
         try {
-            FrameReport frame;
             for (; leg_ < legs_.leg.size() && legs_.leg[leg_].frame == n - 1; ++leg_) {
                 throw_if_interrupted();
-                if (leg_ > 0 && legs_.leg[leg_ - 1].frame == n - 1) follow_on_the_way();
+                if (leg_ > begun) follow_on_the_way();
                 plan_cuts(simulation, number);
                 FrameReport report = [&] {
                     const auto lap = context_.watch.lap("simulate");
@@ -197,8 +198,6 @@ class StageRun {
                 curves.pass(frame.load);
                 ahead_ = ahead_.subspan(steps_);
             }
-            last_ = std::move(frame);
-            return true;
         } catch (const Interrupted& interrupted) {
             outcome_.interrupted = interrupted;
         } catch (const Error& error) {
@@ -206,7 +205,17 @@ class StageRun {
             outcome_.stopped.emplace(ExitCode::stopped, fmt::format("{}, frame {}: {}", stage_.name,
                                                                     number, error.what()));
         }
-        return false;
+        if (leg_ > begun) book(number, std::move(frame), curves);
+        return !outcome_.interrupted && !outcome_.stopped;
+    }
+
+    // What the matter has gone through is on the books, whether the frame can be kept or not.
+    void book(int number, FrameReport frame, StageCurves& curves) {
+        last_ = std::move(frame);
+        dress(number);
+        curves.add(number, last_);
+        totals_.add(last_, machine_.apparatus.tool.size());
+        for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
     }
 
     // Once a blade is about to reach a body the whole cut is settled: in its matter and, along the
@@ -244,12 +253,8 @@ class StageRun {
         }
     }
 
-    void record(int number, StageCurves& curves) {
+    void record(int number) {
         const auto lap = context_.watch.lap("write");
-        // What the matter has gone through is on the books, whether the frame can be kept or not.
-        curves.add(number, last_);
-        totals_.add(last_, machine_.apparatus.tool.size());
-        for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
         context_.recorder.add_frame(bodies_, ahead_.front());
         if (each_frame()) write_meshes_of(number);
         context_.progress.advance(number - 1, stage_.name);

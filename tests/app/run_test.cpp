@@ -348,6 +348,30 @@ TEST_CASE("a later machine that cannot be set up leaves what was done, and is to
     CHECK(record["frames"] == 3);
 }
 
+TEST_CASE(
+    "what a machine did of a frame that it gives up is on the books, as it is in the matter") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "twist.toml", run = scratch.path() / "run";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    // An equilibrium every 62 degrees, of which the fifth is not found in so few iterations.
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nyoung_modulus = \"1 MPa\"\n"
+             "density = \"1000 kg/m3\"\nyield_stress = \"50 kPa\"\n[mold]\nacross = 2\n"
+             "[[stage]]\nmachine = \"twist\"\nangle = \"3600 deg\"\nframes = 1\n"
+             "tolerance = 1e-4\niteration_limit = 100\nhalving_limit = 0\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    REQUIRE(outcome.err.find("1-twist, frame 2: twist: no equilibrium found") != std::string::npos);
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(record.at("frames") == 1);
+    const Json& stage = record.at("stages").at(0);
+    CHECK(stage.at("frames") == Json({2, 2}));
+    CHECK(stage.at("increments") > 0);
+    CHECK(stage.at("energies_J").at("machine_work") > 0);
+    CHECK(bytes_of(run / "curves/1-twist.csv").find("\n2,") != std::string::npos);
+}
+
 TEST_CASE("a stage whose steps have damped what they move by themselves says so") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "spin.toml";
