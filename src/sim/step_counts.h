@@ -12,7 +12,7 @@ struct StepCounts {
     long steps = 0, rejected = 0;  // in motion: kept, and taken back
     long rescued = 0;              // of those kept: implicit ones where explicit ones went wrong
     double shortest_step = 0;      // likewise [s]
-    double residual = 0;           // over the largest push, the most; quasi-static only
+    double residual = 0;           // the largest, over the largest push; quasi-static only
 
     // Those of what comes next.
     void count(const StepCounts& next) {
