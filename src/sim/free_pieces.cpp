@@ -50,6 +50,7 @@ void FreePieces::connections_changed() {
     }
     gripped_.clear();
     for (int by : of_piece) gripped_.push_back(by != kNone);
+    is_slidable_ = std::ranges::any_of(of_piece, [](int by) { return by < 0; });
     if (pieces_.count < 2) return;
     for (int piece : pieces_.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
 }
@@ -87,6 +88,70 @@ void FreePieces::add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& fo
     for (ParticleId p : afloat_) afloat.push_back(force.at(p));
     pushes.add_forces(matter_, to, force);
     for (std::size_t n = 0; n < afloat.size(); ++n) force.set(afloat_[n], afloat[n]);
+}
+
+// A rigid motion q = (shift, turn) with M q = W less what bars it, which is taken as stiff as makes
+// no difference to what it leaves free.
+void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {
+    if (!is_slidable_ || pushes.count() == 0) return;
+    constexpr double kBars = 1e9;  // of the piece's mass
+    using Vec6 = Eigen::Matrix<double, 6, 1>;
+    using Mat6 = Eigen::Matrix<double, 6, 6>;
+    const auto at = [&](std::size_t p) { return matter_.particle_position.at(p); };
+    const std::vector<double>& m = matter_.particle_mass;
+    const Vec3Array push = pushes_on(pushes, to);
+    const Vec3 none = Vec3::Zero();
+    const auto mass = sums_of(pieces_, 0.0, [&](std::size_t p) { return m[p]; });
+    auto center = sums_of(pieces_, none, [&](std::size_t p) -> Vec3 { return m[p] * at(p); });
+    for (std::size_t n = 0; n < mass.size(); ++n) center[n] /= mass[n];
+    const auto arm = [&](std::size_t p) -> Vec3 {
+        return at(p) - center[std::size_t(pieces_.particle_piece[p])];
+    };
+    const auto inertia = sums_of(pieces_, Mat3(Mat3::Zero()), [&](std::size_t p) -> Mat3 {
+        const Vec3 r = arm(p);
+        return m[p] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    });
+    const auto net = sums_of(pieces_, none, [&](std::size_t p) { return push.at(p); });
+    const auto torque =
+        sums_of(pieces_, none, [&](std::size_t p) -> Vec3 { return arm(p).cross(push.at(p)); });
+    const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+
+    // Turns are counted by the way that they take what lies far out.
+    std::vector<double> reach;
+    std::vector<Mat6> bars(mass.size(), Mat6(Mat6::Zero()));
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+        reach.push_back(std::sqrt(inertia[n].trace() / mass[n]));
+    }
+    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
+        const Grip& grip = apparatus_.grip[g];
+        const Mat3 axes = to.world_from_grip[g].rotation.toRotationMatrix();
+        for (int point : grip.point) {
+            const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
+            const auto n = std::size_t(pieces_.particle_piece[by.corner[0]]);
+            const Vec3 r = matter_.surface_position(std::size_t(point)) - center[n];
+            for (int axis = 0; axis < 3; ++axis) {
+                Vec6 way;
+                way << axes.col(axis), r.cross(axes.col(axis)) / reach[n];
+                bars[n] += kBars * mass[n] * grip.hold[axis] * way * way.transpose();
+            }
+        }
+    }
+    std::vector<Vec3> shift, turn;
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+        Mat6 stiff = bars[n];
+        stiff.topLeftCorner<3, 3>() += mass[n] * Mat3::Identity();
+        stiff.bottomRightCorner<3, 3>() += inertia[n] / (reach[n] * reach[n]);
+        Vec6 wrench;
+        wrench << net[n], torque[n] / reach[n];
+        const Vec6 goes = stiff.llt().solve(wrench);
+        const bool is_little = mass[n] * goes.lpNorm<1>() <= kUnbalanced * size[n];
+        shift.push_back(is_little ? Vec3(goes.head<3>()) : none);
+        turn.push_back(is_little ? Vec3(goes.tail<3>() / reach[n]) : none);
+    }
+    for (std::size_t p = 0; p < push.size(); ++p) {
+        const auto n = std::size_t(pieces_.particle_piece[p]);
+        force.add(p, -m[p] * (shift[n] + turn[n].cross(arm(p))));
+    }
 }
 
 bool FreePieces::has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Array& start,

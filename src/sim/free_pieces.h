@@ -35,6 +35,11 @@ class FreePieces {
     void add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& force) const;
     const std::vector<double>& heavy_mass() const { return heavy_mass_; }
 
+    // Takes off what loads and gravity leave over, all in all, along the ways that grips leave a
+    // piece free, where it is next to nothing beside them: patches of a surface are as fine as the
+    // cells, and equilibria would go any way for what these are short of balance.
+    void steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const;
+
     // Whether any piece has gone farther than `far` [m] from where it was: tools and grips go no
     // farther than a spacing in a move, and what springs back no farther than the body is long.
     bool has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Array& start, double far);
@@ -59,6 +64,7 @@ class FreePieces {
     const Apparatus& apparatus_;
     Pieces pieces_;
     std::vector<char> gripped_;  // of each piece
+    bool is_slidable_ = false;   // whether any is in no grip that holds it in every way
     // Of each particle: the grip, if any, that alone holds its piece. Empty: one piece.
     std::vector<int> carrier_;
     std::vector<int> fallen_;         // pieces that did when it was last asked

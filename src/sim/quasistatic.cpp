@@ -112,6 +112,9 @@ void QuasistaticSolver::evaluate(const Drive& to, double moved) {
     mirrored_ = lattice_.find(matter_, Flow::trial, force_);
     contacts_.add_forces(matter_, to, force_, moved);
     free_.add_loads(pushes_, to, force_);
+    const bool may_lie =
+        !apparatus_.tool.empty() || (settings_.self_contact && free_.are_several());
+    if (!may_lie) free_.steady(pushes_, to, force_);
     add_restraint(matter_.particle_position,
                   {held_, drag_, hold_, free_.heavy_mass(), pushes_.gravity(to)}, force_);
     self_.add_forces(force_);

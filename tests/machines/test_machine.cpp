@@ -11,6 +11,7 @@
 #include "machines/touch.h"
 #include "tests/catch.h"
 #include "tests/machines/bodies.h"
+#include "tests/shared/block.h"
 
 using namespace swage;
 
@@ -217,7 +218,7 @@ TEST_CASE("a grip holds the points in its box where they are") {
 }
 
 TEST_CASE("a grip holds what lies in its box, wherever its edge runs, and its jaws end there") {
-    const Aggregate body = bar(0, {4, 4, 4});
+    const Aggregate body = test::make_block(80, 8, 8, 0.0125, Material{});
     const Box box = box_of(surface_positions(body));
     const double around = 2 * (box.size().y() + box.size().z());
     for (const double edge : {-0.4, -0.396, -0.39, -0.3871, -0.31}) {
@@ -240,7 +241,7 @@ TEST_CASE("a grip holds what lies in its box, wherever its edge runs, and its ja
 }
 
 TEST_CASE("two grips may meet at an edge, and are refused where they hold the same") {
-    const Aggregate body = bar(0, {4, 4, 4});
+    const Aggregate body = test::make_block(80, 8, 8, 0.0125, Material{});
     MachineSpec spec = vice();
     spec.grip[0].to[0] = spec.grip[1].from[0] = "0.2034*length";
     CHECK(set_up(spec, body).apparatus.grip.size() == 2);

@@ -294,3 +294,26 @@ TEST_CASE("what is let go of rests as exactly as it can, and says where loads as
         CHECK(*high - *low == Approx(0.3).epsilon(1e-6));
     }
 }
+
+TEST_CASE("what patches leave over of loads takes nothing away where grips leave it free") {
+    for (const bool guided : {true, false}) {
+        Aggregate matter = make_block(8, 4, 4, 0.025, kSoft);
+        Apparatus apparatus;
+        for (const double side : {-1.0, 1.0}) {
+            const auto end =
+                points_where(matter, [&](const Vec3& x) { return side * x.x() > 0.0999; });
+            if (guided) apparatus.grip.push_back(hold(matter, end, Vec3::UnitX()));
+        }
+        Load load;
+        load.name = "pressure";
+        load.pressure = 1e4;
+        load.point = points_where(matter, [](const Vec3& x) { return std::abs(x.y()) > 0.0499; });
+        load.point.pop_back();  // 1 of 256 on one side presses less
+        apparatus.load.push_back(load);
+        const Vec3 from = matter.centre();
+        put_on(matter, apparatus, {}, 4);
+        CHECK((matter.centre() - from).norm() < 0.05 * matter.lattice.spacing);
+        const Vec3 wide = box_of(surface_positions(matter)).size();
+        CHECK(wide.y() < 0.0995);  // it is pressed
+    }
+}
