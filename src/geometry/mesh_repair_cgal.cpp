@@ -123,8 +123,8 @@ TriMesh wrap_triangles(const TriMesh& mesh, double alpha, double offset) {
     return from_surface(wrap);
 }
 
-bool cut_along_each_other(const TriMesh& a, const TriMesh& b, CutSurface& cut_a,
-                          CutSurface& cut_b) {
+bool cut_along_each_other(const TriMesh& a, const TriMesh& b, CutPatches& cut_a,
+                          CutPatches& cut_b) {
     namespace pmp = CGAL::Polygon_mesh_processing;
     Surface first, second;
     if (!to_surface(a, first) || !to_surface(b, second)) return false;
@@ -142,7 +142,7 @@ bool cut_along_each_other(const TriMesh& a, const TriMesh& b, CutSurface& cut_a,
     } catch (const std::exception&) {
         return false;
     }
-    const auto finish = [&](const Surface& surface, const auto& on_cut, CutSurface& cut) {
+    const auto finish = [&](const Surface& surface, const auto& on_cut, CutPatches& cut) {
         cut.mesh = from_surface(surface);
         cut.origin.clear();
         cut.patch.clear();

@@ -20,12 +20,12 @@ TriMesh wrap_triangles(const TriMesh& mesh, double alpha, double offset);
 
 // Cuts two closed, oriented surfaces where they meet, into patches that neither crosses. False when
 // that cannot be done (a surface that crosses itself, say). Positions and triangles only.
-struct CutSurface {
+struct CutPatches {
     TriMesh mesh;
     std::vector<int> origin;  // the triangle that each is a piece of
     std::vector<int> patch;   // of each triangle, numbered from 0
 };
-bool cut_along_each_other(const TriMesh& a, const TriMesh& b, CutSurface& cut_a, CutSurface& cut_b);
+bool cut_along_each_other(const TriMesh& a, const TriMesh& b, CutPatches& cut_a, CutPatches& cut_b);
 
 // Of triangles that belong to parts, one number a triangle: the pairs of parts that cross or touch,
 // the lower number first, sorted. None when more than `most` pairs of triangles would have to be

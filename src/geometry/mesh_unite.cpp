@@ -25,7 +25,7 @@ constexpr double kNoArea = 1e-10;    // of the longest side squared
 
 // Which patches of one surface bound the union with another. Where the two lie on each other and
 // face the same way only `keep_common` ones do.
-std::vector<char> outer_patches(const CutSurface& cut, const TriMesh& other, double gap,
+std::vector<char> outer_patches(const CutPatches& cut, const TriMesh& other, double gap,
                                 bool keep_common) {
     const TriangleTree tree(other);
     std::vector<std::vector<int>> of_patch;
@@ -174,7 +174,7 @@ bool is_closed(const TriMesh& mesh) {
 }  // namespace
 
 bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>& origin) {
-    CutSurface cut_a, cut_b;
+    CutPatches cut_a, cut_b;
     if (!cut_along_each_other(split_fans(a), split_fans(b), cut_a, cut_b)) return false;
     Box box = box_of(a.position);
     for (const Vec3& p : b.position) box.grow(p);
@@ -182,7 +182,7 @@ bool unite(const TriMesh& a, const TriMesh& b, TriMesh& result, std::vector<int>
     result = TriMesh();
     origin.clear();
     std::map<std::array<double, 3>, int> place;
-    const auto add = [&](const CutSurface& cut, const std::vector<char>& outer, int base) {
+    const auto add = [&](const CutPatches& cut, const std::vector<char>& outer, int base) {
         for (std::size_t t = 0; t < cut.patch.size(); ++t) {
             if (!outer[cut.patch[t]]) continue;
             Corners corners = cut.mesh.triangle[t];

@@ -116,8 +116,10 @@ Lattice make_lattice(const Vec3& origin, double spacing, const Vec3i& cell_count
 }
 
 namespace {
+
 constexpr std::size_t kStride = 64;  // particles
-}
+
+}  // namespace
 
 ReferencePlaces::ReferencePlaces(const Vec3& origin, const Vec3& step, const Lattice& lattice)
     : origin_(origin), step_(step), run_(lattice.particle_run) {

@@ -6,7 +6,7 @@
 
 namespace swage {
 
-Caps caps_over_holes(const TriMesh& mesh) {
+HoleCaps caps_over_holes(const TriMesh& mesh) {
     struct RimEdge {
         int from, to, times;  // as the missing triangle would run
     };
@@ -16,7 +16,7 @@ Caps caps_over_holes(const TriMesh& mesh) {
         if (balance > 0) rim.push_back({uses[0].high, uses[0].low, balance});
         if (balance < 0) rim.push_back({uses[0].low, uses[0].high, -balance});
     });
-    Caps caps;
+    HoleCaps caps;
     if (rim.empty()) return caps;
 
     DisjointSets sets(mesh.position.size());
@@ -42,7 +42,7 @@ Caps caps_over_holes(const TriMesh& mesh) {
     return caps;
 }
 
-TriMesh with_caps(const TriMesh& mesh, const Caps& caps) {
+TriMesh with_caps(const TriMesh& mesh, const HoleCaps& caps) {
     TriMesh closed;
     closed.position = mesh.position;
     closed.triangle = mesh.triangle;

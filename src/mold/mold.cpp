@@ -202,7 +202,7 @@ Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings
     if (settings.kind == MoldKind::block) {
         return mold_surface(block_around(mesh, spacing), material, spacing, insets);
     }
-    const Caps caps = caps_over_holes(mesh);
+    const HoleCaps caps = caps_over_holes(mesh);
     if (caps.apex.empty()) return mold_surface(mesh, material, spacing, insets);
     const TriMesh closed = with_caps(mesh, caps);
     log_warning(

@@ -7,8 +7,10 @@
 namespace swage {
 
 namespace {
+
 constexpr double kRoundOff = 1e-20;  // of E a^3: what a body at rest holds
-}
+
+}  // namespace
 
 bool QuasistaticSolver::commit(MoveOutcome& outcome) {
     const Committed lost = lattice_.commit(matter_);

@@ -16,7 +16,7 @@ struct Edges {
     std::set<int> shared;  // by both sides: the ends of edges at which the blade stops
 };
 
-Edges edges_of(const Caps& caps, const std::function<bool(const Ends&)>& is_seam) {
+Edges edges_of(const CutCaps& caps, const std::function<bool(const Ends&)>& is_seam) {
     Edges edges;
     for (const Corners& t : caps.triangle) {
         for (int k = 0; k < 3; ++k) ++edges.triangles[edge_of(t, k)];
@@ -29,7 +29,7 @@ Edges edges_of(const Caps& caps, const std::function<bool(const Ends&)>& is_seam
 
 }  // namespace
 
-void part_caps(Caps& caps, const std::function<bool(const Ends&)>& is_seam,
+void part_caps(CutCaps& caps, const std::function<bool(const Ends&)>& is_seam,
                const std::function<void(const Ends&)>& leave,
                const std::function<int(const Ends&)>& half_way) {
     Edges edges = edges_of(caps, is_seam);
@@ -37,7 +37,7 @@ void part_caps(Caps& caps, const std::function<bool(const Ends&)>& is_seam,
         return edges.shared.count(edge.first) && edges.shared.count(edge.second);
     };
     for (bool has_left = true; has_left;) {
-        Caps kept;
+        CutCaps kept;
         for (std::size_t c = 0; c < caps.triangle.size(); ++c) {
             const Corners& t = caps.triangle[c];
             bool parts = false, tears = false;

@@ -440,7 +440,7 @@ class Splitter {
     std::map<Ends, int> cut_id_;
     std::vector<bool> used_;  // cut points
     std::vector<Seam> seam_;
-    Caps cap_;  // raw, seen against the normal
+    CutCaps cap_;  // raw, seen against the normal
     std::vector<int> added_set_, seam_set_;
 };
 

@@ -69,6 +69,31 @@ std::vector<Include> all_includes() {
     return includes;
 }
 
+// The types that a file defines in namespaces that have a name, which all of the program sees.
+// Each namespace ends with its comment, as the formatter writes it; nothing in it is indented.
+std::vector<std::string> types_for_all(const fs::path& path) {
+    const std::regex begin("^namespace ([\\w:]*) ?\\{$"), end("^\\}  // namespace.*");
+    const std::regex type(
+        "^(?:template <.*> )?(?:struct|class|union|enum|enum class) (?:alignas\\(\\w+\\) )?(\\w+)"
+        "(?: final)?(?: : [^{]*)?(?: \\{.*)?$|^using (\\w+) =.*");
+    std::vector<std::string> types, inside;
+    std::ifstream in(path);
+    for (std::string line; std::getline(in, line);) {
+        std::smatch match;
+        if (std::regex_match(line, match, begin)) {
+            inside.push_back(match[1]);
+        } else if (std::regex_match(line, end)) {
+            REQUIRE(!inside.empty());
+            inside.pop_back();
+        } else if (!inside.empty() && !inside.back().empty() &&
+                   std::regex_match(line, match, type)) {
+            types.push_back(inside.back() + "::" + match[1].str() + match[2].str());
+        }
+    }
+    REQUIRE(inside.empty());
+    return types;
+}
+
 }  // namespace
 
 TEST_CASE("rooms include only themselves and lower floors") {
@@ -97,6 +122,19 @@ TEST_CASE("each outside library is seen by one room and few files") {
         INFO(library.header << " is seen by " << seen.size() << " files");
         CHECK(seen.size() <= library.most_files);
     }
+}
+
+TEST_CASE("no two files define a type of one name") {
+    std::map<std::string, fs::path> defined;
+    for (const fs::path& path : source_files()) {
+        INFO(path);
+        for (const std::string& type : types_for_all(path)) {
+            const auto [first, is_new] = defined.emplace(type, path);
+            INFO(type << " is in " << first->second << " too");
+            CHECK(is_new);
+        }
+    }
+    CHECK(defined.size() > 300);
 }
 
 TEST_CASE("what is kept asks no C library for its last bits") {
