@@ -8,7 +8,6 @@
 #include <span>
 
 #include "base/atomic_file.h"
-#include "geometry/mesh_check.h"
 #include "geometry/mesh_write.h"
 #include "machines/legs.h"
 #include "pipeline/curves.h"
@@ -80,11 +79,10 @@ int blade_steps(const std::vector<Leg>& legs) {
     return static_cast<int>(std::ceil(kBladeSteps * longest * (1 - 1e-9)));
 }
 
-// The skin is cut along the whole path of the stage's blades when they reach the matter. True when
-// that was not possible everywhere, so that torn triangles must be removed as they appear.
-bool cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, SkinKind kind,
+// The skin is cut along the whole path of the stage's blades when they reach the matter.
+void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, SkinKind kind,
                int frame, WarningBook& warnings) {
-    if (kind == SkinKind::boundary) return false;
+    if (kind == SkinKind::boundary) return;
     const CutResult cut = cut_skins(piece, swept_triangles(machine.apparatus, way));
     follow_matter(piece, kind);
     if (cut.open_parts > 0) {
@@ -95,7 +93,6 @@ bool cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& pi
     if (cut.has_curved) {
         warnings.add(frame, "a blade's path is curved, so the skin is torn along it, not cut");
     }
-    return cut.has_curved;
 }
 
 class StageRun {
@@ -225,7 +222,7 @@ class StageRun {
             if (cuts_[b] || !simulation.blades_reach(b, ahead_.first(steps_ + 1))) continue;
             cuts_[b] = 1;
             simulation.plan_cuts(b, ahead_, steps_);
-            tears_ = cut_ahead(machine_, ahead_, bodies_[b], skin_, number, warnings_) || tears_;
+            cut_ahead(machine_, ahead_, bodies_[b], skin_, number, warnings_);
         }
     }
 
@@ -243,13 +240,9 @@ class StageRun {
 
     void dress(int number) {
         const auto lap = context_.watch.lap("skin");
-        const bool parts = last_.broken + last_.severed > 0;
+        const bool has_parted = last_.broken + last_.severed > 0;
         for (WorkPiece& body : bodies_) {
-            if (parts && skin_ != SkinKind::boundary && show_breaks(body) > 0) {
-                warnings_.add(number, kOpenSkin);
-            }
-            follow_matter(body, skin_);
-            if (tears_) remove_torn_triangles(body.skin, body.mount, body.matter);
+            if (show_matter(body, skin_, has_parted) > 0) warnings_.add(number, kOpenSkin);
         }
     }
 
@@ -308,7 +301,6 @@ class StageRun {
     std::span<const Drive> ahead_;  // of the way, what is still to go
     std::size_t leg_ = 0;
     std::vector<char> cuts_;  // a body each: whether its cut is settled
-    bool tears_ = false;      // whether triangles of the skin may be torn
     std::vector<fs::path> meshes_;
     FrameReport first_, last_;
     StageTotals totals_;

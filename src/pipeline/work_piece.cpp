@@ -80,6 +80,19 @@ void paint(TriMesh& skin, const Vec3& color, bool metal) {
     skin.position_color.clear();
 }
 
+// Where matter broke by load. Returns in how many places the skin could not be closed.
+int part_skin(WorkPiece& piece) {
+    if (!is_broken(piece.matter)) return 0;
+    if (!piece.whole_skin) {
+        piece.whole_skin = piece.skin;
+        piece.whole_mount = piece.mount;
+    }
+    BrokenSkin broken = break_skin(*piece.whole_skin, piece.whole_mount, piece.matter);
+    piece.skin = std::move(broken.mesh);
+    piece.mount = std::move(broken.mount);
+    return broken.open_faces;
+}
+
 }  // namespace
 
 InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length) {
@@ -226,20 +239,9 @@ void hold_skin(WorkPiece& piece) {
     std::swap(piece.matter.particle_position, piece.followed);
 }
 
-int show_breaks(WorkPiece& piece) {
-    if (!is_broken(piece.matter)) return 0;
-    if (!piece.whole_skin) {
-        piece.whole_skin = piece.skin;
-        piece.whole_mount = piece.mount;
-    }
-    BrokenSkin broken = break_skin(*piece.whole_skin, piece.whole_mount, piece.matter);
-    piece.skin = std::move(broken.mesh);
-    piece.mount = std::move(broken.mount);
-    return broken.open_faces;
-}
-
 CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep) {
     const CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
+    piece.is_torn = piece.is_torn || shown.has_curved;
     if (!piece.whole_skin) return shown;
     CutResult whole =
         cut_skin(*piece.whole_skin, piece.whole_position, piece.whole_mount, piece.matter, sweep);
@@ -258,6 +260,13 @@ void follow_matter(WorkPiece& piece, SkinKind kind) {
             skin_positions(piece.whole_mount, piece.matter, piece.whole_position);
         }
     }
+}
+
+int show_matter(WorkPiece& piece, SkinKind kind, bool has_parted) {
+    const int open = has_parted && kind != SkinKind::boundary ? part_skin(piece) : 0;
+    follow_matter(piece, kind);
+    if (piece.is_torn) remove_torn_triangles(piece.skin, piece.mount, piece.matter);
+    return open;
 }
 
 }  // namespace swage

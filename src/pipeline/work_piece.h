@@ -53,6 +53,9 @@ struct WorkPiece {
     std::shared_ptr<const NewLook> look;  // where it is
     std::vector<Vec3> position;           // of the skin now [m]
     Vec3Array followed;                   // of the particles that this is from [m]
+    // Once a blade's path was curved: the skin is not cut along it, so triangles may be torn there,
+    // now and in every later stage.
+    bool is_torn = false;
     // Once matter broke by load: what skin and mount were made from since.
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;
@@ -83,9 +86,10 @@ void follow_matter(WorkPiece& piece, SkinKind kind);
 // followed, which it shall not be seen to do before it moves (hold_places).
 void hold_skin(WorkPiece& piece);
 
-// Parts a mounted skin where matter broke by load, and closes it. Returns in how many places that
-// was not possible. To be called when matter has broken or been severed.
-int show_breaks(WorkPiece& piece);
+// The skin as it is to be seen: where the matter is and, when it is mounted, without the triangles
+// that a blade has torn. `has_parted`: matter has broken or been severed since; then a mounted skin
+// is parted where it broke by load, and closed. Returns in how many places that was not possible.
+int show_matter(WorkPiece& piece, SkinKind kind, bool has_parted);
 
 // Cuts a mounted skin along all that blades will sweep (skin/cut_mesh.h), that which is parted
 // where matter broke as well as the whole one that it is made from.

@@ -7,6 +7,7 @@
 #include "geometry/mesh_write.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
+#include "tests/shared/lattice_fixture.h"
 #include "tests/shared/meshes.h"
 
 using namespace swage;
@@ -41,6 +42,34 @@ void bend_round(Aggregate& m) {
         const double turn = x.x() / 0.4 * kPi / 2, radius = 0.4 / (kPi / 2) + x.y();
         m.particle_position.set(p, {radius * std::sin(turn), radius * std::cos(turn), x.z()});
     }
+}
+
+// By load, all across.
+void break_at(Aggregate& m, double x) {
+    for (ConnectionArrays& all : m.connection) all.damage.resize(m.particle_count());
+    for (const Span& span : m.lattice.span) {
+        for (int n = 0; n < span.count; ++n) {
+            const ParticleId lower = span.lower + n, upper = span.upper + n;
+            if ((m.particle_reference.at(lower).x() < x) ==
+                (m.particle_reference.at(upper).x() < x))
+                continue;
+            m.connection[span.direction].weight.set(lower, 0);
+            m.connection[span.direction].damage[lower] = 1;
+        }
+    }
+}
+
+// Triangles with an edge longer than this.
+int longer_than(double length, const TriMesh& mesh, const std::vector<Vec3>& position) {
+    int count = 0;
+    for (const Corners& t : mesh.triangle) {
+        double longest = 0;
+        for (int k = 0; k < 3; ++k) {
+            longest = std::max(longest, (position[t[k]] - position[t[(k + 1) % 3]]).norm());
+        }
+        count += longest > length;
+    }
+    return count;
 }
 
 struct Sums {
@@ -205,4 +234,29 @@ TEST_CASE("a body in motion is molded anew in motion") {
     const Sums before = sums_of(piece.matter), after = sums_of(mold_anew(piece, body, {}).matter);
     CHECK((after.momentum - before.momentum).norm() < 1e-9 * before.momentum.norm());
     CHECK((after.turning - before.turning).norm() < 1e-9 * before.turning.norm());
+}
+
+TEST_CASE("triangles that a blade tore stay away when the body breaks on, in any later stage") {
+    const SkinKind kind = SkinKind::mount;
+    WorkPiece piece = block({}, kind);
+    Aggregate& m = piece.matter;
+    break_at(m, -0.09);
+    show_matter(piece, kind, true);
+    REQUIRE(piece.whole_skin);
+    // A path with a bend, and one half drawn away from the other.
+    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, 1, -1), up(0, 0, 2);
+    CHECK(cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}}).has_curved);
+    test::sever_plane(m, {0.01, 0, 0}, Vec3::UnitX());
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        if (m.particle_reference.at(p).x() > 0.01) m.particle_position.add(p, {1, 0, 0});
+    }
+    show_matter(piece, kind, true);
+    CHECK(longer_than(0.5, piece.skin, piece.position) == 0);
+    CHECK(surface_components(piece.skin).count == 3);
+    // What the skin is drawn from anew when more breaks still has them.
+    break_at(m, 0.09);
+    CHECK(longer_than(0.5, *piece.whole_skin, piece.whole_position) > 0);
+    show_matter(piece, kind, true);
+    CHECK(longer_than(0.5, piece.skin, piece.position) == 0);
+    CHECK(surface_components(piece.skin).count == 4);
 }
