@@ -55,12 +55,7 @@ void join_named(std::vector<int>& here, std::vector<Name>& name, std::size_t her
 }  // namespace
 
 void keep_triangles(TriMesh& mesh, const std::vector<char>& keep) {
-    filter(mesh.triangle, keep);
-    filter(mesh.triangle_uv, keep);
-    filter(mesh.triangle_smooth, keep);
-    filter(mesh.triangle_polygon, keep);
-    filter(mesh.triangle_material, keep);
-    filter(mesh.triangle_part, keep);
+    for_each_triangle_array([&](auto& values) { filter(values, keep); }, mesh);
 }
 
 void flip_triangle(TriMesh& mesh, std::size_t t) {

@@ -193,12 +193,7 @@ std::vector<Shell> split_shells(const TriMesh& mesh, const std::vector<int>& she
             if (from.empty()) return;
             for (const std::size_t t : triangles[s]) to.push_back(from[t]);
         };
-        pick(mesh.triangle, part.triangle);
-        pick(mesh.triangle_uv, part.triangle_uv);
-        pick(mesh.triangle_smooth, part.triangle_smooth);
-        pick(mesh.triangle_polygon, part.triangle_polygon);
-        pick(mesh.triangle_material, part.triangle_material);
-        pick(mesh.triangle_part, part.triangle_part);
+        for_each_triangle_array(pick, mesh, part);
         std::vector<int> used;
         for (Corners& c : part.triangle)
             for (int& i : c) {
@@ -227,20 +222,15 @@ TriMesh join_shells(const TriMesh& whole, const std::vector<const TriMesh*>& par
     mesh.smooth_group_count = whole.smooth_group_count;
     for (const TriMesh* part : parts) {
         const int base = static_cast<int>(mesh.position.size());
+        const std::size_t first = mesh.triangle.size();
         const auto add = [](const auto& from, auto& to) {
             to.insert(to.end(), from.begin(), from.end());
         };
         add(part->position, mesh.position);
         add(part->position_color, mesh.position_color);
-        for (Corners c : part->triangle) {
-            for (int& i : c) i += base;
-            mesh.triangle.push_back(c);
-        }
-        add(part->triangle_uv, mesh.triangle_uv);
-        add(part->triangle_smooth, mesh.triangle_smooth);
-        add(part->triangle_polygon, mesh.triangle_polygon);
-        add(part->triangle_material, mesh.triangle_material);
-        add(part->triangle_part, mesh.triangle_part);
+        for_each_triangle_array(add, *part, mesh);
+        for (std::size_t t = first; t < mesh.triangle.size(); ++t)
+            for (int& i : mesh.triangle[t]) i += base;
     }
     return mesh;
 }

@@ -48,6 +48,17 @@ struct TriMesh {
     std::vector<std::string> part_name;
 };
 
+// Calls act with each array that has a value a triangle; of several meshes, with theirs together.
+template <class Act, class... Mesh>
+void for_each_triangle_array(const Act& act, Mesh&... mesh) {
+    act(mesh.triangle...);
+    act(mesh.triangle_uv...);
+    act(mesh.triangle_smooth...);
+    act(mesh.triangle_polygon...);
+    act(mesh.triangle_material...);
+    act(mesh.triangle_part...);
+}
+
 // Enclosed volume [m3] by the divergence theorem, about the box centre. Exact for closed surfaces.
 double signed_volume(const TriMesh& mesh);
 // Twice a triangle's area, along its normal.

@@ -2,7 +2,6 @@
 // Where any place of the body at molding is now, and back.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,14 +10,6 @@
 #include "skin/carrier.h"
 
 namespace swage {
-
-// A place of the body at molding, with the cell and the corners that it follows.
-struct BodyPlace {
-    Vec3 reference = Vec3::Zero();
-    CellId cell = -1;
-    CornerMask side = kAllCorners;
-    Vec3 hold = Vec3::Zero();  // as Mount has it
-};
 
 // `hold` of a place between up to three others: linear in the place.
 Vec3 hold_between(const Vec3& reference, std::span<const BodyPlace> others);

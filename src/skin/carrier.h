@@ -13,6 +13,14 @@ namespace swage {
 using CornerMask = std::uint8_t;  // a bit for each corner of a cell
 inline constexpr CornerMask kAllCorners = 0xff;
 
+// A place of the body at molding, with the cell and the corners that it follows.
+struct BodyPlace {
+    Vec3 reference = Vec3::Zero();
+    CellId cell = -1;
+    CornerMask side = kAllCorners;
+    Vec3 hold = Vec3::Zero();  // as Mount has it
+};
+
 // The frames of a cell's corners, a column each, and the cell's size at molding.
 struct CellFrames {
     Eigen::Matrix<double, 12, 8> corner;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "geometry/disjoint_sets.h"
+#include "geometry/mesh_edit.h"
 #include "matter/cell_middle.h"
 #include "skin/body_map.h"
 #include "skin/split_attributes.h"
@@ -78,7 +79,7 @@ class PlaneCut {
             own[old + n] = split.added[n].side;
             BodyPlace place;
             if (raw < old) {
-                place = place_of(raw);
+                place = mount_.place(raw);
                 world.push_back(position_[raw]);
             } else {
                 const std::size_t at = raw - old;
@@ -86,10 +87,7 @@ class PlaneCut {
                 world.push_back(at < cut.size() ? cut_world[at] : split.cap_point[at - cut.size()]);
             }
             reference.push_back(place.reference);
-            mount_.reference.push_back(place.reference);
-            mount_.cell.push_back(place.cell);
-            mount_.side.push_back(place.side);
-            mount_.hold.push_back(place.hold);
+            mount_.add(place);
         }
         leave_chips(split, world, own);
         for (std::size_t v = 0; v < own.size(); ++v) {
@@ -130,12 +128,9 @@ class PlaneCut {
     }
 
     BodyPlace on_edge(const CutPoint& cut, double share) const {
-        const std::array<BodyPlace, 2> ends = {place_of(cut.low), place_of(cut.high)};
+        const std::array<BodyPlace, 2> ends = {mount_.place(cut.low), mount_.place(cut.high)};
         return map_.beside(ends[0].reference + share * (ends[1].reference - ends[0].reference),
                            ends);
-    }
-    BodyPlace place_of(int v) const {
-        return {mount_.reference[v], mount_.cell[v], mount_.side[v], mount_.hold[v]};
     }
 
     // Where each edge of the mesh, straight at molding and curved by now, meets the plane. Regula
@@ -205,7 +200,7 @@ class PlaneCut {
         const auto spread = [&] {
             for (; !known.empty(); known.pop_front()) {
                 const int raw = known.front();
-                const BodyPlace near = raw < old     ? place_of(raw)
+                const BodyPlace near = raw < old     ? mount_.place(raw)
                                        : raw < first ? cut[raw - old]
                                                      : places[raw - first];
                 for (int other : beside[raw]) {
@@ -251,7 +246,7 @@ class PlaneCut {
     // None of the cell's corners is on the vertex's side: the nearest cell that has one takes it.
     void change_cell(int v, int own) {
         const Vec3& reference = mount_.reference[v];
-        const int piece = map_.piece_of(place_of(v));
+        const int piece = map_.piece_of(mount_.place(v));
         const Vec3i site = matter_.lattice.cell_site(mount_.cell[v]);
         double least = std::numeric_limits<double>::infinity();
         CellId best = -1;
@@ -310,27 +305,14 @@ int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& ma
     const BodyMap map(matter);
     std::vector<int> piece;
     for (std::size_t v = 0; v < mount.reference.size(); ++v) {
-        piece.push_back(
-            map.piece_of({mount.reference[v], mount.cell[v], mount.side[v], Vec3::Zero()}));
+        piece.push_back(map.piece_of(mount.place(static_cast<int>(v))));
     }
-    std::vector<std::size_t> kept;
-    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
-        const Corners& c = mesh.triangle[t];
-        if (piece[c[0]] == piece[c[1]] && piece[c[1]] == piece[c[2]]) kept.push_back(t);
+    std::vector<char> keep;
+    for (const Corners& c : mesh.triangle) {
+        keep.push_back(piece[c[0]] == piece[c[1]] && piece[c[1]] == piece[c[2]]);
     }
-    const int torn = static_cast<int>(mesh.triangle.size() - kept.size());
-    const auto keep = [&](auto& values) {
-        if (values.empty()) return;
-        for (std::size_t n = 0; n < kept.size(); ++n) values[n] = values[kept[n]];
-        values.resize(kept.size());
-    };
-    keep(mesh.triangle);
-    keep(mesh.triangle_uv);
-    keep(mesh.triangle_smooth);
-    keep(mesh.triangle_polygon);
-    keep(mesh.triangle_material);
-    keep(mesh.triangle_part);
-    return torn;
+    keep_triangles(mesh, keep);
+    return static_cast<int>(std::count(keep.begin(), keep.end(), 0));
 }
 
 }  // namespace swage

@@ -23,6 +23,15 @@ struct Mount {
     // has flowed unevenly. What is strained elastically comes back, and its places with it.
     std::vector<Vec3> hold;
 
+    BodyPlace place(int v) const { return {reference[v], cell[v], side[v], hold[v]}; }
+    // One vertex more, at the end.
+    void add(const BodyPlace& place) {
+        reference.push_back(place.reference);
+        cell.push_back(place.cell);
+        side.push_back(place.side);
+        hold.push_back(place.hold);
+    }
+
     // Vertices of one cell together, so that its frames are read once.
     struct CellGroup {
         CellId cell;

@@ -110,27 +110,20 @@ PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Agg
         const Vec3& at = mesh.position[v];
         source_.push_back(static_cast<int>(v));
         if (v < old) {
-            mount_at({at, whole_mount.cell[v], whole_mount.side[v], whole_mount.hold[v]});
+            mount.add({at, whole_mount.cell[v], whole_mount.side[v], whole_mount.hold[v]});
         } else {
             const Corners& c = whole.triangle[diced_.on_triangle[v - old]];
-            const std::array<BodyPlace, 3> corner = {place_of(c[0]), place_of(c[1]),
-                                                     place_of(c[2])};
+            const std::array<BodyPlace, 3> corner = {mount.place(c[0]), mount.place(c[1]),
+                                                     mount.place(c[2])};
             mount_beside(at, corner);
         }
     }
     part_vertices();
 }
 
-void PartedSkin::mount_at(const BodyPlace& place) {
-    mount.reference.push_back(place.reference);
-    mount.cell.push_back(place.cell);
-    mount.side.push_back(place.side);
-    mount.hold.push_back(place.hold);
-}
-
 void PartedSkin::mount_beside(const Vec3& place, std::span<const BodyPlace> others) {
-    if (uncracked_) return mount_at(uncracked_->map.beside(place, others));
-    mount_at({place, carrying_cell(matter_, place), kAllCorners, hold_between(place, others)});
+    if (uncracked_) return mount.add(uncracked_->map.beside(place, others));
+    mount.add({place, carrying_cell(matter_, place), kAllCorners, hold_between(place, others)});
 }
 
 bool PartedSkin::joined(const Vec3i& lower, int axis) const {
@@ -191,7 +184,7 @@ int PartedSkin::copy_of(int v, const Vec3i& site) {
             const Eigen::Vector3f color = mesh.position_color[v];
             mesh.position_color.push_back(color);
         }
-        mount_at({mesh.position[v], whole_cell_[v], whole_side_[v], mount.hold[v]});
+        mount.add({mesh.position[v], whole_cell_[v], whole_side_[v], mount.hold[v]});
         source_.push_back(v);
     }
     used_[v] = 1;
@@ -337,7 +330,7 @@ int PartedSkin::add_vertex(const Vec3& place, const std::array<int, 3>& plane,
                              mount.hold[source]};
         mount_beside(place, {&near, 1});
     } else {
-        mount_at({place, carrying_cell(matter_, place)});
+        mount.add({place, carrying_cell(matter_, place)});
     }
     source_.push_back(static_cast<int>(v));
     plane_.resize(v + 1, {kNoPlane, kNoPlane, kNoPlane});
@@ -401,18 +394,12 @@ int PartedSkin::half_way(int low, int high) {
 void PartedSkin::bisect(std::size_t t, int k, int middle) {
     const Vec3i site = site_[t];
     const int v = copy_of(middle, site), next = (k + 1) % 3;
-    const auto again = [&](auto& values) {
-        if (!values.empty()) {
-            const auto value = values[t];
-            values.push_back(value);
-        }
+    const auto again = [t](auto& values) {
+        if (values.empty()) return;
+        const auto value = values[t];
+        values.push_back(value);
     };
-    again(mesh.triangle);
-    again(mesh.triangle_uv);
-    again(mesh.triangle_smooth);
-    again(mesh.triangle_material);
-    again(mesh.triangle_part);
-    again(mesh.triangle_polygon);
+    for_each_triangle_array(again, mesh);
     site_.push_back(site);
     mesh.triangle[t][next] = mesh.triangle.back()[k] = v;
     if (!mesh.triangle_uv.empty() && mesh.triangle_uv[t][k] >= 0) {

@@ -65,10 +65,6 @@ class PartedSkin {
         Aggregate matter;
         BodyMap map;
     };
-    BodyPlace place_of(int v) const {
-        return {mount.reference[v], mount.cell[v], mount.side[v], mount.hold[v]};
-    }
-    void mount_at(const BodyPlace& place);
     void mount_beside(const Vec3& place, std::span<const BodyPlace> others);
     Mask group_of(int v, const Vec3i& site) const;
     static Mask all_around(const std::array<int, 3>& plane);
