@@ -16,7 +16,7 @@ namespace {
 constexpr double kNoArea = 1e-12;  // of the longest edge squared
 
 bool is_degenerate(const TriMesh& mesh, const Corners& t) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
+    if (has_repeated_corner(t)) return true;
     const Vec3 a = mesh.position[t[1]] - mesh.position[t[0]];
     const Vec3 b = mesh.position[t[2]] - mesh.position[t[0]];
     const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
@@ -59,7 +59,7 @@ void check_edges(const TriMesh& mesh, MeshReport& report) {
     std::vector<char> crowded(mesh.position.size(), 0);
     for (std::size_t c = 0; c < 3 * mesh.triangle.size(); ++c) {
         const Corners& t = mesh.triangle[c / 3];
-        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        if (has_repeated_corner(t)) continue;
         const int place = t[c % 3];
         const int fan = fans.root(static_cast<int>(c));
         if (fan_at[place] >= 0 && fan_at[place] != fan) crowded[place] = 1;

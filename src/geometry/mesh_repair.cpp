@@ -101,8 +101,7 @@ class Repairer {
     void drop_repeated_corners() {
         std::vector<char> keep(mesh_.triangle.size(), 1);
         for (std::size_t t = 0; t < keep.size(); ++t) {
-            const Corners& c = mesh_.triangle[t];
-            keep[t] = c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
+            keep[t] = !has_repeated_corner(mesh_.triangle[t]);
         }
         const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
         if (dropped == 0) return;
@@ -124,12 +123,7 @@ class Repairer {
         return sorted;
     }
 
-    // The cyclic order of its corners is ascending: of two on the same corners, those that are
-    // alike in this face the same way.
-    bool even(int t) const {
-        const Corners& c = mesh_.triangle[t];
-        return (c[0] < c[1]) + (c[1] < c[2]) + (c[2] < c[0]) == 2;
-    }
+    bool ascends(int t) const { return corners_ascend(mesh_.triangle[t]); }
 
     // Of a closed surface that was given more than once each triangle stays once.
     void drop_copies() {
@@ -139,12 +133,12 @@ class Repairer {
             int facing = 0;  // more times this way than the other
             for (end = begin; end < sorted.size() && sorted[end].first == sorted[begin].first;
                  ++end)
-                facing += even(sorted[end].second) ? 1 : -1;
+                facing += ascends(sorted[end].second) ? 1 : -1;
             if (std::abs(facing) < 2) continue;
             bool one = false;
             for (std::size_t i = begin; i < end; ++i) {
                 const int t = sorted[i].second;
-                keep[t] = !one && even(t) == (facing > 0);
+                keep[t] = !one && ascends(t) == (facing > 0);
                 one = one || keep[t];
             }
         }
@@ -187,7 +181,7 @@ class Repairer {
             bool both_ways = false;
             for (std::size_t i = begin + 1; i < end; ++i) {
                 without_walls[sorted[i].second] = one_each[sorted[i].second] = 0;
-                both_ways = both_ways || even(sorted[i].second) != even(sorted[begin].second);
+                both_ways = both_ways || ascends(sorted[i].second) != ascends(sorted[begin].second);
             }
             if (both_ways) {
                 without_walls[sorted[begin].second] = 0;

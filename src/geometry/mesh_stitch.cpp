@@ -81,7 +81,7 @@ std::size_t merge_within(TriMesh& mesh, double gap) {
     std::vector<char> keep;
     for (Corners& t : mesh.triangle) {
         for (int& i : t) i = same.root(i);
-        keep.push_back(t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        keep.push_back(!has_repeated_corner(t));
     }
     keep_triangles(mesh, keep);
     return merged;

@@ -78,17 +78,14 @@ void merge_close(TriMesh& mesh, std::vector<int>& origin, double gap) {
     for_each_close_pair(mesh.position, gap, [&](int i, int j) { same.unite(i, j); });
     std::map<Corners, std::vector<int>> standing;  // by sorted corners: one way or the other only
     std::vector<char> keep(mesh.triangle.size(), 0);
-    const auto is_even = [](const Corners& c) {
-        return (c[0] < c[1]) + (c[1] < c[2]) + (c[2] < c[0]) == 2;
-    };
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         Corners& c = mesh.triangle[t];
         for (int& i : c) i = same.root(i);
-        if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+        if (has_repeated_corner(c)) continue;
         Corners sorted = c;
         std::sort(sorted.begin(), sorted.end());
         std::vector<int>& here = standing[sorted];
-        keep[t] = here.empty() || is_even(mesh.triangle[here.back()]) == is_even(c);
+        keep[t] = here.empty() || corners_ascend(mesh.triangle[here.back()]) == corners_ascend(c);
         if (keep[t]) {
             here.push_back(static_cast<int>(t));
         } else {

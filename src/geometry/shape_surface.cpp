@@ -27,9 +27,7 @@ class Surface {
         return found->second;
     }
     void triangle(int face, const Corners& corners) {
-        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
-            return;
-        }
+        if (has_repeated_corner(corners)) return;
         mesh_.triangle.push_back(corners);
         mesh_.triangle_smooth.emplace_back();
         for (int c = 0; c < 3; ++c) {

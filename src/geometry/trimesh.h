@@ -16,6 +16,14 @@
 namespace swage {
 
 using Corners = std::array<int, 3>;
+inline bool has_repeated_corner(const Corners& c) {
+    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
+}
+// The cyclic order of the corners is ascending: of two triangles on the same corners, those that
+// are alike in this face the same way.
+inline bool corners_ascend(const Corners& c) {
+    return (c[0] < c[1]) + (c[1] < c[2]) + (c[2] < c[0]) == 2;
+}
 
 // How a part of a surface looks. Colours are linear RGB, 0 to 1.
 struct SurfaceMaterial {
