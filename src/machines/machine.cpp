@@ -71,11 +71,11 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
     const auto length = [&](const Expression& text, const char* quantity) {
         return positive(setting, text, tool.name, quantity);
     };
-    if (tool.shape == "cylinder") {
+    if (tool.shape == ToolShape::cylinder) {
         return CylinderShape{length(tool.radius, "radius"), length(tool.length, "length")};
     }
-    if (tool.shape == "sphere") return SphereShape{length(tool.radius, "radius")};
-    if (tool.shape == "box") {
+    if (tool.shape == ToolShape::sphere) return SphereShape{length(tool.radius, "radius")};
+    if (tool.shape == ToolShape::box) {
         const Vec3 size(length(tool.size[0], "size"), length(tool.size[1], "size"),
                         length(tool.size[2], "size"));
         const double rounding = evaluate(tool.rounding, setting.known);
@@ -86,10 +86,8 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
         }
         return BoxShape{size, rounding};
     }
-    if (tool.shape == "mesh") return scaled_mesh(setting, tool);
-    refuse(setting, fmt::format("tool {} has the shape \"{}\"; it may be cylinder, box, sphere or "
-                                "mesh",
-                                tool.name, tool.shape));
+    if (tool.shape == ToolShape::mesh) return scaled_mesh(setting, tool);
+    refuse(setting, fmt::format("tool {} has no shape", tool.name));
 }
 
 void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {

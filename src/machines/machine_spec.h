@@ -47,9 +47,11 @@ struct MotionSpec {
     bool stands() const { return turn == "0" && move == Expression3{"0", "0", "0"}; }
 };
 
+enum class ToolShape { none, cylinder, box, sphere, mesh };
+
 struct ToolSpec {
     std::string name;
-    std::string shape;                   // "cylinder", "box", "sphere", "mesh"
+    ToolShape shape = ToolShape::none;   // has to be said
     Expression radius = "0";             // cylinder, sphere
     Expression length = "0";             // cylinder
     Expression3 size = {"0", "0", "0"};  // box

@@ -31,7 +31,7 @@ FrameRange wanted_frames(const SceneSpec& scene, const RunOptions& options) {
 
 bool is_simulated(const Json& record, const RunDirectory& directory) {
     const Json& state = record.at("state");
-    return (state == "simulated" || state == "complete") &&
+    return (state == RunState::simulated || state == RunState::complete) &&
            std::filesystem::exists(directory.store());
 }
 
@@ -112,7 +112,9 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     record["steps"] = steps;
     record["state_hash"] = hash_text(state_hash(bodies));
     record["warnings"] = warnings;
-    record["state"] = ended.interrupted ? "interrupted" : ended.stopped ? "stopped" : "simulated";
+    record["state"] = ended.interrupted ? RunState::interrupted
+                      : ended.stopped   ? RunState::stopped
+                                        : RunState::simulated;
     if (ended.stopped) record["stopped"] = ended.stopped->what();
     write_record(directory, record, watch);
     return ended;
@@ -182,7 +184,7 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
         write_record(directory, outcome.record, watch);
         throw *ended.stopped;
     }
-    outcome.record["state"] = "complete";
+    outcome.record["state"] = RunState::complete;
     write_record(directory, outcome.record, watch);
     log_info("{}: done", directory.root().string());
     return outcome;

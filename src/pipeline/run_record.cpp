@@ -206,7 +206,7 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
     Json record;
     record["program"] = "swage";
     record["version"] = identity.version;
-    record["state"] = "begun";
+    record["state"] = RunState::begun;
     record["scene"] = scene.file.string();
     record["overrides"] = options.overrides;
     for (const RunInput& one : identity.input) {
@@ -233,7 +233,7 @@ std::optional<Json> read_record(const fs::path& file) {
 
 bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames, bool film) {
     try {
-        if (record.at("state") != "complete" || !record.contains("drawing")) return false;
+        if (record.at("state") != RunState::complete || !record.contains("drawing")) return false;
         const Json& drawing = record.at("drawing");
         if (drawing.at("frames").at(0).get<int>() > frames.first ||
             drawing.at("frames").at(1).get<int>() < frames.last) {

@@ -19,6 +19,14 @@ namespace swage {
 RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
                         const RunOptions& options);
 
+// How far a run has come: "state" in run.json.
+enum class RunState { begun, simulated, complete, stopped, interrupted };
+NLOHMANN_JSON_SERIALIZE_ENUM(RunState, {{RunState::begun, "begun"},
+                                        {RunState::simulated, "simulated"},
+                                        {RunState::complete, "complete"},
+                                        {RunState::stopped, "stopped"},
+                                        {RunState::interrupted, "interrupted"}})
+
 // The parts of run.json that are known before the first stage.
 Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunIdentity& identity,
                   const std::vector<InputMesh>& input);

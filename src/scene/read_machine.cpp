@@ -164,23 +164,26 @@ class MachineReader {
                                           parameter.name, tool.name));
             }
         }
-        const std::vector<std::pair<std::string, std::string>> shapes = {
-            {"cylinder", "cylinder"}, {"box", "box"}, {"sphere", "sphere"}, {"mesh", "mesh"}};
-        if (!table.choice("shape", shapes, tool.shape)) {
-            table.missing("shape", "\"cylinder\", \"box\", \"sphere\" or \"mesh\"");
-        }
-        const bool is_round = tool.shape == "cylinder" || tool.shape == "sphere";
-        const bool is_long = tool.shape == "cylinder" || tool.shape == "mesh";
+        const bool has_shape = table.choice<ToolShape>("shape",
+                                                       {{"cylinder", ToolShape::cylinder},
+                                                        {"box", ToolShape::box},
+                                                        {"sphere", ToolShape::sphere},
+                                                        {"mesh", ToolShape::mesh}},
+                                                       tool.shape);
+        if (!has_shape) table.missing("shape", "\"cylinder\", \"box\", \"sphere\" or \"mesh\"");
+        const auto is = [&](ToolShape shape) { return tool.shape == shape; };
+        const bool is_round = is(ToolShape::cylinder) || is(ToolShape::sphere);
+        const bool is_long = is(ToolShape::cylinder) || is(ToolShape::mesh);
         read_size(table, "radius", is_round, tool.radius);
         read_size(table, "length", is_long, tool.length);
-        if (tool.shape == "box") {
+        if (is(ToolShape::box)) {
             if (!expression_.read(table, "size", Quantity::length, tool.size)) {
                 table.missing("size", "three lengths along x, y and z");
             }
             expression_.expect_positive(table, "size");
             expression_.read(table, "rounding", Quantity::length, tool.rounding);
         }
-        if (tool.shape == "mesh") read_tool_mesh(table, tool.mesh);
+        if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh);
         expression_.read(table, "axis", Quantity::number, tool.axis);
         expression_.expect_direction(table);
         if (!expression_.read(table, "at", Quantity::length, tool.at)) {
@@ -200,7 +203,7 @@ class MachineReader {
             {{"metal", Finish::metal}, {"matt", Finish::matt}, {"endless", Finish::endless}},
             tool.finish);
         table.find("motion");
-        if (tool.shape.empty()) table.leave_unknown();
+        if (is(ToolShape::none)) table.leave_unknown();
         table.finish();
         for (const char* axis : {"_x", "_y", "_z"}) expression_.add_name(tool.name + axis);
         machine.tool.push_back(std::move(tool));

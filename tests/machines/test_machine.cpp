@@ -33,7 +33,7 @@ MachineSpec roller() {
     };
     ToolSpec support;
     support.name = "support";
-    support.shape = "cylinder";
+    support.shape = ToolShape::cylinder;
     support.radius = "radius";
     support.length = "2*width";
     support.at = {"0", "-height", "0"};
@@ -160,8 +160,8 @@ TEST_CASE("tools that cannot be are refused by name") {
     spec.tool[0].radius = "0";
     CHECK(says(refusal(spec), {"roller", "support", "radius"}));
     spec = roller();
-    spec.tool[0].shape = "cone";
-    CHECK(says(refusal(spec), {"roller", "support", "cone"}));
+    spec.tool[0].shape = ToolShape::none;
+    CHECK(says(refusal(spec), {"roller", "support", "no shape"}));
     spec = roller();
     spec.tool[1].friction = "-1";
     CHECK(says(refusal(spec), {"roller", "pusher", "friction"}));
@@ -175,7 +175,7 @@ TEST_CASE("a mesh that encloses nothing is refused as a tool, with the reason") 
         std::filesystem::temp_directory_path() / fmt::format("swage-sheet-{}.obj", ::getpid());
     std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
     MachineSpec spec = roller();
-    spec.tool[0].shape = "mesh";
+    spec.tool[0].shape = ToolShape::mesh;
     spec.tool[0].mesh = file;
     spec.tool[0].length = "length";
     const std::string told = refusal(spec);

@@ -100,7 +100,7 @@ otherwise = "choose a smaller radius"
     CHECK(machine.parameter[1].low.empty());
     REQUIRE(machine.tool.size() == 4);
     const ToolSpec& roll = machine.tool[0];
-    CHECK(roll.shape == "cylinder");
+    CHECK(roll.shape == ToolShape::cylinder);
     CHECK(roll.radius == "radius");
     CHECK(roll.length == "width + 2 mm");
     CHECK(roll.axis == Expression3{"0", "1", "0"});
