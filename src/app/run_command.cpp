@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "app/scene_argument.h"
-#include "base/log.h"
 #include "pipeline/run.h"
 
 namespace swage {

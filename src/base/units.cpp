@@ -2,7 +2,6 @@
 #include "base/units.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 

@@ -4,7 +4,6 @@
 // "end_header", and hands on indices out of range.
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 #include "base/error.h"

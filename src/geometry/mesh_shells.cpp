@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <span>
-#include <utility>
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"

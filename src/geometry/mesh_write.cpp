@@ -14,7 +14,6 @@
 #include "base/error.h"
 #include "base/srgb.h"
 #include "geometry/polygon.h"
-#include "geometry/text_scan.h"
 
 namespace swage {
 

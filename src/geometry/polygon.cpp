@@ -4,7 +4,6 @@
 #include "geometry/polygon.h"
 
 #include <algorithm>
-#include <array>
 
 namespace swage {
 

@@ -5,7 +5,6 @@
 #include "geometry/remesh.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.h"
 #include "base/portable_math.h"

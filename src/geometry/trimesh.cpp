@@ -4,7 +4,6 @@
 #include "geometry/trimesh.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.h"
 #include "base/portable_math.h"

@@ -2,7 +2,6 @@
 // A machine's parameters: given ones checked, the rest by their defaults.
 #pragma once
 
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>

@@ -3,8 +3,6 @@
 // a cell's connections carry what its volume carries under uniform strain.
 #include "mold/mold.h"
 
-#include <algorithm>
-
 #include "base/error.h"
 #include "base/log.h"
 #include "geometry/box_mesh.h"

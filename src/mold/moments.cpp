@@ -27,6 +27,7 @@ using MomentMatrix = Eigen::Matrix<double, 10, 10>;
 constexpr double kRegular = 1e-3;  // of a body of mass 1 that reaches from -1 to 1
 constexpr int kRounds = 12;
 constexpr double kClose = 1e-10;
+constexpr double kLeastMass = 0.6, kMostMass = 2.5;  // of what a particle had
 
 Moments monomials(const Vec3& x) {
     Moments m;

@@ -10,12 +10,9 @@ namespace swage {
 // square bar of n cells would turn about its axis as if it had 1 + 2/n^2 times its moment of
 // inertia. Moves mass between the particles, as little as will do, until the mass, its centre and
 // its second moments (so all moments of inertia) are the material's. Each particle keeps between
-// kLeastMass and kMostMass of what it had, so that steps stay long: what would need more, mostly
-// bodies of one or two cells, comes as near as that lets it. Call once after molding, with all
-// particles where they were molded. `step`: a cell's width along x, y, z [m].
+// kLeastMass and kMostMass (moments.cpp) of what it had, so that steps stay long: what would need
+// more, mostly bodies of one or two cells, comes as near as that lets it. Call once after molding,
+// with all particles where they were molded. `step`: a cell's width along x, y, z [m].
 void match_moments(const Vec3& step, Aggregate& matter);
-
-inline constexpr double kLeastMass = 0.6;
-inline constexpr double kMostMass = 2.5;
 
 }  // namespace swage

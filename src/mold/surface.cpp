@@ -5,7 +5,6 @@
 #include "mold/surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/parallel.h"

@@ -7,13 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
-#include "geometry/box.h"
 #include "geometry/trimesh.h"
 #include "matter/drive.h"
 

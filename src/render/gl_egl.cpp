@@ -7,7 +7,6 @@
 #include <dlfcn.h>
 
 #include <array>
-#include <cstring>
 #include <vector>
 
 #include "render/gl_provider.h"

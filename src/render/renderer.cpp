@@ -6,7 +6,6 @@
 #include "render/renderer.h"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 
 #include "base/error.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/texture_cache.h"
 
-#include <algorithm>
 #include <cstring>
 
 #include "base/error.h"

@@ -5,7 +5,6 @@
 #include <charconv>
 
 #include "base/suggest.h"
-#include "base/text.h"
 
 namespace swage {
 

@@ -2,9 +2,7 @@
 #include "scene/read_body.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "base/text.h"
 #include "scene/file_text.h"
 #include "scene/read_color.h"
 #include "scene/read_material.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/suggest.h"
 #include "base/text.h"
 #include "scene/expressions.h"
 #include "scene/file_text.h"

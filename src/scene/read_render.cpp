@@ -2,7 +2,6 @@
 #include "scene/read_render.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace swage {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the sweep over cells does for the ledger: the energy they hold and the flow they commit,
 // eight cells of a row at a time. Each cell's numbers are added in the order of the cells.
-#include <cmath>
-#include <cstring>
 
 #include "base/parallel.h"
 #include "laws/cell_growth.h"

@@ -252,7 +252,7 @@ double CellFlow::plastic_work(const Aggregate& matter, int d, ParticleId lower,
 }
 
 double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
-    if (!active()) return 0;
+    if (!(yield_distortion_ > 0)) return 0;
     if (!found) rest_strains(matter);
     if (flowing_.empty()) return 0;
     double lost = 0;

@@ -15,8 +15,6 @@ class CellFlow {
   public:
     explicit CellFlow(const Aggregate& matter);
 
-    bool active() const { return yield_distortion_ > 0; }
-
     // The rest strains that the connections have at the present positions: the committed ones,
     // and on top what flows. Valid until the next call.
     const RestStrains& rest_strains(const Aggregate& matter);

@@ -2,9 +2,6 @@
 #include "sim/cell_sweep.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "base/parallel.h"
 #include "laws/cell_forces.h"

@@ -2,7 +2,6 @@
 #include "sim/cell_tangent.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "base/parallel.h"

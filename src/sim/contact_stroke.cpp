@@ -16,7 +16,6 @@
 //   With the last of it over the whole way friction would take too much where it grows, and too
 //   little of a body that its tools let go.
 #include <algorithm>
-#include <cmath>
 
 #include "laws/contact.h"
 #include "sim/contact_set.h"

@@ -2,7 +2,6 @@
 #include "sim/cut_surface.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 #include "matter/open_faces.h"

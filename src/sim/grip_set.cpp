@@ -2,7 +2,6 @@
 #include "sim/grip_set.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/surface_forces.h"
 #include "sim/surface_modulus.h"

@@ -2,7 +2,6 @@
 #include "sim/hanging.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <utility>
 
 #include "geometry/disjoint_sets.h"

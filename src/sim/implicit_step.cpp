@@ -2,7 +2,6 @@
 #include "sim/implicit_step.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/vector_sums.h"
 

@@ -12,6 +12,11 @@ namespace swage {
 
 namespace {
 
+constexpr double kFarthestWay = 0.5;  // spacings a step
+// Shares of all energy that was ever put in.
+constexpr double kLeastGain = 0.002;  // in one block: less is no alarm
+constexpr double kCreptGain = 0.2;    // until this much has come of it
+
 bool is_lost(const Aggregate& matter, std::size_t p) {
     return !std::isfinite(matter.particle_position.at(p).sum() +
                           matter.particle_velocity.at(p).squaredNorm());

@@ -20,11 +20,8 @@
 
 namespace swage {
 
-inline constexpr double kFarthestWay = 0.5;  // spacings a step
-inline constexpr double kMostGain = 0.05;    // of all energy that was ever put in
-inline constexpr double kLeastGain = 0.002;  // the same, in one block: less is no alarm
-inline constexpr double kCreptGain = 0.2;    // until this much has come of it
-inline constexpr double kSuddenGain = 0.005;
+inline constexpr double kMostGain = 0.05;     // of all energy that was ever put in
+inline constexpr double kSuddenGain = 0.005;  // the same, in one block
 inline constexpr int kSuddenHalvings = 2;     // after which as much may be gained
 inline constexpr int kInsideOutHalvings = 3;  // after which a cell may turn inside out
 

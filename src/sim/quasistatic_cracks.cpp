@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the quasi-static solver does when matter breaks, is cut or is let go.
-#include <algorithm>
 
 #include "sim/quasistatic.h"
 

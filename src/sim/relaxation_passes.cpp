@@ -2,7 +2,6 @@
 #include "sim/relaxation_passes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "sim/cell_batch.h"

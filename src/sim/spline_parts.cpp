@@ -2,7 +2,6 @@
 #include "sim/spline_parts.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "geometry/disjoint_sets.h"

@@ -2,7 +2,6 @@
 #include "sim/surface_drag.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.h"
 #include "sim/surface_forces.h"

@@ -2,7 +2,6 @@
 #include "skin/boundary.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "skin/mount.h"

@@ -2,7 +2,6 @@
 #include "skin/carrier.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "base/vector_targets.h"

@@ -12,8 +12,6 @@
 #include <limits>
 #include <map>
 
-#include "geometry/box.h"
-
 namespace swage {
 
 namespace {

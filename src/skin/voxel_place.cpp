@@ -5,7 +5,6 @@
 #include "skin/voxel_place.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.h"
 #include "skin/carrier.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Square bars in small bending and torsion.
-#include <cmath>
 
 #include "verify/case.h"
 #include "verify/moduli.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies that nothing holds, by explicit steps: slowed by a medium, in collision, and swinging.
 #include <cmath>
-#include <numeric>
 
 #include "verify/case.h"
 #include "verify/stand.h"

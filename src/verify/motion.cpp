@@ -2,7 +2,6 @@
 // Bodies in motion, by explicit steps.
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "verify/case.h"
 #include "verify/stand.h"

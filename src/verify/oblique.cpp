@@ -2,7 +2,6 @@
 // Bars that lie across the lattice, so that hardly a cell of their surface is whole.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "geometry/make_shape.h"
 #include "verify/case.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Square bars of a material that yields and does not harden.
-#include <array>
 #include <cmath>
 
 #include "verify/case.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // NAFEMS LE10: a quarter of a thick plate between two ellipses, under pressure. The rest of it is
 // stood in for by smooth planes.
-#include <array>
 #include <cmath>
 #include <limits>
 

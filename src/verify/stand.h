@@ -3,7 +3,6 @@
 // needs, and what is measured of it.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
