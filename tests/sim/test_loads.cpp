@@ -311,8 +311,7 @@ TEST_CASE("what patches leave over of loads takes nothing away where grips leave
         load.point.pop_back();  // 1 of 256 on one side presses less
         apparatus.load.push_back(load);
         const Vec3 from = matter.centre();
-        put_on(matter, apparatus, {}, 4);
+        CHECK(put_on(matter, apparatus, {}, 4).elastic > 0);
         CHECK((matter.centre() - from).norm() < 0.05 * matter.lattice.spacing);
-        CHECK(matter.volume() > 0);
     }
 }
