@@ -184,9 +184,14 @@ class Splitter {
             });
         }
         for (const auto& [edge, uses] : edges) {
-            if (!uses.minus || std::abs(uses.net) != 1) continue;
+            if (!uses.minus) continue;
             const auto [a, b] = edge;
-            seam_.push_back(uses.net > 0 ? Seam{a, b, uses.plus} : Seam{b, a, uses.plus});
+            if (std::abs(uses.net) == 1) {
+                seam_.push_back(uses.net > 0 ? Seam{a, b, uses.plus} : Seam{b, a, uses.plus});
+            } else if (uses.net == 0 && uses.plus >= 0 &&
+                       plane_.covers(0.5 * (flat(a) + flat(b)))) {
+                wall_.push_back(edge);
+            }
         }
     }
 
@@ -302,6 +307,7 @@ class Splitter {
         for (const Seam& seam : seam_) {
             if (seam.kept) use(seam.from), use(seam.to);
         }
+        for (const auto& [a, b] : wall_) use(a), use(b);
         for (int t = 0; t < static_cast<int>(mesh_.triangle.size()); ++t) {
             for_each_part(t, [&](const Part& part) {
                 split_.triangle.push_back({part.raw, part.raw, t, part.split, part.side});
@@ -354,6 +360,10 @@ class Splitter {
             if (!seam.kept) continue;
             at_seam.insert({seam.from, seam.to});
             kept.insert(ends(seam.from, seam.to));
+        }
+        for (const Ends& edge : wall_) {
+            at_seam.insert({edge.first, edge.second});
+            kept.insert(edge);
         }
         for (const Corners& cap : cap_.triangle) at_seam.insert(cap.begin(), cap.end());
 
@@ -440,7 +450,8 @@ class Splitter {
     std::map<Ends, int> cut_id_;
     std::vector<bool> used_;  // cut points
     std::vector<Seam> seam_;
-    CutCaps cap_;  // raw, seen against the normal
+    std::vector<Ends> wall_;  // cut along too, but inside: of sheets that lie back to back
+    CutCaps cap_;             // raw, seen against the normal
     std::vector<int> added_set_, seam_set_;
 };
 

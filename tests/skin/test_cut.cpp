@@ -208,6 +208,55 @@ TEST_CASE("a section that crosses itself where matter has folded into itself is 
     CHECK(sum == Approx(whole).epsilon(1e-9));
 }
 
+TEST_CASE("sheets that lie back to back within a body are cut with it, and bind nothing together") {
+    // The bar as two that share a face, given by both.
+    TriMesh two = bar();
+    const double whole = signed_volume(two);
+    std::map<std::pair<int, int>, int> at;
+    const auto grid = [](double x) { return int(std::lround(x * 30 + 4.5)); };
+    for (std::size_t v = 0; v < two.position.size(); ++v) {
+        const Vec3& p = two.position[v];
+        if (std::abs(p.x()) < 1e-9) at[{grid(p.y()), grid(p.z())}] = int(v);
+    }
+    const auto vertex = [&](int j, int k) {
+        const auto [entry, fresh] = at.emplace(std::pair(j, k), int(two.position.size()));
+        if (fresh) two.position.push_back({0, (j - 4.5) / 30, (k - 4.5) / 30});
+        return entry->second;
+    };
+    for (int j = 0; j < 9; ++j) {
+        for (int k = 0; k < 9; ++k) {
+            const int a = vertex(j, k), b = vertex(j + 1, k), c = vertex(j + 1, k + 1),
+                      d = vertex(j, k + 1);
+            for (const Corners& t : {Corners{a, b, c}, {a, c, b}, {a, c, d}, {a, d, c}}) {
+                two.triangle.push_back(t);
+            }
+        }
+    }
+    const auto [point, normal] = GENERATE(table<Vec3, Vec3>({
+        {Vec3(0, .0123, 0), Vec3(.02, 1, .3)},
+        {Vec3(.03, 0, 0), Vec3(1, .4, -.7)},
+        {Vec3(0, 0, 0), Vec3(1, 0, 0)},  // along the sheets
+    }));
+    Fixture f(two);
+    f.cut(sweep_of(point, normal.normalized(), 3));
+    CHECK(fixtures::is_closed(f.mesh));
+    CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
+    int above = 0, below = 0;
+    for (const TriMesh& part : parts_of(f.mesh)) {
+        double low = 0, high = 0;
+        for (const Corners& t : part.triangle) {
+            for (int v : t) {
+                const double h = normal.normalized().dot(part.position[v] - point);
+                low = std::min(low, h), high = std::max(high, h);
+            }
+        }
+        CHECK(std::min(-low, high) < 0.01 * 0.05);
+        ++(high > -low ? above : below);
+    }
+    CHECK(above > 0);
+    CHECK(below > 0);
+}
+
 TEST_CASE("an open surface is cut but not capped") {
     TriMesh open = bar();
     open.triangle.resize(open.triangle.size() / 2);
