@@ -54,7 +54,12 @@ void StageCurves::pass(const std::vector<ToolLoad>& loads) {
         const Pose& now = loads[n].pose;
         const Vec3 turn = turn_between(way.pose, now);
         const double angle = turn.norm();
-        if (way.turn_axis.isZero() && angle > 1e-12) way.turn_axis = turn / angle;
+        if (way.turn_axis.isZero() && angle > 1e-12) {
+            way.turn_axis = turn / angle;
+            int most;
+            way.turn_axis.cwiseAbs().maxCoeff(&most);
+            if (way.turn_axis[most] < 0) way.turn_axis = -way.turn_axis;
+        }
         way.turn += turn.dot(way.turn_axis) < 0 ? -angle : angle;
         way.travel += (now.translation - way.pose.translation).norm();
         way.pose = now;
@@ -145,7 +150,8 @@ PlotAxis plot_axis(const StageCurves& curves) {
     }
     if (turns != nullptr) {
         axis.label = fmt::format("turn of {} [deg]", turns->name);
-        for (double t : turns->turn) axis.value.push_back(t * 180 / kPi);
+        const double way = turns->turn.back() < 0 ? -1 : 1;
+        for (double t : turns->turn) axis.value.push_back(way * t * 180 / kPi);
     } else if (travels != nullptr) {
         axis.label = fmt::format("travel of {} [mm]", travels->name);
         for (double t : travels->travel) axis.value.push_back(1e3 * t);

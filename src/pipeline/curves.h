@@ -14,7 +14,9 @@ namespace swage {
 struct LoadCurve {
     std::string name;
     std::vector<Pose> pose;
-    std::vector<double> turn;         // [rad] since the start of the stage, past 180 degrees too
+    // [rad] since the start of the stage, past 180 degrees too; about the axis of its first turn,
+    // seen as +x, +y or +z, whichever that lies nearest to.
+    std::vector<double> turn;
     std::vector<double> travel;       // [m] of path since the start of the stage
     std::vector<Vec3> force;          // [N] exerted on the matter
     std::vector<Vec3> torque;         // [N m] about the pose's origin
@@ -49,7 +51,7 @@ class StageCurves {
     std::size_t parts_;
     struct Way {
         Pose pose;
-        Vec3 turn_axis = Vec3::Zero();  // of its first turn
+        Vec3 turn_axis = Vec3::Zero();  // its largest component more than 0
         double turn = 0, travel = 0;
     };
     std::vector<Way> way_;  // of each load, so far

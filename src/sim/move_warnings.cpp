@@ -15,12 +15,12 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
             if (n > 0) names += n + 1 == outcome.lost.size() ? " and " : ", ";
             names += outcome.lost[n];
         }
-        warning.push_back(
-            fmt::format("the work-piece slipped away from {} although no tool drew back", names));
+        warning.emplace_back(fmt::format(
+            "the work-piece slipped away from {}, or drew in, although no tool drew back", names));
     }
     if (outcome.afloat > 0) {
         const bool one = outcome.afloat == 1;
-        warning.push_back(fmt::format(
+        warning.emplace_back(fmt::format(
             "{} would fall, for nothing holds {} against gravity and loads: equilibria have no "
             "fall (solver = \"explicit\" has), so from here on these leave {} alone",
             one ? "a piece" : fmt::format("{} pieces", outcome.afloat), one ? "it" : "them",
@@ -28,42 +28,42 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
     }
     if (outcome.hanging > 0) {
         const bool one = outcome.hanging == 1;
-        warning.push_back(fmt::format(
+        warning.emplace_back(fmt::format(
             "{} by less than a whole cell, which cannot bear {} against gravity and loads: from "
             "here on these leave {} alone",
             one ? "a piece hangs" : fmt::format("{} pieces hang", outcome.hanging),
             one ? "it" : "them", one ? "it" : "them"));
     }
     if (outcome.let_be > 0) {
-        warning.push_back(fmt::format(
+        warning.emplace_back(fmt::format(
             "no equilibrium is found with {} of the work-piece's surface that lie deeper than a "
             "fifth of a cell in it: from here on these go through it",
             counted(static_cast<std::size_t>(outcome.let_be), "point", "points")));
     }
     if (outcome.left_over > 0) {
-        warning.push_back(
+        warning.emplace_back(
             fmt::format("what was cut, broken or let go of does not come to rest as exactly as the "
                         "loads ask: from here on {:.2g} N of forces may be out of balance",
                         outcome.left_over));
     }
     if (outcome.drag_held) {
-        warning.push_back(
+        warning.emplace_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "
             "is held to what a step can follow");
     }
     if (outcome.rescued > 0) {
-        warning.push_back(fmt::format(
+        warning.emplace_back(fmt::format(
             "explicit steps went wrong however short they were: {} implicit ones stand in for them",
             outcome.rescued));
     }
     if (outcome.inside_out > 0) {
-        warning.push_back(fmt::format(
+        warning.emplace_back(fmt::format(
             "{} turned inside out, which shorter steps did not keep from it: the matter is crushed "
             "harder than its stiffness can hold",
             counted(static_cast<std::size_t>(outcome.inside_out), "cell", "cells")));
     }
     if (outcome.buckled) {
-        warning.push_back("the work-piece buckled: it left its shape for one that bears less");
+        warning.emplace_back("the work-piece buckled: it left its shape for one that bears less");
     }
     return warning;
 }

@@ -23,7 +23,7 @@ constexpr double kSmallestCellVolume = 0.05;
 constexpr double kEased = 2;  // times what was left over may be left over again
 // Of the load that a move ends with, what one that begins anew has at first; what such a move would
 // have stored without yield, over its work; and the least part of it that is made a move.
-constexpr double kLittleLoad = 0.5, kFarBeyond = 4, kLeastShare = 1.0 / 64;
+constexpr double kLittleLoad = 0.5, kBeyond = 1.2, kLeastShare = 1.0 / 64;
 constexpr int kMostSplits = 3;
 constexpr double kForeseen = 0.5;  // spacings that anything is taken to go on
 constexpr double kFarAway = 2;     // spacings that a body without rest has gone
@@ -277,9 +277,9 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     return result;
 }
 
-// Where a move that began with next to no load has gone far beyond yield: the share of it that ends
-// not far behind that; else 1. NOTE: what tools do is found from their loads at both ends, and a
-// load that is soon reached and stays does up to twice as much. `held` [J]: by the matter at first.
+// Where a move that began with next to no load has gone beyond yield: the share of it that ends
+// there; else 1. NOTE: what tools do is found from their loads at both ends, and a load that is
+// soon reached and stays does up to twice as much. `held` [J]: by the matter at first.
 double QuasistaticSolver::share_to_yield(const Drive& from, const Drive& to, double held) {
     if (!yields_ || splits_ == kMostSplits) return 1;
     const std::vector<LoadSum> load = contacts_.loads(matter_, to);
@@ -295,8 +295,8 @@ double QuasistaticSolver::share_to_yield(const Drive& from, const Drive& to, dou
     const double all = std::accumulate(work.begin(), work.end(), 0.0);
     const double air = std::accumulate(idle.begin(), idle.end(), 0.0), done = all - air;
     const double unyielding = elastic_energy() - held;  // what flows has not flowed on the books
-    if (!(done > 0) || unyielding < kFarBeyond * done) return 1;
-    const double touched = std::max(kLeastShare, 0.5 * kFarBeyond * done / unyielding);
+    if (!(done > 0) || unyielding < kBeyond * done) return 1;
+    const double touched = std::max(kLeastShare, done / unyielding);
     return 1 - std::clamp(done / all, 0.0, 1.0) * (1 - touched);
 }
 
