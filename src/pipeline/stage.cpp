@@ -91,7 +91,10 @@ void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& pi
                                  cut.open_parts, cut.open_parts == 1 ? "" : "s"));
     }
     if (cut.has_curved) {
-        warnings.add(frame, "a blade's path is curved, so the skin is torn along it, not cut");
+        warnings.add(
+            frame,
+            "a blade's path through the work-piece is not in one plane, so the skin is torn "
+            "along it and open there (skin.kind = \"boundary\" is made anew, closed)");
     }
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "geometry/box.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/mesh_edit.h"
 #include "matter/cell_middle.h"
@@ -43,6 +44,41 @@ std::vector<std::vector<Triangle>> separate_sweeps(const std::vector<Triangle>& 
     std::vector<std::vector<Triangle>> separate(sets.number_sets(number));
     for (std::size_t t = 0; t < sweep.size(); ++t) separate[number[t]].push_back(sweep[t]);
     return separate;
+}
+
+// What of a sweep comes near the box.
+std::vector<Triangle> near_box(const std::vector<Triangle>& sweep, const Box& box) {
+    std::vector<Triangle> near;
+    for (const Triangle& t : sweep) {
+        const Box own = box_of({t.begin(), t.end()});
+        if ((own.low.array() <= box.high.array()).all() &&
+            (own.high.array() >= box.low.array()).all()) {
+            near.push_back(t);
+        }
+    }
+    return near;
+}
+
+// The planes that blades sweep, one each; of a path that has several, as of a blade that cuts,
+// draws back, goes aside and cuts again, those that part the box.
+struct SweepPlanes {
+    std::vector<SweepPlane> plane;
+    bool has_curved = false;
+};
+SweepPlanes planes_of(const std::vector<Triangle>& sweep, const Box& box, double tolerance) {
+    SweepPlanes found;
+    for (const std::vector<Triangle>& one : separate_sweeps(sweep)) {
+        if (const auto plane = fit_sweep_plane(one, tolerance)) {
+            found.plane.push_back(*plane);
+            continue;
+        }
+        for (const std::vector<Triangle>& part : separate_sweeps(near_box(one, box))) {
+            const auto plane = fit_sweep_plane(part, tolerance);
+            if (plane) found.plane.push_back(*plane);
+            found.has_curved = found.has_curved || !plane;
+        }
+    }
+    return found;
 }
 
 // One cut along one plane.
@@ -282,16 +318,15 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
     CutResult result;
     const double a = matter.lattice.spacing;
     std::vector<Vec3> now = position;
-    for (const std::vector<Triangle>& one : separate_sweeps(sweep)) {
-        std::optional<SweepPlane> plane = fit_sweep_plane(one, 1e-3 * a);
-        if (!plane) {
-            result.has_curved = true;
-            continue;
-        }
+    Box box = box_of(position);
+    box.low.array() -= a, box.high.array() += a;
+    SweepPlanes swept = planes_of(sweep, box, 1e-3 * a);
+    result.has_curved = swept.has_curved;
+    for (SweepPlane& plane : swept.plane) {
         // As the blade does, which never runs exactly through a particle.
-        plane->point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
+        plane.point += a * Vec3(1.3e-6, 1.7e-6, 0.9e-6);
         if (result.planes > 0) skin_positions(mount, matter, now);
-        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, *plane).run();
+        const SurfaceSplit split = PlaneCut(mesh, now, mount, matter, plane).run();
         result.planes += split.seam_edges > 0;
         result.open_parts += split.open_parts;
         for (const SplitTriangle& triangle : split.triangle) {

@@ -266,6 +266,31 @@ TEST_CASE("an open surface is cut but not capped") {
     CHECK(result.cap_triangles == 0);
 }
 
+TEST_CASE("a blade that cuts, draws back, goes aside in the air and cuts again cuts twice") {
+    Fixture f(bar());
+    const double whole = signed_volume(f.mesh);
+    const auto strip = [](const Vec3& from, const Vec3& to) -> Sweep {
+        const Vec3 far(0, 0, 1), edge = 2 * far;
+        const Vec3 a = from - far, b = to - far;
+        return {{a, b, b + edge}, {a, b + edge, a + edge}};
+    };
+    Sweep sweep;
+    const std::vector<Vec3> way = {{-.1237, .6, 0}, {-.1237, .4, 0}, {-.1237, -.5, 0},
+                                   {-.1237, .4, 0}, {-.1237, .6, 0}, {.2137, .6, 0},
+                                   {.2137, .4, 0},  {.2137, -.5, 0}};
+    for (std::size_t n = 0; n + 1 < way.size(); ++n) {
+        const Sweep leg = strip(way[n], way[n + 1]);
+        sweep.insert(sweep.end(), leg.begin(), leg.end());
+    }
+    const CutResult result = f.cut(sweep);
+    CHECK_FALSE(result.has_curved);
+    CHECK(result.planes == 2);
+    CHECK(result.open_parts == 0);
+    check_sound(f.mesh, f.position);
+    CHECK(parts_of(f.mesh).size() == 3);
+    CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
+}
+
 TEST_CASE("after a curved sweep, triangles between two pieces are taken out") {
     Fixture f(bar());
     const Vec3 a(0, -1, -1), b(0, 0, -1), c(.2, 1, -1), up(0, 0, 2);
