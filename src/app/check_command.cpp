@@ -152,7 +152,9 @@ int check(const CheckArguments& given) {
         json["cost"] = cost_json(cost);
         add_accuracy(*reading.scene, cost, json);
         if (!given.json) {
-            for (const std::string& warning : cost.warning.bodies) log_warning("{}", warning);
+            for (const auto* untold : {&cost.warning.mold, &cost.warning.bodies}) {
+                for (const std::string& warning : *untold) log_warning("{}", warning);
+            }
             if (log_level() != LogLevel::quiet) put_out(cost_text(*reading.scene, input, cost));
         }
         refuse_excess(cost, options);

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "mold/prepare.h"
 
 namespace swage {
@@ -34,7 +33,7 @@ void refuse_unfit(const Inset& inset, std::size_t number) {
 }  // namespace
 
 void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>& layers,
-                  const MoldFrame& frame, Aggregate& matter) {
+                  const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings) {
     if (insets.empty()) return;
     // Where the body has its own surface, an inset's may be the same and tell nothing.
     std::set<CellId> skin;
@@ -86,8 +85,9 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
             fail(ExitCode::mesh, "cannot mold: inset {} lies outside the work-piece", material);
         }
         if (inside < (1 - kOutside) * all) {
-            log_warning("mold: {:.3g} % of inset {} lie outside the work-piece and are left out",
-                        100 * (1 - inside / all), material);
+            findings.push_back(
+                fmt::format("{:.3g} % of inset {} lie outside the work-piece and are left out",
+                            100 * (1 - inside / all), material));
         }
     }
     matter.cell_material.assign(matter.cell_fill.size(), 0);

@@ -13,6 +13,6 @@ namespace swage {
 // outside is left out, and said. Throws Error(mesh) when an inset is no solid, or fills nothing.
 // NOTE: a cell holds two materials at most; a third and less goes to the two with most.
 void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>& layers,
-                  const MoldFrame& frame, Aggregate& matter);
+                  const MoldFrame& frame, Aggregate& matter, std::vector<std::string>& findings);
 
 }  // namespace swage

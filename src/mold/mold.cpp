@@ -4,7 +4,6 @@
 #include "mold/mold.h"
 
 #include "base/error.h"
-#include "base/log.h"
 #include "geometry/box_mesh.h"
 #include "mold/caps.h"
 #include "mold/insets.h"
@@ -110,7 +109,8 @@ double filled_cells(const std::vector<CellLayer>& layers) {
 
 // Everything about the result that a user would not expect.
 void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
-                   const std::vector<CellLayer>& layers, double lost, const Aggregate& matter) {
+                   const std::vector<CellLayer>& layers, double lost, const Aggregate& matter,
+                   std::vector<std::string>& findings) {
     double surplus = 0, deficit = 0;
     for (const CellLayer& layer : layers) {
         surplus += layer.surplus, deficit += layer.deficit;
@@ -118,37 +118,39 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     const double cell = frame.cell_volume();
     const double filled = filled_cells(layers) * cell;
     if (surplus * cell > 1e-6 * volume || deficit * cell > 1e-6 * volume) {
-        log_warning(
-            "mold: parts of the surface overlap or are turned inside out: {:.4g} m3 filled more "
+        findings.push_back(fmt::format(
+            "parts of the surface overlap or are turned inside out: {:.4g} m3 filled more "
             "than once and {:.4g} m3 less than not at all are left out; the matter has {:.6g} m3, "
             "the surface encloses {:.6g} m3",
-            surplus * cell, deficit * cell, filled, volume);
+            surplus * cell, deficit * cell, filled, volume));
     }
     if (lost * cell > 1e-6 * volume) {
-        log_warning("mold: {:.4g} m3 lie in pieces too small for cells of {:.4g} m and are lost",
-                    lost * cell, frame.spacing);
+        findings.push_back(
+            fmt::format("{:.4g} m3 lie in pieces too small for cells of {:.4g} m and are lost",
+                        lost * cell, frame.spacing));
     }
     const double thickness = 2 * volume / surface_area(mesh);
     if (thickness < kThin * frame.spacing) {
-        log_warning(
-            "mold: the mesh is about {:.3g} m thick, thinner than its cells of {:.3g} m; sheets "
+        findings.push_back(fmt::format(
+            "the mesh is about {:.3g} m thick, thinner than its cells of {:.3g} m; sheets "
             "that share a cell become one (spacing = \"{:.2g} m\" keeps them apart)",
-            thickness, frame.spacing, 0.5 * thickness);
+            thickness, frame.spacing, 0.5 * thickness));
     }
     // Separate bodies and handles tell of parts that melted together for want of room.
     const int bodies = count_bodies(mesh);
     const int pieces = find_pieces(matter).count;
     const std::optional<int> wanted = euler_inside(mesh);
     if (pieces < bodies) {
-        log_warning(
-            "mold: {} separate bodies became {} where they share cells of {:.3g} m; a smaller "
-            "spacing keeps them apart",
-            bodies, pieces, frame.spacing);
+        findings.push_back(
+            fmt::format("{} separate bodies became {}: they share cells of {:.3g} m, or are too "
+                        "small for them; "
+                        "a smaller spacing keeps them apart",
+                        bodies, pieces, frame.spacing));
     } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
-        log_warning(
-            "mold: in cells of {:.3g} m the matter has other holes or handles than the mesh: parts "
+        findings.push_back(fmt::format(
+            "in cells of {:.3g} m the matter has other holes or handles than the mesh: parts "
             "closer than a cell are joined, or thin ones parted; a smaller spacing keeps them",
-            frame.spacing);
+            frame.spacing));
     }
 }
 
@@ -160,7 +162,7 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
 }
 
 Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spacing,
-                       const std::vector<Inset>& insets) {
+                       const std::vector<Inset>& insets, std::vector<std::string>& findings) {
     const double volume = signed_volume(mesh);
     const double area = surface_area(mesh);
     if (!(std::abs(volume) > 1e-9 * area * std::sqrt(area))) {
@@ -183,31 +185,33 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     fill_cells(layers, frame, matter);
     if (matter.cell_fill.empty()) refuse_thin(2 * volume / area, spacing);
     place_particles(frame, matter);
-    place_insets(insets, layers, frame, matter);
+    place_insets(insets, layers, frame, matter, findings);
     share_out(layers, frame, matter);
     match_moments(frame.step, matter);
     matter.surface = carry_patches(layers, matter.lattice, matter.cell_fill);
-    tell_findings(mesh, frame, volume, layers, lost, matter);
+    tell_findings(mesh, frame, volume, layers, lost, matter, findings);
     return matter;
 }
 
 }  // namespace
 
 Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,
-               const std::vector<Inset>& insets) {
+               const std::vector<Inset>& insets, std::vector<std::string>* told) {
+    std::vector<std::string> unread;
+    std::vector<std::string>& findings = told != nullptr ? *told : unread;
     const double spacing = spacing_for(mesh, settings);
     refuse_too_many_cells(mesh, settings);
     if (settings.kind == MoldKind::block) {
-        return mold_surface(block_around(mesh, spacing), material, spacing, insets);
+        return mold_surface(block_around(mesh, spacing), material, spacing, insets, findings);
     }
     const HoleCaps caps = caps_over_holes(mesh);
-    if (caps.apex.empty()) return mold_surface(mesh, material, spacing, insets);
+    if (caps.apex.empty()) return mold_surface(mesh, material, spacing, insets, findings);
     const TriMesh closed = with_caps(mesh, caps);
-    log_warning(
-        "mold: the surface is open: {} closed by flat cones of {:.3g} % of its area",
+    findings.push_back(fmt::format(
+        "the surface is open: {} closed by flat cones of {:.3g} % of its area",
         caps.apex.size() == 1 ? "one hole was" : fmt::format("{} holes were", caps.apex.size()),
-        100 * (surface_area(closed) / surface_area(mesh) - 1));
-    return mold_surface(closed, material, spacing, insets);
+        100 * (surface_area(closed) / surface_area(mesh) - 1)));
+    return mold_surface(closed, material, spacing, insets, findings);
 }
 
 }  // namespace swage

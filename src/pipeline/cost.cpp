@@ -278,8 +278,12 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     cost.mold.active_cells = cost.mold.particles = cost.mold.connections = cost.mold.bytes = 0;
     for (std::size_t b = 0; b < input.size(); ++b) {
         const BodySpec& body = scene.body[b];
-        matter.push_back(
-            mold(input[b].to_mold(), body.material, body.mold, insets_for(input[b], body)));
+        std::vector<std::string> findings;
+        matter.push_back(mold(input[b].to_mold(), body.material, body.mold,
+                              insets_for(input[b], body), &findings));
+        for (const std::string& warning : warnings_of_mold(body.name, input.size() > 1, findings)) {
+            cost.warning.mold.push_back(warning);
+        }
         place_at_start(body.start, input[b].to_mold(), matter[b]);
         cost.body[b].cells = static_cast<double>(matter[b].cell_fill.size());
         cost.mold.active_cells += cost.body[b].cells;

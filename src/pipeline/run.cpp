@@ -64,6 +64,11 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             const auto lap = watch.lap("mold");
             bodies.push_back(make_work_piece(input[b], scene.body[b], scene.skin));
         }
+        for (const std::string& warning :
+             warnings_of_mold(bodies[b].name, input.size() > 1, bodies[b].finding)) {
+            log_warning("{}", warning);
+            at_start.mold.push_back(warning);
+        }
         const Aggregate& matter = bodies[b].matter;
         record["bodies"][b]["matter"] = matter_json(matter);
         log_info("{}: {} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",

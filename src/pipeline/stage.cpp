@@ -315,15 +315,23 @@ class StageRun {
 
 StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkPiece>& bodies,
                        const StageContext& context) {
+    std::vector<std::string> told;
     if (stage.remold) {
         const auto lap = context.watch.lap("mold");
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             throw_if_interrupted();
             bodies[b] = mold_anew(bodies[b], context.scene.body[b], context.scene.skin);
+            for (const std::string& warning :
+                 warnings_of_mold(bodies[b].name, bodies.size() > 1, bodies[b].finding)) {
+                told.push_back(fmt::format("{}: {}", stage.name, warning));
+                log_warning("{}", told.back());
+            }
         }
         log_info("{}: molded anew: {} particles", stage.name, particle_count(bodies));
     }
-    return StageRun(stage, bodies, context).run(last_frame);
+    StageOutcome outcome = StageRun(stage, bodies, context).run(last_frame);
+    outcome.warning.insert(outcome.warning.begin(), told.begin(), told.end());
+    return outcome;
 }
 
 }  // namespace swage

@@ -13,6 +13,7 @@ namespace swage {
 
 struct StartWarnings {
     std::vector<std::string> mesh;      // findings, told as the meshes are read
+    std::vector<std::string> mold;      // findings, told as they are molded
     std::vector<std::string> strength;  // what breaks at another stress than its material says
     std::vector<std::string> bodies;    // how they lie, and what machines say against them
 
@@ -20,6 +21,10 @@ struct StartWarnings {
 };
 
 std::vector<NamedMatter> named(const std::vector<WorkPiece>& bodies);
+
+// Findings of a body's molding as warnings, with its name where it is one of several.
+std::vector<std::string> warnings_of_mold(const std::string& body, bool is_one_of_several,
+                                          const std::vector<std::string>& findings);
 
 // Of bodies that lie in each other, and of what the machines of all stages but the first would say
 // at the work-piece, which is the first, as it is now.

@@ -183,7 +183,8 @@ void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matt
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin) {
     WorkPiece piece;
     piece.name = body.name;
-    piece.matter = mold(input.to_mold(), body.material, body.mold, insets_for(input, body));
+    piece.matter =
+        mold(input.to_mold(), body.material, body.mold, insets_for(input, body), &piece.finding);
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         if (body.color) paint(like, *body.color, body.metal);

@@ -53,6 +53,7 @@ struct WorkPiece {
     std::shared_ptr<const NewLook> look;  // where it is
     std::vector<Vec3> position;           // of the skin now [m]
     Vec3Array followed;                   // of the particles that this is from [m]
+    std::vector<std::string> finding;     // what of its mesh its matter has not, when molded
     // Once a blade's path was curved: the skin is not cut along it, so triangles may be torn there,
     // now and in every later stage.
     bool is_torn = false;

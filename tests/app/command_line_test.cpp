@@ -466,3 +466,33 @@ TEST_CASE("check tells of every body how fine it is, and what it would need") {
     REQUIRE_FALSE(json.at("cost").at("warnings").empty());
     CHECK(json.at("cost").at("warnings").at(0) == record.at("warnings").at(0));
 }
+
+TEST_CASE("what matter has not as its mesh has it stands in the record, and in what check finds") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "twins.toml";
+    std::string twins = "o twins\n";
+    for (const double x : {0.0, 1.02}) {
+        for (int c = 0; c < 8; ++c) {
+            twins += fmt::format("v {} {} {}\n", x + (c & 1), c >> 1 & 1, c >> 2);
+        }
+    }
+    for (const int b : {0, 8}) {
+        for (const std::array<int, 4>& f :
+             {std::array{1, 3, 4, 2}, std::array{5, 6, 8, 7}, std::array{1, 2, 6, 5},
+              std::array{3, 7, 8, 4}, std::array{1, 5, 7, 3}, std::array{2, 4, 8, 6}}) {
+            twins += fmt::format("f {} {} {} {}\n", b + f[0], b + f[1], b + f[2], b + f[3]);
+        }
+    }
+    put_text(scratch.path() / "twins.obj", twins);
+    put_text(scene,
+             "[mesh]\nfile = \"twins.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 3\n"
+             "[[stage]]\nmachine = \"hold\"\nframes = 1\n");
+    const Json found = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const fs::path out = scratch.path() / "run";
+    run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+    const Json record = Json::parse(bytes_of(out / "run.json"));
+    for (const Json& warnings : {found.at("cost").at("warnings"), record.at("warnings")}) {
+        REQUIRE(warnings.size() >= 1);
+        CHECK(warnings[0].get<std::string>().find("mold: 2 separate bodies became 1") == 0);
+    }
+}

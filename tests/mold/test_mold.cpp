@@ -245,3 +245,17 @@ TEST_CASE("what cannot be molded is refused with a reason") {
     const TriMesh grain = box_mesh(Vec3::Constant(0.4), Vec3::Constant(0.45));
     CHECK(code(together(grain, moved(grain, {Quat::Identity(), {3, 3, 3}}))) == ExitCode::mesh);
 }
+
+TEST_CASE("what matter has not as its mesh has it is told to the one who asks") {
+    const double h = 0.1;
+    TriMesh mesh = box_mesh(Vec3::Zero(), h * Vec3(8, 2, 2));
+    MoldSettings settings;
+    settings.spacing = h;
+    std::vector<std::string> told;
+    mold(mesh, Material{}, settings, {}, &told);
+    CHECK(told.empty());
+    mesh = together(mesh, box_mesh(h * Vec3(8.2, 0, 0), h * Vec3(12, 2, 2)));
+    mold(mesh, Material{}, settings, {}, &told);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].find("2 separate bodies became 1") == 0);
+}
