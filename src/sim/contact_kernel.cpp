@@ -343,7 +343,12 @@ struct ContactWay::Kernel {
                 ++sums.contacts;
                 sums.sliding += f.history.slides;
                 if (last.history.touches && next.soft < last.soft) {
-                    sums.damped += 0.5 * (last.soft / next.soft - 1) * f.stored;
+                    const double was = k * last.soft / next.soft;
+                    const double hold = way.hold_[contact.point], depth = at.normal[3];
+                    sums.damped +=
+                        0.5 * way.share_ *
+                        (0.5 * (was - k) * dot3(reach, reach) + spring_energy(was, depth, hold) -
+                         spring_energy(k, depth, hold));
                 }
             } else if (last.history.touches && is_known(at)) {
                 // What its bond does no longer on the way from there.
