@@ -53,7 +53,7 @@ class Splitter {
         emit_caps();
         join_corners();
         split_.seam_edges = static_cast<int>(
-            std::count_if(seam_.begin(), seam_.end(), [](const Seam& s) { return s.kept; }));
+            wall_.size() + std::ranges::count_if(seam_, [](const Seam& s) { return s.kept; }));
         return std::move(split_);
     }
 
