@@ -134,8 +134,8 @@ SWAGE_INLINE double spring_push(double stiffness, double depth, double hold) {
     return std::max(stiffness * depth, -hold);
 }
 SWAGE_INLINE double spring_energy(double stiffness, double depth, double hold) {
-    const double push = spring_push(stiffness, depth, hold);
-    return push * (depth - 0.5 * push / stiffness);
+    const double over = spring_push(stiffness, depth, hold) - stiffness * depth;
+    return 0.5 * stiffness * depth * depth - 0.5 * over * over / stiffness;
 }
 
 // Whether a bond still holds, however it pulls.
@@ -196,10 +196,9 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
                     : k * slip.dot(result.reach);
         }
     }
-    const double across_it = spring_energy(k, at.depth, law.hold);
-    const double along_it = 0.5 * k * result.reach.squaredNorm();
-    result.stored = across_it + along_it;
-    result.bound = along_it + (at.depth < 0 ? across_it : 0);
+    const double over = elastic - k * at.depth, given = 0.5 * over * over / k;
+    result.stored = 0.5 * k * (at.depth * at.depth + result.reach.squaredNorm()) - given;
+    result.bound = at.depth < 0 ? result.stored : 0.5 * k * result.reach.squaredNorm();
     result.force = N * at.normal + T;
     result.bond = k * result.reach + std::min(elastic, 0.0) * at.normal;
     result.elastic = k * result.reach + elastic * at.normal;

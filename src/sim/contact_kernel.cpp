@@ -292,10 +292,12 @@ struct ContactWay::Kernel {
         const Vec3 normal = vec3(at.normal), reach = vec3(at.reach);
         ImpactForce f;
         f.reach = reach - normal * normal.dot(reach);
-        f.elastic = k * f.reach + spring_push(k, at.normal[3], hold) * normal;
+        const double depth = at.normal[3], over = spring_push(k, depth, hold) - k * depth;
+        f.elastic = k * (f.reach + depth * normal);
+        f.stored = 0.5 / k * (f.elastic.squaredNorm() - over * over);
+        f.elastic += over * normal;
         f.force = f.elastic + contact.dashed;
         f.bond = last.bond;
-        f.stored = 0.5 * k * f.reach.squaredNorm() + spring_energy(k, at.normal[3], hold);
         f.history = last.history;
         spread(contact, trilinear_weights(contact.place), vec4(f.force) - way.share_ * at.spring);
         return f;
