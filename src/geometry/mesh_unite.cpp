@@ -47,8 +47,8 @@ std::vector<char> outer_patches(const CutPatches& cut, const TriMesh& other, dou
         int t = *std::ranges::max_element(patch, is_smaller);
         bool off = is_off(t);
         if (!off) {
-            // A face that lies on the other but for rounding may not be parted from the body that
-            // it bounds, most of whose surface then lies elsewhere.
+            // A face that lies on the other but for rounding is not always parted from the body
+            // that it bounds, most of which then lies elsewhere.
             const auto on = std::partition(patch.begin(), patch.end(), is_off);
             double beside = 0, all = 0;
             for (auto at = patch.begin(); at != patch.end(); ++at) {

@@ -55,7 +55,7 @@ namespace swage {
 inline constexpr double kSlow = 0.5;  // of the speed of a swing along the surface: does not slide
 
 inline constexpr double kMostDamping = 20;
-inline constexpr double kLetsGo = 2;  // over how far a bond goes until it holds no more
+inline constexpr double kLetsGo = 2;  // times the way at which a bond first pulls all it holds
 
 // NOTE: less is taken as this. beta goes as 1 / e, the way in which a body is stopped as its root,
 // and a contact whose dashpots stop it in a tenth of its springs' way is a wall to elastic bodies:

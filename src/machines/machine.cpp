@@ -149,17 +149,10 @@ Box box_between(const Setting& setting, const Expression3& from, const Expressio
     return {box.low - slack, box.high + slack};
 }
 
-const std::string& grip_that_holds(const Apparatus& apparatus, std::size_t point) {
-    const auto holds = [&](const Grip& grip) {
-        return std::ranges::find(grip.point, int(point)) != grip.point.end();
-    };
-    return std::ranges::find_if(apparatus.grip, holds)->name;
-}
-
-// `held`: by point, how much of its patch grips hold already.
+// `regions`: of the grips before it.
 void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
-              const GripSpec& spec, std::vector<double>& held) {
-    constexpr double kLeastShare = 0.01, kSlack = 1e-6;  // of a patch
+              const GripSpec& spec, std::vector<Box>& regions) {
+    constexpr double kLeastShare = 0.01, kOverlap = 1e-3;  // of a patch
     const Box region = box_between(setting, spec.from, spec.to);
     const Mat3 work_from_world =
         setting.frame.world_from_work.rotation.conjugate().toRotationMatrix();
@@ -170,12 +163,14 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
         const Box patch = patch_box(matter, work_from_world, p, setting.point[p]);
         const double share = share_within(patch, region);
         if (share < kLeastShare) continue;
-        if (held[p] + share > 1 + kSlack) {
+        for (std::size_t g = 0; g < regions.size(); ++g) {
+            const Box both = {region.low.cwiseMax(regions[g].low),
+                              region.high.cwiseMin(regions[g].high)};
+            if (both.empty() || share_within(patch, both) <= kOverlap) continue;
             refuse(setting, fmt::format("grips {} and {} would hold the same points; make one of "
                                         "them smaller",
-                                        grip_that_holds(machine.apparatus, p), spec.name));
+                                        machine.apparatus.grip[g].name, spec.name));
         }
-        held[p] += share;
         grip.point.push_back(static_cast<int>(p));
         grip.share.push_back(share);
         jaws.grow(patch.low.cwiseMax(region.low));
@@ -202,6 +197,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
                                     "to be 0",
                                     spec.name));
     }
+    regions.push_back(region);
     machine.apparatus.grip.push_back(std::move(grip));
     machine.work_from_grip.push_back(work_from_grip);
     machine.grip_motion.push_back(std::move(motion));
@@ -350,8 +346,8 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
     for (const ToolSpec& tool : spec.tool) {
         machine.tool_motion.emplace_back(tool.motion, setting.known);
     }
-    std::vector<double> held(setting.point.size(), 0);
-    for (const GripSpec& grip : spec.grip) add_grip(machine, setting, matter, grip, held);
+    std::vector<Box> regions;
+    for (const GripSpec& grip : spec.grip) add_grip(machine, setting, matter, grip, regions);
     for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
     for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
     if (!spec.gravity_strength.empty()) {

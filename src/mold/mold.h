@@ -39,7 +39,7 @@ struct Inset {
 };
 
 // Volume and mass equal the mesh's to 1e-6 at any spacing. Throws Error(mesh) when the mesh
-// encloses nothing, Error(resources) above the limit. `told`: what is not as the mesh has it.
+// encloses nothing, Error(resources) above the limit. `told`: what is not as the mesh has it is added.
 Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,
                const std::vector<Inset>& insets = {}, std::vector<std::string>* told = nullptr);
 

@@ -36,7 +36,8 @@ struct RunCost {
     double memory_bytes = 0;        // at the peak, about
     double disk_bytes = 0;          // of the run directory, about
     std::vector<std::string> note;  // of the first machine at the work-piece; of steps
-    // Of bodies only where the mold was made; then of those in the first machine's tools, too.
+    // `mold` and `bodies` only where the mold was made; `bodies` tells of what the first machine's
+    // tools are in, too.
     StartWarnings warning;
 
     const BodyCost& work_piece() const { return body.front(); }

@@ -15,7 +15,7 @@ struct LoadCurve {
     std::string name;
     std::vector<Pose> pose;
     // [rad] since the start of the stage, past 180 degrees too; about the axis of its first turn,
-    // seen as +x, +y or +z, whichever that lies nearest to.
+    // pointed so that its largest component is more than 0.
     std::vector<double> turn;
     std::vector<double> travel;       // [m] of path since the start of the stage
     std::vector<Vec3> force;          // [N] exerted on the matter

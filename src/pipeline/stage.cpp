@@ -93,8 +93,8 @@ void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& pi
     if (cut.has_curved) {
         warnings.add(
             frame,
-            "a blade's path through the work-piece is not in one plane, so the skin is torn "
-            "along it and open there (skin.kind = \"boundary\" is made anew, closed)");
+            "a blade's path bends or turns within the work-piece, so the skin is torn along "
+            "it and open there (skin.kind = \"boundary\" is made anew, closed)");
     }
 }
 

@@ -137,7 +137,8 @@ std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
     return input;
 }
 
-std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body) {
+std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body,
+                              std::vector<std::string>& findings) {
     std::vector<Inset> insets;
     const Box box = box_of(input.to_mold().position);
     for (const InsetSpec& spec : body.inset) {
@@ -151,7 +152,7 @@ std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body) {
             for (Vec3& p : read.mesh.position) p *= input.scale;
             read.report = check_mesh(read.mesh);
             for (const std::string& finding : read.finding) {
-                log_warning("{}: {}", spec.file.filename().string(), finding);
+                findings.push_back(spec.file.filename().string() + ": " + finding);
             }
             make_solid(read, MoldKind::shape);
             solid = read.to_mold();
@@ -183,8 +184,8 @@ void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matt
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin) {
     WorkPiece piece;
     piece.name = body.name;
-    piece.matter =
-        mold(input.to_mold(), body.material, body.mold, insets_for(input, body), &piece.finding);
+    const std::vector<Inset> insets = insets_for(input, body, piece.finding);
+    piece.matter = mold(input.to_mold(), body.material, body.mold, insets, &piece.finding);
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         if (body.color) paint(like, *body.color, body.metal);

@@ -43,7 +43,8 @@ InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind);
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene);
 
 // The body's insets where this mesh is. Throws Error(mesh).
-std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body);
+std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body,
+                              std::vector<std::string>& findings);
 
 struct WorkPiece {
     std::string name;

@@ -297,7 +297,7 @@ struct ContactWay::Kernel {
         f.stored = 0.5 / k * (f.elastic.squaredNorm() - over * over);
         f.elastic += over * normal;
         f.force = f.elastic + contact.dashed;
-        f.bond = last.bond;
+        f.bond = last.bond;  // `bound` is found with what is kept
         f.history = last.history;
         spread(contact, trilinear_weights(contact.place), vec4(f.force) - way.share_ * at.spring);
         return f;

@@ -107,7 +107,7 @@ double off_track_factor(const Aggregate& matter, const FractureLaws& laws,
                        const Vec3 along = c.eigenvectors().col(2);
                        pull += most * most * most * most * along * along.transpose();
                    });
-    // Nothing about it may be drawn out: pressed, it has reached its strength off its middle.
+    // It may be that nothing around it is drawn out: it has reached its strength off its middle.
     const Vec3 across = pull.isZero(0) ? cell.pull : largest_direction(pull);
     const auto off_track = [&](const Vec3& way) -> double {
         return std::max(0.0, std::abs((way_to_broken - way).dot(across)) - kOnTrack);

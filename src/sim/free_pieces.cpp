@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/free_pieces.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "sim/hanging.h"
+#include "sim/surface_forces.h"
 
 namespace swage {
 
@@ -36,6 +39,7 @@ void FreePieces::connections_changed() {
     carrier_.clear();
     pieces_ = find_pieces(matter_);
     std::vector<int> of_piece(static_cast<std::size_t>(pieces_.count), kNone);
+    firm_.assign(of_piece.size(), 0);
     for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
         const Grip& grip = apparatus_.grip[g];
         const int carries = grip.hold == Vec3::Ones() ? static_cast<int>(g) : kSeveral;
@@ -43,14 +47,15 @@ void FreePieces::connections_changed() {
             const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
             for (int c = 0; c < 8; ++c) {
                 if (by.weight[c] == 0) continue;
-                int& of = of_piece[pieces_.particle_piece[by.corner[c]]];
+                const int piece = pieces_.particle_piece[by.corner[c]];
+                firm_[piece] |= carries != kSeveral;
+                int& of = of_piece[piece];
                 of = of == kNone || of == carries ? carries : kSeveral;
             }
         }
     }
     gripped_.clear();
     for (int by : of_piece) gripped_.push_back(by != kNone);
-    is_slidable_ = std::ranges::any_of(of_piece, [](int by) { return by < 0; });
     if (pieces_.count < 2) return;
     for (int piece : pieces_.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
 }
@@ -90,11 +95,11 @@ void FreePieces::add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& fo
     for (std::size_t n = 0; n < afloat.size(); ++n) force.set(afloat_[n], afloat[n]);
 }
 
-// A rigid motion q = (shift, turn) with M q = W less what bars it, which is taken as stiff as makes
-// no difference to what it leaves free.
+// (M + B) q = W, for each piece: q its shift and turn, W what pushes come to, B what grips bar, so
+// stiff that it makes no difference to what they leave free.
 void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {
-    if (!is_slidable_ || pushes.count() == 0) return;
-    constexpr double kBars = 1e9;  // of the piece's mass
+    if (pushes.count() == 0 || std::ranges::all_of(firm_, [](char f) { return f != 0; })) return;
+    constexpr double kBars = 1e9;  // of the piece's mass, all points of grips together
     using Vec6 = Eigen::Matrix<double, 6, 1>;
     using Mat6 = Eigen::Matrix<double, 6, 6>;
     const auto at = [&](std::size_t p) { return matter_.particle_position.at(p); };
@@ -117,7 +122,7 @@ void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force
     const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
 
     // Turns are counted by the way that they take what lies far out.
-    std::vector<double> reach;
+    std::vector<double> reach, barred(mass.size(), 0);
     std::vector<Mat6> bars(mass.size(), Mat6(Mat6::Zero()));
     for (std::size_t n = 0; n < mass.size(); ++n) {
         reach.push_back(std::sqrt(inertia[n].trace() / mass[n]));
@@ -126,25 +131,30 @@ void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force
         const Grip& grip = apparatus_.grip[g];
         const Mat3 axes = to.world_from_grip[g].rotation.toRotationMatrix();
         for (int point : grip.point) {
+            if (is_torn(matter_, std::size_t(point))) continue;
             const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
-            const auto n = std::size_t(pieces_.particle_piece[by.corner[0]]);
+            const auto most = std::ranges::max_element(
+                by.weight, [](double a, double b) { return std::abs(a) < std::abs(b); });
+            const ParticleId carrier = by.corner[std::size_t(most - by.weight.begin())];
+            const auto n = std::size_t(pieces_.particle_piece[carrier]);
+            ++barred[n];
             const Vec3 r = matter_.surface_position(std::size_t(point)) - center[n];
             for (int axis = 0; axis < 3; ++axis) {
                 Vec6 way;
                 way << axes.col(axis), r.cross(axes.col(axis)) / reach[n];
-                bars[n] += kBars * mass[n] * grip.hold[axis] * way * way.transpose();
+                bars[n] += grip.hold[axis] * way * way.transpose();
             }
         }
     }
     std::vector<Vec3> shift, turn;
     for (std::size_t n = 0; n < mass.size(); ++n) {
-        Mat6 stiff = bars[n];
+        Mat6 stiff = kBars * mass[n] / std::max(1.0, barred[n]) * bars[n];
         stiff.topLeftCorner<3, 3>() += mass[n] * Mat3::Identity();
         stiff.bottomRightCorner<3, 3>() += inertia[n] / (reach[n] * reach[n]);
         Vec6 wrench;
         wrench << net[n], torque[n] / reach[n];
         const Vec6 goes = stiff.llt().solve(wrench);
-        const bool is_little = mass[n] * goes.lpNorm<1>() <= kUnbalanced * size[n];
+        const bool is_little = !firm_[n] && mass[n] * goes.lpNorm<1>() <= kUnbalanced * size[n];
         shift.push_back(is_little ? Vec3(goes.head<3>()) : none);
         turn.push_back(is_little ? Vec3(goes.tail<3>() / reach[n]) : none);
     }

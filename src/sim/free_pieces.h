@@ -36,8 +36,8 @@ class FreePieces {
     const std::vector<double>& heavy_mass() const { return heavy_mass_; }
 
     // Takes off what loads and gravity leave over, all in all, along the ways that grips leave a
-    // piece free, where it is next to nothing beside them: patches of a surface are as fine as the
-    // cells, and equilibria would go any way for what these are short of balance.
+    // piece free, where it is less than a twentieth of them: patches of a surface are as fine as
+    // the cells, and equilibria would go any way for what these are short of balance.
     void steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const;
 
     // Whether any piece has gone farther than `far` [m] from where it was: tools and grips go no
@@ -64,7 +64,7 @@ class FreePieces {
     const Apparatus& apparatus_;
     Pieces pieces_;
     std::vector<char> gripped_;  // of each piece
-    bool is_slidable_ = false;   // whether any is in no grip that holds it in every way
+    std::vector<char> firm_;     // of each piece: in a grip that holds it in every way
     // Of each particle: the grip, if any, that alone holds its piece. Empty: one piece.
     std::vector<int> carrier_;
     std::vector<int> fallen_;         // pieces that did when it was last asked

@@ -296,8 +296,7 @@ double QuasistaticSolver::share_to_yield(const Drive& from, const Drive& to, dou
     const double air = std::accumulate(idle.begin(), idle.end(), 0.0), done = all - air;
     const double unyielding = elastic_energy() - held;  // what flows has not flowed on the books
     if (!(done > 0) || unyielding < kBeyond * done) return 1;
-    // What flows keeps its volume, which makes the strain that counts here a tenth larger.
-    const double touched = std::max(kLeastShare, 1.1 * done / unyielding);
+    const double touched = std::max(kLeastShare, done / unyielding);
     return 1 - std::clamp(done / all, 0.0, 1.0) * (1 - touched);
 }
 

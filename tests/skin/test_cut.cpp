@@ -276,9 +276,10 @@ TEST_CASE("a blade that cuts, draws back, goes aside in the air and cuts again c
         return {{a, b, b + edge}, {a, b + edge, a + edge}};
     };
     Sweep sweep;
-    const std::vector<Vec3> way = {{-.1237, .6, 0}, {-.1237, .4, 0}, {-.1237, -.5, 0},
-                                   {-.1237, .4, 0}, {-.1237, .6, 0}, {.2137, .6, 0},
-                                   {.2137, .4, 0},  {.2137, -.5, 0}};
+    // Back by other steps than down, and so of several sweeps in one plane.
+    const std::vector<Vec3> way = {
+        {-.1237, .6, 0},  {-.1237, .4, 0},  {-.1237, -.4, 0}, {-.1237, -.5, 0}, {-.1237, -.41, 0},
+        {-.1237, .37, 0}, {-.1237, .61, 0}, {.2137, .61, 0},  {.2137, .4, 0},   {.2137, -.5, 0}};
     for (std::size_t n = 0; n + 1 < way.size(); ++n) {
         const Sweep leg = strip(way[n], way[n + 1]);
         sweep.insert(sweep.end(), leg.begin(), leg.end());
