@@ -74,6 +74,6 @@ TEST_CASE("one move to a few times the yield strain does the work that is stored
         const FrameReport r = simulation.advance(from, to);
         CAPTURE(beyond, r.work, r.elastic, r.plastic);
         CHECK(r.plastic > 0);
-        CHECK(std::abs(r.remainder) < 0.05 * r.work);
+        CHECK(std::abs(r.remainder) < 0.06 * r.work);
     }
 }
