@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
+#include "pipeline/json.h"
 #include "skin/new_look.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 
 namespace fs = std::filesystem;
+using swage::Json;
 
 TEST_CASE("a cut through what has flowed unevenly has flat faces") {
     const Scratch scratch;
@@ -33,4 +35,45 @@ TEST_CASE("a cut through what has flowed unevenly has flat faces") {
         area[parts.triangle_component[t]] += own.norm();
     }
     for (int part : {0, 1}) CHECK(sum[part].norm() > 0.999 * area[part]);
+}
+
+TEST_CASE("a blade severs as much in one frame as in forty, and nothing more on its way up") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "cut.toml";
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+    const auto severed = [&](const std::string& frames, const std::string& rising) {
+        put_text(scene,
+                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 3\n"
+                 "[[stage]]\nmachine = \"cut\"\ntilt = \"20 deg\"\nframes = " +
+                     frames + "\nrising = " + rising + "\n");
+        const fs::path run = scratch.path() / ("run-" + frames + "-" + rising);
+        const Outcome outcome =
+            run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        const Json stage = Json::parse(bytes_of(run / "run.json")).at("stages").at(0);
+        CHECK(stage.at("pieces") == 2);
+        CHECK(swage::check_mesh(swage::read_mesh(run / "meshes/1-cut.obj")).watertight);
+        return stage.at("severed").get<int>();
+    };
+    const int whole = severed("40", "0");
+    for (const char* frames : {"40", "3", "1"}) CHECK(severed(frames, "0.1") == whole);
+}
+
+TEST_CASE("a blade severs a body that comes under it when another has been cut") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "late.toml", out = scratch.path() / "out";
+    run_swage({"make", "bar", "--length", "20 cm", "--out", (scratch.path() / "bar.obj").string()});
+    const std::string bar = "file = \"bar.obj\"\n";
+    put_text(scene, "[mesh]\n" + bar +
+                        "[material]\nyoung_modulus = \"1 MPa\"\ndensity = \"1000 kg/m3\"\n"
+                        "damping_ratio = 0.1\n[mold]\nacross = 2\n[[body]]\nname = \"late\"\n" +
+                        bar +
+                        "at = [0, \"-4 cm\", \"10 cm\"]\nvelocity = [0, 0, \"-0.8 m/s\"]\n"
+                        "[[stage]]\nmachine = \"cut\"\ncutting = 0.9\nrising = 0\npart = 0\n"
+                        "clearance = \"6 cm\"\nframes = 20\nduration = \"0.2 s\"\n");
+    REQUIRE(run_swage({"run", scene.string(), "--no-render", "--out", out.string()}).code == 0);
+    const Json stage = Json::parse(bytes_of(out / "run.json")).at("stages").back();
+    CHECK(stage.at("severed") > 40);  // 33 in the first
+    CHECK(stage.at("pieces") == 3);
 }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Geometry>
 #include <random>
 
 #include "base/error.h"
 #include "base/log.h"
-#include "geometry/mesh_bodies.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_edit.h"
 #include "geometry/mesh_repair.h"
@@ -298,47 +296,6 @@ TEST_CASE("a cavity stays a cavity; a hollow body inside out is turned with it")
     CHECK(signed_volume(island.mesh) == Approx(26.125));
 }
 
-TEST_CASE("a body inside another of the same sense does not count twice") {
-    TriMesh mesh = box_mesh({0, 0, 0}, {3, 3, 3});
-    append(mesh, box_mesh({1, 1, 1}, {2, 2, 2}));
-    const Repair repair = repair_mesh(mesh);
-    CHECK(told(repair, "counted twice"));
-    CHECK(signed_volume(repair.mesh) == Approx(27));
-}
-
-TEST_CASE("two bodies apart stay as they are; one inside out is turned") {
-    TriMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
-    append(mesh, box_mesh({2, 0, 0}, {4, 1, 1}));
-    CHECK(repair_mesh(mesh).account.empty());
-    append(mesh, box_mesh({5, 0, 0}, {6, 1, 1}, true));
-    const Repair repair = repair_mesh(mesh);
-    CHECK(told(repair, "turned 1 of 3 bodies"));
-    CHECK(signed_volume(repair.mesh) == Approx(4));
-}
-
-TEST_CASE("crossing bodies are united to their true volume and keep their looks") {
-    // Two crossing bars: neither has a vertex inside the other.
-    TriMesh bars = box_mesh({-3, -0.5, -0.5}, {3, 0.5, 0.5});
-    append(bars, box_mesh({-0.4, -3, -0.4}, {0.4, 3, 0.4}));
-    bars.material.resize(2);
-    bars.triangle_material.assign(12, 0);
-    bars.triangle_material.resize(24, 1);
-    for (const Vec3& p : bars.position) bars.uv.emplace_back(p.x(), p.y() + p.z());
-    bars.triangle_uv = bars.triangle;
-    const Repair repair = repair_mesh(bars);
-    CHECK(told(repair, "united 2 crossing bodies"));
-    CHECK(signed_volume(repair.mesh) == Approx(6 + 0.64 * 6 - 0.64));
-    CHECK(check_mesh(repair.mesh).manifold);
-    REQUIRE(repair.mesh.triangle_uv.size() == repair.mesh.triangle.size());
-    REQUIRE(repair.mesh.triangle_material.size() == repair.mesh.triangle.size());
-    for (std::size_t t = 0; t < repair.mesh.triangle.size(); ++t)
-        for (int k = 0; k < 3; ++k) {  // a linear map stays linear through the cut
-            const Vec3& p = repair.mesh.position[repair.mesh.triangle[t][k]];
-            const Vec2& uv = repair.mesh.uv[repair.mesh.triangle_uv[t][k]];
-            CHECK((uv - Vec2(p.x(), p.y() + p.z())).norm() < 1e-9);
-        }
-}
-
 namespace {
 
 // Square rods along the diagonal of space, 4 mm from middle to middle and 2 mm wide.
@@ -366,42 +323,6 @@ TEST_CASE("bodies that do not touch stay apart, however many lie in each other's
     CHECK(told(repair, "closed 1 hole"));
     CHECK(signed_volume(repair.mesh) == Approx(volume));
     CHECK(check_mesh(repair.mesh).components == count);
-}
-
-TEST_CASE("too many bodies that cross are left as they are, for that reason") {
-    // Rods that all go through one place.
-    TriMesh star;
-    for (int n = 0; n < 102; ++n) {
-        TriMesh rod = box_mesh({-1, -0.002, -0.002}, {1, 0.002, 0.002});
-        const double turn = kPi * n / 102, tilt = 0.3 * std::sin(7.0 * n);
-        for (Vec3& p : rod.position)
-            p = Eigen::AngleAxisd(turn, Vec3::UnitZ()) * Eigen::AngleAxisd(tilt, Vec3::UnitY()) * p;
-        append(star, rod);
-    }
-    const TriMesh before = star;
-    std::vector<std::string> account;
-    const auto reason = settle_bodies(star, account);
-    REQUIRE(reason);
-    CHECK(*reason == "more than 5000 pairs of its parts cross or touch each other");
-    CHECK(star.triangle == before.triangle);
-    CHECK(account.empty());
-}
-
-TEST_CASE("bodies that share a face or a corner are left as they are") {
-    // Welded: the inner wall is there twice, once each way.
-    TriMesh pair = box_mesh({0, 0, 0}, {1, 1, 1});
-    TriMesh next = box_mesh({1, 0, 0}, {2, 1, 1});
-    const int match[8] = {1, -1, 3, -1, 5, -1, 7, -1};
-    std::vector<int> place(8);
-    for (int i = 0; i < 8; ++i) {
-        place[i] = match[i] >= 0 ? match[i] : static_cast<int>(pair.position.size());
-        if (match[i] < 0) pair.position.push_back(next.position[i]);
-    }
-    for (const Corners& t : next.triangle)
-        pair.triangle.push_back({place[t[0]], place[t[1]], place[t[2]]});
-    const Repair repair = repair_mesh(pair);
-    CHECK(repair.account.empty());
-    CHECK(signed_volume(repair.mesh) == Approx(2));
 }
 
 TEST_CASE("every face given twice, back to back, becomes one closed surface") {

@@ -4,6 +4,22 @@
 using namespace swage;
 using namespace swage::test;
 
+namespace {
+
+// How far a part goes below and above a plane, 0 where it does not [m].
+std::pair<double, double> reach_of(const TriMesh& part, const Vec3& point, const Vec3& normal) {
+    double low = 0, high = 0;
+    for (const Corners& t : part.triangle) {
+        for (int v : t) {
+            const double h = normal.dot(part.position[v] - point);
+            low = std::min(low, h), high = std::max(high, h);
+        }
+    }
+    return {low, high};
+}
+
+}  // namespace
+
 TEST_CASE("a cut through gives closed halves whose volumes add up to the whole") {
     const bool hollow = GENERATE(false, true);
     const auto [point, normal] = GENERATE(table<Vec3, Vec3>({
@@ -33,13 +49,7 @@ TEST_CASE("a cut through gives closed halves whose volumes add up to the whole")
 
     SECTION("each half lies on its own side of the plane") {
         for (const TriMesh& part : parts) {
-            double low = 0, high = 0;
-            for (const Corners& t : part.triangle) {
-                for (int v : t) {
-                    const double h = normal.normalized().dot(part.position[v] - point);
-                    low = std::min(low, h), high = std::max(high, h);
-                }
-            }
+            const auto [low, high] = reach_of(part, point, normal.normalized());
             CHECK(std::min(-low, high) < 0.01 * 0.05);
         }
     }
@@ -244,13 +254,7 @@ TEST_CASE("sheets that lie back to back within a body are cut with it, and bind 
     CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
     int above = 0, below = 0;
     for (const TriMesh& part : parts_of(f.mesh)) {
-        double low = 0, high = 0;
-        for (const Corners& t : part.triangle) {
-            for (int v : t) {
-                const double h = normal.normalized().dot(part.position[v] - point);
-                low = std::min(low, h), high = std::max(high, h);
-            }
-        }
+        const auto [low, high] = reach_of(part, point, normal.normalized());
         CHECK(std::min(-low, high) < 0.01 * 0.05);
         ++(high > -low ? above : below);
     }
