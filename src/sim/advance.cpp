@@ -348,7 +348,7 @@ double explicit_steps_per_second(const Aggregate& matter, const SimSettings& set
 
 long equilibria_along(const Aggregate& matter, const Apparatus& apparatus,
                       const SimSettings& settings, const std::vector<Drive>& drives) {
-    const ContactSet contacts(matter, apparatus, settings);
+    const RestingContacts contacts(matter, apparatus, settings);
     long count = 0;
     for (std::size_t n = 1; n < drives.size(); ++n) {
         count += increments_between(contacts, matter, drives[n - 1], drives[n]);

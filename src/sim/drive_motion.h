@@ -7,12 +7,12 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
-#include "sim/contact_set.h"
+#include "sim/resting_contacts.h"
 
 namespace swage {
 
 // The moves in which a drive's way is solved: none takes a tool or grip farther than one spacing.
-int increments_between(const ContactSet& contacts, const Aggregate& matter, const Drive& from,
+int increments_between(const RestingContacts& contacts, const Aggregate& matter, const Drive& from,
                        const Drive& to);
 
 // Six numbers for each tool, then each grip: its way, and its turn times `size` [m]. Then one for

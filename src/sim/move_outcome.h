@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/contact_set.h"
+#include "matter/drive.h"
 #include "sim/contact_sums.h"
+#include "sim/load_sum.h"
 #include "sim/step_counts.h"
 
 namespace swage {

@@ -30,8 +30,9 @@ double stable_step(const Aggregate& matter, double safety, const LatticeForces& 
 }
 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
-constexpr double kCalm = 0.5;     // of the speed that crushed matter deforms by, in a stable step
-constexpr double kTurned = 0.05;  // spacings that particles go between looks at what is bent
+constexpr double kCalm = 0.5;      // of the speed that crushed matter deforms by, in a stable step
+constexpr double kStirred = 1e-6;  // spacings
+constexpr double kTurned = 0.05;   // spacings that particles go between looks at what is bent
 
 struct Movers {
     double *x[3], *v[3];
@@ -127,12 +128,12 @@ void MovingBody::start(const Drive& from, BodyOutcome& outcome) {
     find_candidates(from);
     begin_step(from);
     find_forces(from, 0, outcome);
-    load_ = implicit_ ? contacts_.loads(matter_, from) : contacts_.motion_loads();
+    load_ = implicit_ ? contacts_.at_rest().loads(matter_, from) : contacts_.loads();
 }
 
 void MovingBody::begin_step(const Drive& before) {
     if (implicit_) {
-        contacts_.begin_move(matter_, before);
+        contacts_.begin_implicit_step(matter_, before);
     } else {
         contacts_.begin_step(before);
     }
@@ -153,7 +154,7 @@ void MovingBody::surface_changed() {
 void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {
     if (!touches_) return;
     const double far = 0.45 * matter_.lattice.spacing;
-    gone_ += way + contacts_.travel(matter_, before, now);
+    gone_ += way + contacts_.at_rest().travel(matter_, before, now);
     if (gone_ > far) find_candidates(now);
 }
 
@@ -202,9 +203,9 @@ void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome
     gravity_ = pushes_.gravity(now);
     // Last: dashpots go by the speed that all else makes.
     if (implicit_) {
-        contacts_.add_forces(matter_, now, force_);
+        contacts_.at_rest().add_forces(matter_, now, force_);
     } else {
-        contacts_.add_motion_forces(matter_, now, step, gravity_, force_);
+        contacts_.add_forces(matter_, now, step, gravity_, force_);
     }
 }
 
@@ -242,14 +243,14 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
     }
     if (remember(step, outcome)) find_forces(now, 0, outcome);
     if (implicit_) {
-        outcome.friction_work += contacts_.commit(matter_, now);
+        outcome.friction_work += contacts_.commit_implicit_step(matter_, now);
     } else {
-        const ToolLosses taken = contacts_.commit_motion(now);
+        const ToolLosses taken = contacts_.commit(now);
         outcome.damped_work += taken.damped;
         outcome.friction_work += taken.friction;
     }
     std::vector<LoadSum> load =
-        implicit_ ? contacts_.loads(matter_, now) : contacts_.motion_loads();
+        implicit_ ? contacts_.at_rest().loads(matter_, now) : contacts_.loads();
     add_work(before, now, load_, load, outcome.work);
     for (std::size_t n = 0; n < load.size(); ++n) outcome.touched[n] |= load[n].contacts > 0;
     pushes_.commit(matter_, now, outcome.push_work);
@@ -257,7 +258,8 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
 }
 
 bool MovingBody::is_stirred(const Drive& since, const Drive& now) const {
-    return contacts_.is_stirred(since, now) || pushes_.is_stirred(since, now);
+    const double travel = contacts_.at_rest().near_travel(since, now);
+    return travel > kStirred * matter_.lattice.spacing || pushes_.is_stirred(since, now);
 }
 
 double MovingBody::push_change(const Drive& from, const Drive& to) const {
@@ -291,14 +293,15 @@ double MovingBody::kinetic_energy(double step) const {
 Stored MovingBody::stored(const Drive& now, double step) {
     Stored held;
     held.elastic = elastic_energy();
-    held.contact = implicit_ ? contacts_.stored_energy(matter_, now) : contacts_.motion_energy();
+    held.contact =
+        implicit_ ? contacts_.at_rest().stored_energy(matter_, now) : contacts_.stored_energy();
     held.kinetic = kinetic_energy(step);
     return held;
 }
 
 std::vector<double> MovingBody::stiffness_bound() const {
     std::vector<double> bound = lattice_.stiffness_bound(matter_);
-    contacts_.add_stiffness(matter_, bound);
+    contacts_.at_rest().add_stiffness(matter_, bound);
     return bound;
 }
 

@@ -6,12 +6,12 @@
 
 #include "matter/drive.h"
 #include "matter/matter_state.h"
-#include "sim/contact_set.h"
 #include "sim/fastest_swing.h"
 #include "sim/internal_damping.h"
 #include "sim/lattice_forces.h"
 #include "sim/load_set.h"
 #include "sim/move_outcome.h"
+#include "sim/moving_contacts.h"
 #include "sim/settings.h"
 #include "sim/surface_drag.h"
 
@@ -63,7 +63,7 @@ class MovingBody {
     bool is_stirred(const Drive& since, const Drive& now) const;
     // The farthest that what holds it, or may come to touch it, moves [m].
     double drive_travel(const Drive& from, const Drive& to) const {
-        return contacts_.travel(matter_, from, to);
+        return contacts_.at_rest().travel(matter_, from, to);
     }
     // The most that loads and gravity come to change the acceleration of any particle by [m/s2].
     double push_change(const Drive& from, const Drive& to) const;
@@ -82,7 +82,7 @@ class MovingBody {
     // What a solution by the tangent asks for.
     const std::vector<float>* cells_alone() const { return lattice_.cells_alone(); }
     std::vector<HeldPoint> held_points(const Drive& now) const {
-        return contacts_.held_points(matter_, now, ContactSet::Slipping::free);
+        return contacts_.at_rest().held_points(matter_, now, RestingContacts::Slipping::free);
     }
     std::vector<double> stiffness_bound() const;  // of each particle [N/m]
     bool meets_tools() const { return touches_; }
@@ -121,7 +121,7 @@ class MovingBody {
     // All that a step changes.
     struct State {
         MatterState matter;
-        std::optional<ContactSet> contacts;
+        std::optional<MovingContacts> contacts;
         std::optional<LoadSet> pushes;
         std::optional<InternalDamping> damping;  // none, nor memory: no copy is kept
         std::vector<BranchMemory> memory;
@@ -146,7 +146,7 @@ class MovingBody {
     bool breaks_;
     SwingBound swings_;
     InternalDamping damping_;
-    ContactSet contacts_;
+    MovingContacts contacts_;
     LoadSet pushes_;
     double safety_, step_, present_step_;
     bool flowed_ = false;  // since present_step_ was found

@@ -133,7 +133,7 @@ double QuasistaticSolver::residual_of(const Vec3Array& force, const Drive& to) c
     return sum / push_measure(to);
 }
 
-NewtonProblem QuasistaticSolver::problem_of(const Drive& to, ContactSet::Slipping slipping) {
+NewtonProblem QuasistaticSolver::problem_of(const Drive& to, RestingContacts::Slipping slipping) {
     NewtonProblem problem;
     problem.forces = [&](Vec3Array& force) {
         evaluate(to);
@@ -151,7 +151,7 @@ NewtonProblem QuasistaticSolver::problem_of(const Drive& to, ContactSet::Slippin
 
 QuasistaticSolver::Relaxation QuasistaticSolver::solve_smooth(const Drive& to) {
     const Newton::Result found =
-        newton_->solve(matter_, problem_of(to, ContactSet::Slipping::free));
+        newton_->solve(matter_, problem_of(to, RestingContacts::Slipping::free));
     return {found.converged && mirrored_ == 0, found.steps, found.residual};
 }
 
@@ -226,7 +226,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::relax_stably(const Drive& to,
     };
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(apparatus_) || self_.presses()) break;
-        NewtonProblem problem = problem_of(to, ContactSet::Slipping::held);
+        NewtonProblem problem = problem_of(to, RestingContacts::Slipping::held);
         if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
         // Whether the matter itself gives way is asked, and not whether it can slide in its grips.
         for (HeldPoint& h : problem.held) {
@@ -416,7 +416,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     stay(to);
     outcome.body[0].friction_work += self_.commit();
     const bool breaks = commit(outcome);
-    const ContactSet::Stroke stroke = contacts_.stroke(matter_, from, to);
+    const RestingContacts::Stroke stroke = contacts_.stroke(matter_, from, to);
     outcome.body[0].friction_work += stroke.friction;
     contacts_.commit(matter_, to);
     std::vector<LoadSum> load = contacts_.loads(matter_, to);

@@ -21,7 +21,6 @@
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 #include "sim/coarse_space.h"
-#include "sim/contact_set.h"
 #include "sim/drive_motion.h"
 #include "sim/free_pieces.h"
 #include "sim/lattice_forces.h"
@@ -29,6 +28,7 @@
 #include "sim/move_outcome.h"
 #include "sim/newton.h"
 #include "sim/push_measure.h"
+#include "sim/resting_contacts.h"
 #include "sim/self_contact.h"
 #include "sim/settings.h"
 
@@ -67,14 +67,14 @@ class QuasistaticSolver {
     Relaxation settle(const Drive& to);
     Relaxation relax_stably(const Drive& to, MoveOutcome& outcome);
     Relaxation solve_smooth(const Drive& to);
-    NewtonProblem problem_of(const Drive& to, ContactSet::Slipping slipping);
+    NewtonProblem problem_of(const Drive& to, RestingContacts::Slipping slipping);
     double residual_of(const Vec3Array& force, const Drive& to) const;
     void connections_renewed();
     void find_bounds();
     void find_masses();
-    // `moved`: as ContactSet::add_forces() takes it.
+    // `moved`: as RestingContacts::add_forces() takes it.
     void evaluate(const Drive& to, double moved = std::numeric_limits<double>::infinity());
-    bool touches() { return contacts_.tools_near() || self_.presses(); }
+    bool touches() { return !contacts_.pairs().empty() || self_.presses(); }
     double push_measure(const Drive& to) const;
     void let_crack(const Drive& to, MoveOutcome& outcome);
     double booked(const Drive& now, const BodyOutcome& outcome);
@@ -95,7 +95,7 @@ class QuasistaticSolver {
     // moves to go, and the last such pause.
     int newton_rests_ = 0, newton_pause_ = 0;
     std::optional<CoarseSpace> coarse_;  // from the first relaxation on
-    ContactSet contacts_;
+    RestingContacts contacts_;
     LoadSet pushes_;
     SelfContact self_;
     double body_size_;  // [m]

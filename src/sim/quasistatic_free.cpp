@@ -41,7 +41,7 @@ int QuasistaticSolver::let_hang(const Drive& to) {
     own.resize(matter_.particle_count());
     self_.add_forces(own);
     return free_.let_hang(pushes_, to,
-                          contacts_.held_points(matter_, to, ContactSet::Slipping::free), own);
+                          contacts_.held_points(matter_, to, RestingContacts::Slipping::free), own);
 }
 
 // What loads press onto tools goes to where it is in balance on them, as a rigid body: while they
@@ -64,7 +64,7 @@ double QuasistaticSolver::seat_pieces(const Drive& from, const Drive& to) {
         add_restraint(x, {x, drag_, 0, free_.heavy_mass(), pushes_.gravity(lie)}, force);
     };
     problem.held = [&] {
-        return contacts_.held_points(matter_, lie, ContactSet::Slipping::lawful);
+        return contacts_.held_points(matter_, lie, RestingContacts::Slipping::lawful);
     };
     problem.look_around = [&] { contacts_.find_candidates(matter_, lie); };
     problem.look_around();

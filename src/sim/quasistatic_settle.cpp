@@ -61,7 +61,7 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     if (!coarse_) coarse_.emplace(matter_);
     coarse_->limit_gain(kGain[0]);
     const auto hold = [&] {
-        coarse_->hold(matter_, contacts_.held_points(matter_, to, ContactSet::Slipping::held),
+        coarse_->hold(matter_, contacts_.held_points(matter_, to, RestingContacts::Slipping::held),
                       self_.pressed());
     };
     double moved = 0;  // components, since the candidates were listed [m]

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "sim/contact_set.h"
+#include "sim/resting_contacts.h"
 #include "sim/vector_sums.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
@@ -77,7 +77,7 @@ TEST_CASE("points that cannot have come to a tool are passed over, and none that
                              {Quat::Identity(), Vec3(-0.52, 0, 0)},
                              {Quat::Identity(), Vec3(0, -0.42, 0)}};
     const Vec3Array start = m.particle_position;
-    ContactSet contacts(m, apparatus, motion_settings(Solver::quasistatic));
+    RestingContacts contacts(m, apparatus, motion_settings(Solver::quasistatic));
     contacts.begin_move(m, drive);
     contacts.find_candidates(m, drive);
     int differ = 0, touches = 0;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sim/advance.h"
-#include "sim/contact_set.h"
+#include "sim/resting_contacts.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 
@@ -44,7 +44,7 @@ struct Lying {
     }
     // Whether a seat was found, and what is left there to push it.
     std::pair<bool, Vec3Array> seat() {
-        ContactSet contacts(block, apparatus, SimSettings{});
+        RestingContacts contacts(block, apparatus, SimSettings{});
         contacts.begin_move(block, drive);
         contacts.find_candidates(block, drive);
         SeatProblem problem;
@@ -55,7 +55,7 @@ struct Lying {
             }
         };
         problem.held = [&] {
-            return contacts.held_points(block, drive, ContactSet::Slipping::lawful);
+            return contacts.held_points(block, drive, RestingContacts::Slipping::lawful);
         };
         problem.look_around = [&] { contacts.find_candidates(block, drive); };
         problem.drag = 3e-10 * kStiff.young_modulus * kSide;

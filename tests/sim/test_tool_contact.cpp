@@ -456,14 +456,14 @@ TEST_CASE("a crack elsewhere changes nothing of what a step's contacts do") {
         block.particle_velocity.set(p, Vec3(0.3, -0.5, 0));
     }
     const Apparatus apparatus = floor_with(0.5);
-    ContactSet contacts(block, apparatus, motion_settings());
+    MovingContacts contacts(block, apparatus, motion_settings());
     contacts.limit_stiffness(block, 1e-3);
     contacts.find_candidates(block, floor_at(0));
     contacts.begin_step(floor_at(0));
     const auto push = [&](double step) {
         Vec3Array force;
         force.x = force.y = force.z = std::vector<double>(block.particle_count(), 0.0);
-        contacts.add_motion_forces(block, floor_at(1e-4), step, Vec3::Zero(), force);
+        contacts.add_forces(block, floor_at(1e-4), step, Vec3::Zero(), force);
         return force.y;
     };
     const std::vector<double> whole = push(1e-4);

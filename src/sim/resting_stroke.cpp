@@ -18,7 +18,7 @@
 #include <algorithm>
 
 #include "laws/contact.h"
-#include "sim/contact_set.h"
+#include "sim/resting_contacts.h"
 
 namespace swage {
 
@@ -52,23 +52,22 @@ Vec3 across(const Vec3& normal, const Vec3& v) { return v - normal * normal.dot(
 
 }  // namespace
 
-ContactSet::Stroke ContactSet::stroke(const Aggregate& matter, const Drive& from,
-                                      const Drive& to) const {
+RestingContacts::Stroke RestingContacts::stroke(const Aggregate& matter, const Drive& from,
+                                                const Drive& to) const {
     Stroke stroke;
     stroke.idle.assign(apparatus_->tool.size() + apparatus_->grip.size(), 0.0);
     std::vector<char> touched(apparatus_->tool.size(), 0), touching(touched);
-    for (const Pair& pair : pair_) touched[pair.tool] |= char(pair.stuck && !pair.gone);
+    for (const ToolPairs::Pair& pair : pairs_) touched[pair.tool] |= char(pair.stuck && !pair.gone);
     const std::vector<LoadSum> load = loads(matter, to);
     for (std::size_t t = 0; t < touching.size(); ++t) touching[t] = load[t].contacts > 0;
-    for (const Pair& pair : pair_) {
+    for (const ToolPairs::Pair& pair : pairs_) {
         if (pair.gone) continue;
-        const Tool& tool = apparatus_->tool[pair.tool];
         const Pose &first = from.world_from_tool[pair.tool], &last = to.world_from_tool[pair.tool];
-        const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
-        const Vec3& start = start_position_[pair.point];
+        const Vec3 x = pairs_.place(pair, matter);
+        const Vec3& start = pairs_.start_place(pair);
         const auto distance = [&](const Pose& pose, const Vec3& at) {
             ToolEntry entry;
-            const Distance d = distance_since_start(pair, pose.inverse() * at, entry);
+            const Distance d = pairs_.distance_since_start(pair, pose.inverse() * at, entry);
             return Distance{d.value, pose.turn(d.normal)};
         };
         const auto gap = [&](const Pose& pose, const Vec3& at) { return distance(pose, at).value; };
@@ -76,8 +75,8 @@ ContactSet::Stroke ContactSet::stroke(const Aggregate& matter, const Drive& from
         const bool touches = d.value < 0;
         if (!touches && !pair.stuck) continue;
 
-        const double k = pair_stiffness(pair), friction = tool.friction_on(body_);
-        const Vec3 anchor = anchor_of(pair);
+        const double k = pairs_.stiffness(pair), friction = pairs_.friction(pair);
+        const Vec3 anchor = pairs_.anchor(pair);
         const auto force_at = [&](const Distance& at, const Pose& pose, const Vec3& point) {
             return contact_force(at.value, at.normal, point, pose * anchor, k, k, friction);
         };

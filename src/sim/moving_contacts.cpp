@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact with tools and grips in explicit steps: the other half of sim/contact_set.h.
+#include "sim/moving_contacts.h"
+
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "sim/contact_set.h"
 #include "sim/surface_forces.h"
 
 namespace swage {
@@ -12,10 +12,66 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  // points
 
+// Tools are rigid, so that all of the give is the matter's.
+ImpactLaw law_on_tools(const Material& material) {
+    const double e = material.restitution;
+    ImpactLaw law{};
+    law.restitution = e;
+    law.loss = restitution_loss(e);
+    law.damping = restitution_damping(e);
+    law.friction = material.friction;
+    return law;
+}
+
 }  // namespace
 
+MovingContacts::MovingContacts(const Aggregate& matter, const Apparatus& apparatus,
+                               const SimSettings& settings, int body)
+    : rest_(matter, apparatus, settings, body),
+      law_(law_on_tools(matter.material)),
+      holding_(matter.material.holding_friction()),
+      ratio_(law_.friction > 0 ? holding_ / law_.friction : 1),
+      stickiness_(matter.material.stickiness),
+      tool_way_(apparatus.tool.size()),
+      load_(apparatus.tool.size() + apparatus.grip.size()) {}
+
+void MovingContacts::limit_stiffness(const Aggregate& matter, double step) {
+    last_step_ = step;
+    rest_.grips().limit_stiffness(matter, step);
+    rest_.pairs().limit_stiffness(matter, step);
+}
+
+void MovingContacts::find_candidates(const Aggregate& matter, const Drive& now) {
+    ToolPairs& pairs = rest_.pairs();
+    const std::vector<int> before = pairs.find_candidates(matter, now);
+    std::vector<Memory> memory(before.size());
+    for (std::size_t n = 0; n < memory.size(); ++n) {
+        if (before[n] >= 0) {
+            memory[n] = memory_[before[n]];
+        } else {
+            memory[n].last.local = memory[n].next.local = pairs.local(pairs[n], matter, now);
+        }
+    }
+    memory_ = std::move(memory);
+}
+
+// Explicit steps that may follow find what rests.
+double MovingContacts::commit_implicit_step(const Aggregate& matter, const Drive& now) {
+    const double lost = rest_.commit(matter, now);
+    const ToolPairs& pairs = rest_.pairs();
+    memory_.resize(pairs.size());
+    for (std::size_t n = 0; n < memory_.size(); ++n) {
+        const ToolPairs::Pair& pair = pairs[n];
+        const ImpactHistory history{.touches = pair.stuck, .rests = pair.stuck};
+        const Touch touch{
+            .local = pairs.local(pair, matter, now), .history = history, .anchor = pair.anchor};
+        memory_[n] = {history, touch, touch};
+    }
+    return lost;
+}
+
 // A point that touches, or is still held.
-struct ContactSet::Meeting {
+struct MovingContacts::Meeting {
     std::size_t pair;
     // Speeds of explicit steps stand half a step before the forces. Where these are found anew, at
     // the start of a frame, they have moved on; those of then give the same forces again.
@@ -29,31 +85,34 @@ struct ContactSet::Meeting {
     ImpactForce result;
 };
 
-void ContactSet::begin_step(const Drive& from) {
+void MovingContacts::begin_step(const Drive& from) {
     world_from_tool_at_start_ = from.world_from_tool;
-    for (Pair& pair : pair_) {
-        pair.last = pair.next;
-        if (pair.gone) pair.next.friction = 0;  // taken by the step before
+    for (std::size_t n = 0; n < memory_.size(); ++n) {
+        Memory& memory = memory_[n];
+        memory.last = memory.next;
+        if (rest_.pairs()[n].gone) memory.next.friction = 0;  // taken by the step before
     }
 }
 
-std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matter,
-                                                           const Drive& now, bool anew) {
+std::vector<MovingContacts::Meeting> MovingContacts::find_meetings(const Aggregate& matter,
+                                                                   const Drive& now, bool anew) {
+    const ToolPairs& pairs = rest_.pairs();
     std::vector<Pose> tool_from_world;
     for (const Pose& pose : now.world_from_tool) tool_from_world.push_back(pose.inverse());
     const auto find = [&](std::size_t begin, std::size_t end, std::vector<Meeting>& met) {
         for (std::size_t n = begin; n < end; ++n) {
-            Pair& pair = pair_[n];
+            const ToolPairs::Pair& pair = pairs[n];
             if (pair.gone) continue;
-            const Tool& tool = apparatus_->tool[pair.tool];
+            const ImpactHistory& history = memory_[n].history;
+            Touch& next = memory_[n].next;
             const Pose& pose = now.world_from_tool[pair.tool];
-            const Vec3 x = points().position(std::size_t(pair.point), matter.particle_position);
-            const Touch found = pair.next;
-            pair.next = {.local = tool_from_world[pair.tool] * x};
-            const double hold = stickiness_ * points().area(pair.point);
-            const Distance d = distance_of(pair, pair.last.local, pair.next.local, pair.next.entry);
-            pair.next.depth = -d.value;
-            if (d.value >= 0 && !(pair.history.touches && hold > 0)) continue;
+            const Vec3 x = pairs.place(pair, matter);
+            const Touch found = next;
+            next = {.local = tool_from_world[pair.tool] * x};
+            const double hold = stickiness_ * pairs.points().area(pair.point);
+            const Distance d = pairs.distance(pair, memory_[n].last.local, next.local, next.entry);
+            next.depth = -d.value;
+            if (d.value >= 0 && !(history.touches && hold > 0)) continue;
             Meeting m;
             m.pair = n;
             m.has_speed = anew && found.history.touches;
@@ -62,47 +121,48 @@ std::vector<ContactSet::Meeting> ContactSet::find_meetings(const Aggregate& matt
             m.place = x;
             m.normal = pose.turn(d.normal);
             m.law = law_;
-            m.law.stiffness = pair_stiffness(pair);
-            const double friction = tool.friction_on(body_);
+            m.law.stiffness = pairs.stiffness(pair);
+            const double friction = pairs.friction(pair);
             m.law.friction = friction;
             m.law.holding = friction == law_.friction ? holding_ : ratio_ * friction;
             m.law.hold = hold;
             const double k = m.law.stiffness;
             if (d.value >= 0 && !is_bound(k, m.depth, hold)) continue;  // torn off
             const double N = spring_push(k, m.depth, hold), bears = N + hold;
-            const Vec3 way = pair.history.touches ? Vec3(pose * pair.anchor - x) : Vec3::Zero();
+            const Vec3 way = history.touches ? Vec3(pose * pair.anchor - x) : Vec3::Zero();
             m.reach = way - m.normal * m.normal.dot(way);
-            const double limit = (pair.history.slides ? m.law.friction : m.law.holding) * bears / k;
+            const double limit = (history.slides ? m.law.friction : m.law.holding) * bears / k;
             const double size = m.reach.norm();
             m.spring = N * m.normal + k * std::min(1.0, size > 0 ? limit / size : 1.0) * m.reach;
             met.push_back(m);
         }
     };
-    return parallel_collect<Meeting>(pair_.size(), kChunk, find);
+    return parallel_collect<Meeting>(pairs.size(), kChunk, find);
 }
 
-void ContactSet::add_motion_forces(const Aggregate& matter, const Drive& now, double step,
-                                   const Vec3& gravity, Vec3Array& force) {
+void MovingContacts::add_forces(const Aggregate& matter, const Drive& now, double step,
+                                const Vec3& gravity, Vec3Array& force) {
     if (step > 0) {
         last_step_ = way_step_ = step;
         for (std::size_t t = 0; t < tool_way_.size(); ++t) {
             tool_way_[t] = {world_from_tool_at_start_[t], now.world_from_tool[t]};
         }
     }
-    motion_load_.assign(motion_load_.size(), {});
-    motion_energy_ = grips_.add_all(matter, now, force, tool_way_.size(), motion_load_);
-    if (!pair_.empty()) meet(matter, now, step == 0, gravity, force);
+    load_.assign(load_.size(), {});
+    stored_ = rest_.grips().add_all(matter, now, force, tool_way_.size(), load_);
+    if (!rest_.pairs().empty()) meet(matter, now, step == 0, gravity, force);
 }
 
-void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
-                      Vec3Array& force) {
+void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
+                          Vec3Array& force) {
     std::vector<Meeting> meeting = find_meetings(matter, now, anew);
     if (meeting.empty()) return;
     const double step = last_step_;
-    const SurfacePoints& surface = points();
+    const ToolPairs& pairs = rest_.pairs();
+    const SurfacePoints& surface = pairs.points();
     bears_.resize(matter.particle_count(), 0.0);
     for (const Meeting& m : meeting) {
-        const int point = pair_[m.pair].point;
+        const int point = pairs[m.pair].point;
         spread(surface, point, m.spring, force);
         const SurfacePoints::Carriers by = surface.carriers(static_cast<std::size_t>(point));
         for (int c = 0; c < 8; ++c) {
@@ -111,18 +171,19 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
     }
     met_.resize(matter.particle_count(), 0.0);
     const bool is_met = std::any_of(meeting.begin(), meeting.end(), [&](const Meeting& m) {
-        return !pair_[m.pair].history.touches;
+        return !memory_[m.pair].history.touches;
     });
     for (const Meeting& m : meeting) {
-        const Pair& pair = pair_[m.pair];
-        if (!is_met || !pair.history.touches || pair.history.rests) continue;
-        for (ParticleId p : surface.corner(pair.point)) {
-            met_[p] = std::max(met_[p], pair.history.speed);
+        const ImpactHistory& history = memory_[m.pair].history;
+        if (!is_met || !history.touches || history.rests) continue;
+        for (ParticleId p : surface.corner(pairs[m.pair].point)) {
+            met_[p] = std::max(met_[p], history.speed);
         }
     }
     parallel_each(meeting.size(), kChunk, [&](std::size_t n) {
         Meeting& m = meeting[n];
-        const Pair& pair = pair_[m.pair];
+        const ToolPairs::Pair& pair = pairs[m.pair];
+        const Memory& memory = memory_[m.pair];
         Vec3 v = Vec3::Zero(), push = gravity;
         double give = 0, beside = 0;  // give: S
         const auto by = surface.carriers(static_cast<std::size_t>(pair.point));
@@ -139,7 +200,7 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
         give /= m.law.stiffness;
         if (way_step_ > 0) {
             const ToolWay& way = tool_way_[pair.tool];
-            v -= (way.to * pair.next.local - way.from * pair.next.local) / way_step_;
+            v -= (way.to * memory.next.local - way.from * memory.next.local) / way_step_;
         }
         if (!m.has_speed) m.speed = v;
         // The law takes its own spring off again.
@@ -152,16 +213,16 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
                                  .give = give,
                                  .step = step,
                                  .beside = beside},
-                                pair.history);
+                                memory.history);
     });
     for (const Meeting& m : meeting) {
-        Pair& pair = pair_[m.pair];
+        const ToolPairs::Pair& pair = pairs[m.pair];
         const ImpactForce& f = m.result;
         for (ParticleId p : surface.corner(pair.point)) bears_[p] = met_[p] = 0;
         spread(surface, pair.point, f.force - m.spring, force);
         if (!f.history.touches) continue;
         const Pose& pose = now.world_from_tool[pair.tool];
-        Touch& next = pair.next;
+        Touch& next = memory_[m.pair].next;
         next.speed = m.speed;
         next.dashpot = f.force - f.elastic;
         next.bond = f.bond;
@@ -170,8 +231,8 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
         next.stored = f.stored;
         next.history = f.history;
         next.anchor = pose.inverse() * (m.place + f.reach);
-        motion_energy_ += f.stored;
-        LoadSum& sum = motion_load_[pair.tool];
+        stored_ += f.stored;
+        LoadSum& sum = load_[pair.tool];
         sum.add(m.place - pose.translation, f.force);
         sum.penetration = std::max(sum.penetration, m.depth);
         sum.sliding += f.history.slides;
@@ -180,10 +241,14 @@ void ContactSet::meet(const Aggregate& matter, const Drive& now, bool anew, cons
 
 // Forces that were found at both ends of the way work on it by the trapezoid rule, as those of the
 // matter do (sim/moving_body.h, stored()).
-ToolLosses ContactSet::commit_motion(const Drive& now) {
+ToolLosses MovingContacts::commit(const Drive& now) {
     ToolLosses lost;
-    for (Pair& pair : pair_) {
-        const Touch &last = pair.last, &next = pair.next;
+    ToolPairs& pairs = rest_.pairs();
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < memory_.size(); ++n) {
+        ToolPairs::Pair& pair = pairs[n];
+        Memory& memory = memory_[n];
+        const Touch &last = memory.last, &next = memory.next;
         if (last.history.touches || next.history.touches) {
             const Vec3 way = now.world_from_tool[pair.tool].turn(next.local - last.local);
             lost.damped -= 0.5 * (last.dashpot + next.dashpot).dot(way);
@@ -194,13 +259,15 @@ ToolLosses ContactSet::commit_motion(const Drive& now) {
         }
         // What its spring held when its cell broke.
         if (pair.gone) lost.damped += next.stored;
-        come_out(pair, next.depth);
-        pair.history = next.history;
+        pair.come_out(next.depth);
+        memory.history = next.history;
         pair.entry = next.history.touches ? next.entry : ToolEntry{};
         pair.anchor = next.anchor;
         pair.stuck = next.history.touches;
+        if (!pair.gone) memory_[kept++] = memory;
     }
-    forget_gone();
+    memory_.resize(kept);
+    pairs.forget_gone();
     return lost;
 }
 

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What tools and grips do to a body in explicit steps: the law of laws/impact.h on the pairs of
+// sim/tool_pairs.h, the tool rigid and as heavy as can be. A step first finds the springs of all
+// points that touch, then each one's dashpot from the speed that it would end the step with. Were
+// dashpots taken one after the other, those of what rests would bear against each other, and the
+// first would slip before the last. Points share carriers, so that the dashpots together would
+// overshoot; each is therefore taken as if all that touch worked as it does, in proportion to their
+// stiffness:
+//
+//     S_i = sum_p |w_ip| sum_j |w_jp| k_j / (m_p k_i),   P_i = c_i dt v_i / (1 + c_i dt S_i)
+//
+// With P = D v they change v by -A D v; A is symmetric and not negative, D diagonal and D_i at most
+// 1 / S_i = k_i / (|A| k)_i. The eigenvalues of A D, those of D^1/2 A D^1/2, grow with D, and with
+// the largest one are those of A_ij k_j / (|A| k)_i, none of whose rows sums up to more than 1. So
+// they lie from 0 to 1: dashpots never turn a speed round, and only widen the bound of the step, as
+// laws/impact.h says.
+#pragma once
+
+#include <vector>
+
+#include "laws/impact.h"
+#include "sim/resting_contacts.h"
+
+namespace swage {
+
+// What contact with tools took in a step [J].
+struct ToolLosses {
+    double damped = 0, friction = 0;
+};
+
+class MovingContacts {
+  public:
+    // As RestingContacts.
+    MovingContacts(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
+                   int body = 0);
+
+    // The same pairs and grips by the law without rates.
+    const RestingContacts& at_rest() const { return rest_; }
+
+    // Steps of this length [s] must stay stable, so there is a stiffness that no point that touches
+    // or is gripped exceeds (stiffest_of_points()).
+    void limit_stiffness(const Aggregate& matter, double step);
+
+    // As of sim/tool_pairs.h.
+    void connections_changed(const Aggregate& matter) { rest_.connections_changed(matter); }
+    void find_candidates(const Aggregate& matter, const Drive& now);
+
+    // An implicit step begins from this drive; it is kept, and explicit ones may follow. Returns as
+    // RestingContacts::commit().
+    void begin_implicit_step(const Aggregate& matter, const Drive& from) {
+        rest_.begin_move(matter, from);
+    }
+    double commit_implicit_step(const Aggregate& matter, const Drive& now);
+
+    // A step begins from this drive, with the forces that were found last.
+    void begin_step(const Drive& from);
+    // Adds all contact and grip forces at the present positions, toward which a step of this length
+    // [s] goes on with the forces so far and gravity [m/s2]; 0: found anew where the last one
+    // ended.
+    void add_forces(const Aggregate& matter, const Drive& now, double step, const Vec3& gravity,
+                    Vec3Array& force);
+    // Of these: by tool, then by grip; and the energy in springs [J].
+    const std::vector<LoadSum>& loads() const { return load_; }
+    double stored_energy() const { return stored_; }
+    // The step is kept: remembers where each point sticks and how it met its tool. Returns what
+    // dashpots and friction took in it.
+    ToolLosses commit(const Drive& now);
+
+  private:
+    // What a point did, at the end of a step.
+    struct Touch {
+        Vec3 local = Vec3::Zero();    // in the tool's frame
+        Vec3 speed = Vec3::Zero();    // against the tool, of those that touch [m/s]
+        Vec3 dashpot = Vec3::Zero();  // its force [N]
+        Vec3 bond = Vec3::Zero();     // ImpactForce::bond [N]
+        double bound = 0;             // ImpactForce::bound [J]
+        double friction = 0;          // taken in the step [J]
+        double stored = 0;            // in its spring [J]
+        ImpactHistory history{};      // to commit
+        Vec3 anchor = Vec3::Zero();   // likewise, in the tool's frame
+        ToolEntry entry{};            // likewise
+        double depth = 0;             // that counts [m]
+    };
+    // Of a pair, beside what that itself remembers.
+    struct Memory {
+        ImpactHistory history{};  // touches: as ToolPairs::Pair::stuck
+        Touch last{}, next{};     // before the present step and after it
+    };
+    // How a tool went in the last step.
+    struct ToolWay {
+        Pose from, to;
+    };
+    struct Meeting;
+    std::vector<Meeting> find_meetings(const Aggregate& matter, const Drive& now, bool anew);
+    void meet(const Aggregate& matter, const Drive& now, bool anew, const Vec3& gravity,
+              Vec3Array& force);
+
+    RestingContacts rest_;
+    std::vector<Memory> memory_;  // by pair
+    ImpactLaw law_;               // of the matter on rigid tools; what is each point's is not in it
+    double holding_;              // static friction where the tool's own is the matter's
+    double ratio_;                // of static friction to kinetic, where it is not
+    double stickiness_;           // [Pa]
+    double last_step_ = 0;        // [s]
+    double way_step_ = 0;         // that tool_way_ took; 0: none yet [s]
+    std::vector<ToolWay> tool_way_;
+    std::vector<Pose> world_from_tool_at_start_;
+    // Of each particle, what points that touch have of stiffness on it [N/m]; 0 between.
+    std::vector<double> bears_;
+    std::vector<double> met_;  // likewise, at which speed those that do not rest were met [m/s]
+    std::vector<LoadSum> load_;
+    double stored_ = 0;
+};
+
+}  // namespace swage
