@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "geometry/mesh_read.h"
 #include "pipeline/mesh_bytes.h"
 
 namespace swage {
@@ -25,9 +26,10 @@ std::string hash_of_mesh(TriMesh mesh) {
     return hash_text(hash_of(out.bytes()));
 }
 
-void add_file(RunIdentity& identity, const std::string& kind, const fs::path& file) {
+// Returns its role, which no other has; empty: it is no file.
+std::string add_file(RunIdentity& identity, const std::string& kind, const fs::path& file) {
     std::error_code error;
-    if (!fs::is_regular_file(file, error)) return;
+    if (!fs::is_regular_file(file, error)) return {};
     std::string role = kind.empty() ? file.filename().string() : kind;
     const auto taken = [&](const std::string& name) {
         return std::any_of(identity.input.begin(), identity.input.end(),
@@ -36,6 +38,13 @@ void add_file(RunIdentity& identity, const std::string& kind, const fs::path& fi
     std::string free_role = role;
     for (int n = 2; taken(free_role); ++n) free_role = fmt::format("{} ({})", role, n);
     identity.input.push_back({free_role, file, hash_text(hash_of_file(file))});
+    return free_role;
+}
+
+void add_as_read(RunIdentity& identity, const std::string& role, const fs::path& file,
+                 const TriMesh& mesh) {
+    identity.input.push_back(
+        {fmt::format("what the {} was read as", role), file, hash_of_mesh(mesh)});
 }
 
 Json box_json(const Box& box) {
@@ -67,13 +76,16 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
             files.push_back(inset.file);
         }
     }
-    for (const fs::path& file : files) add_file(identity, file == scene.file ? "scene" : "", file);
+    for (const fs::path& file : files) {
+        const std::string role = add_file(identity, file == scene.file ? "scene" : "", file);
+        // Its numbers lie in files beside it.
+        if (file.extension() == ".gltf") add_as_read(identity, role, file, read_mesh(file));
+    }
     for (std::size_t b = 0; b < input.size(); ++b) {
         const BodySpec& body = scene.body[b];
         const std::string role = b == 0 ? "mesh" : "mesh of " + body.name;
         add_file(identity, role, body.mesh.file);
-        identity.input.push_back({fmt::format("what the {} was read as", role), body.mesh.file,
-                                  hash_of_mesh(input[b].mesh)});
+        add_as_read(identity, role, body.mesh.file, input[b].mesh);
         for (const SurfaceMaterial& material : input[b].mesh.material) {
             if (material.texture.empty()) continue;
             add_file(identity, "texture " + material.texture.filename().string(), material.texture);

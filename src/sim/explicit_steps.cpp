@@ -394,11 +394,13 @@ MoveOutcome ExplicitSolver::advance(const Drive& from, const Drive& to) {
     for (std::size_t b = 0; b < met_.size(); ++b) outcome.body[b].met.start(met_[b]);
     halvings_ = 0;
     bool goes_on = false;  // from the end of a block that was kept
+    bool is_begun = false;
     for (Drive begin = from; begin.time < to.time;) {
         const Block block = next_block(way, begin);
         const double lag = has_half_kicks() ? block.dt : 0;
         const std::vector<Stored> held = goes_on ? still_stored(lag) : stored(begin, lag);
-        if (begin.time == from.time) start_books(held, outcome);
+        // Once: what is taken back may let go of what the damping holds.
+        if (!std::exchange(is_begun, true)) start_books(held, outcome);
         save();
         const std::vector<BodyOutcome> so_far = outcome.body;
         Finding found = take(way, block, outcome);

@@ -223,6 +223,24 @@ TEST_CASE("steps beyond the stable one are halved until energy keeps") {
     CHECK(r.kinetic + r.elastic < 1.06 * start);
 }
 
+TEST_CASE("books count what the damping held where the first steps of a move are taken back") {
+    Material material = kSpringy;
+    material.damping_ratio = 0.1;
+    Aggregate m = block(material);
+    for (std::size_t p = 0; p < m.particle_count(); ++p) {
+        m.particle_velocity.set(p, Vec3(5 * m.particle_position.x[p], 0, 0));
+    }
+    const Apparatus nothing;
+    SimSettings settings = motion_settings();
+    const double step = explicit_step(m, settings);
+    const FrameReport before = Simulation(m, nothing, settings).advance(still(0), still(20 * step));
+    settings.step_safety = 8;
+    Simulation simulation(m, nothing, settings);
+    const FrameReport r = simulation.advance(still(20 * step), still(70 * step));
+    REQUIRE(r.halvings > 0);
+    CHECK(std::abs(r.remainder) < 0.01 * (before.kinetic + before.elastic));
+}
+
 TEST_CASE("a lattice crushed a hundred times comes back to its shape") {
     Material material = kSpringy;
     material.damping_ratio = 0.3;

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fstream>
+
+#include "pipeline/run_record.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+using namespace swage;
+
+TEST_CASE("what lies beside a glTF file of an inset or a tool belongs to what a run was made of") {
+    const Scratch scratch;
+    const auto put = [&](const char* name, const std::string& bytes) {
+        std::ofstream(scratch.path() / name, std::ios::binary) << bytes;
+        return scratch.path() / name;
+    };
+    const auto put_corners = [&](float far) {
+        const float corner[] = {0, 0, 0, far, 0, 0, 0, far, 0};
+        put("corners.bin", std::string(reinterpret_cast<const char*>(corner), sizeof corner));
+    };
+    SceneSpec scene;
+    scene.body.emplace_back();
+    SECTION("an inset") { scene.body[0].inset.emplace_back(); }
+    SECTION("a tool") {
+        scene.stage.emplace_back();
+        scene.stage[0].machine.tool.emplace_back();
+    }
+    const auto file = put("core.gltf",
+                          R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                           "min": [0, 0, 0], "max": [2, 2, 0]}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"uri": "corners.bin", "byteLength": 36}]})");
+    if (scene.stage.empty()) {
+        scene.body[0].inset[0].file = file;
+    } else {
+        scene.stage[0].machine.tool[0].mesh = file;
+    }
+    const auto hashes = [&] {
+        std::vector<std::string> hash;
+        for (const RunInput& input : identity_of(scene, {}, {}).input) hash.push_back(input.hash);
+        return hash;
+    };
+    put_corners(1);
+    const std::vector<std::string> one = hashes();
+    CHECK(hashes() == one);
+    put_corners(2);
+    CHECK(hashes() != one);
+}
