@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the quasi-static solver does with what nothing holds: a body can then be at rest anywhere.
 // It stays where it was let go, as near as tools leave it room.
-#include <limits>
-
 #include "sim/quasistatic.h"
 #include "sim/relaxation_passes.h"
 #include "sim/seating.h"
@@ -28,72 +26,63 @@ Eigen::Matrix3Xd columns(const Vec3Array& x) {
 
 }  // namespace
 
-bool QuasistaticSolver::begins_to_fall(const Drive& to) {
-    Vec3Array contact;
-    contact.resize(matter_.particle_count());
-    contacts_.add_forces(matter_, to, contact, std::numeric_limits<double>::infinity());
-    self_.add_forces(contact);
-    return free_.begins_to_fall(pushes_, to, contact);
-}
-
-int QuasistaticSolver::let_hang(const Drive& to) {
-    Vec3Array own;
-    own.resize(matter_.particle_count());
-    self_.add_forces(own);
-    return free_.let_hang(pushes_, to,
-                          contacts_.held_points(matter_, to, RestingContacts::Slipping::free), own);
-}
-
 // What loads press onto tools goes to where it is in balance on them, as a rigid body: while they
 // stand still, or before they move, unless it lies on them already. Returns how far any of it went
 // [m].
-double QuasistaticSolver::seat_pieces(const Drive& from, const Drive& to) {
-    const double pushed = pushes_.size(matter_, to), a = matter_.lattice.spacing;
+double QuasistaticSolver::seat_pieces(StaticMove& move) {
+    const Drive& to = move.to;
+    RestingContacts& contacts = forces_.contacts;
+    const LoadSet& pushes = forces_.pushes;
+    const FreePieces& free = forces_.free;
+    const double pushed = pushes.size(matter_, to), a = matter_.lattice.spacing;
     if (!seats_ || apparatus_.tool.empty() || pushed == 0) return 0;
-    if (settings_.self_contact && free_.are_several()) return 0;  // they may lie on each other
-    if (measure_.carried() > kMoreThanLoads * pushed) return 0;
-    const bool stand = contacts_.near_travel(from, to) <= kStill * a;
-    if (!stand && measure_.carried() > kLies * pushed) return 0;
-    const Drive& lie = stand ? to : from;
+    if (settings_.self_contact && free.are_several()) return 0;  // they may lie on each other
+    if (forces_.measure.carried() > kMoreThanLoads * pushed) return 0;
+    const bool stand = contacts.near_travel(move.from, to) <= kStill * a;
+    if (!stand && forces_.measure.carried() > kLies * pushed) return 0;
+    const Drive& lie = stand ? to : move.from;
     Vec3Array& x = matter_.particle_position;
     const Vec3Array before = x;
     SeatProblem problem;
-    problem.add_contacts = [&](Vec3Array& force) { contacts_.add_forces(matter_, lie, force); };
+    problem.add_contacts = [&](Vec3Array& force) { contacts.add_forces(matter_, lie, force); };
     problem.add_loads = [&](Vec3Array& force) {
-        free_.add_loads(pushes_, lie, force);
-        add_restraint(x, {x, drag_, 0, free_.heavy_mass(), pushes_.gravity(lie)}, force);
+        free.add_loads(pushes, lie, force);
+        add_restraint(x, {x, forces_.drag, 0, free.heavy_mass(), pushes.gravity(lie)}, force);
     };
     problem.held = [&] {
-        return contacts_.held_points(matter_, lie, RestingContacts::Slipping::lawful);
+        return contacts.held_points(matter_, lie, RestingContacts::Slipping::lawful);
     };
-    problem.look_around = [&] { contacts_.find_candidates(matter_, lie); };
+    problem.look_around = [&] { contacts.find_candidates(matter_, lie); };
     problem.look_around();
     problem.drag = kSeatDrag * matter_.mean_modulus() * a;
     problem.heavy = std::max(1.0, kSeatHeavy * matter_.mean_modulus() * a * a / pushed);
     problem.enough = kSeatAccuracy * settings_.tolerance * pushed;
-    problem.reach = body_size_;
-    for (const std::vector<ParticleId>& piece : free_.loose_pieces()) {
+    problem.reach = forces_.extent();
+    for (const std::vector<ParticleId>& piece : free.loose_pieces()) {
         if (!seat(matter_, piece, problem)) seats_ = false;
     }
-    if (!stand) contacts_.find_candidates(matter_, to);
-    for (std::size_t p = 0; p < x.size(); ++p) rest_.add(p, x.at(p) - before.at(p));
+    if (!stand) contacts.find_candidates(matter_, to);
+    for (std::size_t p = 0; p < x.size(); ++p) move.rest.add(p, x.at(p) - before.at(p));
     return farthest_move(x, before);
 }
 
-void QuasistaticSolver::stay(const Drive& to) {
-    if (!apparatus_.grip.empty() || apparatus_.tool.empty() || pushes_.size(matter_, to) > 0) {
+void QuasistaticSolver::stay(const StaticMove& move) {
+    const Drive& to = move.to;
+    RestingContacts& contacts = forces_.contacts;
+    if (!apparatus_.grip.empty() || apparatus_.tool.empty() ||
+        forces_.pushes.size(matter_, to) > 0) {
         return;
     }
     const auto is_free = [&] {
-        contacts_.find_candidates(matter_, to);
-        for (const LoadSum& load : contacts_.loads(matter_, to)) {
+        contacts.find_candidates(matter_, to);
+        for (const LoadSum& load : contacts.loads(matter_, to)) {
             if (load.size > 0) return false;
         }
         return true;
     };
     if (!is_free()) return;
     const Vec3Array free = matter_.particle_position;
-    const Eigen::Matrix3Xd from = columns(start_), now = columns(free);
+    const Eigen::Matrix3Xd from = columns(move.start), now = columns(free);
     if (from == now) return;
     const Vec3 start_center = from.rowwise().mean(), free_center = now.rowwise().mean();
     const Mat3 spread = (now.colwise() - free_center) * (from.colwise() - start_center).transpose();
@@ -114,7 +103,7 @@ void QuasistaticSolver::stay(const Drive& to) {
         (is_free() ? clear : touches) = middle;
     }
     go_back(clear);
-    contacts_.find_candidates(matter_, to);
+    contacts.find_candidates(matter_, to);
 }
 
 }  // namespace swage

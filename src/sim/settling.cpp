@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One relaxation of the quasi-static solver.
+#include "sim/settling.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/interrupt.h"
 #include "sim/crushed_cells.h"
-#include "sim/quasistatic.h"
 #include "sim/relaxation_passes.h"
 #include "sim/relaxation_schedule.h"
+#include "sim/vector_sums.h"
 
 namespace swage {
 
 namespace {
 
-// Masses under which a step of one is stable. A quarter of the stiffness bound would do for plain
-// steps. Contact at 0.26 chatters with friction.
+// Of stiffnesses. A quarter of the bound would do for plain steps. Contact at 0.26 chatters with
+// friction.
 constexpr double kLatticeMassShare = 0.5;
 constexpr double kContactMassShare = 0.6;
 constexpr int kCheckInterval = 10;
@@ -32,49 +33,58 @@ constexpr int kRenewInterval = 50;
 // the crease between two planes meets now the one and now the other, so this need not end.
 constexpr int kMostRounds = 4;
 
+// Under which a step of one is stable.
+struct StepMasses {
+    std::vector<double> mass, inverse;
+
+    void find(StaticForces& forces) {
+        const Aggregate& matter = forces.matter;
+        const std::size_t n = matter.particle_count();
+        std::vector<double> contact(n, 0.0);
+        forces.contacts.add_stiffness(matter, contact);
+        forces.self.add_stiffness(contact);
+        std::vector<double> guard(n, 0.0);
+        add_guard_stiffness(matter, guard);
+        mass.resize(n);
+        inverse.resize(n);
+        for (std::size_t p = 0; p < n; ++p) {
+            mass[p] = kLatticeMassShare * (forces.stiffness_bound[p] + guard[p]) +
+                      kContactMassShare * contact[p];
+            inverse[p] = mass[p] > 0 ? 1 / mass[p] : 0;  // a loose particle stays where it is
+        }
+    }
+};
+
 }  // namespace
 
-void QuasistaticSolver::find_masses() {
-    const std::size_t n = matter_.particle_count();
-    std::vector<double> contact(n, 0.0);
-    contacts_.add_stiffness(matter_, contact);
-    self_.add_stiffness(contact);
-    std::vector<double> guard(n, 0.0);
-    add_guard_stiffness(matter_, guard);
-    mass_.resize(n);
-    inverse_mass_.resize(n);
-    for (std::size_t p = 0; p < n; ++p) {
-        mass_[p] =
-            kLatticeMassShare * (lattice_bound_[p] + guard[p]) + kContactMassShare * contact[p];
-        inverse_mass_[p] = mass_[p] > 0 ? 1 / mass_[p] : 0;  // a loose particle stays where it is
-    }
-}
-
-QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
-    const double a = matter_.lattice.spacing;
-    Vec3Array& x = matter_.particle_position;
-    Vec3Array &v = velocity_, &f = force_;
-    const auto stop = [&] {
-        for (auto* c : {&v.x, &v.y, &v.z}) std::fill(c->begin(), c->end(), 0.0);
-    };
+Relaxation settle(StaticForces& forces, CoarseSpace& coarse, const StaticMove& move,
+                  double accuracy, int limit) {
+    Aggregate& matter = forces.matter;
+    const Drive& to = move.to;
+    const double a = matter.lattice.spacing;
+    Vec3Array &x = matter.particle_position, &f = forces.force;
+    Vec3Array v;
+    const auto stop = [&] { set_zero(x.size(), v); };
     stop();
-    if (!coarse_) coarse_.emplace(matter_);
-    coarse_->limit_gain(kGain[0]);
+    coarse.limit_gain(kGain[0]);
     const auto hold = [&] {
-        coarse_->hold(matter_, contacts_.held_points(matter_, to, RestingContacts::Slipping::held),
-                      self_.pressed());
+        coarse.hold(matter,
+                    forces.contacts.held_points(matter, to, RestingContacts::Slipping::held),
+                    forces.self.pressed());
     };
+    StepMasses masses;
+    Vec3Array listed;  // positions, when the candidates were found
     double moved = 0;  // components, since the candidates were listed [m]
     const auto list_candidates = [&] {
-        contacts_.find_candidates(matter_, to);
-        if (coarse_->is_stale(x)) {
-            coarse_->find_stiffness(
-                matter_, [&](Vec3Array& force) { lattice_.find(matter_, Flow::none, force); });
+        forces.contacts.find_candidates(matter, to);
+        if (coarse.is_stale(x)) {
+            coarse.find_stiffness(
+                matter, [&](Vec3Array& force) { forces.lattice.find(matter, Flow::none, force); });
         }
-        find_masses();
-        coarse_->find_masses(mass_);
+        masses.find(forces);
+        coarse.find_masses(masses.mass);
         hold();
-        listed_ = x;
+        listed = x;
         moved = 0;
     };
     list_candidates();
@@ -85,45 +95,45 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
     Momentum momentum;
     Relaxation result;
     int renewed = 0, weighted_mirrors = 0, rounds = 0;
-    const double whole_mass = std::accumulate(mass_.begin(), mass_.end(), 0.0);
-    Patience patience(settings_.iteration_limit, x);
-    const int turn = settings_.iteration_limit / int(std::size(kGain));
+    const double whole_mass = std::accumulate(masses.mass.begin(), masses.mass.end(), 0.0);
+    Patience patience(limit, x);
+    const int turn = limit / int(std::size(kGain));
     for (int iteration = 1; iteration <= patience.limit; ++iteration) {
         throw_if_interrupted();
         result.iterations = iteration;
         if (iteration % turn == 1 && is_light) {
-            coarse_->limit_gain(kGain[iteration / turn % std::size(kGain)]);
+            coarse.limit_gain(kGain[iteration / turn % std::size(kGain)]);
         }
         patience.watch(iteration, x, a, result.residual);
-        evaluate(to, moved);
-        if (mirrored_ > weighted_mirrors || self_.has_found_more()) {
-            find_masses();
-            weighted_mirrors = mirrored_;
+        forces.find(to, moved);
+        if (forces.mirrored > weighted_mirrors || forces.self.has_found_more()) {
+            masses.find(forces);
+            weighted_mirrors = forces.mirrored;
         }
         if (iteration % kCheckInterval == 0) {
-            result.residual = residual_of(f, to);
+            result.residual = forces.residual_of(f, to);
             if (!std::isfinite(result.residual)) return result;
             if (thrown == 0) thrown = kThrown * std::max(1.0, result.residual);
             if (result.residual > thrown && is_light) {
                 is_light = false;
-                coarse_->limit_gain(1);
+                coarse.limit_gain(1);
                 x = first;
                 stop();
-                self_.meet_anew();
+                forces.self.meet_anew();
                 list_candidates();
                 momentum = {};
                 continue;
             }
-            if (result.residual <= accuracy_) {
+            if (result.residual <= accuracy) {
                 result.converged = true;
-                if (rounds++ == kMostRounds || !self_.meet_anew()) return result;
-                evaluate(to, moved);
-                result.residual = residual_of(f, to);
-                if (result.residual <= accuracy_) return result;
+                if (rounds++ == kMostRounds || !forces.self.meet_anew()) return result;
+                forces.find(to, moved);
+                result.residual = forces.residual_of(f, to);
+                if (result.residual <= accuracy) return result;
                 result.converged = false;
             }
         }
-        const RelaxationSums sums = relaxation_sums(v, f, mass_);
+        const RelaxationSums sums = relaxation_sums(v, f, masses.mass);
         double keep = 0;
         if (sums.power > 0) {
             keep = momentum.downhill();
@@ -139,14 +149,14 @@ QuasistaticSolver::Relaxation QuasistaticSolver::settle(const Drive& to) {
             }
         }
         const double step = momentum.step;
-        if (coarse_->gains() && mirrored_ == 0) {
-            coarse_->add(f, step, keep, v);
+        if (coarse.gains() && forces.mirrored == 0) {
+            coarse.add(f, step, keep, v);
             keep = 1;
         }
-        moved = move_on({keep, step, step, kLongest * a}, f, inverse_mass_, listed_, v, x);
+        moved = move_on({keep, step, step, kLongest * a}, f, masses.inverse, listed, v, x);
         if (moved > 0.45 * a) {
             list_candidates();
-            result.falls = free_.has_fallen(pushes_, to, start_, body_size_);
+            result.falls = forces.has_fallen(move);
             if (result.falls) return result;
         }
     }

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/equilibrium_search.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/settling.h"
+#include "sim/vector_sums.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kNudge = 0.02;  // spacings: the least that a body that buckles is moved
+constexpr int kMostTurns = 4;
+constexpr double kDriven = 0.03;  // of what drives a body that buckles may be left over
+constexpr double kFinest = 1e-4;  // of the tolerance: less is never asked for
+constexpr double kAstray = 0.01;  // of the way that the body has gone
+
+// Share of the drag that Newton's method goes ahead with, and that stays when it is found to hold
+// the body back.
+constexpr double kSmoothHold = 1e-3, kLetGo = 0.1;
+constexpr int kLongestPause = 16;
+
+// NOTE: the tangent knows nothing of how a pressure turns with the surface. Without it a free body
+// under pressure seems to gain by turning over.
+bool floats_under_pressure(const Apparatus& apparatus) {
+    return apparatus.grip.empty() &&
+           std::any_of(apparatus.load.begin(), apparatus.load.end(),
+                       [](const Load& load) { return load.force.empty() && load.pressure != 0; });
+}
+
+NewtonProblem problem_of(StaticForces& forces, const Drive& to, double accuracy,
+                         RestingContacts::Slipping slipping) {
+    NewtonProblem problem;
+    problem.forces = [&](Vec3Array& force) {
+        forces.find(to);
+        force = forces.force;
+    };
+    problem.residual = [&](const Vec3Array& force) { return forces.residual_of(force, to); };
+    problem.tolerance = accuracy;
+    problem.held = forces.contacts.held_points(forces.matter, to, slipping);
+    problem.diagonal = forces.stiffness_bound;
+    forces.contacts.add_stiffness(forces.matter, problem.diagonal);
+    problem.drag.resize(forces.drag.size());
+    for (std::size_t p = 0; p < forces.drag.size(); ++p) {
+        problem.drag[p] = forces.hold * forces.drag[p];
+    }
+    return problem;
+}
+
+void look_around(StaticForces& forces, const Drive& to) {
+    forces.contacts.find_candidates(forces.matter, to);
+    forces.self.meet_anew();
+}
+
+}  // namespace
+
+EquilibriumSearch::EquilibriumSearch(const StaticForces& forces, const SimSettings& settings)
+    : tolerance_(settings.tolerance),
+      iteration_limit_(settings.iteration_limit),
+      begun_at_(forces.matter.particle_position) {
+    connections_changed(forces);
+}
+
+void EquilibriumSearch::connections_changed(const StaticForces& forces) {
+    coarse_.reset();
+    const std::vector<float>* cells = forces.lattice.cells_alone();
+    newton_ = cells != nullptr ? std::make_unique<Newton>(forces.matter, *cells) : nullptr;
+}
+
+Relaxation EquilibriumSearch::solve_smooth(StaticForces& forces, const StaticMove& move,
+                                           double accuracy) {
+    const Newton::Result found = newton_->solve(
+        forces.matter, problem_of(forces, move.to, accuracy, RestingContacts::Slipping::free));
+    look_around(forces, move.to);  // steps that were not kept have met other things
+    const bool converged = found.converged && forces.mirrored == 0;
+    newton_pause_ = converged ? 0 : std::clamp(2 * newton_pause_, 1, kLongestPause);
+    newton_rests_ = newton_pause_;
+    return {converged, found.steps, found.residual};
+}
+
+// The drag is let go until what it holds back is no more than the residual may be, from where that
+// was so in the move before. NOTE: loose pieces would fly off with what little drag that was.
+Relaxation EquilibriumSearch::relax(StaticForces& forces, const StaticMove& move, double accuracy) {
+    Relaxation result;
+    Vec3Array& x = forces.matter.particle_position;
+    forces.held = move.rest;
+    look_around(forces, move.to);
+    bool smooth = newton_ && newton_rests_ == 0 && !forces.touches() &&
+                  !floats_under_pressure(forces.apparatus);
+    const double first = forces.free.are_several() ? 1 : std::exchange(enough_hold_, 1);
+    for (forces.hold = smooth ? kSmoothHold : first;; forces.hold *= kLetGo) {
+        Relaxation round;
+        if (smooth) {
+            const Vec3Array before = x;
+            round = solve_smooth(forces, move, accuracy);
+            if (round.converged && forces.has_fallen(move)) {
+                return {false, result.iterations + round.iterations, round.residual, true};
+            }
+            if (!round.converged || forces.touches()) {
+                x = before;
+                smooth = false;
+                forces.hold = first;
+            }
+        }
+        if (!smooth) {
+            if (!coarse_) coarse_.emplace(forces.matter);
+            round = settle(forces, *coarse_, move, accuracy, iteration_limit_);
+        }
+        result = {round.converged, result.iterations + round.iterations, round.residual,
+                  round.falls};
+        if (!round.converged) return result;
+        const double dragged = forces.hold * chunked_sum(x.size(), [&](std::size_t p) {
+                                   return forces.drag[p] * (x.at(p) - forces.held.at(p)).norm();
+                               });
+        if (dragged <= accuracy * forces.push_measure(move.to)) {
+            if (!smooth) enough_hold_ = forces.hold;
+            return result;
+        }
+        forces.held = x;
+    }
+}
+
+// A body that buckles is moved the way it wants to go, as far as the forces drive it there, and
+// comes to rest from there. What a slender body's push leaves over may be nothing beside the push,
+// and yet take it far: then less has to be left.
+Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
+    newton_rests_ = std::max(0, newton_rests_ - 1);
+    const Aggregate& matter = forces.matter;
+    Vec3Array& x = forces.matter.particle_position;
+    const double a = matter.lattice.spacing;
+    double accuracy = tolerance_;
+    Relaxation result = relax(forces, move, accuracy);
+    const auto again = [&](double wanted) {
+        accuracy = wanted;
+        const Relaxation next = relax(forces, move, accuracy);
+        result = {next.converged, result.iterations + next.iterations, next.residual, next.falls,
+                  result.buckled};
+    };
+    for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
+        if (floats_under_pressure(forces.apparatus) || forces.self.presses()) break;
+        NewtonProblem problem =
+            problem_of(forces, move.to, accuracy, RestingContacts::Slipping::held);
+        if (problem.held.empty()) break;  // what nothing bears on has nothing to give way to
+        // Whether the matter itself gives way is asked, and not whether it can slide in its grips.
+        for (HeldPoint& h : problem.held) {
+            const Eigen::SelfAdjointEigenSolver<Mat3> ways(h.stiffness, Eigen::EigenvaluesOnly);
+            h.stiffness = ways.eigenvalues().maxCoeff() * Mat3::Identity();
+        }
+        if (!newton_->buckles(matter, problem)) {
+            if (forces.touches() || accuracy < kFinest * tolerance_) break;
+            const double hold = std::exchange(forces.hold, 0);  // it holds back what is left over
+            forces.find(move.to);
+            forces.hold = hold;
+            const Newton::Astray soft = newton_->astray(matter, forces.force, begun_at_);
+            if (soft.left <= kAstray * soft.gone + kNudge * kAstray * a) break;
+            const double enough = result.residual;
+            const Vec3Array there = x;
+            again(0.1 * accuracy);
+            if (result.converged) continue;
+            x = there;
+            result = {true, result.iterations, enough, false, result.buckled};
+            break;
+        }
+        ++turn;
+        const Vec3Array way = newton_->softest_motion();
+        const double longest = longest_of(way);
+        const Vec3Array from = x;
+        const auto work_at = [&](double far) {
+            x = from;
+            combine(1, far / longest, way, x);
+            forces.find(move.to);
+            return far > 0 ? dot(forces.force, way) : -dot(forces.force, way);
+        };
+        double far = kNudge * a;
+        if (work_at(-far) > work_at(far)) far = -far;
+        while (std::abs(far) < a && work_at(2 * far) > 0) far *= 2;
+        work_at(far);
+        move.rest = x;
+        again(std::clamp(kDriven * forces.residual_of(forces.force, move.to), kFinest * tolerance_,
+                         tolerance_));
+        // What falls far takes long.
+        for (int more = 0; more < kMostTurns && !result.converged; ++more) {
+            move.rest = x;
+            again(tolerance_);
+        }
+        result.buckled = true;
+    }
+    return result;
+}
+
+}  // namespace swage

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the quasi-static solver says where it finds no equilibrium.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "sim/quasistatic.h"
+#include "sim/vector_sums.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kFarAway = 2;  // spacings that a body without rest has gone
+
+bool has_broken(const Aggregate& matter) {
+    return std::any_of(matter.connection.begin(), matter.connection.end(), [](const auto& all) {
+        return std::any_of(all.damage.begin(), all.damage.end(), [](float d) { return d >= 1; });
+    });
+}
+
+}  // namespace
+
+// What a try that has come to nothing met, at the positions that it came to.
+std::string QuasistaticSolver::met(const StaticMove& move) {
+    std::string text = forces_.contacts.hardest_point(matter_, move.to);
+    const double a = matter_.lattice.spacing;
+    if (forces_.self.presses()) {
+        text += fmt::format("; the work-piece touches itself, {:.2g} spacings deep",
+                            forces_.self.sums().penetration / a);
+    }
+    const double way = farthest_move(matter_.particle_position, move.start);
+    if (forces_.pushes.count() > 0 && way > kFarAway * a) {
+        text += fmt::format("; the work-piece was on its way, {:.2g} spacings from where it lay",
+                            way / a);
+    }
+    return text;
+}
+
+void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
+                             const std::string& met) const {
+    if (tried.falls) {
+        fail(ExitCode::stopped,
+             "{}: the work-piece{} falls at {:.4g} s, for nothing holds it against gravity and "
+             "loads, and equilibria have no fall: hold it, have it lie on something, or let it "
+             "fall by solver = \"explicit\"",
+             apparatus_.name, has_broken(matter_) ? ", which has broken," : "", move.to.time);
+    }
+    const char* advice = "raise frames or tolerance of the stage";
+    if (tried.converged) {
+        advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
+    } else if (forces_.pushes.count() > 0 && matter_.yields()) {
+        advice =
+            "if the matter flows under loads that it cannot bear, lower them; else raise frames or "
+            "tolerance of the stage";
+    }
+    fail(ExitCode::stopped,
+         "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings (residual "
+         "{:.2g} of the largest push, wanted {:.2g}; {}); {}",
+         apparatus_.name, move.to.time, tried.iterations, move.depth, tried.residual,
+         settings_.tolerance, met, advice);
+}
+
+}  // namespace swage
