@@ -25,14 +25,13 @@ struct WorkFrame {
 // Where every point of the body's true surface is now [m].
 std::vector<Vec3> surface_positions(const Aggregate& matter);
 
-// From the box of the surface as it is now, along the world's axes. `axis` (the frame's x) and `up`
-// (its y) are "auto" or x, y, z with or without a sign. "auto" is the longest side for `axis`, and
-// the world's y for `up`, or z where the axis lies along y. For a machine that is upright, gravity
-// has settled what is up before the body is known: there `up` is y for "auto", and `axis` the
-// longest side across it. Throws Error(scene) for other words and where both lie on one line,
-// Error(mesh) for a body without a surface.
-WorkFrame place_work_frame(const Aggregate& matter, const std::string& axis, const std::string& up,
-                           bool upright = false);
+// From the box of the surface as it is now, along the world's axes: `axis` is the frame's x, `up`
+// its y. Left open `axis` is the longest side, and `up` the world's y, or z where the axis lies
+// along y. For a machine that is upright, gravity has settled what is up before the body is known:
+// there `up` left open is y, and `axis` the longest side across it. Throws Error(scene) where both
+// lie on one line, Error(mesh) for a body without a surface.
+WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis = WorldAxis::automatic,
+                           WorldAxis up = WorldAxis::automatic, bool upright = false);
 
 struct Machine {
     MachineSpec spec;

@@ -21,6 +21,7 @@
 
 #include "base/math.h"
 #include "base/units.h"
+#include "machines/world_axis.h"
 #include "matter/drive.h"
 
 namespace swage {
@@ -112,8 +113,8 @@ struct MachineSpec {
     std::filesystem::path file;
     bool moves = false;    // for bodies in motion: no equilibrium is to be expected
     bool upright = false;  // what lies on its tools does so by gravity
-    // The work frame's x and y, as place_work_frame takes them, where a stage leaves them "auto".
-    std::string axis = "auto", up = "auto";
+    // The work frame's x and y, as place_work_frame takes them, where a stage leaves them open.
+    WorldAxis axis = WorldAxis::automatic, up = WorldAxis::automatic;
     std::vector<ParameterSpec> parameter;
     std::vector<ToolSpec> tool;
     std::vector<GripSpec> grip;

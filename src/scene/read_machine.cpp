@@ -36,9 +36,9 @@ class MachineReader {
         root.truth("moves", machine.moves);
         root.truth("upright", machine.upright);
         read_frame_words(root, machine.axis, machine.up);
-        if (machine.upright && machine.up == "auto") {
-            machine.up = "y";  // gravity's way does not depend on what lies on the machine
-            if (machine.axis == "y") {
+        if (machine.upright && machine.up == WorldAxis::automatic) {
+            machine.up = WorldAxis::y;  // gravity's way does not depend on what lies on the machine
+            if (machine.axis == WorldAxis::y) {
                 root.mistake("axis",
                              "axis = \"y\" points up in an upright machine; choose another, or say "
                              "up = \"z\" too");

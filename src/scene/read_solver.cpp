@@ -64,17 +64,10 @@ void refuse_cut(TableReader& table, const SceneSpec& scene, const MachineSpec* m
                               cut->name));
 }
 
-// "x", "-x", "y", ...; y for "auto".
-Vec3 upward(const std::string& up) {
-    if (up == "auto") return Vec3::UnitY();
-    const Vec3 axis = Vec3::Unit(up.back() - 'x');
-    return up.front() == '-' ? Vec3(-axis) : axis;
-}
-
 }  // namespace
 
 void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
-                 const std::string& up, bool remolds, SimSettings& sim) {
+                 WorldAxis up, bool remolds, SimSettings& sim) {
     const bool machine_moves = machine != nullptr && machine->moves;
     const bool several = scene.body.size() > 1;
     const bool starts = std::any_of(scene.body.begin(), scene.body.end(),
@@ -153,7 +146,8 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     idle("drag_coefficient", "medium_density", sim.medium_density);
     idle("directional_drag_along", "directional_drag", sim.directional_drag);
     const Node* gravity = table.find("gravity");
-    const Vec3 above = upward(up);
+    if (up == WorldAxis::automatic) up = WorldAxis::y;
+    const Vec3 above = direction_of(up);
     if (gravity != nullptr && gravity->kind != Node::Kind::array) {
         double down = 0;  // a single number points down
         table.quantity("gravity", Quantity::acceleration, {}, down);
@@ -165,7 +159,7 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
         table.warn("gravity",
                    fmt::format("gravity does not point down: {} is up, and a single number points "
                                "down",
-                               up == "auto" ? "y" : up));
+                               name_of(up)));
     }
     const bool acts = machine == nullptr || !machine->stands() || !machine->load.empty() ||
                       starts || sim.gravity != Vec3::Zero() || table.find("load") != nullptr;

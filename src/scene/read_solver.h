@@ -13,6 +13,6 @@ namespace swage {
 // quasi-static. `up`: against which gravity points that is a single number, as a stage has it.
 // `remolds`: the stage's matter is molded anew.
 void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
-                 const std::string& up, bool remolds, SimSettings& sim);
+                 WorldAxis up, bool remolds, SimSettings& sim);
 
 }  // namespace swage

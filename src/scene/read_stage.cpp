@@ -49,21 +49,18 @@ bool is_path(const std::string& machine) {
     return machine.find('/') != std::string::npos || fs::path(machine).extension() == ".toml";
 }
 
-bool lie_along(const std::string& axis, const std::string& up) {
-    return axis != "auto" && up != "auto" && axis.back() == up.back();
-}
-
 // What a stage leaves to its machine, that says, unless it would lie along what the stage says.
 void fall_back(TableReader& table, const MachineSpec& machine, StageSpec& stage) {
-    if (stage.axis == "auto" && !lie_along(machine.axis, stage.up)) stage.axis = machine.axis;
-    if (stage.up != "auto") return;
+    using enum WorldAxis;
+    if (stage.axis == automatic && !lie_along(machine.axis, stage.up)) stage.axis = machine.axis;
+    if (stage.up != automatic) return;
     if (!lie_along(stage.axis, machine.up)) {
         stage.up = machine.up;
     } else if (machine.upright) {
         table.mistake(
             "axis", fmt::format("axis = \"{}\" points up with the machine {}, whose up is \"{}\"; "
                                 "choose another, or say up too",
-                                stage.axis, machine.name, machine.up));
+                                name_of(stage.axis), machine.name, name_of(machine.up)));
     }
 }
 
@@ -208,17 +205,18 @@ void StageReader::read_loads(TableReader& table, StageSpec& stage) {
     }
 }
 
-void read_frame_words(TableReader& table, std::string& axis, std::string& up) {
-    const auto same = [](std::vector<std::string> names) {
-        std::vector<std::pair<std::string, std::string>> pairs;
-        for (const std::string& name : names) pairs.emplace_back(name, name);
+void read_frame_words(TableReader& table, WorldAxis& axis, WorldAxis& up) {
+    const auto named = [](const std::vector<WorldAxis>& choices) {
+        std::vector<std::pair<std::string, WorldAxis>> pairs;
+        for (const WorldAxis choice : choices) pairs.emplace_back(name_of(choice), choice);
         return pairs;
     };
-    table.choice("axis", same({"auto", "x", "y", "z"}), axis);
-    table.choice("up", same({"auto", "x", "-x", "y", "-y", "z", "-z"}), up);
+    using enum WorldAxis;
+    table.choice("axis", named({automatic, x, y, z}), axis);
+    table.choice("up", named({automatic, x, minus_x, y, minus_y, z, minus_z}), up);
     if (lie_along(axis, up)) {
-        table.mistake(
-            "up", fmt::format("up = \"{}\" lies along axis = \"{}\"; choose another", up, axis));
+        table.mistake("up", fmt::format("up = \"{}\" lies along axis = \"{}\"; choose another",
+                                        name_of(up), name_of(axis)));
     }
 }
 
@@ -260,8 +258,8 @@ StageSpec StageReader::read(const Node& node) {
     const bool has_machine = loaded != nullptr && loaded->machine;
     if (has_machine) fall_back(table, *loaded->machine, stage);
     read_solver(table, scene_, has_machine ? &*loaded->machine : nullptr,
-                has_machine && loaded->machine->upright ? stage.up : "auto", stage.remold,
-                stage.sim);
+                has_machine && loaded->machine->upright ? stage.up : WorldAxis::automatic,
+                stage.remold, stage.sim);
     if (has_machine) {
         stage.machine = *loaded->machine;
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));

@@ -54,6 +54,6 @@ class StageReader {
 std::optional<std::string> why_no_file_name(const std::string& text);
 
 // The keys axis and up, of a stage and of a machine.
-void read_frame_words(TableReader& table, std::string& axis, std::string& up);
+void read_frame_words(TableReader& table, WorldAxis& axis, WorldAxis& up);
 
 }  // namespace swage

@@ -65,11 +65,11 @@ struct StageSpec {
     // Where the scene names the machine, and where each of those parameters.
     Place place;
     std::map<std::string, Place> parameter_place;
-    std::string axis = "auto";  // work frame's x: "auto" (longest side of the box), "x", "y", "z"
-    std::string up = "auto";    // work frame's y: "auto", or "x", "-x", "y", ...
-    int frames = 60;            // >= 1
-    double duration = 0;        // [s] of machine time; 0: frames / frames_per_second
-    bool remold = false;        // mold the deformed mesh anew before this stage
+    // The work frame's x, forward or automatic (longest side of the box), and y.
+    WorldAxis axis = WorldAxis::automatic, up = WorldAxis::automatic;
+    int frames = 60;      // >= 1
+    double duration = 0;  // [s] of machine time; 0: frames / frames_per_second
+    bool remold = false;  // mold the deformed mesh anew before this stage
     SimSettings sim;
 };
 

@@ -162,7 +162,7 @@ Result run_case(int seed, const std::vector<MachineSpec>& machines, bool frame_b
     const Case c = make_case(seed, random);
     const TriMesh mesh = make_work_piece(c);
     Aggregate matter = mold(mesh, c.material, c.mold);
-    const WorkFrame frame = place_work_frame(matter, "auto", "auto");
+    const WorkFrame frame = place_work_frame(matter);
     const auto given = random_parameters(c, frame.size.y(), random);
     const Machine machine = build_machine(machines[c.bend ? 0 : 1], given, frame, matter);
     const double angle = given.at("angle") * 180 / kPi;

@@ -18,7 +18,7 @@ Machine vice(const Expression& turn, const Expression& move = "0",
     spec.grip[1].motion.move[0] = move;
     spec.gravity_strength = strength;
     const Aggregate body = bar();
-    return build_machine(spec, {}, place_work_frame(body, "auto", "auto"), body);
+    return build_machine(spec, {}, place_work_frame(body), body);
 }
 
 constexpr double kSlack = 1e-3;

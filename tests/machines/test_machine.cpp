@@ -62,7 +62,7 @@ MachineSpec vice() {
 
 Machine set_up(const MachineSpec& spec, const Aggregate& body = bar(),
                const std::map<std::string, double>& given = {}) {
-    return build_machine(spec, given, place_work_frame(body, "auto", "auto"), body);
+    return build_machine(spec, given, place_work_frame(body), body);
 }
 
 std::string refusal(const MachineSpec& spec, const std::map<std::string, double>& given = {},
@@ -360,7 +360,7 @@ TEST_CASE("a tool rubs each body by that body's own friction, unless it says ano
     beside[1].friction = 0.9;
     const Aggregate body = bar();
     const auto on = [&](const std::map<std::string, double>& given, std::size_t tool, int b) {
-        return build_machine(spec, given, place_work_frame(body, "auto", "auto"), body, beside)
+        return build_machine(spec, given, place_work_frame(body), body, beside)
             .apparatus.tool[tool]
             .friction_on(b);
     };

@@ -19,7 +19,7 @@ Machine with(const Aggregate& matter, const LoadSpec& load) {
     MachineSpec spec;
     spec.name = "none";
     spec.load = {load};
-    return build_machine(spec, {}, place_work_frame(matter, "auto", "auto"), matter);
+    return build_machine(spec, {}, place_work_frame(matter), matter);
 }
 
 LoadSpec push(Side side) {
@@ -75,7 +75,7 @@ TEST_CASE("of a side a box takes what lies in it, wherever its edges run") {
     const Aggregate matter = upright();  // 0.8 long, 0.4 high, 0.3 wide
     for (const double edge : {-0.31, -0.1, 0.0, 0.013, 0.049, 0.25}) {
         const Box box{Vec3(edge, -1, -0.07), Vec3(0.33, 1, 0.5)};
-        const WorkFrame frame = place_work_frame(matter, "auto", "auto");
+        const WorkFrame frame = place_work_frame(matter);
         std::vector<Vec3> in_work;
         for (const Vec3& p : surface_positions(matter)) {
             in_work.push_back(frame.world_from_work.inverse() * p);

@@ -54,7 +54,8 @@ TEST_CASE("a body beside the work-piece that starts in, beyond or under the floo
     REQUIRE(floor.machine);
     // Its top at y = -0.3, 4 m by 4 m, 0.2 m thick.
     const Machine machine =
-        build_machine(*floor.machine, {}, place_work_frame(work_piece, "x", "y", true), work_piece);
+        build_machine(*floor.machine, {},
+                      place_work_frame(work_piece, WorldAxis::x, WorldAxis::y, true), work_piece);
     int other_cells = 4;
     const auto told = [&](const Vec3& at) {
         const double side = other_cells == 1 ? 0.8 : 0.05;

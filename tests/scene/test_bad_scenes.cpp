@@ -244,6 +244,13 @@ TEST_CASE("values out of range are refused with the range") {
         {"a voxel skin divided",
          with(&Parts::rest, "[skin]\nkind = \"boundary\"\ndivide = false\n"),
          {"12:10: warning: divide has no effect with kind = \"boundary\""}},
+        {"no axis",
+         stage("axis = \"xy\""),
+         {"9:8: axis = \"xy\" is not one of \"auto\", \"x\", \"y\", \"z\""}},
+        {"no way up",
+         stage("up = \"+y\""),
+         {"9:6: up = \"+y\" is not one of \"auto\", \"x\", \"-x\", \"y\", \"-y\", "
+          "\"z\", \"-z\""}},
         {"up along axis",
          stage("axis = \"y\"\nup = \"-y\""),
          {"10:6: up = \"-y\" lies along axis"}},

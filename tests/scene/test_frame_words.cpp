@@ -32,7 +32,8 @@ Read read(const std::string& machine, const std::string& stage) {
 }
 std::string words(const std::string& machine, const std::string& stage) {
     const Read one = read(machine, stage);
-    return one.told.empty() ? one.stage.axis + " " + one.stage.up : one.told;
+    if (!one.told.empty()) return one.told;
+    return std::string(name_of(one.stage.axis)) + " " + name_of(one.stage.up);
 }
 
 const std::string kMine = "machine = \"mine\"\n";

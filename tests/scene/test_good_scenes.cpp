@@ -174,8 +174,8 @@ meshes_per_frame = true
     CHECK(stage.name == "wring it");
     CHECK(stage.frames == 7);
     CHECK(stage.duration == 2);
-    CHECK(stage.axis == "z");
-    CHECK(stage.up == "-x");
+    CHECK(stage.axis == WorldAxis::z);
+    CHECK(stage.up == WorldAxis::minus_x);
     CHECK_FALSE(stage.remold);  // a block never is; the overrides below say true
     CHECK(stage.sim.solver == Solver::quasistatic);
     CHECK(stage.sim.tolerance == 1e-3);

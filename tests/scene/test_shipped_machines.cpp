@@ -28,7 +28,7 @@ MachineSpec shipped(const std::string& name) {
 }
 
 Machine at_bar(const std::string& name, const Given& given = {}, const Aggregate& body = bar()) {
-    return build_machine(shipped(name), given, place_work_frame(body, "auto", "auto"), body);
+    return build_machine(shipped(name), given, place_work_frame(body), body);
 }
 
 int index_of(const std::vector<Tool>& tools, const std::string& name) {
