@@ -241,12 +241,9 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
               const LoadSpec& spec) {
     Box box;
     if (spec.box) box = box_between(setting, (*spec.box)[0], (*spec.box)[1]);
-    Load load;
-    load.name = spec.name;
-    Region region = find_region(matter, setting.frame.world_from_work, setting.point, spec.on,
-                                spec.box ? &box : nullptr);
-    load.point = std::move(region.point);
-    load.share = std::move(region.share);
+    Load load{find_region(matter, setting.frame.world_from_work, setting.point, spec.on,
+                          spec.box ? &box : nullptr),
+              spec.name};
     if (load.point.empty()) {
         refuse(setting, fmt::format("load {} acts on nothing: no part of the work-piece's surface "
                                     "looks that way and lies in its box",

@@ -51,12 +51,12 @@ double share_within(const Box& patch, const Box& region) {
     return share;
 }
 
-Region find_region(const Aggregate& matter, const Pose& world_from_work,
-                   const std::vector<Vec3>& in_work, Side side, const Box* box) {
+SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
+                        const std::vector<Vec3>& in_work, Side side, const Box* box) {
     constexpr double kNothing = 1e-6;  // of a patch
     const Quat work_from_world = world_from_work.rotation.conjugate();
     const Mat3 turn = work_from_world.toRotationMatrix();
-    Region region;
+    SurfacePart part;
     bool is_whole = true;
     for (std::size_t p = 0; p < in_work.size(); ++p) {
         double share = 1;
@@ -69,12 +69,12 @@ Region find_region(const Aggregate& matter, const Pose& world_from_work,
                 present_area<double>(matter.surface_gradient(p), matter.surface.normal(p));
             if (side_of(work_from_world * normal) != side) continue;
         }
-        region.point.push_back(static_cast<int>(p));
-        region.share.push_back(share);
+        part.point.push_back(static_cast<int>(p));
+        part.share.push_back(share);
         is_whole &= share > 1 - kNothing;
     }
-    if (is_whole) region.share.clear();
-    return region;
+    if (is_whole) part.share.clear();
+    return part;
 }
 
 bool is_closed(const Aggregate& matter, const std::vector<int>& points) {

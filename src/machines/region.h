@@ -20,15 +20,10 @@ Box patch_box(const Aggregate& matter, const Mat3& frame_from_world, std::size_t
 // How much of the patch lies in the region, 0 to 1.
 double share_within(const Box& patch, const Box& region);
 
-struct Region {
-    std::vector<int> point;
-    std::vector<double> share;  // of each one's patch of the surface, more than 0; empty: all
-};
-
 // What of the surface looks to the side now and lies in the box (null: anywhere), both in the work
 // frame. `in_work`: where the surface's points are in it.
-Region find_region(const Aggregate& matter, const Pose& world_from_work,
-                   const std::vector<Vec3>& in_work, Side side, const Box* box);
+SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
+                        const std::vector<Vec3>& in_work, Side side, const Box* box);
 
 // Whether the points make up whole closed surfaces: none of them has a neighbour that is left out.
 bool is_closed(const Aggregate& matter, const std::vector<int>& points);

@@ -34,19 +34,23 @@ struct Tool {
     }
 };
 
+// Points of a body's true surface.
+struct SurfacePart {
+    std::vector<int> point;       // into Aggregate::surface
+    std::vector<double> share{};  // of each one's patch, more than 0; empty: all
+    int body = 0;                 // whose surface it is
+
+    double share_of(std::size_t n) const { return share.empty() ? 1 : share[n]; }
+};
+
 // A grip holds points of the work-piece's true surface to its frame, by stiff springs; along some
 // of the frame's axes only, where it is a smooth guide (one axis: a smooth plane).
-struct Grip {
+struct Grip : SurfacePart {
     std::string name;
-    std::vector<int> point;    // into Aggregate::surface
     std::vector<Vec3> anchor;  // where it holds each, in the grip's frame
     TriMesh jaw;               // for drawing, in the grip's frame; may be empty
     Vec3 color = {0.42, 0.36, 0.30};
-    Vec3 hold = Vec3::Ones();     // along each axis of the frame: 1 held, 0 free
-    int body = 0;                 // which it holds, whose surface the points are of
-    std::vector<double> share{};  // of each one's patch that it holds; empty: all
-
-    double share_of(std::size_t n) const { return share.empty() ? 1 : share[n]; }
+    Vec3 hold = Vec3::Ones();  // along each axis of the frame: 1 held, 0 free
 };
 
 // A blade severs the connections that its edge sweeps through.
@@ -59,16 +63,11 @@ struct Blade {
 
 // A push on points of the work-piece's true surface: dead forces, which keep their size and
 // direction, or a pressure, which follows the surface (laws/pressure.h).
-struct Load {
+struct Load : SurfacePart {
     std::string name;
-    std::vector<int> point;     // into Aggregate::surface
-    std::vector<double> share;  // of each one's patch that it pushes on; empty: all
-    std::vector<Vec3> force;    // on each at full strength, in the world [N]; empty: a pressure
+    std::vector<Vec3> force{};  // on each at full strength, in the world [N]; empty: a pressure
     double pressure = 0;        // at full strength [Pa]; less than zero sucks
     bool closed = false;        // the points make up whole closed surfaces
-    int body = 0;               // which it pushes, whose surface the points are of
-
-    double share_of(std::size_t n) const { return share.empty() ? 1 : share[n]; }
 };
 
 struct Apparatus {

@@ -80,11 +80,11 @@ TEST_CASE("of a side a box takes what lies in it, wherever its edges run") {
         for (const Vec3& p : surface_positions(matter)) {
             in_work.push_back(frame.world_from_work.inverse() * p);
         }
-        const Region region = find_region(matter, frame.world_from_work, in_work, Side::top, &box);
+        const SurfacePart region =
+            find_region(matter, frame.world_from_work, in_work, Side::top, &box);
         double area = 0;
         for (std::size_t n = 0; n < region.point.size(); ++n) {
-            const double share = region.share.empty() ? 1 : region.share[n];
-            area += share * matter.surface.area(region.point[n]);
+            area += region.share_of(n) * matter.surface.area(region.point[n]);
         }
         CHECK(area == Approx((0.33 - edge) * (0.15 + 0.07)).epsilon(1e-6));
     }

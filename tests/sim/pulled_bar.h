@@ -12,7 +12,8 @@ namespace swage::test {
 inline std::vector<Grip> end_grips(const Aggregate& matter, double from) {
     std::vector<Grip> grips;
     for (int side : {-1, 1}) {
-        Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
+        Grip grip;
+        grip.name = side < 0 ? "hold" : "pull";
         grip.point = points_where(matter, [&](const Vec3& x) { return side * x.x() > from; });
         for (int p : grip.point) grip.anchor.push_back(matter.surface_position(p));
         grips.push_back(grip);

@@ -109,7 +109,8 @@ TEST_CASE("what a cut or an opened grip lets go of is set free, not left over by
         Apparatus a;
         a.name = "stretch";
         for (int side : sides) {
-            Grip grip{side < 0 ? "hold" : "pull", {}, {}, {}};
+            Grip grip;
+            grip.name = side < 0 ? "hold" : "pull";
             grip.point = points_where(m, [&](const Vec3& x) { return side * x.x() > 0.5; });
             for (int p : grip.point) grip.anchor.push_back(m.surface_reference(p));
             a.grip.push_back(grip);

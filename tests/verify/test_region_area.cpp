@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of a molded body's surface a load's box takes.
 #include "geometry/make_shape.h"
-#include "machines/region.h"
 #include "machines/machine.h"
+#include "machines/region.h"
 #include "mold/mold.h"
 #include "tests/catch.h"
 
@@ -23,7 +23,8 @@ TEST_CASE("of a ball a box takes its cap, whatever the cells and however they li
             }
             for (const double high : {0.21, 0.34, 0.5, 0.62}) {
                 const Box box{Vec3(kRadius - high, -1, -1), Vec3(1, 1, 1)};
-                const Region region = find_region(ball, world_from_work, in_work, Side::all, &box);
+                const SurfacePart region =
+                    find_region(ball, world_from_work, in_work, Side::all, &box);
                 double area = 0;
                 for (std::size_t n = 0; n < region.point.size(); ++n) {
                     area += region.share[n] * ball.surface.area(region.point[n]);
