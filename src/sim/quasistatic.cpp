@@ -106,7 +106,7 @@ StaticMove QuasistaticSolver::begin_move(const Drive& from, const Drive& to, int
     if (matter_.yields()) move.elastic = elastic_energy();
     if (matter_.breaks()) move.booked = booked(from, outcome);
     forces_.contacts.begin_move(matter_, from);
-    if (forces_.contacts.near_travel(from, to) > 0) forces_.measure.drive();
+    if (!forces_.contacts.stand_still(matter_, from, to)) forces_.measure.drive();
     forces_.self.begin_move();
     move.motion = motion_between(apparatus_, from, to, forces_.extent());
     move.released = forces_.pushes.eases(from, to) || slips_.draws_back(move.motion);

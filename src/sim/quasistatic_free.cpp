@@ -11,7 +11,6 @@ namespace swage {
 namespace {
 
 constexpr int kHalvings = 8;
-constexpr double kStill = 1e-9;        // spacings
 constexpr double kLies = 0.5;          // of the loads: what tools carry of what lies on them
 constexpr double kMoreThanLoads = 10;  // of them: what tools bear is not theirs
 constexpr double kSeatDrag = 3e-10;    // of E a
@@ -38,7 +37,7 @@ double QuasistaticSolver::seat_pieces(StaticMove& move) {
     if (!seats_ || apparatus_.tool.empty() || pushed == 0) return 0;
     if (settings_.self_contact && free.are_several()) return 0;  // they may lie on each other
     if (forces_.measure.carried() > kMoreThanLoads * pushed) return 0;
-    const bool stand = contacts.near_travel(move.from, to) <= kStill * a;
+    const bool stand = contacts.stand_still(matter_, move.from, to);
     if (!stand && forces_.measure.carried() > kLies * pushed) return 0;
     const Drive& lie = stand ? to : move.from;
     Vec3Array& x = matter_.particle_position;

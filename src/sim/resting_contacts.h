@@ -68,6 +68,10 @@ class RestingContacts {
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
     // The farthest that any grip, or tool that was near when the candidates were found, moves [m].
     double near_travel(const Drive& from, const Drive& to) const;
+    // Whether that is no more than how poses on the way from a pose to the same one are rounded.
+    bool stand_still(const Aggregate& matter, const Drive& from, const Drive& to) const {
+        return near_travel(from, to) <= 1e-9 * matter.lattice.spacing;
+    }
 
     // The point with the largest force, for error messages: "tool at (x, y, z)".
     std::string hardest_point(const Aggregate& matter, const Drive& now) const;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/resting_contacts.h"
 #include "tests/sim/loads_fixture.h"
 
 using namespace swage;
@@ -76,4 +77,25 @@ TEST_CASE("one move to a few times the yield strain does the work that is stored
         CHECK(r.plastic > 0);
         CHECK(std::abs(r.remainder) < 0.06 * r.work);
     }
+}
+
+TEST_CASE("a grip that stands has not moved halfway, however it is turned") {
+    const Aggregate bar = make_block(4, 2, 2, kCell, {.young_modulus = 1e9, .density = 1000});
+    Apparatus apparatus;
+    apparatus.grip.push_back(hold(bar, points_where(bar, [](const Vec3& x) { return x.x() < 0; })));
+    RestingContacts contacts(bar, apparatus, SimSettings{});
+    double farthest = 0;
+    for (int n = 1; n < 40; ++n) {
+        Drive from = drive_of(apparatus, 0, 0);
+        from.world_from_grip[0] = {Quat(Eigen::AngleAxisd(0.1 * n, Vec3(1, 2, 3).normalized())),
+                                   Vec3(0.1, 0.02 * n, -0.3)};
+        Drive to = from;
+        to.time = 1;
+        const Drive middle = drive_between(from, to, 0.5);
+        farthest = std::max(farthest, contacts.near_travel(from, middle));
+        CHECK(contacts.stand_still(bar, from, middle));
+        to.world_from_grip[0].translation.x() += 1e-6 * kCell;
+        CHECK_FALSE(contacts.stand_still(bar, from, to));
+    }
+    CHECK(farthest > 0);
 }
