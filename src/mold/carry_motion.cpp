@@ -40,22 +40,41 @@ Flow flow_of(const Aggregate& matter, CellId cell) {
     return flow;
 }
 
-Vec3 momentum_of(const Aggregate& matter) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-        sum += matter.particle_mass[p] * matter.particle_velocity.at(p);
-    }
-    return sum;
-}
+// How a body moves as a whole: that motion which has its momentum and spin.
+struct WholeMotion {
+    double mass = 0;
+    Vec3 centre = Vec3::Zero(), momentum = Vec3::Zero(), spin = Vec3::Zero();  // about the centre
+    Mat3 by_spin = Mat3::Zero();  // how fast it turns, of its spin
 
-Vec3 spin_about(const Vec3& centre, const Aggregate& matter) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-        sum += matter.particle_mass[p] *
-               (matter.particle_position.at(p) - centre).cross(matter.particle_velocity.at(p));
+    explicit WholeMotion(const Aggregate& matter) {
+        const auto& part = matter.particle_mass;
+        for (std::size_t p = 0; p < part.size(); ++p) {
+            mass += part[p];
+            centre += part[p] * matter.particle_position.at(p);
+            momentum += part[p] * matter.particle_velocity.at(p);
+        }
+        centre /= mass;
+        Mat3 inertia = Mat3::Zero();
+        for (std::size_t p = 0; p < part.size(); ++p) {
+            const Vec3 arm = matter.particle_position.at(p) - centre;
+            inertia += part[p] * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+            spin += part[p] * arm.cross(matter.particle_velocity.at(p));
+        }
+        by_spin = inertia.inverse();
     }
-    return sum;
-}
+    Vec3 at(const Vec3& place) const {
+        return momentum / mass + (by_spin * spin).cross(place - centre);
+    }
+    // Of the motion within the body [J].
+    double energy_within(const Aggregate& matter) const {
+        double sum = 0;
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            const Vec3 way = matter.particle_velocity.at(p) - at(matter.particle_position.at(p));
+            sum += 0.5 * matter.particle_mass[p] * way.squaredNorm();
+        }
+        return sum;
+    }
+};
 
 }  // namespace
 
@@ -70,25 +89,19 @@ void carry_motion(const Aggregate& from, Aggregate& to) {
     for (std::size_t p = 0; p < count; ++p) place.push_back(to.particle_position.at(p));
     // Corners of cells that the body does not fill stick out of it by up to a spacing.
     const std::vector<CellId> like = cells_there(from, place, to.lattice.spacing);
-    Vec3 centre = Vec3::Zero();
-    double mass = 0;
     for (std::size_t p = 0; p < count; ++p) {
         to.particle_velocity.set(p, flow_of(from, like[p]).at(place[p]));
-        mass += to.particle_mass[p];
-        centre += to.particle_mass[p] * place[p];
     }
-    centre /= mass;
-    Mat3 inertia = Mat3::Zero();
+    const WholeMotion was(from), found(to);
+    WholeMotion is = found;
+    is.momentum = was.momentum;
+    is.spin = was.spin + (was.centre - found.centre).cross(was.momentum);
+    // Shards that fly apart become one: there may be less motion within it, and never more.
+    const double had = was.energy_within(from), has = found.energy_within(to);
+    const double share = has > had ? std::sqrt(had / has) : 1;
     for (std::size_t p = 0; p < count; ++p) {
-        const Vec3 arm = place[p] - centre;
-        inertia +=
-            to.particle_mass[p] * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
-    }
-    const Vec3 push = (momentum_of(from) - momentum_of(to)) / mass;
-    const Vec3 turn = inertia.inverse() * (spin_about(centre, from) - spin_about(centre, to));
-    for (std::size_t p = 0; p < count; ++p) {
-        to.particle_velocity.set(p,
-                                 to.particle_velocity.at(p) + push + turn.cross(place[p] - centre));
+        const Vec3 within = to.particle_velocity.at(p) - found.at(place[p]);
+        to.particle_velocity.set(p, is.at(place[p]) + share * within);
     }
 }
 

@@ -215,6 +215,8 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     // Bent, its box says nothing of how thick it is.
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = piece.matter.lattice.spacing;
+    // Pressed or drawn, matter takes up another volume; it is as heavy as it was.
+    as_it_stands.material.density = piece.matter.mass() / check_mesh(input.to_mold()).volume;
     WorkPiece anew = make_work_piece(input, as_it_stands, skin);
     carry_hardening(piece.matter, anew.matter);
     carry_motion(piece.matter, anew.matter);

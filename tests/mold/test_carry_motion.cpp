@@ -75,6 +75,23 @@ TEST_CASE("a swing within a body is carried as it is") {
     CHECK(motion_of(anew).energy == Approx(motion_of(old).energy).epsilon(0.02));
 }
 
+TEST_CASE("shards that fly apart have no more energy once they are one") {
+    Aggregate old = make_block(8, 4, 4, 0.1, Material{});
+    const auto apart = [](const Vec3& x) {
+        const auto side = [](double v, double n) { return std::sin(n * v + 0.3) > 0 ? 1.0 : -1.0; };
+        return Vec3(2 + side(x.x(), 11) * side(x.y(), 17), side(x.y(), 23) * side(x.z(), 19),
+                    side(x.z(), 13) * side(x.x(), 29));
+    };
+    set_in_motion(old, apart);
+    for (Aggregate anew :
+         {make_block(8, 4, 4, 0.1, Material{}), make_block(16, 8, 8, 0.05, Material{})}) {
+        carry_motion(old, anew);
+        const Motion before = motion_of(old), after = motion_of(anew);
+        CHECK((after.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
+        CHECK(after.energy < before.energy * 1.001);
+    }
+}
+
 TEST_CASE("what rests is molded anew at rest") {
     const Aggregate old = make_block(2, 2, 2, 0.1, Material{});
     Aggregate anew = old;

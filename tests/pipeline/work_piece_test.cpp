@@ -154,6 +154,22 @@ TEST_CASE("matter molded anew keeps the size of its cells, whatever its box has 
     CHECK(anew.matter.volume() == Approx(0.008).epsilon(0.05));
 }
 
+TEST_CASE("matter molded anew is as heavy as it was, pressed together or drawn") {
+    WorkPiece piece = block({}, SkinKind::mount);
+    const double mass = piece.matter.mass();
+    BodySpec body;
+    body.mold.across = 3;
+    for (const double high : {0.7, 1.5}) {
+        Vec3Array& x = piece.matter.particle_position;
+        for (std::size_t p = 0; p < x.size(); ++p) {
+            x.set(p, x.at(p).cwiseProduct(Vec3(1, high, 1)));
+        }
+        follow_matter(piece, SkinKind::mount);
+        piece = mold_anew(piece, body, {});
+        CHECK(piece.matter.mass() == Approx(mass).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("a mesh of twelve triangles bends with its matter, and so does what is molded of it") {
     InputMesh input;
     input.mesh = box_mesh({-0.2, -0.05, -0.1}, {0.2, 0.05, 0.1});
