@@ -163,13 +163,13 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     }
     const bool acts = machine == nullptr || !machine->stands() || !machine->load.empty() ||
                       starts || sim.gravity != Vec3::Zero() || table.find("load") != nullptr;
-    if (acts) return;
+    // What the stages before have left may spring back, or swing, by itself.
+    if (acts || !scene.stage.empty()) return;
     if (machine_moves) {
         table.warn("machine",
                    "nothing moves: there is no gravity (gravity = \"9.81 m/s2\"), no load, and no "
                    "body starts with a velocity or a spin");
-    } else if (scene.stage.empty() && (machine->tool.empty() || machine->upright)) {
-        // What the stages before have left may spring back by itself.
+    } else if (machine->tool.empty() || machine->upright) {
         table.warn("machine",
                    "nothing happens: there is no gravity (gravity = \"9.81 m/s2\") and no load "
                    "([[stage.load]])");

@@ -38,7 +38,7 @@ class PushMeasure {
     void let_go(double force) { let_go_ = std::max(let_go_, force); }
     // Where there is no better rest it may be eased to a part of that.
     bool ease(double force, double share) {
-        if (force > share * let_go_) return false;
+        if (!(force <= share * let_go_)) return false;
         eased_ = force;
         return true;
     }

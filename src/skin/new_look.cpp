@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "base/parallel.h"
@@ -56,16 +57,38 @@ SurfaceMaterial cut_look(const TriMesh& mesh) {
     return look;
 }
 
-std::vector<int> charts_of(const TriMesh& mesh) {
-    DisjointSets sets(mesh.triangle.size());
-    std::map<std::tuple<int, double, double>, int> first;  // triangle at a corner of the texture
+// Across which edges of each triangle the texture goes on.
+std::vector<Corners> adjoining(const TriMesh& mesh) {
+    using Corner = std::tuple<int, double, double>;  // position, and place in the texture
+    std::map<std::pair<Corner, Corner>, std::pair<int, int>> open;  // to triangle and edge
+    std::vector<Corners> adjoins(mesh.triangle.size(), Corners{-1, -1, -1});
     for (std::size_t t = 0; t < mesh.triangle_uv.size(); ++t) {
+        const auto corner = [&](int c) {
+            const Vec2& uv = mesh.uv[mesh.triangle_uv[t][c]];
+            return Corner(mesh.triangle[t][c], uv.x(), uv.y());
+        };
+        const Corners& uv = mesh.triangle_uv[t];
+        if (uv[0] < 0 || uv[1] < 0 || uv[2] < 0) continue;
         for (int c = 0; c < 3; ++c) {
-            const int uv = mesh.triangle_uv[t][c];
-            if (uv < 0) continue;
-            const std::tuple corner(mesh.triangle[t][c], mesh.uv[uv].x(), mesh.uv[uv].y());
-            const int other = first.emplace(corner, static_cast<int>(t)).first->second;
-            sets.unite(other, static_cast<int>(t));
+            const std::pair edge(corner(c), corner((c + 1) % 3));
+            const auto met = open.find({edge.second, edge.first});
+            if (met == open.end()) {
+                open.emplace(edge, std::pair(static_cast<int>(t), c));
+                continue;
+            }
+            adjoins[t][c] = met->second.first;
+            adjoins[met->second.first][met->second.second] = static_cast<int>(t);
+            open.erase(met);
+        }
+    }
+    return adjoins;
+}
+
+std::vector<int> charts_of(const std::vector<Corners>& adjoins) {
+    DisjointSets sets(adjoins.size());
+    for (std::size_t t = 0; t < adjoins.size(); ++t) {
+        for (int other : adjoins[t]) {
+            if (other >= 0) sets.unite(other, static_cast<int>(t));
         }
     }
     std::vector<int> chart;
@@ -86,7 +109,8 @@ int cut_material(TriMesh& mesh, const TriMesh& like) {
     return number;
 }
 
-NewLook::NewLook(const TriMesh& mesh) : mesh_(mesh), tree_(mesh), chart_(charts_of(mesh)) {
+NewLook::NewLook(const TriMesh& mesh)
+    : mesh_(mesh), tree_(mesh), adjoins_(adjoining(mesh)), chart_(charts_of(adjoins_)) {
     if (mesh_.material.empty()) mesh_.material.emplace_back();
 }
 
@@ -102,16 +126,21 @@ Vec2 NewLook::texture_at(int triangle, const Vec3& weight) const {
     return at;
 }
 
-// Those of the triangle's corners whose mean is the place, as seen along its normal.
-Vec3 NewLook::weights_in_plane(int triangle, const Vec3& place) const {
-    const auto& [a, b, c] = mesh_.triangle[triangle];
-    const Vec3 &p = mesh_.position[a], &q = mesh_.position[b], &r = mesh_.position[c];
-    const Vec3 normal = (q - p).cross(r - p);
-    const double size = normal.squaredNorm();
-    if (!(size > 0)) return Vec3::Constant(1.0 / 3);
-    const double v = (place - p).cross(r - p).dot(normal) / size;
-    const double w = (q - p).cross(place - p).dot(normal) / size;
-    return {1 - v - w, v, w};
+// The triangles within reach of the middle to which the texture goes on from this one.
+std::vector<int> NewLook::patch_about(int triangle, const Vec3& middle, double reach) const {
+    std::vector<int> patch = {triangle};
+    std::set<int> seen = {triangle};
+    for (std::size_t n = 0; n < patch.size(); ++n) {
+        for (int other : adjoins_[patch[n]]) {
+            if (other < 0 || !seen.insert(other).second) continue;
+            const auto& [a, b, c] = mesh_.triangle[other];
+            const Vec3 &p = mesh_.position[a], &q = mesh_.position[b], &r = mesh_.position[c];
+            const Vec3 low = p.cwiseMin(q).cwiseMin(r), high = p.cwiseMax(q).cwiseMax(r);
+            const Vec3 near = middle.cwiseMax(low).cwiseMin(high);
+            if ((near - middle).norm() <= reach) patch.push_back(other);
+        }
+    }
+    return patch;
 }
 
 double NewLook::texture_scale(int triangle) const {
@@ -135,12 +164,30 @@ NewLook::Face NewLook::look_of(const std::array<Vec3, 4>& place,
     if (!face.textured) return face;
     const Vec2 here = texture_at(at.triangle, at.weight);
     const double most = kStretch * texture_scale(at.triangle);
+    double reach = 0;
+    for (const Vec3& p : place) reach = std::max(reach, (p - middle).norm());
+    std::vector<int> beyond;  // corners that lie nearest to another part of the texture
     for (int k = 0; k < 4; ++k) {
-        face.uv[k] = texture_at(at.triangle, weights_in_plane(at.triangle, place[k]));
         const auto [triangle, weight] = corner[k];
-        if (chart_[triangle] != chart_[at.triangle] || !is_textured(triangle)) continue;
-        const Vec2 uv = texture_at(triangle, weight);
-        if ((uv - here).norm() <= most * (place[k] - middle).norm()) face.uv[k] = uv;
+        if (chart_[triangle] == chart_[at.triangle] && is_textured(triangle)) {
+            face.uv[k] = texture_at(triangle, weight);
+            if ((face.uv[k] - here).norm() <= most * (place[k] - middle).norm()) continue;
+        }
+        beyond.push_back(k);
+    }
+    if (beyond.empty()) return face;
+    // Those go no farther than the seam.
+    const std::vector<int> patch = patch_about(at.triangle, middle, reach);
+    TriMesh part;
+    for (int t : patch) {
+        const int first = static_cast<int>(part.position.size());
+        for (int v : mesh_.triangle[t]) part.position.push_back(mesh_.position[v]);
+        part.triangle.push_back({first, first + 1, first + 2});
+    }
+    const TriangleTree tree(part);
+    for (int k : beyond) {
+        const TriangleTree::Nearest nearest = tree.nearest(place[k]);
+        face.uv[k] = texture_at(patch[nearest.triangle], nearest.weight);
     }
     return face;
 }

@@ -36,11 +36,14 @@ class NewLook {
                  const std::array<TriangleTree::Nearest, 4>& corner) const;
     bool is_textured(int triangle) const;
     Vec2 texture_at(int triangle, const Vec3& weight) const;
-    Vec3 weights_in_plane(int triangle, const Vec3& place) const;
+    std::vector<int> patch_about(int triangle, const Vec3& middle, double reach) const;
     double texture_scale(int triangle) const;  // texture a length [1/m]
 
     TriMesh mesh_;
     TriangleTree tree_;
+    // Across each triangle's edges, the first from its first corner to its second; -1: the surface
+    // or its texture ends there.
+    std::vector<Corners> adjoins_;
     std::vector<int> chart_;  // of each triangle: those that no seam parts share a number
 };
 

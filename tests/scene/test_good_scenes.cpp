@@ -270,6 +270,22 @@ TEST_CASE("a single gravity points against a stage's up, and the pictures have t
     CHECK(scene_with(z + "[render]\nup = \"x\"\n").render.up == Up::x);
 }
 
+TEST_CASE("what an earlier stage has strained may move without gravity, load or speed") {
+    const Scratch scratch;
+    const SceneReading reading = read(scratch, kHead + R"([mold]
+across = 4
+[[stage]]
+machine = "twist"
+angle = "5 deg"
+[[stage]]
+machine = "hold"
+solver = "explicit"
+duration = "1 s"
+)");
+    INFO(told(reading.mistakes, scratch.folder()));
+    CHECK(reading.mistakes.empty());
+}
+
 TEST_CASE("a byte order mark, carriage returns and comments change nothing") {
     const Scratch scratch;
     const std::string plain = kHead + "[[stage]]\nmachine = \"bend\" # with care\n";

@@ -2,8 +2,10 @@
 // What a relaxation does to each particle in each iteration.
 #include "sim/relaxation_passes.h"
 
+#include <limits>
 #include <random>
 
+#include "sim/push_measure.h"
 #include "sim/resting_contacts.h"
 #include "sim/vector_sums.h"
 #include "tests/catch.h"
@@ -108,4 +110,16 @@ TEST_CASE("points that cannot have come to a tool are passed over, and none that
     all.resize(start.size());
     contacts.add_forces(m, drive, all);
     CHECK(farthest_move(force, all) > 0);
+}
+
+TEST_CASE("a residual is eased to what was let go of, and never to what is no number") {
+    PushMeasure measure(1);
+    CHECK_FALSE(measure.ease(5, 0.5));
+    measure.let_go(10);
+    CHECK(measure.ease(5, 0.5));
+    CHECK_FALSE(measure.ease(5.1, 0.5));
+    for (const double none :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        CHECK_FALSE(measure.ease(none, 0.5));
+    }
 }

@@ -81,6 +81,61 @@ TEST_CASE("a boundary made anew keeps the mesh's texture, materials and colours,
     CHECK(off < 1e-6);
 }
 
+TEST_CASE("faces across a seam take nothing of the picture that belongs to no side of it") {
+    const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
+    TriMesh mesh = textured_box(block);
+    // A seam round the middle that no face of a cell ends at: left of it the picture is another.
+    const double seam = 0.07;
+    TriMesh halves = mesh;
+    halves.triangle.clear(), halves.triangle_uv.clear(), halves.uv.clear();
+    halves.triangle_material.clear(), halves.triangle_part.clear();
+    halves.position.clear(), halves.position_color.clear();
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        for (int half : {0, 1}) {
+            const auto on_half = [&](int v) {
+                Vec3 p = mesh.position[v];
+                p.x() = half ? std::max(p.x(), seam) : std::min(p.x(), seam);
+                return p;
+            };
+            const auto& [a, b, c] = mesh.triangle[t];
+            const Vec3 corner[] = {on_half(a), on_half(b), on_half(c)};
+            const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+            const int side = mesh.triangle_material[t];
+            if (normal.norm() < 1e-9 || (side == 0 && half) || (side == 1 && !half)) continue;
+            Corners triangle{}, uv{};
+            for (int k = 0; k < 3; ++k) {
+                const auto known =
+                    std::find(halves.position.begin(), halves.position.end(), corner[k]);
+                triangle[k] = static_cast<int>(known - halves.position.begin());
+                if (known == halves.position.end()) halves.position.push_back(corner[k]);
+                uv[k] = static_cast<int>(halves.uv.size());
+                halves.uv.push_back(texture_of(side, corner[k]) + Vec2(100.0 * half, 0));
+            }
+            halves.triangle.push_back(triangle);
+            halves.triangle_uv.push_back(uv);
+            halves.triangle_material.push_back(side);
+        }
+    }
+    halves.part_name.clear();
+    const NewLook look(halves);
+    const TriMesh anew = boundary_skin(block, &look);
+    const auto is_pictured = [&](const Vec2& at) {
+        for (const Corners& uv : halves.triangle_uv) {
+            const Vec2 a = halves.uv[uv[0]], u = halves.uv[uv[1]] - a, v = halves.uv[uv[2]] - a;
+            const double size = u.x() * v.y() - u.y() * v.x();
+            const double s = ((at - a).x() * v.y() - (at - a).y() * v.x()) / size;
+            const double r = (u.x() * (at - a).y() - u.y() * (at - a).x()) / size;
+            if (s > -1e-9 && r > -1e-9 && s + r < 1 + 1e-9) return true;
+        }
+        return false;
+    };
+    std::size_t astray = 0;
+    for (const Corners& uv : anew.triangle_uv) {
+        for (int corner : uv) astray += !is_pictured(anew.uv[corner]);
+    }
+    CHECK(astray == 0);
+}
+
 TEST_CASE("a texture stays where it was on matter that has moved") {
     Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
     const NewLook look(textured_box(block));
