@@ -10,9 +10,9 @@
 #include <variant>
 
 #include "base/error.h"
+#include "sim/block_steps.h"
 #include "sim/crumbs.h"
 #include "sim/energy_steps.h"
-#include "sim/explicit_steps.h"
 #include "sim/lattice_forces.h"
 #include "sim/move_warnings.h"
 #include "sim/quasistatic.h"
@@ -22,7 +22,7 @@ namespace swage {
 
 namespace {
 
-using AnySolver = std::variant<QuasistaticSolver, ExplicitSolver, EnergySteps>;
+using AnySolver = std::variant<QuasistaticSolver, BlockSolver, EnergySteps>;
 
 AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                         const SimSettings& settings) {
@@ -39,7 +39,7 @@ AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& 
                  apparatus.name, why);
         }
     }
-    return ExplicitSolver(bodies, apparatus, settings);
+    return BlockSolver(bodies, apparatus, settings);
 }
 
 // A body, and what the stage has done to it so far.

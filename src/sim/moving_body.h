@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One body in motion by explicit steps: its matter, and all that acts on it except other bodies.
+// One body in motion: its matter, and all that acts on it except other bodies.
 #pragma once
 
 #include <optional>

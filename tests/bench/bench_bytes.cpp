@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "sim/explicit_steps.h"
+#include "sim/block_steps.h"
 #include "tests/shared/block.h"
 
 using namespace swage;
@@ -44,7 +44,7 @@ void body(const char* name, double wanted, const Material& material) {
     const Apparatus nothing;
     SimSettings settings;
     settings.solver = Solver::explicit_steps;
-    ExplicitSolver solver({&m}, nothing, settings);
+    BlockSolver solver({&m}, nothing, settings);
     Drive from, to;
     to.time = 2.5 * explicit_step(m, settings);
     solver.advance(from, to);

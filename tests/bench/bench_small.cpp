@@ -11,7 +11,7 @@
 
 #include "base/parallel.h"
 #include "sim/advance.h"
-#include "sim/explicit_steps.h"
+#include "sim/moving_body.h"
 #include "skin/mount.h"
 #include "tests/shared/block.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "sim/explicit_steps.h"
+#include "sim/block_steps.h"
 #include "sim/lattice_forces.h"
 #include "sim/vector_clones.h"
 #include "tests/shared/block.h"
@@ -81,7 +81,7 @@ double step_ns(double particles, const Material& material) {
     Aggregate m = bar(particles, material);
     const Apparatus nothing;
     const SimSettings settings{.solver = Solver::explicit_steps};
-    ExplicitSolver solver({&m}, nothing, settings);
+    BlockSolver solver({&m}, nothing, settings);
     // A whole block at least: what is done once a block is not to weigh more than it does.
     const int steps = std::max(64, static_cast<int>(1e6 / particles));
     const double frame = (steps - 0.5) * explicit_step(m, settings);

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "sim/explicit_steps.h"
+#include "sim/block_steps.h"
 #include "tests/shared/block.h"
 
 using namespace swage;
@@ -55,7 +55,7 @@ void compare(const char* name, double cells, const Material& material) {
     SimSettings settings;
     settings.solver = Solver::explicit_steps;
     settings.gravity = {0, 0, -9.81};
-    ExplicitSolver solver({&m}, nothing, settings);
+    BlockSolver solver({&m}, nothing, settings);
     // A whole block at least: what is done once a block is not to weigh more than it does.
     const int steps = std::max(64, static_cast<int>(4e6 / cells));
     const double frame = (steps - 0.5) * explicit_step(m, settings);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/advance.h"
-#include "sim/explicit_steps.h"
 #include "sim/lattice_sweep.h"
+#include "sim/moving_body.h"
 #include "tests/catch.h"
 #include "tests/sim/machines.h"
 #include "tests/sim/motion.h"

@@ -3,7 +3,7 @@
 // energy is what was put in, and matter that is let go has its shape again.
 #include "base/error.h"
 #include "sim/cell_volume.h"
-#include "sim/explicit_steps.h"
+#include "sim/moving_body.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
 

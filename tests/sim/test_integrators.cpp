@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "sim/energy_steps.h"
-#include "sim/explicit_steps.h"
 #include "sim/implicit_step.h"
+#include "sim/moving_body.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
 

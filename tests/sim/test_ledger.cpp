@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The energy books of bodies in motion.
-#include "sim/explicit_steps.h"
+#include "sim/moving_body.h"
 #include "tests/catch.h"
 #include "tests/sim/motion.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies in motion with real masses, in blocks of steps that sim/motion_guard.h watches, takes back
-// and tries again. The step is also short enough that nothing goes far in it, however fast.
+// Bodies in motion with real masses, in blocks of steps of one length, by one of three formulas.
+// sim/motion_guard.h watches the blocks; one that goes wrong is taken back and tried again. A step
+// is also short enough that nothing goes far in it, however fast.
 //
 // Solver::explicit_steps: symplectic Euler,
 //
@@ -25,34 +26,29 @@
 
 #include <vector>
 
-#include "base/parallel.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
-#include "sim/body_contact.h"
 #include "sim/implicit_step.h"
 #include "sim/motion_guard.h"
 #include "sim/move_outcome.h"
-#include "sim/moving_body.h"
+#include "sim/moving_bodies.h"
 #include "sim/settings.h"
-#include "sim/sleeping.h"
 
 namespace swage {
 
-class ExplicitSolver {
+class BlockSolver {
   public:
-    ExplicitSolver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
-                   const SimSettings& settings);
+    BlockSolver(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
+                const SimSettings& settings);
 
     // Throws Error(stopped) when the guard finds something wrong even in the shortest steps; the
     // matter is then as it was at the last block that was right.
     MoveOutcome advance(const Drive& from, const Drive& to);
     void connections_changed(std::size_t body);
-    double elastic_energy(std::size_t body) { return body_[body].elastic_energy(); }  // [J]
-    const LoadSet& pushes(std::size_t body) const { return body_[body].pushes(); }
+    double elastic_energy(std::size_t body) { return bodies_[body].elastic_energy(); }  // [J]
+    const LoadSet& pushes(std::size_t body) const { return bodies_[body].pushes(); }
 
   private:
-    static constexpr std::size_t kThreadShare = 512;  // particles that a thread is worth waking for
-
     struct Way {
         const Drive &from, &to;
         double at(double time) const { return (time - from.time) / (to.time - from.time); }
@@ -66,13 +62,13 @@ class ExplicitSolver {
     }
     // That the speeds go on by from where places and speeds stand at one time [s].
     double first_step(double dt) const { return has_half_kicks() ? 0.5 * dt : dt; }
+    // So often halved that cells may turn inside out.
+    bool may_crush() const;
     // Moves one body on by step n of a block; returns the longest way of any particle [m].
     double move(std::size_t body, const Drive& now, double dt, long n, BodyOutcome& outcome);
     struct Block;
     Block next_block(const Way& way, const Drive& begin);
     void start_books(const std::vector<Stored>& held, MoveOutcome& outcome);
-    void save();
-    void save(std::size_t body);
     Finding take(const Way& way, const Block& block, MoveOutcome& outcome);
     bool energy_holds(const Block& block, const std::vector<Stored>& held,
                       const std::vector<Stored>& after, const std::vector<BodyOutcome>& so_far,
@@ -80,54 +76,18 @@ class ExplicitSolver {
     void keep(const Block& block, MoveOutcome& outcome);
     void take_back(const Block& block, const Finding& found, const std::vector<BodyOutcome>& so_far,
                    MoveOutcome& outcome);
-    std::vector<Stored> stored(const Drive& now, double dt);
-    // The same where nothing has moved since, but for a step of another length.
-    std::vector<Stored> still_stored(double dt);
     bool can_be_rescued() const;
-    // Adds what bodies in contact do to each other in a step of this length [s] from here.
-    void meet(const Drive& now, double dt, bool again, MoveOutcome& outcome);
-    template <typename Act>
-    void for_each_awake(const Act& act) {
-        for (std::size_t b = 0; b < body_.size(); ++b) {
-            if (!sleeping_.is_asleep(b)) act(b);
-        }
-    }
-    // The same at once, where act(b) changes nothing but what is of body b.
-    template <typename Act>
-    void for_all_awake(const Act& act) {
-        if (body_.size() == 1) return for_each_awake(act);
-        std::vector<std::size_t> awake;
-        std::size_t particles = 0;
-        for_each_awake([&](std::size_t b) {
-            awake.push_back(b);
-            particles += body_[b].matter().particle_count();
-        });
-        parallel_for(awake.size(), particles / kThreadShare, [&](std::size_t n) { act(awake[n]); });
-    }
-    void wake(std::size_t body, MoveOutcome& outcome);
-    void wake_neighbours(const Drive& now, MoveOutcome& outcome);
-    void wake_stirred(const Drive& before, const Drive& now, double dt, MoveOutcome& outcome);
-    void put_to_sleep(const Drive& now, MoveOutcome& outcome);
 
     const Apparatus& apparatus_;
     SimSettings settings_;
-    std::vector<MovingBody> body_;
-    std::vector<MovingBody::State> state_;
-    BodyContact contact_;
-    std::shared_ptr<const BodyContact::State> contact_state_;
-    std::vector<ContactSums> met_;
-    Sleeping sleeping_;
-    std::vector<Drive> asleep_since_;
-    std::vector<Stored> held_;  // by body, when it was last looked at
+    MovingBodies bodies_;
     EnergyGuard energy_;
     bool started_ = false;
-    bool in_block_ = false;
-    double step_;                  // [s]
-    double share_ = 1;             // of the step that is taken now: halved where the guard asked
-    int good_blocks_ = 0;          // since then
-    int halvings_ = 0;             // of this block
-    long steps_ = 0;               // of the stage
-    std::vector<int> inside_out_;  // cells that may be, by body
+    double step_;          // [s]
+    double share_ = 1;     // of the step that is taken now: halved where the guard asked
+    int good_blocks_ = 0;  // since then
+    int halvings_ = 0;     // of this block
+    long steps_ = 0;       // of the stage
     std::vector<ImplicitStep> implicit_;
     int rescued_blocks_ = 0;  // of implicit steps yet to come where explicit ones went wrong
 };
