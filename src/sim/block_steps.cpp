@@ -88,6 +88,9 @@ double BlockSolver::longest_step(double frame) {
 
 double BlockSolver::move(std::size_t b, const Drive& now, double dt, long n, BodyOutcome& outcome) {
     MovingBody& body = bodies_[b];
+    // NOTE: what wakes within a block (MovingBodies::wake_stirred(), and wake_neighbours() as a
+    // step ends) has its speed, nought, at the time of its place, and is due half a kick as well;
+    // it has a whole one, and goes on by half a step's acceleration too fast.
     if (has_half_kicks()) return body.move(n == 1 ? 0.5 * dt : dt, dt);
     if (!is_implicit()) {
         const double gone = body.move(0, dt);
