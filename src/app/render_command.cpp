@@ -11,6 +11,7 @@
 #include "base/stopwatch.h"
 #include "pipeline/draw.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/render_record.h"
 #include "pipeline/run_record.h"
 #include "render/camera_change.h"
 

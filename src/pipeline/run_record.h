@@ -34,11 +34,6 @@ Json mesh_json(const InputMesh& input);
 Json matter_json(const Aggregate& matter);
 Json drawing_json(const DrawOutcome& drawing);
 Json seconds_json(const Stopwatch& watch);
-Json render_json(const RenderSettings& settings);
-Up up_named(const std::string& name);              // automatic: no such name
-GlProviderKind gl_named(const std::string& name);  // likewise
-// Throws Error(output) when the record holds none.
-RenderSettings render_settings_of(const Json& record);
 
 // An earlier record; none when there is no readable one.
 std::optional<Json> read_record(const std::filesystem::path& file);

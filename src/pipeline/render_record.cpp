@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/render_record.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace swage {
+
+Json render_json(const RenderSettings& settings) {
+    Json camera = Json::array();
+    for (const CameraKey& key : settings.camera) {
+        Json one = {{"at", key.at},
+                    {"azimuth", key.azimuth},
+                    {"elevation", key.elevation},
+                    {"zoom", key.zoom}};
+        if (key.eye) one["eye"] = {(*key.eye)[0], (*key.eye)[1], (*key.eye)[2]};
+        if (key.target) one["target"] = {(*key.target)[0], (*key.target)[1], (*key.target)[2]};
+        camera.push_back(one);
+    }
+    return {{"size", {settings.width, settings.height}},
+            {"field_of_view", settings.field_of_view},
+            {"camera", camera},
+            {"frames_per_second", settings.frames_per_second},
+            {"film", settings.film},
+            {"tools", settings.tools},
+            {"ground", settings.ground},
+            {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
+            {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
+}
+
+Up up_named(const std::string& name) {
+    const auto at = std::find(kUpName.begin(), kUpName.end(), name);
+    return at != kUpName.end() ? static_cast<Up>(at - kUpName.begin()) : Up::automatic;
+}
+
+GlProviderKind gl_named(const std::string& name) {
+    const auto at = std::find(kGlName.begin(), kGlName.end(), name);
+    return at != kGlName.end() ? static_cast<GlProviderKind>(at - kGlName.begin())
+                               : GlProviderKind::automatic;
+}
+
+RenderSettings render_settings_of(const Json& record) {
+    RenderSettings settings;
+    try {
+        const Json& json = record.at("render");
+        settings.width = json.at("size").at(0).get<int>();
+        settings.height = json.at("size").at(1).get<int>();
+        settings.field_of_view = json.at("field_of_view").get<double>();
+        settings.frames_per_second = json.at("frames_per_second").get<int>();
+        settings.film = json.at("film").get<bool>();
+        settings.tools = json.at("tools").get<bool>();
+        settings.ground = json.at("ground").get<bool>();
+        // Runs of before this was asked had y.
+        settings.up = up_named(json.value("up", "y"));
+        settings.gl = gl_named(json.value("gl", "auto"));
+        const auto vector_of = [](const Json& three) {
+            return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),
+                        three.at(2).get<double>());
+        };
+        settings.camera.clear();
+        for (const Json& one : json.at("camera")) {
+            CameraKey key;
+            key.at = one.at("at").get<double>();
+            key.azimuth = one.at("azimuth").get<double>();
+            key.elevation = one.at("elevation").get<double>();
+            key.zoom = one.at("zoom").get<double>();
+            if (one.contains("eye")) key.eye = vector_of(one.at("eye"));
+            if (one.contains("target")) key.target = vector_of(one.at("target"));
+            settings.camera.push_back(key);
+        }
+    } catch (const Json::exception&) {
+        fail(ExitCode::output, "run.json does not say how the run was drawn; run it again");
+    }
+    return settings;
+}
+
+}  // namespace swage
