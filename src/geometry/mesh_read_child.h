@@ -75,6 +75,7 @@ RawMesh read_by_assimp(MeshSource& source);
 RawMesh read_raw(MeshSource& source);  // whichever fits, with its textures looked up
 
 // Rewrite a file's bytes where assimp would take them wrongly.
+void patch_stl(MeshSource& source);
 void patch_gltf(MeshSource& source);
 double patch_3mf(MeshSource& source);  // the unit of its lengths [m]
 
