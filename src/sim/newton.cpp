@@ -48,24 +48,31 @@ void Newton::product(const Aggregate& matter, const NewtonProblem& problem, Cell
     });
 }
 
+// Whether no point is held or let go of, and nothing has gone far, since.
+bool Newton::Prepared::is_for(const NewtonProblem& problem, const Aggregate& matter) const {
+    return stands && points == problem.held.size() &&
+           !(farthest_move(at, matter.particle_position) > matter.lattice.spacing);
+}
+
+void Newton::Prepared::serve(int count) {
+    if (iterations < 0) iterations = count;
+    is_stale = count > iterations + iterations / 2 + 4;
+}
+
 // The exact tangent where that is stable and wanted, else the part of it that is, made firmer where
 // that is not: far strained matter may be soft by itself.
 bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact) {
-    prepared_ = false;
+    prepared_.stands = false;
     for (const auto& [geometric, firmer] : kPrepared) {
         if (geometric == 1 && !exact) continue;
-        kind_ = {Flow::trial, geometric};
+        const CellTangent::Kind kind{Flow::trial, geometric};
         const auto times = [&](const Vec3Array& d, Vec3Array& r) {
-            product(matter, problem, kind_, d, r);
+            product(matter, problem, kind, d, r);
         };
         std::vector<double> drag = problem.drag;
         for (std::size_t p = 0; p < drag.size(); ++p) drag[p] += firmer * problem.diagonal[p];
-        if (multigrid_.prepare(matter, tangent_, kind_, problem.held, drag, times)) {
-            prepared_ = true;
-            held_ = problem.held.size();
-            prepared_at_ = matter.particle_position;
-            stale_ = false;
-            fresh_iterations_ = -1;
+        if (multigrid_.prepare(matter, tangent_, kind, problem.held, drag, times)) {
+            prepared_ = {true, kind, matter.particle_position, problem.held.size()};
             return true;
         }
     }
@@ -76,7 +83,7 @@ bool Newton::prepare(const Aggregate& matter, const NewtonProblem& problem, bool
 bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& problem,
                             double accuracy) {
     const auto times = [&](const Vec3Array& d, Vec3Array& r) {
-        product(matter, problem, kind_, d, r);
+        product(matter, problem, prepared_.kind, d, r);
     };
     residual_ = force_;
     set_zero(matter.particle_count(), direction_);
@@ -107,8 +114,7 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
         combine(1, length, search_, direction_);
         combine(1, -length, image_, residual_);
         if (norm() <= enough) {
-            if (fresh_iterations_ < 0) fresh_iterations_ = n;
-            stale_ = n > fresh_iterations_ + fresh_iterations_ / 2 + 4;
+            prepared_.serve(n);
             return true;
         }
         multigrid_.solve(times, residual_, better_);
@@ -117,7 +123,7 @@ bool Newton::find_direction(const Aggregate& matter, const NewtonProblem& proble
         combine(next / size, 1, better_, search_);
         size = next;
     }
-    stale_ = true;
+    prepared_.is_stale = true;
     return true;
 }
 
@@ -197,33 +203,29 @@ bool Newton::find_bend(Aggregate& matter, const NewtonProblem& problem) {
         ahead.set(p, (ahead.at(p) + force_.at(p) - 2 * force.at(p)) / (2 * part * part));
     }
     // The stable part of the tangent: a stretched way is no reason to go on down.
-    const bool found = prepare(matter, problem, false);
-    stale_ = true;
-    if (!found) return false;
+    if (!prepare(matter, problem, false)) return false;
+    prepared_.is_stale = true;
     const auto times = [&](const Vec3Array& d, Vec3Array& r) {
-        product(matter, problem, kind_, d, r);
+        product(matter, problem, prepared_.kind, d, r);
     };
     multigrid_.solve(times, ahead, bent_);  // about; the next step mends it
     return true;
 }
 
 bool Newton::buckles(const Aggregate& matter, const NewtonProblem& problem) {
-    if (unwatched_ > 0 && held_ == problem.held.size()) {
+    if (unwatched_ > 0 && prepared_.points == problem.held.size()) {
         --unwatched_;
         ++since_;
         return false;
     }
     tangent_.moved();
-    const bool moved =
-        !prepared_ || held_ != problem.held.size() ||
-        farthest_move(prepared_at_, matter.particle_position) > matter.lattice.spacing;
-    if (moved && !prepare(matter, problem, true)) return false;
+    if (!prepared_.is_for(problem, matter) && !prepare(matter, problem, true)) return false;
     const auto times = [&](double geometric) {
         return [&, geometric](const Vec3Array& from, Vec3Array& to) {
             product(matter, problem, {Flow::trial, geometric}, from, to);
         };
     };
-    const SoftMode::Map exact = times(1), prepared = times(kind_.geometric);
+    const SoftMode::Map exact = times(1), prepared = times(prepared_.kind.geometric);
     const double quotient = softest_.follow(
         matter.particle_position, matter.particle_mass, exact,
         [&](const Vec3Array& b, Vec3Array& x) { multigrid_.solve(prepared, b, x); });
@@ -270,11 +272,12 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
         if (!std::isfinite(result.residual)) break;
         result.converged = result.residual <= problem.tolerance;
         if (result.converged) break;
+        bool serves = prepared_.stands && !prepared_.is_stale;
         if (problem.held_now) {
             problem.held = problem.held_now();
-            stale_ = stale_ || problem.held.size() != held_;
+            serves = serves && prepared_.points == problem.held.size();
         }
-        if ((stale_ || !prepared_) && !prepare(matter, problem, true)) break;
+        if (!serves && !prepare(matter, problem, true)) break;
         const double accuracy = std::clamp(std::sqrt(result.residual) / 10, 1e-4, 0.1);
         if (!find_direction(matter, problem, accuracy) &&
             !(prepare(matter, problem, false) && find_direction(matter, problem, accuracy))) {
@@ -283,7 +286,9 @@ Newton::Result Newton::solve(Aggregate& matter, NewtonProblem problem) {
         const double share = line_search(matter, problem, turns);
         tangent_.moved();
         if (share == 0) break;
-        if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) stale_ = true;
+        if (share < 1 || result.steps % kKeptSteps == kKeptSteps - 1) {
+            prepared_.is_stale = true;
+        }
     }
     if (falls_) unwatched_ = 0;  // its softest motion is another by now
     return result;

@@ -69,16 +69,25 @@ class Newton {
     };
     Way way_of(const Aggregate& matter, bool loose) const;
 
+    // What stands in multigrid_, and how old it is.
+    struct Prepared {
+        bool stands = false;  // the last try has come to something
+        CellTangent::Kind kind{};
+        Vec3Array at{};          // positions
+        std::size_t points = 0;  // that were held
+        int iterations = -1;     // of the first solution with it; -1: none yet
+        bool is_stale = false;   // it serves badly by now, or for long enough
+
+        bool is_for(const NewtonProblem& problem, const Aggregate& matter) const;
+        // In a solution of so many iterations.
+        void serve(int count);
+    };
+
     CellTangent tangent_;
     Multigrid multigrid_;
     double extent_;       // [m]
     bool falls_ = false;  // some direction has had negative curvature
-    bool prepared_ = false;
-    CellTangent::Kind kind_;
-    int fresh_iterations_ = -1;  // of the first solution with these coarse matrices; -1: none yet
-    bool stale_ = true;
-    std::size_t held_ = 0;  // points, when they were prepared
-    Vec3Array prepared_at_;
+    Prepared prepared_;
     SoftMode softest_;
     double firmness_ = 0;  // of the softest motion, when last looked at
     int since_ = -1;       // increments since then; -1: never looked
