@@ -33,7 +33,7 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[material]", "strength", "stress at which a pulled bar breaks; goes with toughness",
          "stress, more than 0 Pa and less than a tenth of young_modulus, or inf", "inf"},
         {"[material]", "toughness", "energy of a new crack, both its faces together"},
-        {"[material]", "damping_ratio", "of every swing; explicit steps only"},
+        {"[material]", "damping_ratio", "of every swing; explicit and energy-chosen steps only"},
         {"[material]", "friction", "Coulomb's, sliding; on a tool its own counts where it has one"},
         {"[material]",
          "static_friction",

@@ -14,11 +14,11 @@ namespace swage {
 
 namespace {
 
-constexpr long kBlock = 64;           // steps
-constexpr double kWayAhead = 0.3;     // spacings a step that the fastest particle is given
-constexpr int kPatience = 8;          // blocks until a halved step is doubled again
-constexpr double kFrameShare = 0.25;  // of a frame, in an implicit step
-constexpr double kRescueStep = 64;    // explicit steps in an implicit one that stands in for them
+constexpr long kBlock = 64;         // steps
+constexpr double kWayAhead = 0.3;   // spacings a step that the fastest particle is given
+constexpr int kPatience = 8;        // blocks until a halved step is doubled again
+constexpr double kLegShare = 0.25;  // of a leg, in an implicit step
+constexpr double kRescueStep = 64;  // explicit steps in an implicit one that stands in for them
 constexpr int kRescueHalvings = 10;
 constexpr long kRescue = 4;                                         // blocks of these
 constexpr double kCrushingShare = 1.0 / (1 << kInsideOutHalvings);  // of a step
@@ -70,9 +70,9 @@ void BlockSolver::connections_changed(std::size_t body) {
 }
 
 // What the state of the bodies and what the guard has asked for allow.
-double BlockSolver::longest_step(double frame) {
+double BlockSolver::longest_step(double leg) {
     const bool is_free = is_implicit();
-    double dt = !is_free ? step_ : rescued_blocks_ > 0 ? kRescueStep * step_ : kFrameShare * frame;
+    double dt = !is_free ? step_ : rescued_blocks_ > 0 ? kRescueStep * step_ : kLegShare * leg;
     bodies_.for_each_awake([&](std::size_t b) {
         MovingBody& body = bodies_[b];
         if (!is_free) {

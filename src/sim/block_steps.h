@@ -20,8 +20,9 @@
 // With damping the determinant is 1 - 2 zeta w dt + (w dt)^2, so the swing stays bounded while w dt
 // < 2 zeta, which is the step it takes: a share zeta or so of the symplectic one.
 //
-// Solver::implicit_steps: sim/implicit_step.h; a quarter of a frame a step where no tool is in
-// reach. Explicit steps that go wrong however short pass on to it too, where it can move the body.
+// Solver::implicit_steps: sim/implicit_step.h; a quarter of a leg a step, of which a frame is one
+// or more (machines/legs.h), where no tool is in reach. Explicit steps that go wrong however short
+// pass on to it too, where it can move the body.
 #pragma once
 
 #include <vector>
@@ -53,7 +54,7 @@ class BlockSolver {
         const Drive &from, &to;
         double at(double time) const { return (time - from.time) / (to.time - from.time); }
     };
-    double longest_step(double frame);
+    double longest_step(double leg);
     bool is_implicit() const {
         return settings_.solver == Solver::implicit_steps || rescued_blocks_ > 0;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lattice's internal damping in explicit steps: branches of springs and dashpots beside each
-// connection (laws/internal_damping.h), and what they remember; a set of branches for each of the
-// damping ratios of a body's materials.
+// The lattice's internal damping in motion, but for implicit steps: branches of springs and
+// dashpots beside each connection (laws/internal_damping.h), and what they remember; a set of
+// branches for each of the damping ratios of a body's materials.
 #pragma once
 
 #include <vector>

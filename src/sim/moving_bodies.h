@@ -52,7 +52,7 @@ class MovingBodies {
     void limit_stiffness(double step);  // of contacts, as MovingBody's
     void connections_changed(std::size_t body);
 
-    // A frame begins, and the speeds go on by a step of this length [s].
+    // A leg begins, and the speeds go on by a step of this length [s].
     void start(const Drive& from, double step, MoveOutcome& outcome);
 
     // Remembers what the block to come goes back to. `may_crush`: any cell may turn inside out in

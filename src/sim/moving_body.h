@@ -33,7 +33,7 @@ class MovingBody {
     // No contact is stiffer than what its carriers can follow in steps of this length [s].
     void limit_stiffness(double step) { contacts_.limit_stiffness(matter_, step); }
 
-    // A frame begins: forces where the body is now.
+    // A leg begins: forces where the body is now.
     void start(const Drive& from, BodyOutcome& outcome);
     void find_candidates(const Drive& now);
     // What is done on the branches of the damping between these, and they do not store, is lost.

@@ -36,7 +36,7 @@ struct SimSettings {
     Solver solver = Solver::quasistatic;
 
     // Quasi-static relaxation.
-    double tolerance = 1e-2;     // residual (1-norm) over the largest tool force; 1e-4 to 0.1
+    double tolerance = 1e-2;     // residual (1-norm) over what sim/push_measure.h says; 1e-4 to 0.1
     int iteration_limit = 6000;  // a sub-increment that needs more is halved; 100 to 1e6
     int halving_limit = 4;       // 0 to 8
     // k_n = this * E * area / spacing, E of sim/surface_modulus.h; 0.01 to 100. 0: 2, or what a
@@ -46,13 +46,13 @@ struct SimSettings {
     bool self_contact = false;   // a body's surface meets what is not its neighbourhood in the
                                  // body; not in implicit steps
 
-    // Explicit steps.
-    double step_safety = 0.8;  // share of the stable step, 0 to 1
+    // Motion by blocks of steps (sim/block_steps.h).
+    double step_safety = 0.8;  // share of the stable step, 0 to 1; not implicit steps
     int retry_limit = 10;      // halvings of a step that goes wrong (sim/motion_guard.h); 0 to 20
     bool sleep = true;         // bodies that have come to rest cost nothing (sim/sleeping.h)
 
     // What the medium around does to the surface (laws/ambient_drag.h, laws/directional_drag.h);
-    // explicit steps only.
+    // in motion, but for implicit steps.
     double medium_density = 0;    // [kg/m3], >= 0; 0: none; air 1.2, water 1000
     double drag_coefficient = 1;  // >= 0, over a quarter of the surface: ball 0.5, cube 0.7, thin
                                   // plate face on 2.4

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a medium around the work-piece does to its true surface, in explicit steps. Points of one
-// cell follow one another: what the cell's corners do is read, and what they get is given, once for
-// all of them.
+// What a medium around the work-piece does to its true surface, in motion but for implicit steps.
+// Points of one cell follow one another: what the cell's corners do is read, and what they get is
+// given, once for all of them.
 #pragma once
 
 #include <vector>
