@@ -181,9 +181,9 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         const BodyOutcome& part = outcome.body[b];
         Books& books = body[b].books;
         books.plastic += part.plastic_work;
-        books.damped += part.damped_work + part.met.damped;
+        books.damped += part.damped_work + part.by_contact.damped;
         books.fracture += part.fracture_work;
-        books.friction += part.friction_work + part.met.friction;
+        books.friction += part.friction_work + part.by_contact.friction;
         books.drag += part.drag_work;
         books.set_free += part.set_free;
         for (double done : part.work) books.work += done;
@@ -193,8 +193,8 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         }
         // Half of what a contact holds and takes is on its books; the rest of its work is passed
         // on.
-        books.passed +=
-            part.met.work + part.met.damped + part.met.friction + part.met.stored - part.met.held;
+        books.passed += part.by_contact.work + part.by_contact.damped + part.by_contact.friction +
+                        part.by_contact.stored - part.by_contact.stored_at_start;
         books.kinetic = part.after.kinetic;
         books.elastic = part.after.elastic;
         books.contact = part.after.contact;

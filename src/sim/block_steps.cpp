@@ -123,11 +123,11 @@ struct BlockSolver::Block {
     long count;
 };
 
-void BlockSolver::start_books(const std::vector<Stored>& held, MoveOutcome& outcome) {
+void BlockSolver::start_books(const std::vector<Stored>& before, MoveOutcome& outcome) {
     double sum = 0;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        outcome.body[b].before = held[b];
-        sum += held[b].sum();
+        outcome.body[b].before = before[b];
+        sum += before[b].sum();
     }
     if (!started_) energy_.start(sum);
     started_ = true;
@@ -187,7 +187,7 @@ BlockSolver::Block BlockSolver::next_block(const Way& way, const Drive& begin) {
 }
 
 // Whether the energy of a block that went right is right too.
-bool BlockSolver::energy_holds(const Block& block, const std::vector<Stored>& held,
+bool BlockSolver::energy_holds(const Block& block, const std::vector<Stored>& before,
                                const std::vector<Stored>& after,
                                const std::vector<BodyOutcome>& so_far,
                                const std::vector<BodyOutcome>& now) {
@@ -197,7 +197,7 @@ bool BlockSolver::energy_holds(const Block& block, const std::vector<Stored>& he
                   turned_over(so_far[b].push_work, now[b].push_work);
         done += now[b].done() - so_far[b].done();
         lost += now[b].lost_since(so_far[b]);
-        gain += after[b].sum() - held[b].sum();
+        gain += after[b].sum() - before[b].sum();
     }
     const double at_once = has_half_kicks() && halvings_ < kSuddenHalvings
                                ? kSuddenGain
@@ -267,10 +267,10 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
     for (Drive begin = from; begin.time < to.time;) {
         const Block block = next_block(way, begin);
         const double lag = has_half_kicks() ? block.dt : 0;
-        const std::vector<Stored> held =
+        const std::vector<Stored> before =
             goes_on ? bodies_.still_stored(lag) : bodies_.stored(begin, lag);
         // Once: what is taken back may let go of what the damping holds.
-        if (!std::exchange(is_begun, true)) start_books(held, outcome);
+        if (!std::exchange(is_begun, true)) start_books(before, outcome);
         bodies_.save(may_crush());
         const std::vector<BodyOutcome> so_far = outcome.body;
         Finding found = take(way, block, outcome);
@@ -278,7 +278,7 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
         if (!found) {
             const std::vector<Stored> after = bodies_.stored(now, lag);
             for (std::size_t b = 0; b < bodies_.size(); ++b) outcome.body[b].after = after[b];
-            if (!energy_holds(block, held, after, so_far, outcome.body)) {
+            if (!energy_holds(block, before, after, so_far, outcome.body)) {
                 found.fault = Fault::gains;
                 found.gain = energy_.excess_share();
                 found.step = steps_ + block.count;
@@ -296,7 +296,7 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
     }
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         outcome.body[b].load = bodies_[b].load();
-        outcome.drag_held = outcome.drag_held || bodies_[b].drag_is_held();
+        outcome.drag_bounded = outcome.drag_bounded || bodies_[b].drag_was_bounded();
         outcome.asleep += bodies_.is_asleep(b);
     }
     return outcome;

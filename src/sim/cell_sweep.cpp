@@ -178,7 +178,7 @@ CellSweep::CellSweep(const Aggregate& matter)
     cells_changed(matter);
 }
 
-void CellSweep::cells_changed(const Aggregate& matter, std::vector<HeldCell>* turned) {
+void CellSweep::cells_changed(const Aggregate& matter, std::vector<TurnedCell>* turned) {
     const std::vector<float> carried = turned ? fill_ : std::vector<float>();
     fill_ = matter.cell_fill;
     for_each_cell(matter, 0, matter.lattice.cell_run.size(),

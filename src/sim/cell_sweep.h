@@ -26,7 +26,7 @@ class CellSweep {
 
     // Cells that are not whole any more carry nothing from now on. Adds those that have carried
     // until now to `turned`, where that is asked for, without the energy of those of two materials.
-    void cells_changed(const Aggregate& matter, std::vector<HeldCell>* turned = nullptr);
+    void cells_changed(const Aggregate& matter, std::vector<TurnedCell>* turned = nullptr);
     const std::vector<float>& carried_fill() const { return fill_; }  // 0: not whole
 
     // force = sum of the cells' forces on each particle [N].

@@ -9,13 +9,13 @@ namespace swage {
 // Of one body; what two share is halved between them. A force does half of its work on the way to
 // where it was found and half on the way from there.
 struct ContactSums {
-    double stored = 0, held = 0;  // in contacts, now and at the start [J]
-    double friction = 0;          // taken [J]
-    double damped = 0;            // taken by dashpots and by parting [J]
-    double work = 0;              // done on the body [J]
-    double came = 0, goes = 0;    // power on the body before and after now [W]
-    double took = 0;              // power of dashpots before now, and after they were last found
-    double penetration = 0;       // of the deepest point in contact [m]
+    double stored = 0, stored_at_start = 0;  // in contacts [J]
+    double friction = 0;                     // taken [J]
+    double damped = 0;                       // taken by dashpots and by parting [J]
+    double work = 0;                         // done on the body [J]
+    double came = 0, goes = 0;               // power on the body before and after now [W]
+    double took = 0;         // power of dashpots before now, and after they were last found
+    double penetration = 0;  // of the deepest point in contact [m]
     int contacts = 0, sliding = 0;
 
     // Those of other contacts at the same time.
@@ -35,7 +35,7 @@ struct ContactSums {
     // Nothing is taken yet where `now` holds.
     void start(const ContactSums& now) {
         *this = now;
-        held = now.stored;
+        stored_at_start = now.stored;
         friction = damped = work = 0;
     }
     // Those found at the end of the next step [s].

@@ -68,13 +68,15 @@ struct Crushed {
     }
 
     // Of the cell's own law: what it holds, and besides what the flow on trial takes.
-    double held() const { return strain_energy(*law, strain); }
+    double stored() const { return strain_energy(*law, strain); }
     double spent() const {
         const double over = std::max(0.0, flowed.over);
-        return held() - over * over / (2 * (3 * law->shear + law->hardening));
+        return stored() - over * over / (2 * (3 * law->shear + law->hardening));
     }
 
-    double energy() const { return volume * (guard.energy - (fades ? guard.share * held() : 0.0)); }
+    double energy() const {
+        return volume * (guard.energy - (fades ? guard.share * stored() : 0.0));
+    }
 
     // On the sums of the corners. The modes do not fade: they only stop flowing.
     CornerSums<double> forces() const {

@@ -81,7 +81,7 @@ void find_forces_of_step(MovingBody& body, const Drive& now, const Vec3Array& fr
 
 EnergySteps::EnergySteps(const std::vector<Aggregate*>& bodies, const Apparatus& apparatus,
                          const SimSettings& settings)
-    : apparatus_(apparatus), contact_(bodies, settings), met_(bodies.size()) {
+    : apparatus_(apparatus), contact_(bodies, settings), by_contact_(bodies.size()) {
     mover_.reserve(bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         mover_.push_back({MovingBody(*bodies[b], static_cast<int>(b), apparatus, settings)});
@@ -163,16 +163,17 @@ void EnergySteps::meet(const Group& group, double step, bool again) {
     std::vector<Vec3Array*> force;
     for (Mover& m : mover_) force.push_back(&m.body.force());
     contact_.renew(all_but(group));
-    contact_.add_forces(force, mover_[group[0]].body.gravity(), step, all_but(group), met_, again);
+    contact_.add_forces(force, mover_[group[0]].body.gravity(), step, all_but(group), by_contact_,
+                        again);
 }
 
 std::vector<Stored> EnergySteps::stored(const Group& group, const Drive& now) {
-    std::vector<Stored> held;
+    std::vector<Stored> store;
     for (std::size_t b : group) {
-        held.push_back(mover_[b].body.stored(now, 0));
-        held.back().contact += met_[b].stored;
+        store.push_back(mover_[b].body.stored(now, 0));
+        store.back().contact += by_contact_[b].stored;
     }
-    return held;
+    return store;
 }
 
 // A step of a group, and what is needed to take it back.
@@ -190,7 +191,7 @@ struct EnergySteps::Try {
 };
 
 EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const Drive& now,
-                                   double step, const std::vector<Stored>& held,
+                                   double step, const std::vector<Stored>& store,
                                    MoveOutcome& outcome) {
     Try t{begin, now, step};
     if (contact_.acts()) t.contact = contact_.save();
@@ -223,7 +224,7 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
         swap_speeds();
         meet(group, t.step, false);
         swap_speeds();
-        for (std::size_t b : group) outcome.body[b].met.add(met_[b], t.step);
+        for (std::size_t b : group) outcome.body[b].by_contact.add(by_contact_[b], t.step);
         contact_.commit(all_but(group));
     }
     t.after = stored(group, now);
@@ -231,7 +232,7 @@ EnergySteps::Try EnergySteps::take(const Group& group, const Drive& begin, const
         const BodyOutcome &is = outcome.body[group[n]], &was = t.so_far[n];
         t.done += is.done() - was.done();
         t.turned += std::abs(is.done() - was.done());
-        t.gain += t.after[n].sum() - held[n].sum();
+        t.gain += t.after[n].sum() - store[n].sum();
         t.astray += is.lost_since(was);
     }
     t.gain -= t.done;
@@ -258,8 +259,8 @@ void EnergySteps::keep(const Group& group, const Try& t, MoveOutcome& outcome) {
         Mover& m = mover_[group[n]];
         m.budget += std::abs(outcome.body[group[n]].done() - t.so_far[n].done());
         m.last_step = t.step;
-        m.step = m.held ? t.step : 1.5 * t.step;
-        m.held = false;
+        m.step = m.was_taken_back ? t.step : 1.5 * t.step;
+        m.was_taken_back = false;
     }
     ++outcome.steps;
     ++steps_;
@@ -288,7 +289,7 @@ void EnergySteps::take_back(const Group& group, Try& t, double budget, MoveOutco
         if (broke) contact_.connections_changed(group[n]);  // which are whole again
         m.body.restore_forces(std::move(t.force[n]), t.gravity[n]);
         m.step = 0.5 * t.step;
-        m.held = true;
+        m.was_taken_back = true;
     }
     if (t.contact) contact_.restore(*t.contact);
     if (!why.empty()) fail(ExitCode::stopped, "{}", why);
@@ -305,12 +306,12 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
     contact_.renew_all(all_but(group));
     meet(group, mover_[group[0]].last_step > 0 ? mover_[group[0]].last_step : stable_step(group),
          true);
-    std::vector<Stored> held = stored(group, from);
+    std::vector<Stored> store = stored(group, from);
     for (std::size_t n = 0; n < group.size(); ++n) {
         const std::size_t b = group[n];
-        outcome.body[b].met.start(met_[b]);
-        outcome.body[b].before = held[n];
-        if (mover_[b].step == 0) mover_[b].budget = std::max(held[n].sum(), 0.0);
+        outcome.body[b].by_contact.start(by_contact_[b]);
+        outcome.body[b].before = store[n];
+        if (mover_[b].step == 0) mover_[b].budget = std::max(store[n].sum(), 0.0);
     }
     for (Drive begin = from; begin.time < to.time;) {
         throw_if_interrupted();
@@ -319,7 +320,7 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
         const Drive now = step >= left || end >= to.time
                               ? to
                               : drive_between(from, to, (end - from.time) / (to.time - from.time));
-        Try t = take(group, begin, now, step, held, outcome);
+        Try t = take(group, begin, now, step, store, outcome);
         double budget = t.turned;
         for (std::size_t b : group) budget += mover_[b].budget;
         const bool good = holds(group, t, budget);
@@ -329,10 +330,10 @@ void EnergySteps::advance(const Group& group, const Drive& from, const Drive& to
             continue;
         }
         keep(group, t, outcome);
-        held = std::move(t.after);
+        store = std::move(t.after);
         begin = now;
     }
-    for (std::size_t n = 0; n < group.size(); ++n) outcome.body[group[n]].after = held[n];
+    for (std::size_t n = 0; n < group.size(); ++n) outcome.body[group[n]].after = store[n];
 }
 
 MoveOutcome EnergySteps::advance(const Drive& from, const Drive& to) {
@@ -343,7 +344,7 @@ MoveOutcome EnergySteps::advance(const Drive& from, const Drive& to) {
     for (const Group& group : groups(from, to)) advance(group, from, to, outcome);
     for (std::size_t b = 0; b < mover_.size(); ++b) {
         outcome.body[b].load = mover_[b].body.load();
-        outcome.drag_held = outcome.drag_held || mover_[b].body.drag_is_held();
+        outcome.drag_bounded = outcome.drag_bounded || mover_[b].body.drag_was_bounded();
     }
     return outcome;
 }

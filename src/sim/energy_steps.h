@@ -70,11 +70,11 @@ class EnergySteps {
     struct Mover {
         MovingBody body;
         MovingBody::State state{};
-        Vec3Array before{};    // acceleration a step earlier; empty: none
-        double step = 0;       // [s] to try next; 0: not moved yet
-        double last_step = 0;  // [s] of the last step kept
-        bool held = false;     // the step before was taken back
-        double budget = 0;     // energy ever put in [J]
+        Vec3Array before{};           // acceleration a step earlier; empty: none
+        double step = 0;              // [s] to try next; 0: not moved yet
+        double last_step = 0;         // [s] of the last step kept
+        bool was_taken_back = false;  // the step before was taken back
+        double budget = 0;            // energy ever put in [J]
     };
     using Group = std::vector<std::size_t>;
     struct Try;
@@ -83,7 +83,7 @@ class EnergySteps {
     double step_to_try(const Group& group, const Drive& begin, const Drive& to) const;
     double stable_step(const Group& group) const;
     Try take(const Group& group, const Drive& begin, const Drive& now, double step,
-             const std::vector<Stored>& held, MoveOutcome& outcome);
+             const std::vector<Stored>& store, MoveOutcome& outcome);
     bool holds(const Group& group, const Try& t, double budget);
     void keep(const Group& group, const Try& t, MoveOutcome& outcome);
     void take_back(const Group& group, Try& t, double budget, MoveOutcome& outcome);
@@ -94,7 +94,7 @@ class EnergySteps {
     const Apparatus& apparatus_;
     std::vector<Mover> mover_;
     BodyContact contact_;
-    std::vector<ContactSums> met_;  // by body, as the bodies of the present group are
+    std::vector<ContactSums> by_contact_;  // by body, as the bodies of the present group are
     std::vector<Tried>* tried_ = nullptr;
     long steps_ = 0;
 };

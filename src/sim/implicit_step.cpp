@@ -51,9 +51,9 @@ bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOut
     // The step looks for the least of inertia's and the matter's energy, from where the velocities
     // lead, or from the matter as it is, carried along: what is drawn out so far that its law
     // hardly resists any more may come to rest as well.
-    const double held = body.elastic_energy();
+    const double elastic = body.elastic_energy();
     matter.particle_position = aim_;
-    const bool from_aim = body.elastic_energy() <= held + kinetic;
+    const bool from_aim = body.elastic_energy() <= elastic + kinetic;
     if (!from_aim) matter.particle_position = carried;
     body.find_candidates(now);
 

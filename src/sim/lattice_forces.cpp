@@ -35,17 +35,17 @@ LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
 void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
     const bool in_excess = in_motion_ && matter.breaks();
     const bool at_rest = severed && matter.has_flowed();
-    std::vector<HeldCell> turned, flowed;
+    std::vector<TurnedCell> turned, flowed;
     if (cells_) cells_->cells_changed(matter, in_excess || at_rest ? &turned : nullptr);
     if (at_rest) {
         const auto first = std::stable_partition(
             turned.begin(), turned.end(),
-            [&](const HeldCell& c) { return matter.hardening_of(c.id()) == 0; });
+            [&](const TurnedCell& c) { return matter.hardening_of(c.id()) == 0; });
         flowed.assign(first, turned.end());
         turned.erase(first, turned.end());
     }
     // What a cell of two materials held is not told.
-    std::erase_if(turned, [&](const HeldCell& c) { return matter.mixed_at(c.id()) != nullptr; });
+    std::erase_if(turned, [&](const TurnedCell& c) { return matter.mixed_at(c.id()) != nullptr; });
     if (in_excess) loose_.take_over(matter, turned);
     loose_.lay_to_rest(matter, flowed);
     others_changed(matter);

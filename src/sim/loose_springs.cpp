@@ -132,19 +132,19 @@ void LooseSprings::lay_down(Aggregate& matter, CellId cell, const Factor& longer
     matter.lay_down(set);
 }
 
-void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& turned) {
+void LooseSprings::take_over(Aggregate& matter, const std::vector<TurnedCell>& turned) {
     const double a = matter.lattice.spacing;
     // Less than this is rounding [J].
     const double onset = laws_.least_onset();
     const double least = 1e-9 * stiffness_ * a * a * onset * onset;
-    for (const HeldCell& held : turned) {
+    for (const TurnedCell& cell : turned) {
         spring_.clear();
-        add_springs(matter, *held.run, held.n);
+        add_springs(matter, *cell.run, cell.n);
         find_strains(matter, nullptr);
         const std::vector<Stretch> now = now_;
-        const Mat3 gradient = material_gradient(matter, *held.run, held.n);
+        const Mat3 gradient = material_gradient(matter, *cell.run, cell.n);
         const Symmetric<double> metric =
-            flowed_metric(committed_history(matter, held.id()).stretch);
+            flowed_metric(committed_history(matter, cell.id()).stretch);
         std::vector<double> mean(now.size());  // strain that the material's is along each
         for (std::size_t n = 0; n < now.size(); ++n) {
             const auto& way = kForward[spring_[n].direction];
@@ -162,7 +162,7 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
             }
             find_softening();
             commit_strains();
-            return elastic_energy() + trial_loss() - held.energy;
+            return elastic_energy() + trial_loss() - cell.energy;
         };
         if (excess(1, 1) <= least) continue;
         double bent = 0, all = 1;
@@ -174,17 +174,17 @@ void LooseSprings::take_over(Aggregate& matter, const std::vector<HeldCell>& tur
             (excess(bent, all) <= 0 ? low : high) = share;
         }
         share = low;
-        lay_down(matter, held.id(),
+        lay_down(matter, cell.id(),
                  [&](std::size_t n) { return (1 + now[n].strain) / (1 + strain(n, bent, all)); });
     }
 }
 
-void LooseSprings::lay_to_rest(Aggregate& matter, const std::vector<HeldCell>& turned) {
-    for (const HeldCell& held : turned) {
+void LooseSprings::lay_to_rest(Aggregate& matter, const std::vector<TurnedCell>& turned) {
+    for (const TurnedCell& cell : turned) {
         spring_.clear();
-        add_springs(matter, *held.run, held.n);
+        add_springs(matter, *cell.run, cell.n);
         find_strains(matter, nullptr);
-        lay_down(matter, held.id(), [&](std::size_t n) { return 1 + now_[n].strain; });
+        lay_down(matter, cell.id(), [&](std::size_t n) { return 1 + now_[n].strain; });
     }
 }
 

@@ -22,7 +22,7 @@ struct Broken {
 };
 
 // A cell that has just ceased to be sound, and what it held then.
-struct HeldCell {
+struct TurnedCell {
     const CellRun* run;
     int n;          // of the run
     double energy;  // [J]; 0 of two materials
@@ -39,9 +39,9 @@ class LooseSprings {
     // filling cubed, and springs by the filling itself: their excess of that is taken away first,
     // and what their stretch holds too much then. For matter that breaks: what a blade severs,
     // its tools pay for. connections_changed() must follow.
-    void take_over(Aggregate& matter, const std::vector<HeldCell>& turned);
+    void take_over(Aggregate& matter, const std::vector<TurnedCell>& turned);
     // The same so that they hold nothing, as they lie.
-    void lay_to_rest(Aggregate& matter, const std::vector<HeldCell>& turned);
+    void lay_to_rest(Aggregate& matter, const std::vector<TurnedCell>& turned);
 
     const FractureLaws& laws() const { return laws_; }
     bool empty() const { return spring_.empty(); }

@@ -37,7 +37,7 @@ struct BodyOutcome {
     std::vector<char> touched;      // likewise: at the end of any step; in motion only
     std::vector<double> push_work;  // by load, then gravity [J]
     std::vector<LoadSum> load;      // at the end, by tool, then grip
-    ContactSums met;                // with other bodies and itself
+    ContactSums by_contact;         // with other bodies and itself
 
     BodyOutcome(const Apparatus& apparatus, std::size_t pushes)
         : work(apparatus.tool.size() + apparatus.grip.size(), 0.0),
@@ -50,8 +50,8 @@ struct BodyOutcome {
                std::accumulate(push_work.begin(), push_work.end(), 0.0);
     }
     double lost() const {  // [J]
-        return plastic_work + fracture_work + friction_work + damped_work + drag_work + met.damped +
-               met.friction;
+        return plastic_work + fracture_work + friction_work + damped_work + drag_work +
+               by_contact.damped + by_contact.friction;
     }
     // Fracture that gives energy is no account of it.
     double lost_since(const BodyOutcome& then) const {  // [J]
@@ -61,7 +61,7 @@ struct BodyOutcome {
 
 struct MoveOutcome : StepCounts {
     std::vector<BodyOutcome> body;
-    bool drag_held = false;       // was more than a step can follow; in motion only
+    bool drag_bounded = false;    // was more than a step can follow; in motion only
     int asleep = 0;               // bodies at rest at the end; in motion only
     int inside_out = 0;           // cells at once that shorter steps did not keep from it
     int afloat = 0, hanging = 0;  // pieces that would fall, or swing about a hinge, from now on

@@ -46,7 +46,7 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
                         "loads ask: from here on {:.2g} N of forces may be out of balance",
                         outcome.left_over));
     }
-    if (outcome.drag_held) {
+    if (outcome.drag_bounded) {
         warning.emplace_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "
             "is held to what a step can follow");

@@ -41,7 +41,7 @@ void MovingBodies::start(const Drive& from, double step, MoveOutcome& outcome) {
     for_each_awake([&](std::size_t b) { body_[b].start(from, outcome.body[b]); });
     meet(from, step, true, outcome);
     for (std::size_t b = 0; b < by_contact_.size(); ++b) {
-        outcome.body[b].met.start(by_contact_[b]);
+        outcome.body[b].by_contact.start(by_contact_[b]);
     }
 }
 
@@ -143,7 +143,7 @@ void MovingBodies::finish_step(const Drive& before, const Drive& now, double ste
     if (!contact_.acts()) return;
     meet(now, step, false, outcome);
     for (std::size_t b = 0; b < body_.size(); ++b) {
-        outcome.body[b].met.add(by_contact_[b], step);
+        outcome.body[b].by_contact.add(by_contact_[b], step);
     }
     contact_.commit(sleeping_.asleep());
 }

@@ -291,12 +291,12 @@ double MovingBody::kinetic_energy(double step) const {
 }
 
 Stored MovingBody::stored(const Drive& now, double step) {
-    Stored held;
-    held.elastic = elastic_energy();
-    held.contact =
+    Stored all;
+    all.elastic = elastic_energy();
+    all.contact =
         implicit_ ? contacts_.at_rest().stored_energy(matter_, now) : contacts_.stored_energy();
-    held.kinetic = kinetic_energy(step);
-    return held;
+    all.kinetic = kinetic_energy(step);
+    return all;
 }
 
 std::vector<double> MovingBody::stiffness_bound() const {

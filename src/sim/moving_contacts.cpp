@@ -169,7 +169,7 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
             bears_[by.corner[c]] += std::abs(by.weight[c]) * m.law.stiffness;
         }
     }
-    met_.resize(matter.particle_count(), 0.0);
+    met_speed_.resize(matter.particle_count(), 0.0);
     const bool is_met = std::any_of(meeting.begin(), meeting.end(), [&](const Meeting& m) {
         return !memory_[m.pair].history.touches;
     });
@@ -177,7 +177,7 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
         const ImpactHistory& history = memory_[m.pair].history;
         if (!is_met || !history.touches || history.rests) continue;
         for (ParticleId p : surface.corner(pairs[m.pair].point)) {
-            met_[p] = std::max(met_[p], history.speed);
+            met_speed_[p] = std::max(met_speed_[p], history.speed);
         }
     }
     parallel_each(meeting.size(), kChunk, [&](std::size_t n) {
@@ -188,7 +188,7 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
         double give = 0, beside = 0;  // give: S
         const auto by = surface.carriers(static_cast<std::size_t>(pair.point));
         for (int c = 0; c < 8; ++c) {
-            beside = std::max(beside, met_[by.corner[c]]);
+            beside = std::max(beside, met_speed_[by.corner[c]]);
             const double w = by.weight[c];
             if (w == 0) continue;
             const ParticleId p = by.corner[c];
@@ -218,7 +218,7 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
     for (const Meeting& m : meeting) {
         const ToolPairs::Pair& pair = pairs[m.pair];
         const ImpactForce& f = m.result;
-        for (ParticleId p : surface.corner(pair.point)) bears_[p] = met_[p] = 0;
+        for (ParticleId p : surface.corner(pair.point)) bears_[p] = met_speed_[p] = 0;
         spread(surface, pair.point, f.force - m.spring, force);
         if (!f.history.touches) continue;
         const Pose& pose = now.world_from_tool[pair.tool];

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tools and grips do to a body in explicit steps: the law of laws/impact.h on the pairs of
-// sim/tool_pairs.h, the tool rigid and as heavy as can be. A step first finds the springs of all
-// points that touch, then each one's dashpot from the speed that it would end the step with. Were
-// dashpots taken one after the other, those of what rests would bear against each other, and the
-// first would slip before the last. Points share carriers, so that the dashpots together would
-// overshoot; each is therefore taken as if all that touch worked as it does, in proportion to their
-// stiffness:
+// What tools and grips do to a body in motion, but for implicit steps: the law of laws/impact.h on
+// the pairs of sim/tool_pairs.h, the tool rigid and as heavy as can be. A step first finds the
+// springs of all points that touch, then each one's dashpot from the speed that it would end the
+// step with. Were dashpots taken one after the other, those of what rests would bear against each
+// other, and the first would slip before the last. Points share carriers, so that the dashpots
+// together would overshoot; each is therefore taken as if all that touch worked as it does, in
+// proportion to their stiffness:
 //
 //     S_i = sum_p |w_ip| sum_j |w_jp| k_j / (m_p k_i),   P_i = c_i dt v_i / (1 + c_i dt S_i)
 //
@@ -107,7 +107,7 @@ class MovingContacts {
     std::vector<Pose> world_from_tool_at_start_;
     // Of each particle, what points that touch have of stiffness on it [N/m]; 0 between.
     std::vector<double> bears_;
-    std::vector<double> met_;  // likewise, at which speed those that do not rest were met [m/s]
+    std::vector<double> met_speed_;  // likewise, at which those that do not rest were met [m/s]
     std::vector<LoadSum> load_;
     double stored_ = 0;
 };

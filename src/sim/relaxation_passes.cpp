@@ -42,12 +42,12 @@ double sum_of(const FewLanes& lanes) {
 }
 
 SWAGE_VECTOR_CLONES
-void restrain(const double* x, const double* held, const double* drag, const double* mass,
+void restrain(const double* x, const double* back_to, const double* drag, const double* mass,
               double share, double gravity, std::size_t count, double* force) {
     for (std::size_t p = 0; p < count; p += kFewLanes) {
         const std::size_t left = count - p;
         const FewLanes pull =
-            share * some(drag + p, left) * (some(x + p, left) - some(held + p, left));
+            share * some(drag + p, left) * (some(x + p, left) - some(back_to + p, left));
         put_some(some(force + p, left) + (some(mass + p, left) * gravity - pull), left, force + p);
     }
 }
@@ -91,16 +91,16 @@ double move_component(const RelaxationMove& move, const double* f, const double*
 }  // namespace
 
 void add_restraint(const Vec3Array& position, const Restraint& restraint, Vec3Array& force) {
-    const auto& [held, drag, share, mass, gravity] = restraint;
+    const auto& [back_to, drag, share, mass, gravity] = restraint;
     for_each_chunk(position.size(), [&](std::size_t begin, std::size_t end) {
         const auto component = [&](const std::vector<double>& x, const std::vector<double>& from,
                                    double g, std::vector<double>& f) {
             restrain(x.data() + begin, from.data() + begin, drag.data() + begin,
                      mass.data() + begin, share, g, end - begin, f.data() + begin);
         };
-        component(position.x, held.x, gravity.x(), force.x);
-        component(position.y, held.y, gravity.y(), force.y);
-        component(position.z, held.z, gravity.z(), force.z);
+        component(position.x, back_to.x, gravity.x(), force.x);
+        component(position.y, back_to.y, gravity.y(), force.y);
+        component(position.z, back_to.z, gravity.z(), force.z);
     });
 }
 

@@ -9,9 +9,9 @@
 
 namespace swage {
 
-// force += mass g - share drag (x - held)
+// force += mass g - share drag (x - back_to)
 struct Restraint {
-    const Vec3Array& held;
+    const Vec3Array& back_to;
     const std::vector<double>& drag;  // [N/m]
     double share;
     const std::vector<double>& mass;  // [kg]

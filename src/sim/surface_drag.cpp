@@ -49,7 +49,7 @@ void SurfaceDrag::connections_changed(const Aggregate& matter) {
 }
 
 SWAGE_INLINE Vec3 SurfaceDrag::force_on(const Vec3& outward, const Vec3& velocity, double most,
-                                        bool& held) const {
+                                        bool& bounded) const {
     const double area = outward.norm(), fast = velocity.norm();
     if (!(area > 0 && fast > 0)) return Vec3::Zero();
     Vec3 f = ambient_drag_force(ambient_, area, velocity);
@@ -59,7 +59,7 @@ SWAGE_INLINE Vec3 SurfaceDrag::force_on(const Vec3& outward, const Vec3& velocit
     const double size = f.norm();
     if (size > most * fast) {
         f *= most * fast / size;
-        held = true;
+        bounded = true;
     }
     return f;
 }
@@ -105,8 +105,8 @@ struct SurfaceDrag::Kernel {
                 const Patch& patch = drag.patch_[m];
                 Vec4 now{};
                 for (int c = 0; c < 8; ++c) now += patch.weight[c] * v[c];
-                const Vec3 f =
-                    drag.force_on(vec3(area_of(patch, x)), vec3(now), patch.place[3], result.held);
+                const Vec3 f = drag.force_on(vec3(area_of(patch, x)), vec3(now), patch.place[3],
+                                             result.bounded);
                 const Vec4 force = vec4(f);
                 for (int c = 0; c < 8; ++c) push[c] += patch.weight[c] * force;
                 result.power -= dot3(force, now);
@@ -123,7 +123,7 @@ double SurfaceDrag::add_forces(const Aggregate& matter, Vec3Array& force) {
     });
     double power = 0;
     for (const Chunk& one : chunk_) {
-        held_ = held_ || one.held;
+        was_bounded_ = was_bounded_ || one.bounded;
         power += one.power;
     }
     for (std::size_t n = 0; n < cell_.size(); ++n) {
@@ -136,7 +136,7 @@ double SurfaceDrag::add_open_forces(const Aggregate& matter, Vec3Array& force) {
     double power = 0;
     for (const auto& [open, most] : face_) {
         const Vec3 now = open.mean(matter.particle_velocity);
-        const Vec3 f = force_on(open.outward(matter.particle_position), now, most, held_);
+        const Vec3 f = force_on(open.outward(matter.particle_position), now, most, was_bounded_);
         spread(open, f, force);
         power -= f.dot(now);
     }

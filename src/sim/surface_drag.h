@@ -18,7 +18,7 @@ namespace swage {
 class SurfaceDrag {
   public:
     // A drag that would stop a point's lightest carrier within a few steps of this length [s] is
-    // held to what a step can follow.
+    // bounded by what a step can follow.
     SurfaceDrag(const Aggregate& matter, const SimSettings& settings, double step);
 
     bool acts() const { return ambient_.density * ambient_.coefficient > 0 || facing_.drag > 0; }
@@ -29,7 +29,7 @@ class SurfaceDrag {
 
     // Adds the forces; returns the power that they take [W].
     double add_forces(const Aggregate& matter, Vec3Array& force);
-    bool is_held() const { return held_; }  // whether any drag ever was
+    bool was_bounded() const { return was_bounded_; }  // whether any drag ever was
 
   private:
     struct alignas(32) Patch {
@@ -44,7 +44,7 @@ class SurfaceDrag {
     };
     struct Chunk {
         double power = 0;
-        bool held = false;
+        bool bounded = false;
     };
     struct Face {
         OpenFace open;
@@ -52,7 +52,7 @@ class SurfaceDrag {
     };
     struct Kernel;
     // `outward`: area vector [m2]; `most`: force over speed [N s/m].
-    Vec3 force_on(const Vec3& outward, const Vec3& velocity, double most, bool& held) const;
+    Vec3 force_on(const Vec3& outward, const Vec3& velocity, double most, bool& bounded) const;
     double add_open_forces(const Aggregate& matter, Vec3Array& force);
 
     AmbientDrag ambient_;
@@ -63,7 +63,7 @@ class SurfaceDrag {
     std::vector<Chunk> chunk_;
     double step_;  // [s]
     std::vector<Face> face_;
-    bool held_ = false;
+    bool was_bounded_ = false;
 };
 
 }  // namespace swage
