@@ -95,6 +95,13 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
                    "damping_ratio has no effect with solver = \"implicit\", whose steps damp by "
                    "themselves");
     }
+    if (sim.solver == Solver::euler && machine != nullptr && !machine->grip.empty()) {
+        table.warn(
+            "solver",
+            "solver = \"euler\" gains energy in all that is not damped, and nothing damps "
+            "what swings in a grip: a low grip_stiffness, of 1, may keep it, else use solver "
+            "= \"explicit\"");
+    }
     const bool relaxes = sim.solver == Solver::quasistatic;
     const bool is_implicit = sim.solver == Solver::implicit_steps;
     const bool is_explicit = sim.solver == Solver::explicit_steps || sim.solver == Solver::euler;
