@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "sim/hanging.h"
-#include "sim/surface_forces.h"
 
 namespace swage {
 
@@ -34,53 +33,31 @@ FreePieces::FreePieces(const Aggregate& matter, const Apparatus& apparatus)
     connections_changed();
 }
 
-void FreePieces::connections_changed() {
-    constexpr int kNone = -1, kSeveral = -2;
-    carrier_.clear();
-    pieces_ = find_pieces(matter_);
-    std::vector<int> of_piece(static_cast<std::size_t>(pieces_.count), kNone);
-    firm_.assign(of_piece.size(), 0);
-    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
-        const Grip& grip = apparatus_.grip[g];
-        const int carries = grip.hold == Vec3::Ones() ? static_cast<int>(g) : kSeveral;
-        for (int point : grip.point) {
-            const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
-            for (int c = 0; c < 8; ++c) {
-                if (by.weight[c] == 0) continue;
-                const int piece = pieces_.particle_piece[by.corner[c]];
-                firm_[piece] |= carries != kSeveral;
-                int& of = of_piece[piece];
-                of = of == kNone || of == carries ? carries : kSeveral;
-            }
-        }
-    }
-    gripped_.clear();
-    for (int by : of_piece) gripped_.push_back(by != kNone);
-    if (pieces_.count < 2) return;
-    for (int piece : pieces_.particle_piece) carrier_.push_back(std::max(kNone, of_piece[piece]));
-}
+void FreePieces::connections_changed() { gripped_ = find_gripped_pieces(matter_, apparatus_); }
 
 void FreePieces::carry(const Drive& from, const Drive& to, const Vec3Array& start, Vec3Array& rest,
                        Vec3Array& position) const {
     rest = start;
-    if (carrier_.empty()) return;
+    if (!are_several()) return;
     std::vector<Pose> change;
     for (std::size_t g = 0; g < to.world_from_grip.size(); ++g) {
         change.push_back(to.world_from_grip[g] * from.world_from_grip[g].inverse());
     }
-    for (std::size_t p = 0; p < carrier_.size(); ++p) {
-        if (carrier_[p] < 0) continue;
-        rest.set(p, change[static_cast<std::size_t>(carrier_[p])] * start.at(p));
+    for (std::size_t p = 0; p < start.size(); ++p) {
+        const int grip = gripped_.by[std::size_t(gripped_.pieces.particle_piece[p])];
+        if (grip < 0) continue;
+        rest.set(p, change[static_cast<std::size_t>(grip)] * start.at(p));
         position.set(p, rest.at(p));
     }
 }
 
 std::vector<std::vector<ParticleId>> FreePieces::loose_pieces() const {
-    const std::size_t count = pieces_.particle_piece.size();
-    std::vector<std::vector<ParticleId>> loose(static_cast<std::size_t>(pieces_.count));
+    const Pieces& pieces = gripped_.pieces;
+    const std::size_t count = pieces.particle_piece.size();
+    std::vector<std::vector<ParticleId>> loose(static_cast<std::size_t>(pieces.count));
     for (std::size_t p = 0; p < count; ++p) {
-        const int piece = pieces_.particle_piece[p];
-        if (!gripped_[piece]) loose[piece].push_back(static_cast<ParticleId>(p));
+        const int piece = pieces.particle_piece[p];
+        if (!gripped_.is_held(piece)) loose[piece].push_back(static_cast<ParticleId>(p));
     }
     std::erase_if(loose, [&](const auto& piece) {
         return piece.empty() || double(piece.size()) < kCrumb * double(count);
@@ -98,28 +75,31 @@ void FreePieces::add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& fo
 // (M + B) q = W, for each piece: q its shift and turn, W what pushes come to, B what grips bar, so
 // stiff that it makes no difference to what they leave free.
 void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {
-    if (pushes.count() == 0 || std::ranges::all_of(firm_, [](char f) { return f != 0; })) return;
+    if (pushes.count() == 0 || std::ranges::all_of(gripped_.firm, [](char f) { return f != 0; })) {
+        return;
+    }
     constexpr double kBars = 1e9;  // of the piece's mass, all points of grips together
     using Vec6 = Eigen::Matrix<double, 6, 1>;
     using Mat6 = Eigen::Matrix<double, 6, 6>;
     const auto at = [&](std::size_t p) { return matter_.particle_position.at(p); };
     const std::vector<double>& m = matter_.particle_mass;
+    const Pieces& pieces = gripped_.pieces;
     const Vec3Array push = pushes_on(pushes, to);
     const Vec3 none = Vec3::Zero();
-    const auto mass = sums_of(pieces_, 0.0, [&](std::size_t p) { return m[p]; });
-    auto center = sums_of(pieces_, none, [&](std::size_t p) -> Vec3 { return m[p] * at(p); });
+    const auto mass = sums_of(pieces, 0.0, [&](std::size_t p) { return m[p]; });
+    auto center = sums_of(pieces, none, [&](std::size_t p) -> Vec3 { return m[p] * at(p); });
     for (std::size_t n = 0; n < mass.size(); ++n) center[n] /= mass[n];
     const auto arm = [&](std::size_t p) -> Vec3 {
-        return at(p) - center[std::size_t(pieces_.particle_piece[p])];
+        return at(p) - center[std::size_t(pieces.particle_piece[p])];
     };
-    const auto inertia = sums_of(pieces_, Mat3(Mat3::Zero()), [&](std::size_t p) -> Mat3 {
+    const auto inertia = sums_of(pieces, Mat3(Mat3::Zero()), [&](std::size_t p) -> Mat3 {
         const Vec3 r = arm(p);
         return m[p] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
     });
-    const auto net = sums_of(pieces_, none, [&](std::size_t p) { return push.at(p); });
+    const auto net = sums_of(pieces, none, [&](std::size_t p) { return push.at(p); });
     const auto torque =
-        sums_of(pieces_, none, [&](std::size_t p) -> Vec3 { return arm(p).cross(push.at(p)); });
-    const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+        sums_of(pieces, none, [&](std::size_t p) -> Vec3 { return arm(p).cross(push.at(p)); });
+    const auto size = sums_of(pieces, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
 
     // Turns are counted by the way that they take what lies far out.
     std::vector<double> reach, barred(mass.size(), 0);
@@ -130,15 +110,11 @@ void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force
     for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
         const Grip& grip = apparatus_.grip[g];
         const Mat3 axes = to.world_from_grip[g].rotation.toRotationMatrix();
-        for (int point : grip.point) {
-            if (is_torn(matter_, std::size_t(point))) continue;
-            const auto by = matter_.surface.carriers(static_cast<std::size_t>(point));
-            const auto most = std::ranges::max_element(
-                by.weight, [](double a, double b) { return std::abs(a) < std::abs(b); });
-            const ParticleId carrier = by.corner[std::size_t(most - by.weight.begin())];
-            const auto n = std::size_t(pieces_.particle_piece[carrier]);
+        for (std::size_t i = 0; i < grip.point.size(); ++i) {
+            if (gripped_.at[g][i] == GrippedPieces::kNone) continue;
+            const auto n = std::size_t(gripped_.at[g][i]);
             ++barred[n];
-            const Vec3 r = matter_.surface_position(std::size_t(point)) - center[n];
+            const Vec3 r = matter_.surface_position(std::size_t(grip.point[i])) - center[n];
             for (int axis = 0; axis < 3; ++axis) {
                 Vec6 way;
                 way << axes.col(axis), r.cross(axes.col(axis)) / reach[n];
@@ -154,12 +130,13 @@ void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force
         Vec6 wrench;
         wrench << net[n], torque[n] / reach[n];
         const Vec6 goes = stiff.llt().solve(wrench);
-        const bool is_little = !firm_[n] && mass[n] * goes.lpNorm<1>() <= kUnbalanced * size[n];
+        const bool is_little =
+            !gripped_.firm[n] && mass[n] * goes.lpNorm<1>() <= kUnbalanced * size[n];
         shift.push_back(is_little ? Vec3(goes.head<3>()) : none);
         turn.push_back(is_little ? Vec3(goes.tail<3>() / reach[n]) : none);
     }
     for (std::size_t p = 0; p < push.size(); ++p) {
-        const auto n = std::size_t(pieces_.particle_piece[p]);
+        const auto n = std::size_t(pieces.particle_piece[p]);
         force.add(p, -m[p] * (shift[n] + turn[n].cross(arm(p))));
     }
 }
@@ -169,8 +146,8 @@ bool FreePieces::has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Ar
     fallen_.clear();
     if (pushes.count() == 0) return false;
     const Vec3Array& x = matter_.particle_position;
-    const auto count = sums_of(pieces_, 0.0, [](std::size_t) { return 1.0; });
-    const auto way = sums_of(pieces_, Vec3(Vec3::Zero()),
+    const auto count = sums_of(gripped_.pieces, 0.0, [](std::size_t) { return 1.0; });
+    const auto way = sums_of(gripped_.pieces, Vec3(Vec3::Zero()),
                              [&](std::size_t p) -> Vec3 { return x.at(p) - start.at(p); });
     for (std::size_t n = 0; n < way.size(); ++n) {
         if (way[n].norm() > count[n] * far) fallen_.push_back(static_cast<int>(n));
@@ -181,10 +158,10 @@ bool FreePieces::has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Ar
 }
 
 bool FreePieces::begins_to_fall(const LoadSet& pushes, const Drive& to, const Vec3Array& contact) {
-    fallen_.resize(static_cast<std::size_t>(pieces_.count));
+    fallen_.resize(static_cast<std::size_t>(gripped_.pieces.count));
     std::iota(fallen_.begin(), fallen_.end(), 0);
     keep_loose(pushes_on(pushes, to),
-               sums_of(pieces_, 0.0, [&](std::size_t p) { return contact.at(p).norm(); }));
+               sums_of(gripped_.pieces, 0.0, [&](std::size_t p) { return contact.at(p).norm(); }));
     return !fallen_.empty();
 }
 
@@ -202,11 +179,12 @@ Vec3Array FreePieces::pushes_on(const LoadSet& pushes, const Drive& to) const {
 // borne [N].
 void FreePieces::keep_loose(const Vec3Array& push, const std::vector<double>& borne) {
     const auto pushed =
-        sums_of(pieces_, Vec3(Vec3::Zero()), [&](std::size_t p) { return push.at(p); });
-    const auto size = sums_of(pieces_, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+        sums_of(gripped_.pieces, Vec3(Vec3::Zero()), [&](std::size_t p) { return push.at(p); });
+    const auto size =
+        sums_of(gripped_.pieces, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
     std::erase_if(fallen_, [&](int n) {
         const double net = pushed[n].norm();
-        return gripped_[n] || net <= kUnbalanced * size[n] || borne[n] > kBorne * net;
+        return gripped_.is_held(n) || net <= kUnbalanced * size[n] || borne[n] > kBorne * net;
     });
 }
 
@@ -231,7 +209,7 @@ int FreePieces::let_float(const Pieces& pieces, const std::vector<int>& some) {
 int FreePieces::let_hang(const LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
                          const Vec3Array& own) {
     const Pieces firm = find_firm_pieces(matter_, held);
-    std::vector<int> hanging = find_hanging(matter_, pieces_, firm, held);
+    std::vector<int> hanging = find_hanging(matter_, gripped_.pieces, firm, held);
     const Vec3Array push = pushes_on(pushes, to);
     const Vec3 none = Vec3::Zero();
     const auto size = sums_of(firm, 0.0, [&](std::size_t p) { return push.at(p).norm(); });

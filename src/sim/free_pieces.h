@@ -7,6 +7,7 @@
 
 #include "matter/aggregate.h"
 #include "matter/drive.h"
+#include "sim/gripped_pieces.h"
 #include "sim/held_point.h"
 #include "sim/load_set.h"
 
@@ -20,7 +21,7 @@ class FreePieces {
     // A blade or a crack has parted what was whole.
     void connections_changed();
 
-    bool are_several() const { return pieces_.count > 1; }
+    bool are_several() const { return gripped_.pieces.count > 1; }
 
     // What a single grip holds goes where that goes, whole. NOTE: else the drag, which is let go
     // only until it holds back no more than the residual may be, pulls at pieces that are drawn
@@ -49,7 +50,7 @@ class FreePieces {
     bool begins_to_fall(const LoadSet& pushes, const Drive& to, const Vec3Array& contact);
     // How many of them loads and gravity leave alone from now on and did not before. Not what is
     // all there is.
-    int let_fall() { return let_float(pieces_, fallen_); }
+    int let_fall() { return let_float(gripped_.pieces, fallen_); }
     // The same of what hangs by hinges (sim/hanging.h) where these points are held, and does not
     // lie on its own body, which has these forces on it.
     int let_hang(const LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
@@ -62,11 +63,7 @@ class FreePieces {
 
     const Aggregate& matter_;
     const Apparatus& apparatus_;
-    Pieces pieces_;
-    std::vector<char> gripped_;  // of each piece
-    std::vector<char> firm_;     // of each piece: in a grip that holds it in every way
-    // Of each particle: the grip, if any, that alone holds its piece. Empty: one piece.
-    std::vector<int> carrier_;
+    GrippedPieces gripped_;
     std::vector<int> fallen_;         // pieces that did when it was last asked
     std::vector<ParticleId> afloat_;  // particles that loads and gravity leave alone
     std::vector<double> heavy_mass_;

@@ -206,6 +206,34 @@ TEST_CASE("what is cut under a grip pulls no more at what it was cut from") {
     }
 }
 
+TEST_CASE("what is cut off under a grip is carried along no more, and would fall") {
+    for (const double gravity : {0.0, 9.81}) {
+        Aggregate matter = make_block(10, 3, 3, 0.1, kSoft);
+        Apparatus apparatus;
+        apparatus.name = "draw";
+        // It reaches half a cell and more beyond the cut.
+        apparatus.grip.push_back(end_grips(matter, 0.31)[1]);
+        sever_plane(matter, Vec3(0.353, 0, 0), Vec3::UnitX());
+        SimSettings settings;
+        settings.gravity = {0, -gravity, 0};
+        Drive drawn = drive_of(apparatus, 1, 1);
+        drawn.world_from_grip[0].translation.x() = 0.3;
+        const FrameReport report =
+            Simulation(matter, apparatus, settings).advance(drive_of(apparatus, 0, 0), drawn);
+        INFO("gravity " << gravity);
+        CHECK(report.pieces == 2);
+        REQUIRE(report.warning.size() == (gravity > 0));
+        if (gravity > 0) CHECK(report.warning[0].find("a piece would fall") == 0);
+        double farthest = 0;  // from where each piece should be
+        for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+            const Vec3 from = matter.particle_reference.at(p);
+            const Vec3 there = from + Vec3(from.x() > 0.353 ? 0.3 : 0, 0, 0);
+            farthest = std::max(farthest, (matter.particle_position.at(p) - there).norm());
+        }
+        CHECK(farthest < 0.5 * 0.1);
+    }
+}
+
 TEST_CASE("what hangs by a hinge alone is left alone by loads, and told") {
     // A bar cut through but for the particles of one edge, or of its lowest layer of cells.
     for (int left : {0, 1}) {
