@@ -29,7 +29,7 @@ std::vector<Value> sums_of(const Pieces& pieces, const Value& none, const Of& of
 }  // namespace
 
 FreePieces::FreePieces(const Aggregate& matter, const Apparatus& apparatus)
-    : matter_(matter), apparatus_(apparatus), heavy_mass_(matter.particle_mass) {
+    : matter_(matter), apparatus_(apparatus) {
     connections_changed();
 }
 
@@ -63,13 +63,6 @@ std::vector<std::vector<ParticleId>> FreePieces::loose_pieces() const {
         return piece.empty() || double(piece.size()) < kCrumb * double(count);
     });
     return loose;
-}
-
-void FreePieces::add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {
-    std::vector<Vec3> afloat;
-    for (ParticleId p : afloat_) afloat.push_back(force.at(p));
-    pushes.add_forces(matter_, to, force);
-    for (std::size_t n = 0; n < afloat.size(); ++n) force.set(afloat_[n], afloat[n]);
 }
 
 // (M + B) q = W, for each piece: q its shift and turn, W what pushes come to, B what grips bar, so
@@ -169,9 +162,10 @@ bool FreePieces::begins_to_fall(const LoadSet& pushes, const Drive& to, const Ve
 Vec3Array FreePieces::pushes_on(const LoadSet& pushes, const Drive& to) const {
     Vec3Array push;
     push.resize(matter_.particle_count());
-    add_loads(pushes, to, push);
+    pushes.add_forces(matter_, to, push);
     const Vec3 gravity = pushes.gravity(to);
-    for (std::size_t p = 0; p < push.size(); ++p) push.add(p, heavy_mass_[p] * gravity);
+    const std::vector<double>& mass = pushes.heavy_mass(matter_);
+    for (std::size_t p = 0; p < push.size(); ++p) push.add(p, mass[p] * gravity);
     return push;
 }
 
@@ -188,25 +182,25 @@ void FreePieces::keep_loose(const Vec3Array& push, const std::vector<double>& bo
     });
 }
 
-int FreePieces::let_float(const Pieces& pieces, const std::vector<int>& some) {
+int FreePieces::let_float(LoadSet& pushes, const Pieces& pieces, const std::vector<int>& some) {
     if (pieces.count < 2) return 0;
-    std::vector<char> floats(matter_.particle_count(), 0);
-    for (ParticleId p : afloat_) floats[p] = 1;
     std::vector<char> to_come(static_cast<std::size_t>(pieces.count), 0);
     for (int piece : some) to_come[piece] = 1;
     std::vector<char> counted(to_come.size(), 0);
+    std::vector<ParticleId> afloat;
     int count = 0;
-    for (std::size_t p = 0; p < floats.size(); ++p) {
+    for (std::size_t p = 0; p < pieces.particle_piece.size(); ++p) {
         const auto piece = static_cast<std::size_t>(pieces.particle_piece[p]);
-        if (floats[p] || !to_come[piece]) continue;
-        afloat_.push_back(static_cast<ParticleId>(p));
-        heavy_mass_[p] = 0;
+        const auto particle = static_cast<ParticleId>(p);
+        if (!to_come[piece] || pushes.leaves_alone(particle)) continue;
+        afloat.push_back(particle);
         count += !std::exchange(counted[piece], 1);
     }
+    pushes.leave_alone(matter_, afloat);
     return count;
 }
 
-int FreePieces::let_hang(const LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
+int FreePieces::let_hang(LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
                          const Vec3Array& own) {
     const Pieces firm = find_firm_pieces(matter_, held);
     std::vector<int> hanging = find_hanging(matter_, gripped_.pieces, firm, held);
@@ -218,7 +212,7 @@ int FreePieces::let_hang(const LoadSet& pushes, const Drive& to, const std::vect
     std::erase_if(hanging, [&](int n) {
         return size[n] == 0 || -borne[n].dot(pushed[n]) > kBorne * pushed[n].squaredNorm();
     });
-    return let_float(firm, hanging);
+    return let_float(pushes, firm, hanging);
 }
 
 }  // namespace swage

@@ -32,10 +32,6 @@ class FreePieces {
     // The particles of each piece in no grip that is more than a crumb, or of all.
     std::vector<std::vector<ParticleId>> loose_pieces() const;
 
-    // Loads on what they do not leave alone; the mass of each particle that gravity acts on [kg].
-    void add_loads(const LoadSet& pushes, const Drive& to, Vec3Array& force) const;
-    const std::vector<double>& heavy_mass() const { return heavy_mass_; }
-
     // Takes off what loads and gravity leave over, all in all, along the ways that grips leave a
     // piece free, where it is less than a twentieth of them: patches of a surface are as fine as
     // the cells, and equilibria would go any way for what these are short of balance.
@@ -50,23 +46,21 @@ class FreePieces {
     bool begins_to_fall(const LoadSet& pushes, const Drive& to, const Vec3Array& contact);
     // How many of them loads and gravity leave alone from now on and did not before. Not what is
     // all there is.
-    int let_fall() { return let_float(gripped_.pieces, fallen_); }
+    int let_fall(LoadSet& pushes) { return let_float(pushes, gripped_.pieces, fallen_); }
     // The same of what hangs by hinges (sim/hanging.h) where these points are held, and does not
     // lie on its own body, which has these forces on it.
-    int let_hang(const LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
+    int let_hang(LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
                  const Vec3Array& own);
 
   private:
     Vec3Array pushes_on(const LoadSet& pushes, const Drive& to) const;
     void keep_loose(const Vec3Array& push, const std::vector<double>& borne);
-    int let_float(const Pieces& pieces, const std::vector<int>& some);
+    int let_float(LoadSet& pushes, const Pieces& pieces, const std::vector<int>& some);
 
     const Aggregate& matter_;
     const Apparatus& apparatus_;
     GrippedPieces gripped_;
-    std::vector<int> fallen_;         // pieces that did when it was last asked
-    std::vector<ParticleId> afloat_;  // particles that loads and gravity leave alone
-    std::vector<double> heavy_mass_;
+    std::vector<int> fallen_;  // pieces that did when it was last asked
 };
 
 }  // namespace swage

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
@@ -54,11 +55,10 @@ void balance(const std::vector<double>& area, const std::vector<Vec3>& position,
     }
 }
 
-Vec3 mass_moment(const Aggregate& matter) {
-    const Vec3Array& x = matter.particle_position;
+Vec3 mass_moment(const std::vector<double>& mass, const Vec3Array& x) {
     const auto of_chunk = [&](std::size_t begin, std::size_t end) {
         Vec3 sum = Vec3::Zero();
-        for (std::size_t p = begin; p < end; ++p) sum += matter.particle_mass[p] * x.at(p);
+        for (std::size_t p = begin; p < end; ++p) sum += mass[p] * x.at(p);
         return sum;
     };
     Vec3 sum = Vec3::Zero();
@@ -111,7 +111,7 @@ std::vector<OpenFace> LoadSet::pressed(const Load& load, const SurfacePoints& su
 
 std::span<const OpenFace> LoadSet::faces_of(const Load& load) const {
     if (parted_ == nullptr) return {};
-    return parted_->face[std::size_t(&load - apparatus_->load.data())];
+    return parted_->face[index_of(load)];
 }
 
 // What is laid open now has not moved since it was.
@@ -124,17 +124,29 @@ void LoadSet::renew_last(const Aggregate& matter, const Parted* before) {
         for (std::size_t n = points; n < last_.force[l].size(); ++n) {
             known[before->face[l][n - points].corner] = n;
         }
-        const std::vector<Vec3> position = last_.position[l], force = last_.force[l];
-        last_.position[l].resize(points);
+        const std::vector<Vec3> moment = last_.moment[l], force = last_.force[l],
+                                now = moments_of(load, matter);
+        last_.moment[l].resize(points);
         last_.force[l].resize(points);
-        for (const OpenFace& face : faces_of(load)) {
-            const auto had = known.find(face.corner);
+        for (std::size_t n = points; n < now.size(); ++n) {
+            const auto had = known.find(faces_of(load)[n - points].corner);
             const bool is_new = had == known.end();
-            last_.position[l].push_back(is_new ? face.mean(matter.particle_position)
-                                               : position[had->second]);
+            last_.moment[l].push_back(is_new ? now[n] : moment[had->second]);
             last_.force[l].push_back(is_new ? Vec3(Vec3::Zero()) : force[had->second]);
         }
     }
+}
+
+void LoadSet::leave_alone(const Aggregate& matter, const std::vector<ParticleId>& particles) {
+    if (particles.empty()) return;
+    if (left_alone_.empty()) heavy_mass_ = matter.particle_mass;
+    for (ParticleId p : particles) heavy_mass_[std::size_t(p)] = 0;
+    left_alone_.insert(left_alone_.end(), particles.begin(), particles.end());
+    if (!started_) return;
+    for (const Load& load : apparatus_->load) {
+        if (pushes(load)) last_.moment[index_of(load)] = moments_of(load, matter);
+    }
+    last_.mass_moment = mass_moment(heavy_mass_, matter.particle_position);
 }
 
 std::vector<double> LoadSet::areas_of(const Load& load, const Aggregate& matter) const {
@@ -159,6 +171,30 @@ std::vector<Vec3> LoadSet::positions_of(const Load& load, const Aggregate& matte
         position.push_back(face.mean(matter.particle_position));
     }
     return position;
+}
+
+LoadSet::Pushed LoadSet::pushed(const Load& load, std::size_t n, const Aggregate& matter) const {
+    Pushed part;
+    const auto add = [&](ParticleId p, double weight) {
+        if (leaves_alone(p)) return;
+        part.share += weight;
+        part.moment += weight * matter.particle_position.at(p);
+    };
+    const std::size_t points = load.point.size();
+    if (n < points) {
+        const SurfacePoints::Carriers by = matter.surface.carriers(load.point[n]);
+        for (int c = 0; c < 8; ++c) add(by.corner[c], by.weight[c]);
+    } else {
+        for (ParticleId p : faces_of(load)[n - points].corner) add(p, 0.25);
+    }
+    return part;
+}
+
+std::vector<Vec3> LoadSet::moments_of(const Load& load, const Aggregate& matter) const {
+    std::vector<Vec3> moment = positions_of(load, matter);
+    if (left_alone_.empty()) return moment;
+    for (std::size_t n = 0; n < moment.size(); ++n) moment[n] = pushed(load, n, matter).moment;
+    return moment;
 }
 
 void LoadSet::balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
@@ -201,8 +237,8 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
     const std::vector<double> area = areas_of(load, matter);
     parallel_each(points, kChunk, [&](std::size_t n) {
         if (area[n] == 0) return;
-        force[n] = load.share_of(n) *
-                   pressure_force(pressure, surface_area_vector(matter, load.point[n]));
+        force[n] =
+            load.share_of(n) * pressure_force(pressure, surface_area_vector(matter, load.point[n]));
     });
     for (std::size_t n = 0; n < face.size(); ++n) {
         force[points + n] = pressure_force(pressure, face[n].outward(matter.particle_position));
@@ -212,6 +248,8 @@ std::vector<Vec3> LoadSet::forces_of(const Load& load, double strength,
 }
 
 void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const {
+    std::vector<Vec3> kept;
+    for (ParticleId p : left_alone_) kept.push_back(force.at(p));
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
         const Load& load = apparatus_->load[l];
         if (!pushes(load) || now.load_strength[l] == 0) continue;
@@ -223,6 +261,7 @@ void LoadSet::add_forces(const Aggregate& matter, const Drive& now, Vec3Array& f
         const std::span<const OpenFace> face = faces_of(load);
         for (std::size_t n = 0; n < face.size(); ++n) spread(face[n], push[points + n], force);
     }
+    for (std::size_t n = 0; n < kept.size(); ++n) force.set(left_alone_[n], kept[n]);
 }
 
 double LoadSet::size(const Aggregate& matter, const Drive& now) const {
@@ -264,15 +303,15 @@ LoadSet::Settled LoadSet::settled(const Aggregate& matter, const Drive& now) con
     for (std::size_t l = 0; l < apparatus_->load.size(); ++l) {
         const Load& load = apparatus_->load[l];
         if (!pushes(load)) {
-            state.position.emplace_back();
+            state.moment.emplace_back();
             state.force.emplace_back();
             continue;
         }
-        state.position.push_back(positions_of(load, matter));
+        state.moment.push_back(moments_of(load, matter));
         state.force.push_back(forces_of(load, now.load_strength[l], matter));
     }
     if (has_gravity()) {
-        state.moment = mass_moment(matter);
+        state.mass_moment = mass_moment(heavy_mass(matter), matter.particle_position);
         state.gravity = gravity(now);
     }
     return state;
@@ -291,11 +330,12 @@ void LoadSet::commit(const Aggregate& matter, const Drive& now, std::vector<doub
     for (std::size_t l = 0; l < state.force.size(); ++l) {
         for (std::size_t n = 0; n < state.force[l].size(); ++n) {
             work[l] += 0.5 * (last_.force[l][n] + state.force[l][n])
-                                 .dot(state.position[l][n] - last_.position[l][n]);
+                                 .dot(state.moment[l][n] - last_.moment[l][n]);
         }
     }
     if (has_gravity()) {
-        work.back() += 0.5 * (last_.gravity + state.gravity).dot(state.moment - last_.moment);
+        work.back() +=
+            0.5 * (last_.gravity + state.gravity).dot(state.mass_moment - last_.mass_moment);
     }
     last_ = std::move(state);
 }
@@ -308,12 +348,23 @@ std::vector<PushSum> LoadSet::sums(const Aggregate& matter, const Drive& now) co
             sums.emplace_back();
             continue;
         }
-        sums.push_back(sum_of(areas_of(load, matter), positions_of(load, matter),
-                              forces_of(load, now.load_strength[l], matter)));
+        std::vector<double> area = areas_of(load, matter);
+        std::vector<Vec3> position = positions_of(load, matter),
+                          force = forces_of(load, now.load_strength[l], matter);
+        for (std::size_t n = 0; n < area.size() && !left_alone_.empty(); ++n) {
+            const Pushed part = pushed(load, n, matter);
+            area[n] *= part.share;
+            force[n] *= part.share;
+            if (part.share != 0) position[n] = part.moment / part.share;
+        }
+        sums.push_back(sum_of(area, position, force));
     }
     if (has_gravity()) {
-        const double mass = matter.mass();
-        sums.push_back({mass_moment(matter) / mass, mass * gravity(now), Vec3::Zero()});
+        const std::vector<double>& heavy = heavy_mass(matter);
+        const double mass = std::accumulate(heavy.begin(), heavy.end(), 0.0);
+        const Vec3 moment = mass_moment(heavy, matter.particle_position);
+        sums.push_back(
+            {mass > 0 ? Vec3(moment / mass) : moment, mass * gravity(now), Vec3::Zero()});
     }
     return sums;
 }

@@ -3,6 +3,7 @@
 // that they do. Forces on the surface keep their direction; a pressure follows the surface, but for
 // that of cells no longer whole, cut or broken, whose corners belong to different sides: it presses
 // on them no more. One all round a piece presses on what was laid open instead (sim/laid_open.h).
+// What is left alone (sim/free_pieces.h) is pushed by nothing, and no work is done on it.
 #pragma once
 
 #include <memory>
@@ -33,7 +34,18 @@ class LoadSet {
     // Adds the loads' forces; gravity acts on mass and is left to whoever sums over particles.
     void add_forces(const Aggregate& matter, const Drive& now, Vec3Array& force) const;
 
-    // The largest sum of force sizes that any one load, or gravity, asks for [N].
+    // These particles are left alone from now on. They lie as they did when last settled.
+    void leave_alone(const Aggregate& matter, const std::vector<ParticleId>& particles);
+    bool leaves_alone(ParticleId p) const {
+        return !left_alone_.empty() && heavy_mass_[std::size_t(p)] == 0;
+    }
+    // Of each particle the mass that gravity acts on [kg].
+    const std::vector<double>& heavy_mass(const Aggregate& matter) const {
+        return left_alone_.empty() ? matter.particle_mass : heavy_mass_;
+    }
+
+    // The largest sum of force sizes that any one load, or gravity, asks for [N], of what is
+    // left alone too.
     double size(const Aggregate& matter, const Drive& now) const;
 
     // Whether any of them grows less.
@@ -51,7 +63,7 @@ class LoadSet {
     // from the state settled before: the mean of the forces at both ends, times the way.
     void commit(const Aggregate& matter, const Drive& now, std::vector<double>& work);
 
-    // By load, then gravity where there is any; zero for loads on another body.
+    // By load, then gravity where there is any, of what is pushed; zero for loads on another body.
     std::vector<PushSum> sums(const Aggregate& matter, const Drive& now) const;
     std::size_t count() const { return apparatus_->load.size() + has_gravity(); }
 
@@ -74,6 +86,14 @@ class LoadSet {
     // Of each of a load's points that it acts on; 0: it does not [m2].
     std::vector<double> areas_of(const Load& load, const Aggregate& matter) const;
     std::vector<Vec3> positions_of(const Load& load, const Aggregate& matter) const;
+    // Of those that carry the n-th of a load's points, what is not left alone: its weights' sum,
+    // and the sum of these times its places [m].
+    struct Pushed {
+        double share = 0;
+        Vec3 moment = Vec3::Zero();
+    };
+    Pushed pushed(const Load& load, std::size_t n, const Aggregate& matter) const;
+    std::vector<Vec3> moments_of(const Load& load, const Aggregate& matter) const;
     // NOTE: the points sample a closed surface, and their area vectors sum to nothing only nearly.
     // What is left would drive a free body, or a piece of it, for ever, so it is taken off.
     void balance(const Load& load, const Aggregate& matter, const std::vector<double>& area,
@@ -82,14 +102,17 @@ class LoadSet {
     void renew_last(const Aggregate& matter, const Parted* before);
 
     bool pushes(const Load& load) const { return load.body == body_; }
+    std::size_t index_of(const Load& load) const {
+        return std::size_t(&load - apparatus_->load.data());
+    }
 
     const Apparatus* apparatus_;
     int body_;
     Vec3 gravity_;
     // When settled last: by load, then point; and for gravity.
     struct Settled {
-        std::vector<std::vector<Vec3>> position, force;
-        Vec3 moment = Vec3::Zero();  // sum of mass times position [kg m]
+        std::vector<std::vector<Vec3>> moment, force;  // of what is pushed; on the whole point
+        Vec3 mass_moment = Vec3::Zero();               // sum of mass times position [kg m]
         Vec3 gravity = Vec3::Zero();
     };
     Settled settled(const Aggregate& matter, const Drive& now) const;
@@ -97,6 +120,8 @@ class LoadSet {
     bool started_ = false;
     std::shared_ptr<const Parted> parted_;  // null: all cells are whole
     Settled last_;
+    std::vector<ParticleId> left_alone_;
+    std::vector<double> heavy_mass_;  // heavy_mass(), once anything is left alone
 };
 
 }  // namespace swage

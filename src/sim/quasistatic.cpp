@@ -140,7 +140,7 @@ bool QuasistaticSolver::take_back(Relaxation& tried, const StaticMove& move, Mov
     if (eased) outcome.left_over = settings_.tolerance * measure;
     put_back(move);
     const bool may_hang = !tried.converged && !tried.falls && (given_up || move.depth > 0);
-    const int afloat = tried.falls ? forces_.free.let_fall() : 0,
+    const int afloat = tried.falls ? forces_.free.let_fall(forces_.pushes) : 0,
               hanging = may_hang ? forces_.let_hang(move.to) : 0;
     outcome.afloat += afloat;
     outcome.hanging += hanging;

@@ -45,8 +45,9 @@ double QuasistaticSolver::seat_pieces(StaticMove& move) {
     SeatProblem problem;
     problem.add_contacts = [&](Vec3Array& force) { contacts.add_forces(matter_, lie, force); };
     problem.add_loads = [&](Vec3Array& force) {
-        free.add_loads(pushes, lie, force);
-        add_restraint(x, {x, forces_.drag, 0, free.heavy_mass(), pushes.gravity(lie)}, force);
+        pushes.add_forces(matter_, lie, force);
+        add_restraint(x, {x, forces_.drag, 0, pushes.heavy_mass(matter_), pushes.gravity(lie)},
+                      force);
     };
     problem.held = [&] {
         return contacts.held_points(matter_, lie, RestingContacts::Slipping::lawful);

@@ -54,11 +54,11 @@ void StaticForces::find_bounds() {
 void StaticForces::find(const Drive& to, double moved) {
     mirrored = lattice.find(matter, Flow::trial, force);
     contacts.add_forces(matter, to, force, moved);
-    free.add_loads(pushes, to, force);
+    pushes.add_forces(matter, to, force);
     const bool may_lie = !apparatus.tool.empty() || (may_touch_itself && free.are_several());
     if (!may_lie) free.steady(pushes, to, force);
     add_restraint(matter.particle_position,
-                  {held, drag, hold, free.heavy_mass(), pushes.gravity(to)}, force);
+                  {held, drag, hold, pushes.heavy_mass(matter), pushes.gravity(to)}, force);
     self.add_forces(force);
 }
 

@@ -206,6 +206,55 @@ TEST_CASE("what is cut under a grip pulls no more at what it was cut from") {
     }
 }
 
+TEST_CASE("what is left alone weighs nothing, and no work is done on it when it is lifted") {
+    Material material = kSoft;
+    material.young_modulus = 5e5;
+    Aggregate matter = make_block(12, 3, 3, 0.05, material);
+    sever_plane(matter, Vec3(0.026, 0, 0), Vec3::UnitX());
+    Apparatus apparatus;
+    apparatus.name = "lift";
+    apparatus.tool.push_back({"lift", BoxShape{Vec3(0.15, 0.1, 0.3), 0.01}, 0});
+    apparatus.grip.push_back(
+        hold(matter, points_where(matter, [](const Vec3& x) { return x.x() < -0.2999; })));
+    apparatus.load.push_back(force_on(
+        matter, points_where(matter, [](const Vec3& x) { return x.x() > 0.2999; }), {0, -1, 0}));
+    SimSettings settings;
+    settings.tolerance = 1e-4;
+    settings.grip_stiffness = 100;
+    settings.gravity = {0, -9.81, 0};
+    // The tool is out of reach of what falls, comes up to it, and lifts it by two cells.
+    const double strength[] = {0, 0.5, 1, 1, 1, 1, 1};
+    const double top[] = {-1.1, -1.1, -1.1, -0.1, -0.05, 0, 0.025};
+    const auto at = [&](int n) {
+        Drive d = drive_of(apparatus, n, strength[n]);
+        d.world_from_tool.push_back({Quat::Identity(), Vec3(0.175, top[n] - 0.05, 0)});
+        return d;
+    };
+    Simulation simulation(matter, apparatus, settings);
+    std::vector<FrameReport> report;
+    for (int n = 1; n <= 6; ++n) report.push_back(simulation.advance(at(n - 1), at(n)));
+    REQUIRE(report[0].warning.size() == 1);
+    CHECK(report[0].warning[0].find("a piece would fall") == 0);
+
+    double held = 0, lift = 0, lifted = 0;  // masses [kg]; times the way up [kg m]
+    for (std::size_t p = 0; p < matter.particle_count(); ++p) {
+        const Vec3 from = matter.particle_reference.at(p);
+        const double mass = matter.particle_mass[p];
+        (from.x() < 0.026 ? held : lifted) += mass;
+        if (from.x() > 0.026) lift += mass * (matter.particle_position.at(p) - from).y();
+    }
+    CHECK(lift > 0.09 * lifted);
+    const FrameReport &hung = report[1], &end = report.back();
+    CHECK(hung.gravity_work == Approx(hung.elastic + hung.contact).epsilon(0.05));
+    CHECK(end.gravity_work == Approx(hung.gravity_work).epsilon(0.02));
+    CHECK(end.load_work == 0);
+    CHECK(std::abs(end.remainder) < 0.05 * end.gravity_work);
+    REQUIRE(end.load.size() == 4);
+    CHECK(end.load[2].force.isZero(0));
+    CHECK(end.load[3].force.y() == Approx(-9.81 * held));
+    CHECK((end.load[1].force + end.load[3].force).norm() < 0.01 * 9.81 * held);
+}
+
 TEST_CASE("what is cut off under a grip is carried along no more, and would fall") {
     for (const double gravity : {0.0, 9.81}) {
         Aggregate matter = make_block(10, 3, 3, 0.1, kSoft);
