@@ -21,12 +21,10 @@ struct ContactWay::Kernel {
     const ContactSide& onto = *way.onto_;
     ContactPatch &a = way.from_->patch(), &b = way.onto_->patch();
 
-    static bool is_known(const Meeting& at) { return at.inverse[0][3] != 0; }
-    static bool meets(const Meeting& at) { return at.inverse[1][3] != 0; }
     // Whether it presses, or sticks and is not torn off.
     static bool acts(const Meeting& at, const ContactMemory& last, double hold) {
-        return at.normal[3] > 0 ||
-               (last.history.touches && is_bound(at.inverse[2][3], at.normal[3], hold));
+        return at.depth() > 0 ||
+               (last.history.touches && is_bound(at.stiffness(), at.depth(), hold));
     }
 
     // How deep the point lies as it goes on from where it has met; false where it has left the
@@ -105,26 +103,26 @@ struct ContactWay::Kernel {
         if (soft * whole > way.stiffest_[contact.point]) {
             soft = way.stiffest_[contact.point] / whole;
         }
-        at.inverse[2][3] = soft * whole;
+        at.set_stiffness(soft * whole);
         at.normal = slope / size;
-        at.normal[3] = -depth.distance / size;
-        at.inverse[0][3] = stretch;
-        if (acts(at, last, hold)) at.inverse[1][3] = soft;
+        at.set_depth(-depth.distance / size);
+        at.set_stretch(stretch);
+        if (acts(at, last, hold)) at.set_soft(soft);
     }
 
     // Of its depth, what nobody has pressed: that does not count.
     SWAGE_INLINE void take_off_sunk(const ContactMemory& last, double step, double hold,
                                     Meeting& at) const {
-        const double stretch = at.inverse[0][3], whole = stretch * at.normal[3];
+        const double stretch = at.stretch(), whole = stretch * at.depth();
         double sunk = last.sunk;
         if (last.is_new) {
             const double pressed = last.history.touches ? last.pressed : 0;
             const double approach = way.is_static() ? 0 : std::max(0.0, -dot3(at.now, at.normal));
             sunk = std::max(sunk, whole - pressed - step * stretch * approach);
         }
-        at.now[3] = std::clamp(sunk, 0.0, std::max(0.0, whole));
-        at.normal[3] -= at.now[3] / stretch;
-        if (!acts(at, last, hold)) at.inverse[1][3] = 0;
+        at.set_sunk(std::clamp(sunk, 0.0, std::max(0.0, whole)));
+        at.set_depth(at.depth() - at.sunk() / stretch);
+        if (!acts(at, last, hold)) at.set_soft(0);
     }
 
     // All that does not depend on forces.
@@ -146,10 +144,10 @@ struct ContactWay::Kernel {
         }
         sums.took -= dot3(at.now, vec4(contact.dashed));
         const double hold = way.hold_[contact.point];
-        if (is_known(at) && (last.is_new || last.sunk > 0)) take_off_sunk(last, step, hold, at);
-        if (!meets(at)) return;
-        const double k = at.inverse[2][3];
-        const double push = spring_push(k, at.normal[3], hold);
+        if (at.is_known() && (last.is_new || last.sunk > 0)) take_off_sunk(last, step, hold, at);
+        if (!at.meets()) return;
+        const double k = at.stiffness();
+        const double push = spring_push(k, at.depth(), hold);
         at.spring = push * at.normal;
         at.reach = Vec4{};
         if (last.history.touches) {
@@ -177,9 +175,9 @@ struct ContactWay::Kernel {
             at.spring += size > limit ? limit / size * along : along;
         }
         at.spring[3] = 0;
-        at.reach[3] = give;
+        at.set_give(give);
         sums.held.now += 0.5 / k * dot3(at.spring, at.spring);
-        if (push > k * at.normal[3]) sums.held.now += push * (at.normal[3] - push / k);
+        if (push > k * at.depth()) sums.held.now += push * (at.depth() - push / k);
     }
 
     // Whether an earlier contact of its point has come into the same cell by another way: of one
@@ -187,7 +185,7 @@ struct ContactWay::Kernel {
     bool is_twice(std::size_t begin, std::size_t n) const {
         const auto& all = way.list_.contact;
         for (std::size_t m = n; m-- > begin && all[m].point == all[n].point;) {
-            if (all[m].cell == all[n].cell && meets(way.meeting_[m])) return true;
+            if (all[m].cell == all[n].cell && way.meeting_[m].meets()) return true;
         }
         return false;
     }
@@ -211,12 +209,12 @@ struct ContactWay::Kernel {
             find<kOwn>(contact, last, way.plane_.empty() ? nullptr : &way.plane_[n], corner,
                        gradient, at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
-            if (meets(at) && is_twice(begin, n)) at.inverse[0][3] = at.inverse[1][3] = 0;
-            result.is_met = result.is_met || (meets(at) && !last.history.touches);
-            if (!is_known(at)) result.held.gone += last.stored;
-            if (!meets(at) && !last.history.touches && contact.dashed.isZero(0)) continue;
+            if (at.meets() && is_twice(begin, n)) at.forget();
+            result.is_met = result.is_met || (at.meets() && !last.history.touches);
+            if (!at.is_known()) result.held.gone += last.stored;
+            if (!at.meets() && !last.history.touches && contact.dashed.isZero(0)) continue;
             prepare(contact, last, corner, gradient, step, at, result);
-            if (is_known(at) && !meets(at)) result.held.gone += last.bound;
+            if (at.is_known() && !at.meets()) result.held.gone += last.bound;
         }
     }
 
@@ -234,7 +232,7 @@ struct ContactWay::Kernel {
         const std::size_t end = way.begin_of(chunk + 1);
         for (std::size_t n = way.begin_of(chunk); n < end; ++n) {
             const Contact& contact = way.list_.contact[n];
-            if (!meets(way.meeting_[n])) continue;
+            if (!way.meeting_[n].meets()) continue;
             const std::array<double, 8> weight = trilinear_weights(contact.place);
             const Vec4 f = way.meeting_[n].spring;
             for (int c = 0; c < contact.carriers; ++c) {
@@ -249,7 +247,7 @@ struct ContactWay::Kernel {
     SWAGE_INLINE ImpactForce impact(const Contact& contact, const ContactMemory& last,
                                     const Meeting& at, double step) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
-        const double give = at.reach[3];
+        const double give = at.give();
         const Vec4 spring = way.share_ * at.spring;
         Vec4 push = -give * spring;  // of all others, over the mass
         for (int c = 0; c < contact.carriers; ++c) {
@@ -266,10 +264,10 @@ struct ContactWay::Kernel {
                 std::max(beside, way.met_[std::size_t(contact.carrier[c] - way.point_push_.low)]);
         }
         ImpactLaw law = way.law_;
-        law.stiffness = way.share_ * at.inverse[2][3];
+        law.stiffness = way.share_ * at.stiffness();
         law.hold = way.share_ * way.hold_[contact.point];
         const ImpactForce f = impact_force(law,
-                                           {.depth = at.normal[3],
+                                           {.depth = at.depth(),
                                             .normal = vec3(at.normal),
                                             .now = vec3(at.now),
                                             .velocity = vec3(at.now + step * push),
@@ -287,12 +285,12 @@ struct ContactWay::Kernel {
     // go.
     SWAGE_INLINE ImpactForce same_as(const Contact& contact, const ContactMemory& last,
                                      const Meeting& at) const {
-        const double k = way.share_ * at.inverse[2][3];
+        const double k = way.share_ * at.stiffness();
         const double hold = way.share_ * way.hold_[contact.point];
         const Vec3 normal = vec3(at.normal), reach = vec3(at.reach);
         ImpactForce f;
         f.reach = reach - normal * normal.dot(reach);
-        const double depth = at.normal[3], over = spring_push(k, depth, hold) - k * depth;
+        const double depth = at.depth(), over = spring_push(k, depth, hold) - k * depth;
         f.elastic = k * (f.reach + depth * normal);
         f.stored = 0.5 / k * (f.elastic.squaredNorm() - over * over);
         f.elastic += over * normal;
@@ -316,19 +314,19 @@ struct ContactWay::Kernel {
             const Meeting& at = way.meeting_[n];
             ContactMemory& next = way.next_[n];
             ImpactForce f;
-            if (meets(at)) {
+            if (at.meets()) {
                 f = again && last.history.touches ? same_as(contact, last, at)
                                                   : impact(contact, last, at, step);
             }
             next.history = f.history;
             next.bond = f.bond;
-            next.stiffness = way.share_ * at.inverse[2][3];
-            next.sunk = at.now[3];
-            next.pressed = at.inverse[0][3] * at.normal[3];
-            next.soft = at.inverse[1][3];
+            next.stiffness = way.share_ * at.stiffness();
+            next.sunk = at.sunk();
+            next.pressed = at.stretch() * at.depth();
+            next.soft = at.soft();
             next.stored = f.stored / way.share_;
             way.kept_ += next.stored;
-            next.is_new = !is_known(at) && (last.is_new || !way.is_static());
+            next.is_new = !at.is_known() && (last.is_new || !way.is_static());
             contact.dashed = f.force - f.elastic;
             next.bound = 0;
             if (f.history.touches) {
@@ -336,24 +334,24 @@ struct ContactWay::Kernel {
                 next.place = contact.site.cast<double>() + contact.place;
                 next.reach = Vec3(dot3(at.inverse[0], reach), dot3(at.inverse[1], reach),
                                   dot3(at.inverse[2], reach));
-                const double k = at.inverse[2][3], pulled = std::min(at.normal[3], 0.0);
+                const double k = at.stiffness(), pulled = std::min(at.depth(), 0.0);
                 next.held = 0.5 * k * dot3(reach, reach);
                 next.bound = next.held + spring_energy(k, pulled, way.hold_[contact.point]);
                 sums.took -= 0.5 * contact.dashed.dot(vec3(at.now));
                 sums.stored += 0.5 * f.stored;
                 sums.friction += 0.5 * f.friction;
-                sums.penetration = std::max(sums.penetration, at.normal[3]);
+                sums.penetration = std::max(sums.penetration, at.depth());
                 ++sums.contacts;
                 sums.sliding += f.history.slides;
                 if (last.history.touches && next.soft < last.soft) {
                     const double was = k * last.soft / next.soft;
-                    const double hold = way.hold_[contact.point], depth = at.normal[3];
+                    const double hold = way.hold_[contact.point], depth = at.depth();
                     sums.damped +=
                         0.5 * way.share_ *
                         (0.5 * (was - k) * dot3(reach, reach) + spring_energy(was, depth, hold) -
                          spring_energy(k, depth, hold));
                 }
-            } else if (last.history.touches && is_known(at)) {
+            } else if (last.history.touches && at.is_known()) {
                 // What its bond does no longer on the way from there.
                 sums.damped -= 0.25 * step * last.bond.dot(vec3(at.now));
             }

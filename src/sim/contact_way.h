@@ -107,15 +107,34 @@ class ContactWay {
     // Nothing has a speed.
     bool is_static() const { return solver_ == Solver::quasistatic; }
     bool is_near() const { return !stiffness_.empty(); }
-    // How a point meets the cell that holds it, at the present positions. The fourth lanes hold
-    // what has no vector.
+    // How a point meets the cell that holds it, at the present positions. What has no vector lies
+    // in the fourth lane of one.
     struct alignas(32) Meeting {
-        Vec4 normal;  // and the depth that counts [m]
-        Vec4 reach;   // from the point to where it sticks [m]; ImpactState::give [1/kg]
-        Vec4 now;     // speed of the point over the other side [m/s]; depth that does not [m]
-        Vec4 spring;  // what its springs would do if this way were alone [N]
-        // Rows of J^-1 [1/m]; s, 0: depth not known; ContactMemory::soft, 0: does not meet; [N/m].
-        Vec4 inverse[3];
+        Vec4 normal;
+        Vec4 reach;       // from the point to where it sticks [m]
+        Vec4 now;         // speed of the point over the other side [m/s]
+        Vec4 spring;      // what its springs would do if this way were alone [N]
+        Vec4 inverse[3];  // rows of J^-1 [1/m]
+
+        SWAGE_INLINE double depth() const { return normal[3]; }  // that counts [m]
+        SWAGE_INLINE double give() const { return reach[3]; }    // ImpactState::give [1/kg]
+        SWAGE_INLINE double sunk() const { return now[3]; }      // depth that does not count [m]
+        SWAGE_INLINE double stretch() const { return inverse[0][3]; }    // s
+        SWAGE_INLINE double soft() const { return inverse[1][3]; }       // ContactMemory::soft
+        SWAGE_INLINE double stiffness() const { return inverse[2][3]; }  // [N/m]
+        SWAGE_INLINE bool is_known() const { return stretch() != 0; }    // the depth is
+        SWAGE_INLINE bool meets() const { return soft() != 0; }
+
+        SWAGE_INLINE void set_depth(double value) { normal[3] = value; }
+        SWAGE_INLINE void set_give(double value) { reach[3] = value; }
+        SWAGE_INLINE void set_sunk(double value) { now[3] = value; }
+        SWAGE_INLINE void set_stretch(double value) { inverse[0][3] = value; }
+        SWAGE_INLINE void set_soft(double value) { inverse[1][3] = value; }
+        SWAGE_INLINE void set_stiffness(double value) { inverse[2][3] = value; }
+        SWAGE_INLINE void forget() {  // its depth, and that it meets
+            set_stretch(0);
+            set_soft(0);
+        }
     };
     struct Chunk {
         std::vector<int> moved;  // contacts that have come into other cells
