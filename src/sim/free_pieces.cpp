@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/free_pieces.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "sim/hanging.h"
+#include "sim/piece_sums.h"
+#include "sim/steadying.h"
 
 namespace swage {
 
 namespace {
 
-constexpr double kUnbalanced = 0.05;  // of all loads and gravity on a piece
-constexpr double kBorne = 0.5;        // of what they come to
-constexpr double kCrumb = 0.02;       // of all particles
-
-template <typename Value, typename Of>
-std::vector<Value> sums_of(const Pieces& pieces, const Value& none, const Of& of) {
-    std::vector<Value> sum(static_cast<std::size_t>(pieces.count), none);
-    for (std::size_t p = 0; p < pieces.particle_piece.size(); ++p) {
-        sum[static_cast<std::size_t>(pieces.particle_piece[p])] += of(p);
-    }
-    return sum;
-}
+constexpr double kBorne = 0.5;   // of what loads and gravity come to
+constexpr double kCrumb = 0.02;  // of all particles
 
 }  // namespace
 
@@ -65,73 +55,11 @@ std::vector<std::vector<ParticleId>> FreePieces::loose_pieces() const {
     return loose;
 }
 
-// (M + B) q = W, for each piece: q its shift and turn, W what pushes come to, B what grips bar, so
-// stiff that it makes no difference to what they leave free.
 void FreePieces::steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const {
     if (pushes.count() == 0 || std::ranges::all_of(gripped_.firm, [](char f) { return f != 0; })) {
         return;
     }
-    constexpr double kBars = 1e9;  // of the piece's mass, all points of grips together
-    using Vec6 = Eigen::Matrix<double, 6, 1>;
-    using Mat6 = Eigen::Matrix<double, 6, 6>;
-    const auto at = [&](std::size_t p) { return matter_.particle_position.at(p); };
-    const std::vector<double>& m = matter_.particle_mass;
-    const Pieces& pieces = gripped_.pieces;
-    const Vec3Array push = pushes_on(pushes, to);
-    const Vec3 none = Vec3::Zero();
-    const auto mass = sums_of(pieces, 0.0, [&](std::size_t p) { return m[p]; });
-    auto center = sums_of(pieces, none, [&](std::size_t p) -> Vec3 { return m[p] * at(p); });
-    for (std::size_t n = 0; n < mass.size(); ++n) center[n] /= mass[n];
-    const auto arm = [&](std::size_t p) -> Vec3 {
-        return at(p) - center[std::size_t(pieces.particle_piece[p])];
-    };
-    const auto inertia = sums_of(pieces, Mat3(Mat3::Zero()), [&](std::size_t p) -> Mat3 {
-        const Vec3 r = arm(p);
-        return m[p] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
-    });
-    const auto net = sums_of(pieces, none, [&](std::size_t p) { return push.at(p); });
-    const auto torque =
-        sums_of(pieces, none, [&](std::size_t p) -> Vec3 { return arm(p).cross(push.at(p)); });
-    const auto size = sums_of(pieces, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
-
-    // Turns are counted by the way that they take what lies far out.
-    std::vector<double> reach, barred(mass.size(), 0);
-    std::vector<Mat6> bars(mass.size(), Mat6(Mat6::Zero()));
-    for (std::size_t n = 0; n < mass.size(); ++n) {
-        reach.push_back(std::sqrt(inertia[n].trace() / mass[n]));
-    }
-    for (std::size_t g = 0; g < apparatus_.grip.size(); ++g) {
-        const Grip& grip = apparatus_.grip[g];
-        const Mat3 axes = to.world_from_grip[g].rotation.toRotationMatrix();
-        for (std::size_t i = 0; i < grip.point.size(); ++i) {
-            if (gripped_.at[g][i] == GrippedPieces::kNone) continue;
-            const auto n = std::size_t(gripped_.at[g][i]);
-            ++barred[n];
-            const Vec3 r = matter_.surface_position(std::size_t(grip.point[i])) - center[n];
-            for (int axis = 0; axis < 3; ++axis) {
-                Vec6 way;
-                way << axes.col(axis), r.cross(axes.col(axis)) / reach[n];
-                bars[n] += grip.hold[axis] * way * way.transpose();
-            }
-        }
-    }
-    std::vector<Vec3> shift, turn;
-    for (std::size_t n = 0; n < mass.size(); ++n) {
-        Mat6 stiff = kBars * mass[n] / std::max(1.0, barred[n]) * bars[n];
-        stiff.topLeftCorner<3, 3>() += mass[n] * Mat3::Identity();
-        stiff.bottomRightCorner<3, 3>() += inertia[n] / (reach[n] * reach[n]);
-        Vec6 wrench;
-        wrench << net[n], torque[n] / reach[n];
-        const Vec6 goes = stiff.llt().solve(wrench);
-        const bool is_little =
-            !gripped_.firm[n] && mass[n] * goes.lpNorm<1>() <= kUnbalanced * size[n];
-        shift.push_back(is_little ? Vec3(goes.head<3>()) : none);
-        turn.push_back(is_little ? Vec3(goes.tail<3>() / reach[n]) : none);
-    }
-    for (std::size_t p = 0; p < push.size(); ++p) {
-        const auto n = std::size_t(pieces.particle_piece[p]);
-        force.add(p, -m[p] * (shift[n] + turn[n].cross(arm(p))));
-    }
+    add_steadying_forces(matter_, apparatus_, gripped_, to, pushes_on(pushes, to), force);
 }
 
 bool FreePieces::has_fallen(const LoadSet& pushes, const Drive& to, const Vec3Array& start,
@@ -178,7 +106,7 @@ void FreePieces::keep_loose(const Vec3Array& push, const std::vector<double>& bo
         sums_of(gripped_.pieces, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
     std::erase_if(fallen_, [&](int n) {
         const double net = pushed[n].norm();
-        return gripped_.is_held(n) || net <= kUnbalanced * size[n] || borne[n] > kBorne * net;
+        return gripped_.is_held(n) || net <= kLittlePush * size[n] || borne[n] > kBorne * net;
     });
 }
 

@@ -32,9 +32,7 @@ class FreePieces {
     // The particles of each piece in no grip that is more than a crumb, or of all.
     std::vector<std::vector<ParticleId>> loose_pieces() const;
 
-    // Takes off what loads and gravity leave over, all in all, along the ways that grips leave a
-    // piece free, where it is less than a twentieth of them: patches of a surface are as fine as
-    // the cells, and equilibria would go any way for what these are short of balance.
+    // Takes off what loads and gravity are little short of balance by (sim/steadying.h).
     void steady(const LoadSet& pushes, const Drive& to, Vec3Array& force) const;
 
     // Whether any piece has gone farther than `far` [m] from where it was: tools and grips go no

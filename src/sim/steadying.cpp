@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/steadying.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/piece_sums.h"
+
+namespace swage {
+
+// (M + B) q = W, for each piece: q its shift and turn, W what pushes come to, B what grips bar, so
+// stiff that it makes no difference to what they leave free.
+void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
+                          const GrippedPieces& gripped, const Drive& now, const Vec3Array& push,
+                          Vec3Array& force) {
+    constexpr double kBars = 1e9;  // of the piece's mass, all points of grips together
+    using Vec6 = Eigen::Matrix<double, 6, 1>;
+    using Mat6 = Eigen::Matrix<double, 6, 6>;
+    const auto at = [&](std::size_t p) { return matter.particle_position.at(p); };
+    const std::vector<double>& m = matter.particle_mass;
+    const Pieces& pieces = gripped.pieces;
+    const Vec3 none = Vec3::Zero();
+    const auto mass = sums_of(pieces, 0.0, [&](std::size_t p) { return m[p]; });
+    auto center = sums_of(pieces, none, [&](std::size_t p) -> Vec3 { return m[p] * at(p); });
+    for (std::size_t n = 0; n < mass.size(); ++n) center[n] /= mass[n];
+    const auto arm = [&](std::size_t p) -> Vec3 {
+        return at(p) - center[std::size_t(pieces.particle_piece[p])];
+    };
+    const auto inertia = sums_of(pieces, Mat3(Mat3::Zero()), [&](std::size_t p) -> Mat3 {
+        const Vec3 r = arm(p);
+        return m[p] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    });
+    const auto net = sums_of(pieces, none, [&](std::size_t p) { return push.at(p); });
+    const auto torque =
+        sums_of(pieces, none, [&](std::size_t p) -> Vec3 { return arm(p).cross(push.at(p)); });
+    const auto size = sums_of(pieces, 0.0, [&](std::size_t p) { return push.at(p).norm(); });
+
+    // Turns are counted by the way that they take what lies far out.
+    std::vector<double> reach, barred(mass.size(), 0);
+    std::vector<Mat6> bars(mass.size(), Mat6(Mat6::Zero()));
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+        reach.push_back(std::sqrt(inertia[n].trace() / mass[n]));
+    }
+    for (std::size_t g = 0; g < apparatus.grip.size(); ++g) {
+        const Grip& grip = apparatus.grip[g];
+        const Mat3 axes = now.world_from_grip[g].rotation.toRotationMatrix();
+        for (std::size_t i = 0; i < grip.point.size(); ++i) {
+            if (gripped.at[g][i] == GrippedPieces::kNone) continue;
+            const auto n = std::size_t(gripped.at[g][i]);
+            ++barred[n];
+            const Vec3 r = matter.surface_position(std::size_t(grip.point[i])) - center[n];
+            for (int axis = 0; axis < 3; ++axis) {
+                Vec6 way;
+                way << axes.col(axis), r.cross(axes.col(axis)) / reach[n];
+                bars[n] += grip.hold[axis] * way * way.transpose();
+            }
+        }
+    }
+    std::vector<Vec3> shift, turn;
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+        Mat6 stiff = kBars * mass[n] / std::max(1.0, barred[n]) * bars[n];
+        stiff.topLeftCorner<3, 3>() += mass[n] * Mat3::Identity();
+        stiff.bottomRightCorner<3, 3>() += inertia[n] / (reach[n] * reach[n]);
+        Vec6 wrench;
+        wrench << net[n], torque[n] / reach[n];
+        const Vec6 goes = stiff.llt().solve(wrench);
+        const bool is_little =
+            !gripped.firm[n] && mass[n] * goes.lpNorm<1>() <= kLittlePush * size[n];
+        shift.push_back(is_little ? Vec3(goes.head<3>()) : none);
+        turn.push_back(is_little ? Vec3(goes.tail<3>() / reach[n]) : none);
+    }
+    for (std::size_t p = 0; p < push.size(); ++p) {
+        const auto n = std::size_t(pieces.particle_piece[p]);
+        force.add(p, -m[p] * (shift[n] + turn[n].cross(arm(p))));
+    }
+}
+
+}  // namespace swage
