@@ -15,6 +15,7 @@
 #include "machines/machine.h"
 #include "pipeline/accuracy.h"
 #include "pipeline/stage_machine.h"
+#include "pipeline/start_overlap.h"
 #include "sim/advance.h"
 
 namespace swage {

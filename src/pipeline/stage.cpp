@@ -15,6 +15,7 @@
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/stage_verdict.h"
+#include "pipeline/start_overlap.h"
 #include "pipeline/start_warnings.h"
 #include "sim/advance.h"
 #include "sim/sever.h"

@@ -6,14 +6,9 @@
 #include <vector>
 
 #include "machines/machine.h"
-#include "matter/aggregate.h"
+#include "pipeline/named_matter.h"
 
 namespace swage {
-
-struct NamedMatter {
-    std::string name;
-    const Aggregate* matter;
-};
 
 // A sentence for every two bodies that share the room of a cell or more.
 std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/stage_machine.h"
+#include "pipeline/start_overlap.h"
 
 namespace swage {
 

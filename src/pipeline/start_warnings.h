@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/start_overlap.h"
+#include "pipeline/named_matter.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
 

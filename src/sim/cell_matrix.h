@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/loose_springs.h"
+#include "sim/flow.h"
 
 namespace swage {
 

@@ -7,10 +7,12 @@
 
 #include "laws/cell_moduli.h"
 #include "matter/aggregate.h"
+#include "sim/flow.h"
 #include "sim/force_slabs.h"
-#include "sim/loose_springs.h"
+#include "sim/material_laws.h"
 #include "sim/mixed_cells.h"
 #include "sim/rest_lengths.h"
+#include "sim/turned_cell.h"
 
 namespace swage {
 

@@ -8,7 +8,7 @@
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_stretch.h"
-#include "sim/mixed_cells.h"
+#include "sim/material_laws.h"
 
 namespace swage {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "matter/aggregate.h"
-#include "sim/loose_springs.h"
+#include "sim/flow.h"
 
 namespace swage {
 

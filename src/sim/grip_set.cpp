@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "matter/parted.h"
 #include "sim/surface_forces.h"
 #include "sim/surface_modulus.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/surface_forces.h"
+#include "matter/parted.h"
 
 namespace swage {
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "matter/parted.h"
 #include "sim/surface_forces.h"
 #include "sim/vector_sums.h"
 

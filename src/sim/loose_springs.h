@@ -6,28 +6,16 @@
 #include <vector>
 
 #include "matter/aggregate.h"
+#include "sim/flow.h"
 #include "sim/fracture_laws.h"
 #include "sim/lattice_sweep.h"
+#include "sim/turned_cell.h"
 
 namespace swage {
-
-enum class Flow {
-    trial,  // what yields or softens goes on from the committed history
-    none,   // nothing flows or softens further
-};
 
 struct Broken {
     double lost = 0;  // energy that softening took [J]
     int count = 0;    // connections that broke
-};
-
-// A cell that has just ceased to be sound, and what it held then.
-struct TurnedCell {
-    const CellRun* run;
-    int n;          // of the run
-    double energy;  // [J]; 0 of two materials
-
-    CellId id() const { return run->first + n; }
 };
 
 class LooseSprings {

@@ -17,8 +17,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kBatchesPerChunk = 8, kCellsPerChunk = 64;
-constexpr double kNearYield = 1e-6;     // of the yield stress: lanes round otherwise
-constexpr double kNeverYields = 1e100;  // [Pa]
+constexpr double kNearYield = 1e-6;  // of the yield stress: lanes round otherwise
 
 // What a batch of cells is read from, and where its forces on the corners go: component, corner.
 struct MixedBatch {
@@ -120,22 +119,6 @@ Columns<double> gradient_of(const OneMixed& one, const MixedCell& cell, int p) {
 
 }  // namespace
 
-std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
-    std::vector<MaterialLaw> laws;
-    for (std::size_t n = 0; n < matter.material_count(); ++n) {
-        const Material& m = matter.material_at(n);
-        const CellKind kind = m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
-                              : std::isfinite(m.yield_stress)         ? CellKind::yielding
-                                                                      : CellKind::elastic;
-        const bool yields = kind == CellKind::yielding;
-        laws.push_back({cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
-                                    yields && flow == Flow::trial ? m.yield_stress : kNeverYields,
-                                    yields ? m.hardening : 0),
-                        kind});
-    }
-    return laws;
-}
-
 std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                                       const MixedCell& cell) {
     const OneMixed one = one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell));
@@ -184,8 +167,7 @@ void MixedCells::add_forces(const Aggregate& matter, const std::vector<MaterialL
         for (int p = 0; p < 2; ++p) batch.law[p] = &laws[batch.cell[0]->material[p]];
         batch.push = &push_[batches_.first[b]];
         batch.seen = &seen_[batches_.first[b]];
-        by_width([&]<int kWidth>()
-                     __attribute__((always_inline)) { batch_forces<kWidth>(batch); });
+        by_width([&]<int kWidth>() __attribute__((always_inline)) { batch_forces<kWidth>(batch); });
     });
     for (std::size_t n = 0; n < batches_.cell.size(); ++n) {
         for (int c = 0; c < 8; ++c) {

@@ -4,20 +4,11 @@
 
 #include <vector>
 
-#include "laws/cell_forces.h"
 #include "matter/aggregate.h"
-#include "sim/loose_springs.h"
+#include "sim/material_laws.h"
 #include "sim/rest_lengths.h"
 
 namespace swage {
-
-// One of a body's materials as the laws take it.
-struct MaterialLaw {
-    CellModuli moduli;
-    CellKind kind;
-};
-// By material; without flow none yields.
-std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow = Flow::trial);
 
 // The cells of two materials in batches of the same two. Those with `carried` 0 are left out.
 struct MixedBatches {

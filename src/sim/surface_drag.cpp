@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "matter/parted.h"
 #include "sim/surface_forces.h"
 #include "sim/vector_clones.h"
 

@@ -18,15 +18,6 @@ inline Vec3 surface_area_vector(const Aggregate& matter, int point) {
                                 surface.area(point) * surface.normal(point));
 }
 
-// Whether the cell that carries the point is no longer whole: it has no present place or area.
-inline bool is_parted(const Aggregate& matter, std::size_t point) {
-    return !matter.surface.is_loose(point) && !cell_is_whole(matter, matter.surface.row(point));
-}
-
-// Whether those that carry the point hang together in their cell no more: it would join what a
-// blade or a crack has parted.
-bool is_torn(const Aggregate& matter, std::size_t point);
-
 // Mass of the lightest particle that carries a good share of the point [kg].
 inline double lightest_carrier(const Aggregate& matter, const SurfacePoints& points,
                                std::size_t point) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "matter/parted.h"
 #include "sim/laid_open.h"
 #include "sim/load_set.h"
 #include "sim/surface_forces.h"

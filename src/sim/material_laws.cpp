@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/material_laws.h"
+
+#include <cmath>
+
+namespace swage {
+
+std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
+    constexpr double kNeverYields = 1e100;  // [Pa]
+    std::vector<MaterialLaw> laws;
+    for (std::size_t n = 0; n < matter.material_count(); ++n) {
+        const Material& m = matter.material_at(n);
+        const CellKind kind = m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
+                              : std::isfinite(m.yield_stress)         ? CellKind::yielding
+                                                                      : CellKind::elastic;
+        const bool yields = kind == CellKind::yielding;
+        laws.push_back({cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
+                                    yields && flow == Flow::trial ? m.yield_stress : kNeverYields,
+                                    yields ? m.hardening : 0),
+                        kind});
+    }
+    return laws;
+}
+
+}  // namespace swage
