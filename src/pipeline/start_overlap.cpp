@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/units.h"
+#include "geometry/mesh_check.h"
 #include "geometry/near_pairs.h"
 #include "machines/touch.h"
 #include "matter/cell_middle.h"
@@ -139,10 +140,12 @@ std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) 
             }
             const auto cells = std::count(shared.begin(), shared.end(), 1);
             if (cells == 0) continue;
-            told.push_back(fmt::format(
-                "\"{}\" and \"{}\" lie in each other at the start, by about {} cells of {}: they "
-                "will burst apart; put them further apart with `at`",
-                bodies[a].name, bodies[b].name, cells, quantity_text(side_a, Quantity::length)));
+            told.push_back(
+                fmt::format("\"{}\" and \"{}\" lie in each other at the start, about {} of them: "
+                            "they will burst "
+                            "apart; put them further apart with `at`",
+                            bodies[a].name, bodies[b].name,
+                            volume_text(static_cast<double>(cells) * side_a * side_a * side_a)));
         }
     }
     return told;

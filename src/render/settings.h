@@ -23,7 +23,7 @@ struct CameraKey {
     double at = 0;
     double azimuth = 0.6;             // about up, from the world's +z toward +x where y is up
     double elevation = 0.35;          // above the horizon, -pi/2 to pi/2
-    double zoom = 1.0;                // 1 frames the whole motion; 2 is twice as near; > 0
+    double zoom = 1.0;                // 1 frames the bodies' whole way; 2 is twice as near; > 0
     std::optional<Vec3> eye, target;  // both given: these instead of azimuth, elevation and zoom
 };
 

@@ -150,7 +150,7 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render.camera]", "azimuth",
          "about the upward axis; y up: from z toward x, z up: from x toward y"},
         {"[render.camera]", "elevation", "above the horizon", "angle, -90 deg to 90 deg"},
-        {"[render.camera]", "zoom", "1 frames the whole motion"},
+        {"[render.camera]", "zoom", "1 frames the bodies on all of their way"},
         {"[render.camera]", "eye", "with target, instead of azimuth, elevation and zoom"},
         {"[render.camera]", "target", "what the eye looks at"},
         {"[render.camera]", "orbit", "by which azimuth turns over the film"},
