@@ -123,10 +123,15 @@ struct BlockSolver::Block {
     long count;
 };
 
-void BlockSolver::start_books(const std::vector<Stored>& before, MoveOutcome& outcome) {
+// Of a try, which may not be the first: speeds are then as shorter steps have them, and what the
+// damping held and was let go of still counts.
+void BlockSolver::start_books(const std::vector<Stored>& before, bool again, MoveOutcome& outcome) {
     double sum = 0;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        outcome.body[b].before = before[b];
+        Stored& start = outcome.body[b].before;
+        const double elastic = again ? start.elastic : before[b].elastic;
+        start = before[b];
+        start.elastic = elastic;
         sum += before[b].sum();
     }
     if (!started_) energy_.start(sum);
@@ -269,8 +274,7 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
         const double lag = has_half_kicks() ? block.dt : 0;
         const std::vector<Stored> before =
             goes_on ? bodies_.still_stored(lag) : bodies_.stored(begin, lag);
-        // Once: what is taken back may let go of what the damping holds.
-        if (!std::exchange(is_begun, true)) start_books(before, outcome);
+        if (begin.time == from.time) start_books(before, std::exchange(is_begun, true), outcome);
         bodies_.save(may_crush());
         const std::vector<BodyOutcome> so_far = outcome.body;
         Finding found = take(way, block, outcome);

@@ -69,7 +69,7 @@ class BlockSolver {
     double move(std::size_t body, const Drive& now, double dt, long n, BodyOutcome& outcome);
     struct Block;
     Block next_block(const Way& way, const Drive& begin);
-    void start_books(const std::vector<Stored>& before, MoveOutcome& outcome);
+    void start_books(const std::vector<Stored>& before, bool again, MoveOutcome& outcome);
     Finding take(const Way& way, const Block& block, MoveOutcome& outcome);
     bool energy_holds(const Block& block, const std::vector<Stored>& before,
                       const std::vector<Stored>& after, const std::vector<BodyOutcome>& so_far,

@@ -198,9 +198,6 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
                                            other.now + other.turned + other.gone);
         way_[w].push(share_of(own.now, other.now), 0.5 * (begins - turns), 0.5 * (turns - ends));
     }
-    if (!awake.empty() && way_[awake.front()].goes_back()) {
-        std::reverse(awake.begin(), awake.end());
-    }
     for (std::size_t w : awake) way_[w].respond(step, again);
     // NOTE: what friction lets go of may be any part of what a way holds, however short the step,
     // and the shares that both have then are others. With those from before it counted as less that

@@ -307,8 +307,7 @@ struct ContactWay::Kernel {
         sums.friction = 0.5 * way.turned_;
         for (const Chunk& chunk : way.chunk_) sums.took += 0.5 * chunk.took;
         way.kept_ = 0;
-        for (std::size_t turn = 0; turn < way.list_.size(); ++turn) {
-            const std::size_t n = way.goes_back_ ? way.list_.size() - 1 - turn : turn;
+        for (std::size_t n = 0; n < way.list_.size(); ++n) {
             Contact& contact = way.list_.contact[n];
             const ContactMemory& last = way.list_.memory[n];
             const Meeting& at = way.meeting_[n];

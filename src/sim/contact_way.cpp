@@ -105,7 +105,6 @@ void ContactWay::restore(const State& state) {
     gone_ = state.gone;
     has_changed_ = state.has_changed;
     begins_ = state.begins;
-    goes_back_ = state.goes_back;
     is_found_ = false;
     if (is_static()) meet_anew();
 }
@@ -311,7 +310,6 @@ int ContactWay::let_be(double deeper) {
 void ContactWay::commit() {
     if (is_found_) std::swap(list_.memory, next_);
     is_found_ = has_changed_ = begins_ = false;
-    goes_back_ = !goes_back_ && !is_static();
 }
 
 }  // namespace swage

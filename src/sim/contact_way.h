@@ -47,9 +47,9 @@ class ContactWay {
     struct State {
         ContactList contacts;
         double gone = 0;  // held by what is gone and not yet booked [J]
-        bool has_changed = false, begins = true, goes_back = false;
+        bool has_changed = false, begins = true;
     };
-    State save() const { return {list_, gone_, has_changed_, begins_, goes_back_}; }
+    State save() const { return {list_, gone_, has_changed_, begins_}; }
     void restore(const State& state);
     // Finds what is nearer than `margin` [m]; what touches stays.
     void search(double margin);
@@ -75,11 +75,8 @@ class ContactWay {
     // surface turned away from [J].
     void push(double share, double gone, double turned);
     // Dashpots and friction, one contact after the other, given what all springs do. `again`: as
-    // they were when last committed. NOTE: the first take the most; in every other step the last
-    // come first. Without that a ball that struck another lost 6 % more or less by which of them
-    // the scene names first.
+    // they were when last committed.
     void respond(double step, bool again);
-    bool goes_back() const { return goes_back_; }
     // What its springs would hold alone, now that friction has let go of some of it [J].
     double kept() const { return kept_; }
     // What friction has let go of is less by this [J].
@@ -187,7 +184,6 @@ class ContactWay {
     double scale_;                                           // contact_stiffness
     bool has_changed_ = false;                               // since the last commit
     bool begins_ = true;                                     // nothing committed yet
-    bool goes_back_ = false;                                 // respond(), in this step
     ImpactLaw law_{};                                        // stiffness and hold: of each point
     std::vector<double> stiffness_{}, stiffest_{}, hold_{};  // of each point
     std::vector<char> is_let_be_;                            // likewise; empty: none is

@@ -166,7 +166,7 @@ TEST_CASE("matter molded anew is as heavy as it was, pressed together or drawn")
         }
         follow_matter(piece, SkinKind::mount);
         piece = mold_anew(piece, body, {});
-        CHECK(piece.matter.mass() == Approx(mass).epsilon(1e-9));
+        CHECK(piece.matter.mass() == Approx(mass).epsilon(1e-6));
     }
 }
 
