@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/srgb.h"
+#include "base/text.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 
@@ -24,11 +25,16 @@ class OffReader {
         read_head();
         for (long long v = 0; v < vertices_; ++v) read_vertex(v);
         for (long long f = 0; f < faces_; ++f) read_face(f);
+        std::size_t more = 0;
+        while (next()) ++more;
         paint();
         mesh_.at_vertices = 1;
         const auto say = [&](bool is_so, const char* what) {
             if (is_so) source_.finding.emplace_back(what);
         };
+        if (more > 0)
+            source_.finding.push_back(counted(more, "line", "lines") +
+                                      " beyond what its header counts left out");
         say(has_more_, "further values of its vertices were left out");
         say(has_color_numbers_, "colours given as numbers of a colour map were left out");
         say(has_two_colors_, "its faces' colours were left out: its vertices have their own");
@@ -74,6 +80,8 @@ class OffReader {
         if (head == "BINARY") fail(ExitCode::mesh, "binary OFF is not read");
         if (!to_integer(head, vertices_) || !to_integer(next_word(words), faces_))
             fail(ExitCode::mesh, kNoCounts);
+        if (vertices_ < 0 || faces_ < 0)
+            fail(ExitCode::mesh, "its header counts {} vertices and {} faces", vertices_, faces_);
     }
 
     // Of vertex or face `id`, the numbers that are left on its line.

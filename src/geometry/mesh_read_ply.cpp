@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/srgb.h"
+#include "base/text.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 
@@ -77,6 +78,7 @@ class PlyReader {
                         fmt::format("{} of '{}' were left out", element.count, element.name));
             }
         }
+        tell_rest();
         if (polygons_.size() == 0)
             fail(ExitCode::mesh, "{} vertices and no faces", mesh_.position.size());
         add_materials();
@@ -86,6 +88,17 @@ class PlyReader {
     }
 
   private:
+    // What the header does not count; blanks at the end are nothing.
+    void tell_rest() {
+        if (rest_.find_first_not_of(" \t\r\v\f\n") == std::string_view::npos) return;
+        std::size_t lines = 0;
+        for (std::string_view line; ascii_ && next_line(rest_, line);)
+            lines += !trimmed(line).empty();
+        source_.finding.push_back(
+            (ascii_ ? counted(lines, "line", "lines") : counted(rest_.size(), "byte", "bytes")) +
+            " beyond what its header counts left out");
+    }
+
     void read_header() {
         std::string_view line;
         const auto take = [&] {
@@ -200,6 +213,13 @@ class PlyReader {
              element.count);
     }
 
+    // Text may give a number with a fraction where only a whole one means something.
+    static void check_whole(const Element& element, std::uint64_t item, double value) {
+        if (std::isfinite(value) && value != std::floor(value))
+            fail(ExitCode::mesh, "{} {}: {} stands where a whole number is wanted", element.name,
+                 item, value);
+    }
+
     // Calls f(item, scalars, lists) for each item; scalars and lists by property.
     template <typename F>
     void each(const Element& element, const F& f) {
@@ -215,6 +235,7 @@ class PlyReader {
                 const double count = take(property.count_type, element, item);
                 const std::size_t least =
                     ascii_ ? 2 : kNumberBytes[static_cast<int>(property.type)];
+                check_whole(element, item, count);
                 if (!(count >= 0) || count > static_cast<double>(rest_.size() / least + 1))
                     fail(ExitCode::mesh, "{} {}: a list of {} entries does not fit in the file",
                          element.name, item, count);
@@ -267,6 +288,7 @@ class PlyReader {
     }
 
     int vertex_index(const Element& element, std::uint64_t item, double value) const {
+        check_whole(element, item, value);
         if (!(value >= 0 && value < static_cast<double>(mesh_.position.size())))
             fail(ExitCode::mesh, "{} {}: vertex {} of {} does not exist", element.name, item, value,
                  mesh_.position.size());
@@ -305,6 +327,7 @@ class PlyReader {
                 add_corner(vertex_index(element, item, corner[k]), corner_uv);
             }
             const double number = texture >= 0 ? value[texture] : 0;
+            check_whole(element, item, number);
             const bool has_texture = number >= 0 && number < static_cast<double>(texture_.size()) &&
                                      (has_uv || has_vertex_uv_ || !some_have_uv);
             polygons_.end_polygon(has_texture ? static_cast<int>(number) : -1, -1, 0);

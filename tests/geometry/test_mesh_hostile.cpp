@@ -112,6 +112,48 @@ TEST_CASE("a broken PLY is refused with the reason") {
                            "element face 1\nproperty list uint int vertex_indices\nend_header\n" +
                            "\xff\xff\xff\x7f"),
          "does not fit");
+    const auto triangle = [&](const char* name, const std::string& corners) {
+        return file(name, start + "element vertex 3\n" + vertex + "element face 1\n" + face +
+                              "end_header\n0 0 0\n1 0 0\n0 1 0\n" + corners + "\n");
+    };
+    says(triangle("h.ply", "3 0 1.2 2"), "face 0: 1.2 stands where a whole number is wanted");
+    says(triangle("i.ply", "3.9 0 1 2"), "face 0: 3.9 stands where a whole number is wanted");
+    CHECK(triangle("j.ply", "3 0 1.0 2").empty());
+}
+
+TEST_CASE("an OFF that counts below nothing is refused for that") {
+    const Folder folder;
+    const std::string rest = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    says(refusal(folder.write("a.off", "OFF\n-1 1 0\n" + rest)),
+         "its header counts -1 vertices and 1 faces");
+    says(refusal(folder.write("b.off", "OFF\n3 -6 0\n" + rest)),
+         "its header counts 3 vertices and -6 faces");
+}
+
+TEST_CASE("faces that the header of an OFF or PLY does not count are told of") {
+    const Folder folder;
+    const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    const std::string faces = "3 0 2 1\n3 0 1 3\n3 1 2 3\n\n3 2 0 3\n";
+    const std::string header =
+        "element vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 2\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    std::string binary = "ply\nformat binary_little_endian 1.0\n" + header;
+    for (int i = 0; i < 12; ++i) binary += fixtures::raw(i % 4 == 3 ? 1.f : 0.f);
+    for (int i = 0; i < 2; ++i)
+        binary += '\3' + fixtures::raw(0) + fixtures::raw(1 + i) + fixtures::raw(3 - 2 * i);
+    std::vector<std::string> finding;
+    read_mesh(folder.write("a.off", "OFF\n4 2 0\n" + vertices + faces + "# the end\n"), {},
+              &finding);
+    read_mesh(folder.write("a.ply", "ply\nformat ascii 1.0\n" + header + vertices + faces), {},
+              &finding);
+    read_mesh(folder.write("b.ply", binary + "extra"), {}, &finding);
+    CHECK(finding == std::vector<std::string>{"2 lines beyond what its header counts left out",
+                                              "2 lines beyond what its header counts left out",
+                                              "5 bytes beyond what its header counts left out"});
+    finding.clear();
+    read_mesh(folder.write("b.ply", binary + "\r\n"), {}, &finding);
+    CHECK(finding.empty());
 }
 
 TEST_CASE("lying glTF, GLB, STL, DAE, 3DS and 3MF files are refused") {
