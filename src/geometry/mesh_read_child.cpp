@@ -106,12 +106,22 @@ RawMesh read_raw(MeshSource& source) {
     return mesh;
 }
 
-std::string opaque_sentence(std::size_t count, const std::string& name, const std::string& by) {
+std::string unlike_sentence(Unlike how, std::size_t count, const std::string& name,
+                            const std::string& by) {
+    struct Words {
+        const char *one, *many, *drawn;
+    };
+    const Words words = how == Unlike::clear
+                            ? Words{"lets light through", "let light through", "opaque"}
+                        : how == Unlike::bright
+                            ? Words{"shines by itself", "shine by themselves", "without that light"}
+                            : Words{"does not repeat its image beyond the borders",
+                                    "do not repeat their images beyond the borders", "repeated"};
     const std::string shown = name.substr(0, 40);
-    return count == 1
-               ? fmt::format("the material '{}' lets light through ({}): drawn opaque", shown, by)
-               : fmt::format("{} materials, such as '{}', let light through ({}): drawn opaque",
-                             count, shown, by);
+    return count == 1 ? fmt::format("the material '{}' {} ({}): drawn {}", shown, words.one, by,
+                                    words.drawn)
+                      : fmt::format("{} materials, such as '{}', {} ({}): drawn {}", count, shown,
+                                    words.many, by, words.drawn);
 }
 
 }  // namespace swage

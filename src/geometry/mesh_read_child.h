@@ -83,9 +83,11 @@ double patch_3mf(MeshSource& source);  // the unit of its lengths [m]
 // than three different corners are left out, with a finding.
 void add_polygons(const PolygonList& polygons, RawMesh& mesh);
 
-// That of `count` materials, of which one is called `name`, opacity is not drawn; `by`: how the
-// file says it.
-std::string opaque_sentence(std::size_t count, const std::string& name, const std::string& by);
+// That `count` materials, of which one is called `name`, are drawn otherwise than they are meant;
+// `by`: how the file says it.
+enum class Unlike { clear, bright, clamped };
+std::string unlike_sentence(Unlike how, std::size_t count, const std::string& name,
+                            const std::string& by);
 
 // "my%20image" is "my image".
 std::string url_decoded(const std::string& text);

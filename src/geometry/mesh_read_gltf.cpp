@@ -5,6 +5,7 @@
 // (EXT_mesh_gpu_instancing) nodes; an extension that nobody here follows is told of or refused.
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <set>
@@ -113,7 +114,12 @@ class GltfPatch {
     // True when the document was changed.
     bool apply() {
         check_extensions();
-        tell_clear();
+        tell_unlike(Unlike::clear, "alphaMode", [](const Json& material) {
+            return material.value("alphaMode", "OPAQUE") != "OPAQUE";
+        });
+        tell_unlike(Unlike::bright, "emissiveFactor", shines);
+        tell_unlike(Unlike::clamped, "wrapS, wrapT",
+                    [&](const Json& material) { return clamps(material); });
         bool changed = decode_names();
         for (const Json& mesh : list_of(document_, "meshes"))
             for (const Json& primitive : list_of(mesh, "primitives")) {
@@ -172,14 +178,43 @@ class GltfPatch {
                 "it asks for {}, which is not followed: it may look otherwise", unlike));
     }
 
-    void tell_clear() {
+    template <typename Test>
+    void tell_unlike(Unlike how, const char* by, const Test& test) {
         std::string name;
         std::size_t count = 0;
         for (const Json& material : list_of(document_, "materials")) {
-            if (material.value("alphaMode", "OPAQUE") == "OPAQUE") continue;
+            if (!test(material)) continue;
             if (count++ == 0) name = material.value("name", "");
         }
-        if (count > 0) source_.finding.push_back(opaque_sentence(count, name, "alphaMode"));
+        if (count > 0) source_.finding.push_back(unlike_sentence(how, count, name, by));
+    }
+
+    // The factor multiplies the image; without one there is no light.
+    static bool shines(const Json& material) {
+        const Json& factor = list_of(material, "emissiveFactor");
+        return std::any_of(factor.begin(), factor.end(),
+                           [](const Json& one) { return one.is_number() && one != 0; });
+    }
+
+    // An entry of a list of the document by the number that `from` has for it; an empty one where
+    // there is none.
+    const Json& named_by(const Json& from, const char* number, const char* list) const {
+        static const Json none = Json::object();
+        const Json& all = list_of(document_, list);
+        const auto at = from.find(number);
+        const bool is_there =
+            at != from.end() && at->is_number_unsigned() && at->get<std::size_t>() < all.size();
+        return is_there ? all[at->get<std::size_t>()] : none;
+    }
+
+    bool clamps(const Json& material) const {
+        constexpr int kRepeat = 10497;
+        const auto surface = material.find("pbrMetallicRoughness");
+        if (surface == material.end() || !surface->contains("baseColorTexture")) return false;
+        const Json& texture = named_by((*surface)["baseColorTexture"], "index", "textures");
+        const Json& sampler = named_by(texture, "sampler", "samplers");
+        return sampler.value("wrapS", kRepeat) != kRepeat ||
+               sampler.value("wrapT", kRepeat) != kRepeat;
     }
 
     // assimp looks for "my%20data.bin" by that name alone.

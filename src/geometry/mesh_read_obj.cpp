@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/srgb.h"
+#include "base/text.h"
 #include "geometry/mesh_read_child.h"
 #include "geometry/text_scan.h"
 
@@ -184,7 +185,8 @@ class ObjReader {
         bool all_read = true;
         for (const std::string& library : library_) all_read &= read_library(library);
         if (all_read) tell_undefined(asked);
-        tell_clear();
+        tell_unlike(Unlike::clear, clear_, "d, Tr");
+        tell_unlike(Unlike::clamped, clamped_, "-clamp on");
         add_polygons(polygons_, mesh_);
         place_images();
         return std::move(mesh_);
@@ -206,10 +208,10 @@ class ObjReader {
                                               names));
     }
 
-    void tell_clear() {
-        if (clear_.empty()) return;
+    void tell_unlike(Unlike how, const std::set<int>& materials, const char* by) {
+        if (materials.empty()) return;
         source_.finding.push_back(
-            opaque_sentence(clear_.size(), material_name_[*clear_.begin()], "d, Tr"));
+            unlike_sentence(how, materials.size(), material_name_[*materials.begin()], by));
     }
 
     // A library name may hold blanks, or be several names. False when it cannot be read.
@@ -235,6 +237,7 @@ class ObjReader {
     // Where on its image a material's texture coordinates are.
     struct OnImage {
         Vec2 scale = Vec2::Ones(), shift = Vec2::Zero();
+        bool clamps = false;
     };
 
     // Image name after its options, "-s 1 1 1" and the like, of which scale and shift count.
@@ -248,6 +251,7 @@ class ObjReader {
                 std::string_view peek = rest;
                 const std::string_view word = next_word(peek);
                 double value = 0;
+                on_image.clamps = on_image.clamps || (option == "-clamp" && word == "on");
                 if (vector && !to_number(word, value)) break;  // of three, the last may be left out
                 if (n < 2 && std::isfinite(value) && option == "-s") on_image.scale[n] = value;
                 if (n < 2 && std::isfinite(value) && option == "-o") on_image.shift[n] = value;
@@ -278,12 +282,21 @@ class ObjReader {
         }
     }
 
+    // "of the materials' images only map_Kd is used, not norm, map_Ks", each of those once.
+    void tell_unused(const char* used, std::vector<std::string> keys) {
+        if (keys.empty()) return;
+        std::sort(keys.begin(), keys.end());
+        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+        source_.finding.push_back(
+            fmt::format("of the materials' {} used, not {}", used, joined(keys, ", ")));
+    }
+
     void read_materials(const std::string& bytes, const fs::path& folder) {
         std::string_view text = bytes, line;
         if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
         RawMaterial unused, *material = &unused;
         int number = -1;
-        std::vector<std::string> other_maps;
+        std::vector<std::string> other_maps, other_values;
         while (next_line(text, line)) {
             std::string_view rest = trimmed(line);
             const std::string_view key = next_word(rest);
@@ -316,6 +329,7 @@ class ObjReader {
                 OnImage on_image;
                 std::string name(map_name(rest, on_image));
                 on_image_.erase(number);
+                if (number >= 0 && on_image.clamps) clamped_.insert(number);
                 if (number >= 0 &&
                     (on_image.scale != Vec2::Ones() || on_image.shift != Vec2::Zero()))
                     on_image_[number] = on_image;
@@ -324,16 +338,18 @@ class ObjReader {
             } else if (key == "d" || key == "Tr") {
                 const double value = scalar(key == "d" ? 1 : 0);
                 if (number >= 0 && (key == "d" ? value < 1 : value > 0)) clear_.insert(number);
+            } else if (key == "Ks" || key == "Ke" || key == "Ni") {
+                bool has_effect = false;
+                const double none = key == "Ni" ? 1 : 0;
+                for (double value = 0; to_number(next_word(rest), value);)
+                    has_effect = has_effect || value != none;
+                if (has_effect && material != &unused) other_values.emplace_back(key);
             } else if (key.starts_with("map_") || key == "bump" || key == "norm") {
                 if (material != &unused) other_maps.emplace_back(key);
             }
         }
-        std::sort(other_maps.begin(), other_maps.end());
-        other_maps.erase(std::unique(other_maps.begin(), other_maps.end()), other_maps.end());
-        if (other_maps.empty()) return;
-        std::string list;
-        for (const std::string& map : other_maps) list += (list.empty() ? "" : ", ") + map;
-        source_.finding.push_back("of the materials' images only map_Kd is used, not " + list);
+        tell_unused("images only map_Kd is", std::move(other_maps));
+        tell_unused("values only Kd, Ns, Pr and Pm are", std::move(other_values));
     }
 
     MeshSource& source_;
@@ -347,6 +363,7 @@ class ObjReader {
     std::set<std::string> defined_;    // materials of the libraries
     std::map<int, OnImage> on_image_;  // of the materials that are scaled or shifted
     std::set<int> clear_;              // materials of an opacity below 1
+    std::set<int> clamped_;            // whose images end at their borders
 };
 
 }  // namespace

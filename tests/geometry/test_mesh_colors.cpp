@@ -158,6 +158,25 @@ TEST_CASE("an image lies where an OBJ file's material scales and shifts it to") 
     CHECK(finding[0] == "the material 'moved' lets light through (d, Tr): drawn opaque");
 }
 
+TEST_CASE("what of an OBJ's materials is not drawn is told, where it would show") {
+    const Folder folder;
+    folder.write("a.png", "png");
+    const auto findings = [&](const std::string& of) {
+        folder.write("a.mtl", "newmtl one\nKd 1 0 0\n" + of + "newmtl idle\nKs 1 1 1\n");
+        std::string text = fixtures::cube_obj();
+        text.insert(text.find("f 1"), "mtllib a.mtl\nusemtl one\n");
+        std::vector<std::string> finding;
+        read_mesh(folder.write("a.obj", text), {}, &finding);
+        return finding;
+    };
+    CHECK(findings("Ks 0 0 0\nKe 0 0 0\nNi 1.0\nillum 2\nmap_Kd -clamp off a.png\n").empty());
+    CHECK(findings("Ks 0 0 0.5\nKe 2\nNi 1.45\nKa 1 1 1\nmap_Kd -clamp on a.png\n") ==
+          std::vector<std::string>{
+              "of the materials' values only Kd, Ns, Pr and Pm are used, not Ke, Ks, Ni",
+              "the material 'one' does not repeat its image beyond the borders (-clamp on): drawn "
+              "repeated"});
+}
+
 TEST_CASE("colours that jump at an edge stay with their faces") {
     const Folder folder;
     const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});

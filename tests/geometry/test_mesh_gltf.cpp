@@ -206,6 +206,27 @@ TEST_CASE("of a glTF's opacity the reader tells") {
     CHECK(pane.finding[0] == "the material 'pane' lets light through (alphaMode): drawn opaque");
 }
 
+TEST_CASE("of a glTF's own light, and of images that do not repeat, the reader tells") {
+    const Folder folder;
+    const auto findings = [&](const std::string& material, const std::string& sampler) {
+        return read(folder, {kSquare},
+                    fmt::format(R"("images":[{{"uri":"a.png"}}],"samplers":[{{{}}}],
+"textures":[{{"source":0}},{{"source":0,"sampler":0}}],"materials":[{{"name":"lamp",{}}}],)",
+                                sampler, material))
+            .finding;
+    };
+    const std::string image = R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1}})";
+    CHECK(findings(image + R"(,"emissiveFactor":[0,0,0],"emissiveTexture":{"index":0})",
+                   R"("wrapS":10497)")
+              .empty());
+    CHECK(findings(R"("emissiveFactor":[0,0.5,0])", "") ==
+          std::vector<std::string>{
+              "the material 'lamp' shines by itself (emissiveFactor): drawn without that light"});
+    CHECK(findings(image, R"("wrapT":33071)") ==
+          std::vector<std::string>{"the material 'lamp' does not repeat its image beyond the "
+                                   "borders (wrapS, wrapT): drawn repeated"});
+}
+
 TEST_CASE("instances of a glTF's mesh stand at all their places") {
     const Folder folder;
     const Values at{"", 5126, 3, {0, 0, 0, 2, 0, 0, 4, 0, 3}};
