@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/text.h"
 
 namespace swage {
 
@@ -23,6 +24,13 @@ int parse_whole(const std::string& text) {
         throw CLI::ValidationError(fmt::format("\"{}\" is no whole number of 1 or more", text));
     }
     return value;
+}
+
+void write_out(std::string_view text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if ((!written || std::fflush(stdout) != 0) && errno != EPIPE) {
+        fail(ExitCode::output, "standard output: cannot be written: {}", std::strerror(errno));
+    }
 }
 
 }  // namespace
@@ -49,14 +57,9 @@ void apply_common_options() {
     set_thread_count(common.threads);
 }
 
-void put_out(std::string_view text) {
-    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-    if ((!written || std::fflush(stdout) != 0) && errno != EPIPE) {
-        fail(ExitCode::output, "standard output: cannot be written: {}", std::strerror(errno));
-    }
-}
+void put_out(std::string_view text) { write_out(printable(text)); }
 
-void put_json(const Json& json) { put_out(json_text(json)); }
+void put_json(const Json& json) { write_out(json_text(json)); }
 
 FrameRange parse_frame_range(const std::string& text) {
     const std::size_t dash = text.find('-');

@@ -22,10 +22,6 @@ constexpr int kUnexpected = 70;  // a mistake in swage itself
 
 int exit_code(ExitCode code) { return static_cast<int>(code); }
 
-void log_error(const std::string& sentence) {
-    log_text((stderr_has_color() ? "\x1b[31merror:\x1b[0m " : "error: ") + sentence);
-}
-
 int run_command_line(int argc, char** argv) {
     CLI::App app(
         "swage: a machine shop for meshes. A mesh goes in, is molded into matter, bent,\n"
@@ -55,7 +51,7 @@ int run_command_line(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // help, version: on stdout
-        log_error(parse_error_text(app, error, {argv + 1, argv + argc}));
+        log_error_text(parse_error_text(app, error, {argv + 1, argv + argc}));
         log_text("swage --help, or swage COMMAND --help, tells what there is");
         return exit_code(ExitCode::command_line);
     }
@@ -77,19 +73,19 @@ int run_guarded(int argc, char** argv) {
         return run_command_line(argc, argv);
     } catch (const Error& error) {
         // A line for each mistake.
-        for (const std::string& line : lines_of(error.what())) log_error(line);
+        for (const std::string& line : lines_of(error.what())) log_error_text(line);
         return exit_code(error.code());
     } catch (const Interrupted& interrupted) {
         log_text("stopped; whole files are kept");
         return 128 + interrupted.signal();
     } catch (const std::bad_alloc&) {
-        log_error("there is not enough memory for this; a larger [mold] spacing needs less");
+        log_error_text("there is not enough memory for this; a larger [mold] spacing needs less");
         return exit_code(ExitCode::resources);
     } catch (const std::filesystem::filesystem_error& error) {
-        log_error(error.what());
+        log_error_text(error.what());
         return exit_code(ExitCode::output);
     } catch (const std::exception& error) {
-        log_error(std::string("unexpected, please report it: ") + error.what());
+        log_error_text(std::string("unexpected, please report it: ") + error.what());
         return kUnexpected;
     }
 }

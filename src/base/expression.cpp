@@ -295,6 +295,16 @@ class Reader {
         }
         write(std::string_view(&sign, 1), at_);
         ++at_;
+        if (sign == '+' || sign == '-') refuse_sign_of_nothing(sign);
+    }
+
+    // muparser knows no words for it where the sign is that of a number.
+    void refuse_sign_of_nothing(char sign) const {
+        std::size_t next = at_;
+        while (next < text_.size() && is_blank(text_[next])) ++next;
+        if (next == text_.size()) refuse(next, "the expression ends too early");
+        if (std::string_view(",?:").find(text_[next]) == std::string_view::npos) return;
+        refuse(at_ - 1, fmt::format("the sign \"{}\" has nothing to work on", sign));
     }
 
     static std::vector<std::string> function_names() {

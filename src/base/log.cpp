@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <mutex>
 
+#include "base/text.h"
+
 namespace swage {
 
 namespace {
@@ -22,11 +24,11 @@ double now_seconds() {
     return std::chrono::duration<double>(clock::now().time_since_epoch()).count();
 }
 
-// Callers hold line_mutex.
-void put_line(const std::string& line) {
+// Callers hold line_mutex. `head` may hold what colours it.
+void put_line(const std::string& line, const std::string& head = {}) {
     if (bar_is_drawn) std::fputs("\r\x1b[K", stderr);
     bar_is_drawn = false;
-    std::fputs((line + "\n").c_str(), stderr);
+    std::fputs((head + printable(line) + "\n").c_str(), stderr);
 }
 
 std::string duration_text(double seconds) {
@@ -50,9 +52,14 @@ void log_text(const std::string& line) {
     put_line(line);
 }
 
+void log_error_text(const std::string& line) {
+    const std::lock_guard lock(line_mutex);
+    put_line(line, stderr_has_color() ? "\x1b[31merror:\x1b[0m " : "error: ");
+}
+
 void log_warning_text(const std::string& line) {
     const std::lock_guard lock(line_mutex);
-    put_line((stderr_has_color() ? "\x1b[33mwarning:\x1b[0m " : "warning: ") + line);
+    put_line(line, stderr_has_color() ? "\x1b[33mwarning:\x1b[0m " : "warning: ");
 }
 
 Progress::Progress(std::string title, int total)
@@ -77,7 +84,7 @@ void Progress::advance(int done, const std::string& note) {
         std::string bar(static_cast<std::size_t>(filled), '=');
         bar.resize(width, ' ');
         const std::string text = fmt::format("\r\x1b[K{} [{}] {}/{}  {} left  {}", title_, bar,
-                                             done, total_, duration_text(left), note);
+                                             done, total_, duration_text(left), printable(note));
         std::fputs(text.c_str(), stderr);
         std::fflush(stderr);
         bar_is_drawn = true;

@@ -16,8 +16,10 @@ LogLevel log_level();
 bool stderr_is_terminal();
 bool stderr_has_color();  // a terminal, and NO_COLOR is not set
 
-// One whole line each; safe to call from any thread.
+// One whole line each, control characters in it shown as what they are; safe to call from any
+// thread.
 void log_text(const std::string& line);
+void log_error_text(const std::string& line);
 void log_warning_text(const std::string& line);
 
 template <typename... Args>

@@ -7,6 +7,26 @@
 
 namespace swage {
 
+std::string printable(std::string_view text) {
+    std::string shown;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const auto byte = [&](std::size_t n) { return static_cast<unsigned char>(text[n]); };
+        const bool is_low =
+            (byte(at) < 0x20 && text[at] != '\n' && text[at] != '\t') || byte(at) == 0x7f;
+        // U+0080 to U+009F: of these, too, some begin a command to the terminal.
+        const bool is_high =
+            byte(at) == 0xc2 && at + 1 < text.size() && byte(at + 1) >= 0x80 && byte(at + 1) < 0xa0;
+        if (is_low) {
+            shown += fmt::format("\\x{:02x}", byte(at));
+        } else if (is_high) {
+            shown += fmt::format("\\x{:02x}", byte(++at));
+        } else {
+            shown += text[at];
+        }
+    }
+    return shown;
+}
+
 std::string count_text(double count) {
     std::string digits = fmt::format("{:.0f}", count);
     for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) {

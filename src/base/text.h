@@ -6,6 +6,7 @@
 
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace swage {
@@ -30,6 +31,10 @@ inline std::vector<std::string> lines_of(const std::string& text) {
 inline std::string counted(std::size_t count, const char* one, const char* many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
+
+// For terminals and for sentences that are C strings: control characters but tabs and ends of lines
+// as "\x1b".
+std::string printable(std::string_view text);
 
 // 1234567 as "1,234,567"; 12345678 bytes as "11.8 MiB"; 75 s as "1 min 15 s".
 std::string count_text(double count);

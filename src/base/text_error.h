@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace swage {
 
@@ -12,7 +13,7 @@ class TextError : public Error {
   public:
     // `at`: byte of the text where the mistake begins, from 0.
     TextError(std::size_t at, const std::string& sentence)
-        : Error(ExitCode::scene, sentence), at_(at) {}
+        : Error(ExitCode::scene, printable(sentence)), at_(at) {}  // what() ends at a 0
     std::size_t at() const { return at_; }
 
   private:

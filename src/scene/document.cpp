@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "scene/file_text.h"
 #include "scene/syntax.h"
 
@@ -128,6 +129,7 @@ std::string kind_text(const Node& node) {
 }
 
 void MistakeList::put(Mistake mistake) {
+    mistake.text = printable(mistake.text);  // it may quote the file
     if (!mistake.warning) ++errors_;
     if (is_full()) {
         ++left_out_;

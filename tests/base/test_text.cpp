@@ -16,3 +16,10 @@ TEST_CASE("a time is rounded before it is told in parts, so that no part is a wh
     CHECK(seconds_text(3600 + 59.6 * 60) == "2 h 0 min");
     CHECK(seconds_text(1234 * 3600) == "1,234 h 0 min");
 }
+
+TEST_CASE("control characters are shown as what they are, letters of any alphabet as themselves") {
+    CHECK(printable("a\tb\nc \u00e4 \u03bcm \U0001f600") == "a\tb\nc \u00e4 \u03bcm \U0001f600");
+    CHECK(printable(std::string("\x1b[31mX\0\r\x7f", 9)) == "\\x1b[31mX\\x00\\x0d\\x7f");
+    CHECK(printable("\u009b2J \u00a0") == "\\x9b2J \u00a0");
+    CHECK(printable("\xc2") == "\xc2");
+}

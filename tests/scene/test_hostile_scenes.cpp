@@ -25,6 +25,17 @@ TEST_CASE("files that are no text are refused at the byte") {
     CHECK(mistakes_in("\xFF\xFE[\0").find("s.toml:1:1: byte 0 (0xFF)") == 0);         // UTF-16
 }
 
+TEST_CASE("control characters that a scene names are shown, and cut no sentence off") {
+    const std::string text = mistakes_in(
+        with(&Parts::mesh, "[mesh]\nfile = \"\\u001b[31mX\"\nlength = \"3 cm\\u0000\"\n").text());
+    INFO(text);
+    CHECK(text.find("the mesh \"\\x1b[31mX\" does not exist") != std::string::npos);
+    CHECK(text.find("unknown unit \"cm\\x00\"") != std::string::npos);
+    CHECK(text.find("a length is wanted (m, cm, ") != std::string::npos);
+    CHECK(mistakes_in(Parts().text() + "\"\\u009b2J\" = 1\n").find("key \"\\x9b2J\"") !=
+          std::string::npos);
+}
+
 TEST_CASE("scene files that cannot be files are refused without blocking") {
     const Scratch scratch;
     const auto mistakes = [&](const std::filesystem::path& file) {
