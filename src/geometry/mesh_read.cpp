@@ -220,6 +220,7 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
              name, file.extension().string());
     source.file = fs::absolute(file).lexically_normal();
     source.file_bytes = limits.file_bytes;
+    source.memory_bytes = limits.memory_bytes;
     struct stat status {};
     ::fstat(opened.id(), &status);
 

@@ -116,8 +116,9 @@ class ModelMerge {
             if (const xml_attribute id = attribute_of(element, "id"))
                 free_id_ = std::max(free_id_, id_of(id.value()) + 1);
         });
+        if (!named.empty()) merge(model, named);
+        check_places(model);
         if (!named.empty()) {
-            merge(model, named);
             TextWriter merged;
             model.print(merged, "", pugi::format_raw);
             document_.reset();
@@ -134,6 +135,41 @@ class ModelMerge {
         }
         std::string text;
     };
+
+    // An object may be a component of many, which assimp makes a node of its own for each.
+    void check_places(const xml_node& model) const {
+        const auto numbers = [](const xml_node& list, std::string_view kind) {
+            std::vector<std::size_t> all;
+            for (const xml_node& one : list.children())
+                if (name_of(one) == kind && attribute_of(one, "objectid"))
+                    all.push_back(
+                        static_cast<std::size_t>(id_of(attribute_of(one, "objectid").value())));
+            return all;
+        };
+        const auto count_of = [](const xml_node& list) {
+            return static_cast<double>(std::distance(list.begin(), list.end()));
+        };
+        std::map<std::size_t, std::size_t> place;  // of an object's number in the list
+        std::vector<PlacedPart> parts;
+        for (const xml_node& object : child_of(model, "resources").children()) {
+            if (name_of(object) != "object" || !attribute_of(object, "id")) continue;
+            place[static_cast<std::size_t>(id_of(attribute_of(object, "id").value()))] =
+                parts.size();
+            PlacedPart& part = parts.emplace_back();
+            part.child = numbers(child_of(object, "components"), "component");
+            const xml_node mesh = child_of(object, "mesh");
+            part.bytes += count_of(child_of(mesh, "vertices")) * PlacedPart::kVertexBytes +
+                          count_of(child_of(mesh, "triangles")) * PlacedPart::kTriangleBytes;
+        }
+        const auto placed = [&](std::vector<std::size_t> ids) {
+            for (std::size_t& id : ids)
+                id = place.contains(id) ? place.at(id) : parts.size();  // none
+            return ids;
+        };
+        for (PlacedPart& part : parts) part.child = placed(part.child);
+        check_placed(parts, placed(numbers(child_of(model, "build"), "item")),
+                     source_.memory_bytes);
+    }
 
     std::string contents(const std::string& part) const {
         return zip_contents(source_.bytes, part, source_.file_bytes);

@@ -15,6 +15,7 @@
 #include <assimp/LogStream.hpp>
 #include <cstring>
 #include <map>
+#include <new>
 
 #include "base/error.h"
 #include "base/portable_math.h"
@@ -417,8 +418,11 @@ RawMesh read_by_assimp(MeshSource& source) {
     keep_only(importer, extension);
     importer.SetIOHandler(new FileSystem(source));
     const aiScene* scene = importer.ReadFile(source.file.string(), 0);
-    if (scene == nullptr)
-        fail(ExitCode::mesh, "not a readable .{} file ({})", extension, importer.GetErrorString());
+    if (scene == nullptr) {
+        const std::string why = importer.GetErrorString();
+        if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+        fail(ExitCode::mesh, "not a readable .{} file ({})", extension, why);
+    }
     if (!dropped.empty()) fail(ExitCode::mesh, "the file is damaged ({})", dropped);
     RawMesh mesh = SceneReader(source, *scene).read();
     for (Vec3& p : mesh.position) p *= unit;

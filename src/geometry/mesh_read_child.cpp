@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <new>
 
 #include "base/error.h"
 #include "geometry/text_scan.h"
@@ -104,6 +105,38 @@ RawMesh read_raw(MeshSource& source) {
     }
     mesh.finding.insert(mesh.finding.begin(), source.finding.begin(), source.finding.end());
     return mesh;
+}
+
+void check_placed(const std::vector<PlacedPart>& parts, const std::vector<std::size_t>& roots,
+                  std::uint64_t memory_bytes) {
+    std::vector<double> bytes(parts.size(), 0.0);  // of a part and all that it is made of
+    std::vector<char> is_known(parts.size(), 0);
+    double all = 0;
+    for (const std::size_t root : roots) {
+        if (root >= parts.size()) continue;
+        // No recursion: a file may nest its parts as deep as it likes.
+        std::vector<std::pair<std::size_t, std::size_t>> open;  // a part, its next child
+        const auto enter = [&](std::size_t part) {
+            if (part >= parts.size() || is_known[part]) return;
+            is_known[part] = 1;
+            open.emplace_back(part, 0);
+        };
+        enter(root);
+        while (!open.empty()) {
+            const std::size_t part = open.back().first, next = open.back().second++;
+            const std::vector<std::size_t>& child = parts[part].child;
+            if (next < child.size()) {
+                enter(child[next]);
+                continue;
+            }
+            bytes[part] = parts[part].bytes;
+            for (const std::size_t c : child)
+                if (c < parts.size()) bytes[part] += bytes[c];
+            open.pop_back();
+        }
+        all += bytes[root];
+    }
+    if (all > static_cast<double>(memory_bytes)) throw std::bad_alloc();
 }
 
 std::string unlike_sentence(Unlike how, std::size_t count, const std::string& name,

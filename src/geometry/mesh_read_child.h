@@ -18,8 +18,9 @@ enum class MeshFormat { obj, ply, stl, off, gltf, glb, dae, tds, tmf };
 struct MeshSource {
     std::filesystem::path file;  // absolute
     MeshFormat format;
-    std::string bytes;         // the file's contents
-    std::uint64_t file_bytes;  // limit for each further file
+    std::string bytes;           // the file's contents
+    std::uint64_t file_bytes;    // limit for each further file
+    std::uint64_t memory_bytes;  // and for the whole reading
     std::vector<std::string> finding;
 };
 
@@ -78,6 +79,19 @@ RawMesh read_raw(MeshSource& source);  // whichever fits, with its textures look
 void patch_stl(MeshSource& source);
 void patch_gltf(MeshSource& source);
 double patch_3mf(MeshSource& source);  // the unit of its lengths [m]
+
+// What a file places anywhere by its number in a list, with all that it is made of.
+struct PlacedPart {
+    static constexpr double kNodeBytes = 1100;  // at least, of assimp's for each place
+    static constexpr double kVertexBytes = 24, kTriangleBytes = 68;  // likewise, of ours
+
+    double bytes = kNodeBytes;  // of it alone
+    std::vector<std::size_t> child;
+};
+// Throws std::bad_alloc when `roots` would take more, with each part at all of its places. What is
+// made of itself counts once.
+void check_placed(const std::vector<PlacedPart>& parts, const std::vector<std::size_t>& roots,
+                  std::uint64_t memory_bytes);
 
 // Cuts the polygons into triangles and files them in `mesh`; checks every index. Polygons of fewer
 // than three different corners are left out, with a finding.

@@ -133,6 +133,7 @@ class GltfPatch {
                 place_instances(n);
                 changed = true;
             }
+        check_places();
         if (floats_.empty()) return changed;
         document_["buffers"].push_back(
             {{"byteLength", floats_.size()},
@@ -298,6 +299,48 @@ class GltfPatch {
             nodes[n]["children"].push_back(nodes.size());
             nodes.push_back(child);
         }
+    }
+
+    // A node may be the child of many, which assimp makes a node of its own for each.
+    void check_places() const {
+        const auto numbers = [](const Json& list) {
+            std::vector<std::size_t> all;
+            for (const Json& one : list)
+                if (one.is_number_unsigned()) all.push_back(one.get<std::size_t>());
+            return all;
+        };
+        const auto count_of = [&](const Json& from, const char* number) {
+            const Json& accessor = named_by(from, number, "accessors");
+            const auto count = accessor.find("count");
+            return count != accessor.end() && count->is_number() ? count->get<double>() : 0.0;
+        };
+        std::vector<double> mesh_bytes;
+        for (const Json& mesh : list_of(document_, "meshes")) {
+            mesh_bytes.push_back(0);
+            for (const Json& primitive : list_of(mesh, "primitives")) {
+                if (primitive.value("mode", 4) < 4) continue;  // points and lines
+                const auto attributes = primitive.find("attributes");
+                const double vertices =
+                    attributes == primitive.end() ? 0 : count_of(*attributes, "POSITION");
+                const double corners =
+                    primitive.contains("indices") ? count_of(primitive, "indices") : vertices;
+                mesh_bytes.back() +=
+                    vertices * PlacedPart::kVertexBytes + corners / 3 * PlacedPart::kTriangleBytes;
+            }
+        }
+        std::vector<PlacedPart> parts;
+        for (const Json& node : list_of(document_, "nodes")) {
+            PlacedPart& part = parts.emplace_back();
+            part.child = numbers(list_of(node, "children"));
+            const auto mesh = node.find("mesh");
+            if (mesh != node.end() && mesh->is_number_unsigned() &&
+                mesh->get<std::size_t>() < mesh_bytes.size())
+                part.bytes += mesh_bytes[mesh->get<std::size_t>()];
+        }
+        const Json& scenes = list_of(document_, "scenes");
+        const auto shown = document_.value("scene", std::size_t{0});
+        if (shown < scenes.size())
+            check_placed(parts, numbers(list_of(scenes[shown], "nodes")), source_.memory_bytes);
     }
 
     std::vector<float> values_of(const Json& accessor) {

@@ -188,3 +188,20 @@ TEST_CASE("what a 3MF's model says is taken as XML means it") {
     const TriMesh mesh = fixtures::read_quietly(folder.write("a.3mf", fixtures::zip_of(files)));
     CHECK((box_of(mesh.position).size() - Vec3(0.01, 0.02, 0.03)).norm() < 1e-9);
 }
+
+TEST_CASE("objects of a 3MF that are made of another twice, 28 deep, are refused at once") {
+    const Folder folder;
+    const auto read = [&](int levels) {
+        std::string objects = box_object(1, {1, 1, 1});
+        for (int n = 2; n <= levels; ++n)
+            objects += fmt::format(
+                R"(<object id="{}" type="model"><components><component objectid="{}"/>
+<component objectid="{}" transform="1 0 0 0 1 0 0 0 1 {} 0 0"/></components></object>)",
+                n, n - 1, n - 1, 2 << n);
+        const std::string item = fmt::format(R"(<item objectid="{}"/>)", levels);
+        return fixtures::read_quietly(
+            folder.write("a.3mf", fixtures::zip_of(files_of(model("", objects, item)))));
+    };
+    CHECK(read(4).triangle.size() == 8 * 12);
+    CHECK_THROWS_WITH(read(28), Catch::Contains("reading it takes more than the 8 GiB allowed"));
+}

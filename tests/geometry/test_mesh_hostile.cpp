@@ -186,6 +186,23 @@ TEST_CASE("a reader out of memory is stopped, and said so") {
 }
 #endif
 
+TEST_CASE("nodes that name a child twice, forty deep, are refused before they become trees") {
+    const Folder folder;
+    const auto gltf = [&](int levels, const std::string& last) {
+        std::string nodes;
+        for (int n = 1; n < levels; ++n) nodes += fmt::format(R"({{"children":[{0},{0}]}},)", n);
+        return refusal(folder.write("a.gltf", fmt::format(R"({{"asset":{{"version":"2.0"}},
+"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{}{}],"accessors":[{{"componentType":5126,"count":3,
+"type":"VEC3"}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}]}})",
+                                                          nodes, last)));
+    };
+    const std::string too_much = "reading it takes more than the 8 GiB allowed";
+    says(gltf(40, R"({"mesh":0})"), too_much);
+    // What is wrong otherwise is told as before, also a node that is below itself.
+    for (const std::string& text : {gltf(3, R"({"mesh":9})"), gltf(3, R"({"children":[0]})")})
+        CHECK(text.find(too_much) == std::string::npos);
+}
+
 TEST_CASE("random damage to good files never harms the reader's parent") {
     const Folder folder;
     TriMesh ball = fixtures::ball_mesh(6, 0.5);
