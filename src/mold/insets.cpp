@@ -23,11 +23,10 @@ struct Part {
     Vec3 outward = Vec3::Zero();
 };
 
-void refuse_unfit(const Inset& inset, std::size_t number) {
-    if (!(signed_volume(inset.solid) > 0)) {
-        fail(ExitCode::mesh, "cannot mold: inset {} encloses no volume, or is turned inside out",
-             number);
-    }
+void refuse_unfit(const Inset& inset, std::size_t n) {
+    if (signed_volume(inset.solid) > 0) return;
+    throw InsetError(
+        n, fmt::format("cannot mold: inset {} encloses no volume, or is turned inside out", n + 1));
 }
 
 }  // namespace
@@ -45,7 +44,7 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
     // Of each cell that any inset reaches, the parts by material.
     std::map<CellId, std::map<int, Part>> parts;
     for (std::size_t n = 0; n < insets.size(); ++n) {
-        refuse_unfit(insets[n], n + 1);
+        refuse_unfit(insets[n], n);
         const int material = static_cast<int>(n) + 1;
         matter.inset.push_back(insets[n].material);
         double inside = 0, all = signed_volume(insets[n].solid) / frame.cell_volume();
@@ -82,7 +81,8 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
             }
         }
         if (inside == 0) {
-            fail(ExitCode::mesh, "cannot mold: inset {} lies outside the work-piece", material);
+            throw InsetError(
+                n, fmt::format("cannot mold: inset {} lies outside the work-piece", n + 1));
         }
         if (inside < (1 - kOutside) * all) {
             findings.push_back(

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "base/error.h"
 #include "geometry/trimesh.h"
 #include "matter/aggregate.h"
 
@@ -38,8 +41,20 @@ struct Inset {
     Material material;
 };
 
+// Of an inset that the body cannot have.
+class InsetError : public Error {
+  public:
+    InsetError(std::size_t inset, const std::string& sentence)
+        : Error(ExitCode::mesh, sentence), inset_(inset) {}
+    std::size_t inset() const { return inset_; }  // its number, from 0
+
+  private:
+    std::size_t inset_;
+};
+
 // Volume and mass equal the mesh's to 1e-6 at any spacing. Throws Error(mesh) when the mesh
-// encloses nothing, Error(resources) above the limit. `told`: what is not as the mesh has it is added.
+// encloses nothing, InsetError, Error(resources) above the limit. `told`: what is not as the mesh
+// has it is added.
 Aggregate mold(const TriMesh& mesh, const Material& material, const MoldSettings& settings,
                const std::vector<Inset>& insets = {}, std::vector<std::string>* told = nullptr);
 

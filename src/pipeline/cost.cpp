@@ -280,8 +280,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (std::size_t b = 0; b < input.size(); ++b) {
         const BodySpec& body = scene.body[b];
         std::vector<std::string> findings;
-        const std::vector<Inset> insets = insets_for(input[b], body, findings);
-        matter.push_back(mold(input[b].to_mold(), body.material, body.mold, insets, &findings));
+        matter.push_back(mold_body(input[b], body, findings));
         for (const std::string& warning : warnings_of_mold(body.name, input.size() > 1, findings)) {
             cost.warning.mold.push_back(warning);
         }

@@ -56,6 +56,28 @@ void make_solid(InputMesh& input, MoldKind kind) {
     }
 }
 
+// Where this mesh is; a box is one of `box`.
+TriMesh inset_solid(const InsetSpec& spec, const InputMesh& input, const Box& box,
+                    std::vector<std::string>& findings) {
+    if (spec.file.empty()) {
+        return box_mesh(box.low + spec.from.cwiseProduct(box.size()),
+                        box.low + spec.to.cwiseProduct(box.size()));
+    }
+    InputMesh read;
+    read.mesh = read_mesh(spec.file, {}, &read.finding);
+    for (Vec3& p : read.mesh.position) p *= input.scale;
+    read.report = check_mesh(read.mesh);
+    for (const std::string& finding : read.finding) {
+        findings.push_back(spec.file.filename().string() + ": " + finding);
+    }
+    make_solid(read, MoldKind::shape);
+    return read.to_mold();
+}
+
+[[noreturn]] void refuse_inset(const InsetSpec& spec, const Error& error) {
+    throw SceneError({mistake_at(spec.place, error.what(), error.code())});
+}
+
 TriMesh block_mesh(const TriMesh& mesh) {
     const Box box = box_of(mesh.position);
     return box_mesh(box.low, box.high);
@@ -137,29 +159,22 @@ std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
     return input;
 }
 
-std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body,
-                              std::vector<std::string>& findings) {
+Aggregate mold_body(const InputMesh& input, const BodySpec& body,
+                    std::vector<std::string>& findings) {
     std::vector<Inset> insets;
     const Box box = box_of(input.to_mold().position);
     for (const InsetSpec& spec : body.inset) {
-        TriMesh solid;
-        if (spec.file.empty()) {
-            solid = box_mesh(box.low + spec.from.cwiseProduct(box.size()),
-                             box.low + spec.to.cwiseProduct(box.size()));
-        } else {
-            InputMesh read;
-            read.mesh = read_mesh(spec.file, {}, &read.finding);
-            for (Vec3& p : read.mesh.position) p *= input.scale;
-            read.report = check_mesh(read.mesh);
-            for (const std::string& finding : read.finding) {
-                findings.push_back(spec.file.filename().string() + ": " + finding);
-            }
-            make_solid(read, MoldKind::shape);
-            solid = read.to_mold();
+        try {
+            insets.push_back({inset_solid(spec, input, box, findings), spec.material});
+        } catch (const Error& error) {
+            refuse_inset(spec, error);
         }
-        insets.push_back({std::move(solid), spec.material});
     }
-    return insets;
+    try {
+        return mold(input.to_mold(), body.material, body.mold, insets, &findings);
+    } catch (const InsetError& error) {
+        refuse_inset(body.inset[error.inset()], error);
+    }
 }
 
 void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matter) {
@@ -184,8 +199,7 @@ void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matt
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin) {
     WorkPiece piece;
     piece.name = body.name;
-    const std::vector<Inset> insets = insets_for(input, body, piece.finding);
-    piece.matter = mold(input.to_mold(), body.material, body.mold, insets, &piece.finding);
+    piece.matter = mold_body(input, body, piece.finding);
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         if (body.color) paint(like, *body.color, body.metal);

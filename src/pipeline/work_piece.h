@@ -42,9 +42,10 @@ InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind);
 // The meshes of all bodies of a scene.
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene);
 
-// The body's insets where this mesh is. Throws Error(mesh).
-std::vector<Inset> insets_for(const InputMesh& input, const BodySpec& body,
-                              std::vector<std::string>& findings);
+// The body's matter, with its insets, as its mesh stands in its file. Throws as mold() does, of an
+// inset SceneError.
+Aggregate mold_body(const InputMesh& input, const BodySpec& body,
+                    std::vector<std::string>& findings);
 
 struct WorkPiece {
     std::string name;

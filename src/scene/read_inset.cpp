@@ -31,6 +31,8 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
     }
     const bool has_from = table.vector("from", Quantity::number, inset.from);
     const bool has_to = table.vector("to", Quantity::number, inset.to);
+    const Node* which = table.find(has_file ? "file" : has_from ? "from" : "to");
+    inset.place = which != nullptr ? which->place : table.place();
     if (has_file && (has_from || has_to)) {
         table.mistake(has_from ? "from" : "to",
                       "an inset is a mesh (file) or a box (from, to), not both");

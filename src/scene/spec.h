@@ -29,6 +29,7 @@ struct InsetSpec {
     std::filesystem::path file;                   // absolute; empty: the box
     Vec3 from = Vec3::Zero(), to = Vec3::Ones();  // in shares of the work-piece's own box
     Material material;
+    Place place;  // where the scene says which
 };
 
 // Where a body stands and how it moves before the first stage.

@@ -240,6 +240,33 @@ TEST_CASE("a mesh whose bodies are sound is taken as it is") {
     CHECK(input.mesh.triangle == mesh.triangle);
 }
 
+TEST_CASE("an inset that a body cannot have is told where the scene names it") {
+    const Scratch scratch;
+    InputMesh input;
+    input.mesh = make_shape("bar", {{"length", 0.4}, {"height", 0.1}, {"width", 0.2}}).mesh;
+    BodySpec body;
+    body.mold.across = 2;
+    const auto source = std::make_shared<const Source>(Source{"s.toml", ""});
+    for (const char* name : {"in.obj", "out.obj"}) {
+        InsetSpec& inset = body.inset.emplace_back();
+        inset.file = scratch.path() / name;
+        inset.place = {source, static_cast<int>(3 * body.inset.size()), 8};
+        const Vec3 at(name[0] == 'i' ? 0 : 7, 0, 0);
+        write_obj(inset.file, box_mesh(at - Vec3(0.1, 0.02, 0.05), at + Vec3(0.1, 0.02, 0.05)));
+    }
+    std::vector<std::string> findings;
+    try {
+        mold_body(input, body, findings);
+        FAIL("it lies outside");
+    } catch (const SceneError& error) {
+        CHECK(error.code() == ExitCode::mesh);
+        CHECK(error.what() ==
+              std::string("s.toml:6:8: cannot mold: inset 2 lies outside the work-piece"));
+    }
+    std::filesystem::remove(body.inset[0].file);
+    CHECK_THROWS_WITH(mold_body(input, body, findings), Catch::StartsWith("s.toml:3:8: "));
+}
+
 TEST_CASE("a body in motion is molded anew in motion") {
     StartSpec start;
     start.velocity = Vec3(3, -1, 2);
