@@ -19,7 +19,6 @@ int run(const RunArguments& given) {
     const SceneSpec scene = checked_scene(given.scene);
     options.out = given.out.empty() ? std::filesystem::path("renders") / scene.name
                                     : std::filesystem::path(given.out);
-    if (given.out.empty()) make_folder("renders");
     options.overrides = given.scene.overrides;
     options.draw = !given.no_render;
     options.fresh = given.fresh;

@@ -140,9 +140,13 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
     : root_(root.has_filename() ? root : root.parent_path()),
       identity_text_(identity_text(identity)),
       anew_(fresh) {
+    std::error_code error;
+    for (fs::path at = fs::absolute(root_, error); !at.empty() && !fs::exists(at, error);
+         at = at.parent_path()) {
+        made_ = at;
+    }
     make_folder(root_);
     bool empty = true;
-    std::error_code error;
     for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
         if (it->path().filename() != kLockName) empty = false;
     }
@@ -219,6 +223,7 @@ void RunDirectory::claim(const RunIdentity& identity) {
 }
 
 void RunDirectory::begin() {
+    has_begun_ = true;
     if (!anew_) return;
     remove_products(root_);
     write_file_whole(root_ / kIdentityName, identity_text_);
@@ -228,8 +233,23 @@ void RunDirectory::begin() {
 RunDirectory::~RunDirectory() {
     set_unfinished_work({});
     remove_temporaries(root_, 0);  // a film program may outlive a process that was killed
+    if (!has_begun_) remove_unbegun();
     ::unlink((root_ / kLockName).c_str());
     ::close(lock_);
+    std::error_code error;  // a folder that is not empty stays
+    for (fs::path at = fs::absolute(root_, error); !has_begun_ && !made_.empty();
+         at = at.parent_path()) {
+        if (!fs::remove(at, error) || at == made_) break;
+    }
+}
+
+void RunDirectory::remove_unbegun() {
+    std::error_code error;
+    for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
+        const fs::path name = it->path().filename();
+        if (name != kLockName && name != kIdentityName) return;
+    }
+    if (!error) fs::remove(root_ / kIdentityName, error);
 }
 
 fs::path DrawnFiles::still(int frame) const {

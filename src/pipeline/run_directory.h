@@ -32,7 +32,8 @@ class RunDirectory {
     // another process writes in it. `fresh`: whatever run it holds, that is to make room in
     // begin(). One that ended before its first frame always does.
     RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh);
-    ~RunDirectory();  // lets others in
+    // Lets others in. Where no run has begun, neither this one nor another, nothing is left of it.
+    ~RunDirectory();
     RunDirectory(const RunDirectory&) = delete;
     RunDirectory& operator=(const RunDirectory&) = delete;
 
@@ -45,10 +46,12 @@ class RunDirectory {
   private:
     void lock();
     void claim(const RunIdentity& identity);
+    void remove_unbegun();
 
     std::filesystem::path root_;
+    std::filesystem::path made_;  // of the folders to it, the outermost that was not there
     std::string identity_text_;
-    bool anew_;
+    bool anew_, has_begun_ = false;
     int lock_ = -1;
 };
 

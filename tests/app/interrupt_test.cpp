@@ -26,6 +26,7 @@ bool wait_for(const fs::path& file, RunningSwage& run) {
 }
 
 void check_only_whole_files(const fs::path& run) {
+    if (!fs::exists(run)) return;  // it had not begun
     for (const auto& entry : fs::recursive_directory_iterator(run)) {
         INFO(entry.path().string());
         CHECK(entry.path().filename().string().find(".part") == std::string::npos);

@@ -29,6 +29,11 @@ ExitCode code_of(const std::function<void()>& act) {
     return ExitCode::done;
 }
 
+void begin_run(const fs::path& root, const std::string& scene_hash) {
+    RunDirectory run(root, identity_of(scene_hash), false);
+    run.begin();
+}
+
 void put_text(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
 }  // namespace
@@ -36,17 +41,35 @@ void put_text(const fs::path& file, const std::string& text) { std::ofstream(fil
 TEST_CASE("a run enters its own directory again") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "today" / "run";  // neither is there yet
-    { const RunDirectory first(root, identity_of("1"), false); }
+    begin_run(root, "1");
     CHECK(fs::exists(root / ".swage-run"));
     CHECK_FALSE(fs::exists(root / ".swage-lock"));
     CHECK(code_of([&] { const RunDirectory again(root, identity_of("1"), false); }) ==
           ExitCode::done);
 }
 
+TEST_CASE("of a run that does not begin nothing is left but what was there") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "today" / "run";
+    for (const bool fresh : {false, true}) {
+        { const RunDirectory run(root, identity_of("1"), fresh); }
+        CHECK(fs::is_empty(scratch.path()));
+    }
+    fs::create_directory(scratch.path() / "today");
+    { const RunDirectory run(root / "", identity_of("1"), false); }
+    CHECK(fs::is_empty(scratch.path() / "today"));
+    fs::create_directory(root);
+    { const RunDirectory run(root, identity_of("1"), false); }
+    CHECK(fs::is_empty(root));
+    begin_run(root, "1");
+    { const RunDirectory run(root, identity_of("1"), false); }
+    CHECK(fs::exists(root));
+}
+
 TEST_CASE("another run's directory is refused and left as it is") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "run";
-    { const RunDirectory first(root, identity_of("1"), false); }
+    begin_run(root, "1");
     put_text(root / "run.json", "{}");
     // A fresh run that comes to nothing leaves it, too.
     { const RunDirectory fresh(root, identity_of("2"), true); }
@@ -113,7 +136,7 @@ TEST_CASE("two runs at once in one directory: the second is refused and told who
 TEST_CASE("the lock of a process that died here is taken over, that of another host is not") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "run";
-    { const RunDirectory first(root, identity_of("1"), false); }
+    begin_run(root, "1");
     char host[256] = {};
     REQUIRE(::gethostname(host, sizeof host - 1) == 0);
     put_text(root / ".swage-lock", fmt::format("4194303 {}\n", host));
@@ -142,9 +165,7 @@ TEST_CASE("what differs between two runs is told item by item") {
 TEST_CASE("a directory in which nothing was recorded belongs to nobody") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "run";
-    const auto enter = [&](const char* scene) {
-        return code_of([&] { const RunDirectory run(root, identity_of(scene), false); });
-    };
+    const auto enter = [&](const char* scene) { return code_of([&] { begin_run(root, scene); }); };
     CHECK(enter("1") == ExitCode::done);
     fs::create_directories(root / "meshes" / "1-bend");
     CHECK(enter("2") == ExitCode::done);
