@@ -99,22 +99,24 @@ struct QuantityName {
     const char* name;
     const char* si;
     const char* with_article;
+    double least, most;  // that can be meant: of what has to be more than 0, of any size
 };
 
+// Far beyond all scenes, and as far from where numbers, or what is computed of them, end.
 constexpr QuantityName kQuantities[] = {
-    {Quantity::number, "number", "", "a plain number"},
-    {Quantity::length, "length", "m", "a length"},
-    {Quantity::angle, "angle", "rad", "an angle"},
-    {Quantity::time, "time", "s", "a time"},
-    {Quantity::speed, "speed", "m/s", "a speed"},
-    {Quantity::stress, "stress", "Pa", "a stress"},
-    {Quantity::density, "density", "kg/m3", "a density"},
-    {Quantity::mass, "mass", "kg", "a mass"},
-    {Quantity::force, "force", "N", "a force"},
-    {Quantity::acceleration, "acceleration", "m/s2", "an acceleration"},
-    {Quantity::toughness, "toughness", "J/m2", "a toughness"},
-    {Quantity::drag, "drag", "Pa s/m", "a drag"},
-    {Quantity::spin, "spin", "rad/s", "a spin"},
+    {Quantity::number, "number", "", "a plain number", 0, 1e15},
+    {Quantity::length, "length", "m", "a length", 1e-9, 1e7},
+    {Quantity::angle, "angle", "rad", "an angle", 0, 2e6 * kPi},
+    {Quantity::time, "time", "s", "a time", 1e-12, 1e9},
+    {Quantity::speed, "speed", "m/s", "a speed", 0, 1e9},
+    {Quantity::stress, "stress", "Pa", "a stress", 1e-9, 1e15},
+    {Quantity::density, "density", "kg/m3", "a density", 1e-6, 1e9},
+    {Quantity::mass, "mass", "kg", "a mass", 1e-18, 1e15},
+    {Quantity::force, "force", "N", "a force", 0, 1e15},
+    {Quantity::acceleration, "acceleration", "m/s2", "an acceleration", 0, 1e9},
+    {Quantity::toughness, "toughness", "J/m2", "a toughness", 1e-12, 1e12},
+    {Quantity::drag, "drag", "Pa s/m", "a drag", 0, 1e15},
+    {Quantity::spin, "spin", "rad/s", "a spin", 0, 1e9},
 };
 
 const QuantityName& about(Quantity quantity) {
@@ -187,6 +189,13 @@ std::vector<std::string> quantity_names() {
     std::vector<std::string> names;
     for (const QuantityName& one : kQuantities) names.emplace_back(one.name);
     return names;
+}
+
+std::string why_not_meant(double value, Quantity quantity, bool is_positive) {
+    const double high = about(quantity).most, low = is_positive ? about(quantity).least : -high;
+    if (value >= low && value <= high) return {};
+    return fmt::format("{} is out of range: it has to be {} to {}", quantity_text(value, quantity),
+                       quantity_text(low, quantity), quantity_text(high, quantity));
 }
 
 std::string si_unit(Quantity quantity) { return about(quantity).si; }

@@ -35,6 +35,11 @@ std::string si_unit(Quantity quantity);  // "m"; a number's is empty
 // The usual one first; none of a plain number.
 std::vector<std::string> unit_names(Quantity quantity);
 
+// Why the SI value is none that can be meant, as it is larger than that of any scene, or smaller
+// where it has to be more than 0: "1e+300 m is out of range: it has to be -1e+07 m to 1e+07 m";
+// empty: it can be.
+std::string why_not_meant(double value, Quantity quantity, bool is_positive = false);
+
 // The SI value of a text. Throws TextError: what is wrong, where, what is wanted.
 double parse_quantity(std::string_view text, Quantity wanted);
 

@@ -18,8 +18,8 @@ constexpr double kPoissonSlack = 0.005;
 constexpr double kMuchFriction = 2;
 constexpr double kMostStrength = 0.1;  // of young_modulus
 // Beyond all matter, and far from where numbers end.
-constexpr Range kStiffness = {.low = 1e-3, .high = 1e18};  // [Pa]
-constexpr Range kDensity = {.low = 1e-3, .high = 1e12};    // [kg/m3]
+constexpr Range kStiffness = {.low = 1e-3, .high = 1e15};  // [Pa]
+constexpr Range kDensity = {.low = 1e-3, .high = 1e9};     // [kg/m3]
 
 // Materials that never yield say so by leaving yield_stress out; a scene turns a yielding one into
 // such by `yield_stress = inf`, or in quotes as every other stress, with a unit or without.

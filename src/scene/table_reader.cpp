@@ -175,6 +175,14 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
     return false;
 }
 
+// No range that a key has of its own needs to end where sense does.
+bool TableReader::is_meant(const std::string& key, const Node& node, Quantity quantity,
+                           double value, bool is_positive) {
+    const std::string why = why_not_meant(value, quantity, is_positive);
+    if (!why.empty()) reading_.mistakes.add(node.place, key + " = " + why);
+    return why.empty();
+}
+
 void TableReader::describe_quantity(const std::string& key, Quantity quantity, const Range& range,
                                     double usual) {
     std::string takes = with_unit(quantity);
@@ -190,11 +198,11 @@ bool TableReader::quantity(const std::string& key, Quantity quantity, const Rang
     if (node == nullptr) return false;
     double value = 0;
     if (!number(key, *node, quantity, value)) return true;
-    if (range.holds(value)) {
-        into = value;
-    } else {
+    if (!range.holds(value)) {
         mistake(key, fmt::format("{} = {} is out of range: it has to be {}", key,
                                  quantity_text(value, quantity), range.text(quantity)));
+    } else if (is_meant(key, *node, quantity, value, range.low == 0 && range.low_open)) {
+        into = value;
     }
     return true;
 }
@@ -253,7 +261,8 @@ bool TableReader::vector(const std::string& key, Quantity quantity, Vec3& into) 
     bool is_right = true;
     for (int axis = 0; axis < 3; ++axis) {
         const Node& item = node->item[static_cast<std::size_t>(axis)];
-        is_right = number(key, item, quantity, value[axis]) && is_right;
+        is_right = number(key, item, quantity, value[axis]) &&
+                   is_meant(key, item, quantity, value[axis]) && is_right;
     }
     if (is_right) into = value;
     return true;

@@ -133,6 +133,8 @@ class TableReader {
     int chosen_name(const std::string& key, const std::vector<std::string>& names,
                     const std::string& usual);
     bool number(const std::string& key, const Node& node, Quantity quantity, double& into);
+    bool is_meant(const std::string& key, const Node& node, Quantity quantity, double value,
+                  bool is_positive = false);
 
     const Node& node_;
     std::string section_;

@@ -159,3 +159,23 @@ TEST_CASE("a mistyped word finds what it was meant to be") {
     CHECK(edit_distance("abcd", "abdc") == 1);
     CHECK(edit_distance("", "abc") == 3);
 }
+
+TEST_CASE("what no scene can mean is told with the range, and what the extremes take is not") {
+    CHECK(why_not_meant(1e300, Quantity::length) ==
+          "1e+300 m is out of range: it has to be -1e+07 m to 1e+07 m");
+    CHECK(why_not_meant(1e-320, Quantity::length, true).find("it has to be 1 nm to 1e+07 m") !=
+          std::string::npos);
+    CHECK(why_not_meant(1e-320, Quantity::length).empty());  // 0 but for rounding
+    CHECK(why_not_meant(-1e-6, Quantity::length, true).find("-1 um is out of range") == 0);
+    CHECK_FALSE(why_not_meant(NAN, Quantity::angle).empty());
+    for (const std::string& name : quantity_names()) {
+        INFO(name);
+        const Quantity quantity = *quantity_named(name);
+        CHECK_FALSE(why_not_meant(1e160, quantity).empty());
+        CHECK_FALSE(why_not_meant(-1e160, quantity).empty());
+        for (const double value : {-1e6, 0.0, 1e-6, 1e6})
+            CHECK(why_not_meant(value, quantity).empty());
+        CHECK(why_not_meant(1e-6, quantity, true).empty());
+    }
+    CHECK(why_not_meant(1e13, Quantity::stress, true).empty());
+}

@@ -65,6 +65,31 @@ TEST_CASE("a block is not molded anew, and no two meshes have one name") {
     });
 }
 
+TEST_CASE("numbers that no scene can mean are refused where they stand, with their range") {
+    check_all({
+        {"gravity",
+         stage("gravity = 1e308"),
+         {"9:11: gravity = 1e+308 m/s2 is out of range: it has to be -1e+09 m/s2 to 1e+09 m/s2"}},
+        {"one of three",
+         stage("gravity = [0, -9.81, \"1e10 m/s2\"]"),
+         {"9:22: gravity = 1e+10 m/s2 is out of range"}},
+        {"a far mesh",
+         with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nlength = \"1e300 m\"\n"),
+         {"3:10: length = 1e+300 m is out of range: it has to be 1 nm to 1e+07 m"}},
+        {"no mesh",
+         with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nlength = \"1e-320 m\"\n"),
+         {"nm is out of range: it has to be 1 nm to 1e+07 m"}},
+        {"a parameter",
+         stage("angle = \"1e7 turns\""),
+         {"9:9: angle = 3.6e+09 deg is out of range"}},
+        {"yield", material("yield_stress = 1e16"), {"5:16: yield_stress = 1e+07 GPa is out of"}},
+    });
+    for (const char* extreme : {"gravity = 1e4", "duration = \"1 us\"", "gravity = [0, 0, -1e6]"}) {
+        INFO(extreme);
+        CHECK(mistakes_in(stage(extreme).text()).find("out of range") == std::string::npos);
+    }
+}
+
 TEST_CASE("a solver that cannot move the scene's matter is refused where it is named") {
     const auto solver = [](const std::string& material, const std::string& lines) {
         Parts parts = with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\n" + lines);
