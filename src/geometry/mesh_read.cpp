@@ -214,10 +214,8 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
     const Handle opened = open_checked(file, limits);
     MeshSource source;
     if (!format_of(file, source.format))
-        fail(ExitCode::mesh,
-             "{}: '{}' is no kind of mesh that can be read (OBJ, PLY, STL, OFF, glTF, GLB, DAE, "
-             "3DS, 3MF)",
-             name, file.extension().string());
+        fail(ExitCode::mesh, "{}: '{}' is no kind of mesh that can be read ({})", name,
+             file.extension().string(), kMeshKinds);
     source.file = fs::absolute(file).lexically_normal();
     source.file_bytes = limits.file_bytes;
     source.memory_bytes = limits.memory_bytes;

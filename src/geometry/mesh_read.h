@@ -30,7 +30,8 @@ struct ReadLimits {
 TriMesh read_mesh(const std::filesystem::path& file, const ReadLimits& limits = {},
                   std::vector<std::string>* finding = nullptr);
 
-// Whether the name ends like a mesh file that can be read.
+// Whether the name ends like a mesh file that can be read: one of these.
+inline constexpr const char* kMeshKinds = "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS, 3MF";
 bool is_mesh_file_name(const std::filesystem::path& file);
 
 }  // namespace swage

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "geometry/mesh_read.h"
+
 namespace swage {
 
 namespace {
@@ -73,6 +75,12 @@ std::optional<std::string> why_unreadable(const std::filesystem::path& file) {
         return std::string("cannot be read: ") + std::strerror(errno);
     }
     return std::nullopt;
+}
+
+std::optional<std::string> why_no_mesh(const std::filesystem::path& file) {
+    const std::optional<std::string> reason = why_unreadable(file);
+    if (reason || is_mesh_file_name(file)) return reason;
+    return fmt::format("is no kind of mesh that can be read: {}", kMeshKinds);
 }
 
 std::optional<std::string> read_text(const std::filesystem::path& file, const Place& place,

@@ -24,7 +24,7 @@ void read_file(TableReader& table, const fs::path& folder, const char* what, Mes
             if (table.find("file")->kind == Node::Kind::text) {
                 table.mistake("file", "the mesh's file name is empty");
             }
-        } else if (const auto reason = why_unreadable(mesh.file)) {
+        } else if (const auto reason = why_no_mesh(mesh.file)) {
             table.mistake("file",
                           fmt::format("the mesh \"{}\" {} ({})", file, *reason, mesh.file.string()),
                           ExitCode::mesh);

@@ -23,7 +23,7 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
         table.mistake("file", "the inset's file name is empty");
     } else if (has_file) {
         inset.file = (scene_folder / file).lexically_normal();
-        if (const auto reason = why_unreadable(inset.file)) {
+        if (const auto reason = why_no_mesh(inset.file)) {
             table.mistake(
                 "file", fmt::format("the mesh \"{}\" {} ({})", file, *reason, inset.file.string()),
                 ExitCode::mesh);

@@ -224,7 +224,7 @@ class MachineReader {
             return;
         }
         mesh = (folder_ / name).lexically_normal();
-        if (const auto reason = why_unreadable(mesh)) {
+        if (const auto reason = why_no_mesh(mesh)) {
             table.mistake("file",
                           fmt::format("the mesh \"{}\" {} ({})", name, *reason, mesh.string()),
                           ExitCode::mesh);

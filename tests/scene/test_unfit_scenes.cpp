@@ -90,6 +90,27 @@ TEST_CASE("numbers that no scene can mean are refused where they stand, with the
     }
 }
 
+TEST_CASE("a mesh of no kind that can be read is refused where it is named") {
+    const Scratch scratch;
+    scratch.write("passwd", "root");
+    scratch.write("machines/odd.toml",
+                  "[[tool]]\nname = \"ram\"\nshape = \"mesh\"\nlength = 1\nat = [0, 0, 0]\n"
+                  "file = \"../passwd\"\n");
+    Parts parts = stage("");
+    parts.mesh = "[mesh]\nfile = \"passwd\"\n";
+    parts.material += "[[inset]]\nname = \"lead\"\nfile = \"s.toml\"\n";
+    parts.stage = "[[stage]]\nmachine = \"odd\"\n";
+    const auto mistakes = read_scene(scratch.write("s.toml", parts.text()), {}, shipped()).mistakes;
+    const std::string text = told(mistakes, scratch.folder());
+    INFO(text);
+    CHECK(exit_code(mistakes) == ExitCode::mesh);
+    CHECK(std::count(text.begin(), text.end(), '\n') == 3);
+    const std::string kinds = "is no kind of mesh that can be read: OBJ, PLY, ";
+    CHECK(text.find("s.toml:2:8: the mesh \"passwd\" " + kinds) == 0);
+    CHECK(text.find("s.toml:7:8: the mesh \"s.toml\" " + kinds) != std::string::npos);
+    CHECK(text.find("machines/odd.toml:6:8: the mesh \"../passwd\" " + kinds) != std::string::npos);
+}
+
 TEST_CASE("a solver that cannot move the scene's matter is refused where it is named") {
     const auto solver = [](const std::string& material, const std::string& lines) {
         Parts parts = with(&Parts::stage, "[[stage]]\nmachine = \"bend\"\n" + lines);
