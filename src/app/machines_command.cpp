@@ -39,9 +39,9 @@ std::string table_text(const std::vector<std::vector<std::string>>& rows) {
 
 std::string range_text(const ParameterSpec& parameter) {
     if (parameter.low.empty() && parameter.high.empty()) return "any";
-    if (parameter.low.empty()) return "up to " + parameter.high;
-    if (parameter.high.empty()) return parameter.low + " and more";
-    return parameter.low + " to " + parameter.high;
+    if (parameter.low.empty()) return "up to " + parameter.high.text;
+    if (parameter.high.empty()) return parameter.low.text + " and more";
+    return parameter.low.text + " to " + parameter.high.text;
 }
 
 // Of a plain number.
@@ -54,7 +54,7 @@ std::string machine_text(const MachineSpec& machine) {
     std::string text = machine.name + ": " + machine.help + "\n  " + machine.file.string() + "\n\n";
     std::vector<std::vector<std::string>> rows = {{"PARAMETER", "UNIT", "DEFAULT", "RANGE", ""}};
     for (const ParameterSpec& parameter : machine.parameter) {
-        rows.push_back({parameter.name, unit_text(parameter), parameter.default_value,
+        rows.push_back({parameter.name, unit_text(parameter), parameter.default_value.text,
                         range_text(parameter), parameter.help});
     }
     text += table_text(rows);
@@ -76,9 +76,9 @@ Json machine_json(const MachineSpec& machine) {
         parameters.push_back({{"name", parameter.name},
                               {"quantity", quantity_name(parameter.quantity)},
                               {"unit", si_unit(parameter.quantity)},
-                              {"default", parameter.default_value},
-                              {"low", parameter.low},
-                              {"high", parameter.high},
+                              {"default", parameter.default_value.text},
+                              {"low", parameter.low.text},
+                              {"high", parameter.high.text},
                               {"help", parameter.help}});
     }
     return {{"name", machine.name},           {"help", machine.help},

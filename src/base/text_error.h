@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -18,6 +20,23 @@ class TextError : public Error {
 
   private:
     std::size_t at_;
+};
+
+// Where such a text stands; without a file: nowhere.
+struct TextPlace {
+    std::filesystem::path file;  // as shown to the user
+    int line = 0, column = 0;    // from 1; 0: the file as a whole
+};
+
+// A mistake that came to light far from the text that holds it.
+class PlacedError : public Error {
+  public:
+    PlacedError(TextPlace place, const std::string& sentence, ExitCode code = ExitCode::scene)
+        : Error(code, sentence), place_(std::move(place)) {}
+    const TextPlace& place() const { return place_; }
+
+  private:
+    TextPlace place_;
 };
 
 }  // namespace swage

@@ -30,7 +30,6 @@ constexpr double kMostReach = 10;   // spacings
 constexpr int kTravelSamples = 64;  // of a blade's way, to see where it goes
 
 struct Setting {  // what every part of a machine is set up in
-    const MachineSpec& spec;
     const WorkFrame& frame;
     double spacing;
     std::vector<Vec3> point;                // the body's surface, in the work frame
@@ -39,30 +38,71 @@ struct Setting {  // what every part of a machine is set up in
     std::vector<Variables> known_beside{};  // to the bodies beside it: what differs
 };
 
-[[noreturn]] void refuse(const Setting& setting, const std::string& what) {
-    fail(ExitCode::scene, "machine {}: {}", setting.spec.name, what);
+// Of what stands there; build_machine() adds whose it is.
+[[noreturn]] void refuse(const Expression& at, const std::string& what) {
+    throw PlacedError(at.place, what);
 }
 
 double positive(const Setting& setting, const Expression& text, const std::string& tool,
                 const char* quantity) {
     const double value = evaluate(text, setting.known);
-    if (value > 0 && std::isfinite(value)) return value;
-    refuse(setting, fmt::format("the {} of tool {} is {} and has to be more than 0", quantity, tool,
-                                quantity_text(value, Quantity::length)));
+    if (!(value > 0)) {
+        refuse(text, fmt::format("the {} of tool {} is {} and has to be more than 0", quantity,
+                                 tool, quantity_text(value, Quantity::length)));
+    }
+    const std::string why = why_not_meant(value, Quantity::length, true);
+    if (why.empty()) return value;
+    refuse(text, fmt::format("the {} of tool {}: {}", quantity, tool, why));
+}
+
+Vec3 length3(const Setting& setting, const Expression3& text) {
+    return evaluate(text, setting.known, Quantity::length);
+}
+
+// What `value` gives; where an expression in it has none, with whose it is and when.
+template <typename Value>
+auto told_at(const std::string& whose, double t, const Value& value) {
+    try {
+        return value();
+    } catch (const PlacedError& error) {
+        throw PlacedError(error.place(),
+                          fmt::format("{} at t = {:.4g}: {}", whose, t, error.what()));
+    }
+}
+
+Pose pose_at(const Motion& motion, const std::string& whose, double t) {
+    return told_at("the motion of " + whose, t, [&] { return motion.at(t); });
+}
+
+// As build_machine() does.
+template <typename Act>
+auto naming(const MachineSpec& spec, const Act& act) {
+    try {
+        return act();
+    } catch (const PlacedError& error) {
+        throw PlacedError(error.place(), fmt::format("machine {}: {}", spec.name, error.what()),
+                          error.code());
+    }
 }
 
 MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
-    auto mesh = std::make_shared<TriMesh>(read_mesh(tool.mesh));
+    auto mesh = std::make_shared<TriMesh>();
+    try {
+        *mesh = read_mesh(tool.mesh);
+    } catch (const Error& error) {
+        throw PlacedError(tool.mesh_place, error.what(), error.code());
+    }
     const Box box = box_of(mesh->position);
     const double scale =
         positive(setting, tool.length, tool.name, "length") / box.size().maxCoeff();
     for (Vec3& p : mesh->position) p = scale * (p - box.center());
     auto field = std::make_shared<const DistanceField>(*mesh);
     if (!field->has_inside()) {
-        refuse(setting, fmt::format("the mesh of tool {} encloses nothing that its samples, {} "
-                                    "apart, would find: it has to be a closed surface, and thicker "
-                                    "than that",
-                                    tool.name, quantity_text(field->spacing(), Quantity::length)));
+        refuse({"", tool.mesh_place},
+               fmt::format("the mesh of tool {} encloses nothing that its samples, {} "
+                           "apart, would find: it has to be a closed surface, and thicker "
+                           "than that",
+                           tool.name, quantity_text(field->spacing(), Quantity::length)));
     }
     return {mesh, field};
 }
@@ -78,16 +118,17 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
     if (tool.shape == ToolShape::box) {
         const Vec3 size(length(tool.size[0], "size"), length(tool.size[1], "size"),
                         length(tool.size[2], "size"));
-        const double rounding = evaluate(tool.rounding, setting.known);
+        const double rounding = evaluate(tool.rounding, setting.known, Quantity::length);
         if (!(rounding >= 0 && rounding <= 0.5 * size.minCoeff())) {
-            refuse(setting, fmt::format("the rounding of tool {} is {} and has to be 0 to half of "
-                                        "the box's smallest side",
-                                        tool.name, quantity_text(rounding, Quantity::length)));
+            refuse(tool.rounding,
+                   fmt::format("the rounding of tool {} is {} and has to be 0 to half of "
+                               "the box's smallest side",
+                               tool.name, quantity_text(rounding, Quantity::length)));
         }
         return BoxShape{size, rounding};
     }
     if (tool.shape == ToolShape::mesh) return scaled_mesh(setting, tool);
-    refuse(setting, fmt::format("tool {} has no shape", tool.name));
+    refuse({}, fmt::format("tool {} has no shape", tool.name));
 }
 
 void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
@@ -98,33 +139,34 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
               .contact_stiffness = spec.contact_stiffness};
     if (spec.color) tool.color = *spec.color;
     const auto friction = [&](const Variables& known) {
-        const double value =
-            spec.friction.empty() ? known.at(kMaterialFriction) : evaluate(spec.friction, known);
+        const double value = spec.friction.empty()
+                                 ? known.at(kMaterialFriction)
+                                 : evaluate(spec.friction, known, Quantity::number);
         if (value >= 0) return value;
-        refuse(setting, fmt::format("the friction of tool {} is {}; it cannot be negative",
-                                    spec.name, value));
+        refuse(spec.friction, fmt::format("the friction of tool {} is {}; it cannot be negative",
+                                          spec.name, value));
     };
     tool.friction = friction(setting.known);
     for (Variables known : setting.known_beside) {
         known.insert(setting.known.begin(), setting.known.end());
         tool.friction_beside.push_back(friction(known));
     }
-    const Vec3 axis = evaluate(spec.axis, setting.known);
+    const Vec3 axis = evaluate(spec.axis, setting.known, Quantity::number);
     if (!(axis.norm() > 0)) {
-        refuse(setting, fmt::format("the axis of tool {} has no length", spec.name));
+        refuse(spec.axis[0], fmt::format("the axis of tool {} has no length", spec.name));
     }
-    Pose work_from_tool{turn_onto(Vec3::UnitZ(), axis).normalized(),
-                        evaluate(spec.at, setting.known)};
-    const Vec3 touch = evaluate(spec.touch, setting.known);
+    Pose work_from_tool{turn_onto(Vec3::UnitZ(), axis).normalized(), length3(setting, spec.at)};
+    const Vec3 touch = evaluate(spec.touch, setting.known, Quantity::number);
     if (touch.norm() > 0) {
         const Vec3 direction = touch.normalized();
         const std::optional<double> shift =
             slide_to_touch(tool.shape, work_from_tool, direction, setting.touch,
-                           evaluate(spec.gap, setting.known));
+                           evaluate(spec.gap, setting.known, Quantity::length));
         if (!shift) {
-            refuse(setting, fmt::format("tool {} can never touch the work-piece: it passes by. "
-                                        "Place it nearer to the middle",
-                                        spec.name));
+            refuse(spec.touch[0],
+                   fmt::format("tool {} can never touch the work-piece: it passes by. "
+                               "Place it nearer to the middle",
+                               spec.name));
         }
         work_from_tool.translation += *shift * direction;
     } else {
@@ -145,7 +187,7 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
 // Of any two opposite corners.
 Box box_between(const Setting& setting, const Expression3& from, const Expression3& to) {
     const Vec3 slack = Vec3::Constant(kGripSlack * setting.frame.size.norm());
-    const Box box = box_of({evaluate(from, setting.known), evaluate(to, setting.known)});
+    const Box box = box_of({length3(setting, from), length3(setting, to)});
     return {box.low - slack, box.high + slack};
 }
 
@@ -167,9 +209,10 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
             const Box both = {region.low.cwiseMax(regions[g].low),
                               region.high.cwiseMin(regions[g].high)};
             if (both.empty() || share_within(patch, both) <= kOverlap) continue;
-            refuse(setting, fmt::format("grips {} and {} would hold the same points; make one of "
-                                        "them smaller",
-                                        machine.apparatus.grip[g].name, spec.name));
+            refuse(spec.from[0],
+                   fmt::format("grips {} and {} would hold the same points; make one of "
+                               "them smaller",
+                               machine.apparatus.grip[g].name, spec.name));
         }
         grip.point.push_back(static_cast<int>(p));
         grip.share.push_back(share);
@@ -177,9 +220,10 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
         jaws.grow(patch.high.cwiseMin(region.high));
     }
     if (grip.point.empty()) {
-        refuse(setting, fmt::format("grip {} holds nothing: no point of the work-piece's surface "
-                                    "lies in its box",
-                                    spec.name));
+        refuse(spec.from[0],
+               fmt::format("grip {} holds nothing: no point of the work-piece's surface "
+                           "lies in its box",
+                           spec.name));
     }
     const Vec3 center = jaws.center();
     const Pose work_from_grip{Quat::Identity(), center};
@@ -189,13 +233,14 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
         clamp_around({jaws.low - center, jaws.high - center}, kClampClearance * setting.spacing);
 
     Motion motion(spec.motion, setting.known);
-    const Pose start = motion.at(0);
+    const Pose start = pose_at(motion, "grip " + spec.name, 0);
     const double size = setting.frame.size.norm();
     if ((start * center - center).norm() > kAtRest * size ||
         rotation_of(start.rotation).norm() > 10 * kAtRest) {
-        refuse(setting, fmt::format("the motion of grip {} does not start at rest: at t = 0 it has "
-                                    "to be 0",
-                                    spec.name));
+        const Expression& moves = spec.motion.turn == "0" ? spec.motion.move[0] : spec.motion.turn;
+        refuse(moves, fmt::format("the motion of grip {} does not start at rest: at t = 0 it has "
+                                  "to be 0",
+                                  spec.name));
     }
     regions.push_back(region);
     machine.apparatus.grip.push_back(std::move(grip));
@@ -205,23 +250,27 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
 
 void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) {
     std::vector<Vec3> edge;
-    for (const Expression3& point : spec.edge) edge.push_back(evaluate(point, setting.known));
+    for (const Expression3& point : spec.edge) edge.push_back(length3(setting, point));
     if (edge.size() < 2 || (edge.back() - edge.front()).norm() == 0) {
-        refuse(setting, fmt::format("the edge of blade {} needs two points or more", spec.name));
+        refuse(spec.edge.empty() ? Expression() : spec.edge[0][0],
+               fmt::format("the edge of blade {} needs two points or more", spec.name));
     }
-    const double thickness = evaluate(spec.thickness, setting.known);
+    const double thickness = evaluate(spec.thickness, setting.known, Quantity::length);
     if (!(thickness > 0)) {
-        refuse(setting, fmt::format("the thickness of blade {} is {} and has to be more than 0",
-                                    spec.name, quantity_text(thickness, Quantity::length)));
+        refuse(spec.thickness,
+               fmt::format("the thickness of blade {} is {} and has to be more than 0", spec.name,
+                           quantity_text(thickness, Quantity::length)));
     }
     const Vec3 centre = box_of(edge).center();
     Motion motion(spec.motion, setting.known);
 
     // The plate stands behind the edge and is tall enough to show above what it has cut.
-    const Vec3 start = motion.at(0) * centre;
+    const std::string whose = "blade " + spec.name;
+    const Vec3 start = pose_at(motion, whose, 0) * centre;
     Vec3 travel = Vec3::Zero();
     for (int n = 1; n <= kTravelSamples; ++n) {
-        const Vec3 way = motion.at(static_cast<double>(n) / kTravelSamples) * centre - start;
+        const double t = static_cast<double>(n) / kTravelSamples;
+        const Vec3 way = pose_at(motion, whose, t) * centre - start;
         if (way.norm() > travel.norm()) travel = way;
     }
     const double width = (edge.back() - edge.front()).norm();
@@ -245,13 +294,17 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
                           spec.box ? &box : nullptr),
               spec.name};
     if (load.point.empty()) {
-        refuse(setting, fmt::format("load {} acts on nothing: no part of the work-piece's surface "
-                                    "looks that way and lies in its box",
-                                    spec.name));
+        const Expression& where = spec.box     ? (*spec.box)[0][0]
+                                  : spec.force ? (*spec.force)[0]
+                                               : spec.pressure;
+        refuse(where, fmt::format("load {} acts on nothing: no part of the work-piece's surface "
+                                  "looks that way and lies in its box",
+                                  spec.name));
     }
     load.closed = load.share.empty() && is_closed(matter, load.point);
     if (spec.force) {
-        const Vec3 force = setting.frame.world_from_work.turn(evaluate(*spec.force, setting.known));
+        const Vec3 force = setting.frame.world_from_work.turn(
+            evaluate(*spec.force, setting.known, Quantity::force));
         std::vector<double> area;
         for (std::size_t n = 0; n < load.point.size(); ++n) {
             area.push_back(load.share_of(n) * matter.surface.area(load.point[n]));
@@ -259,21 +312,10 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
         const double all = std::accumulate(area.begin(), area.end(), 0.0);
         for (double own : area) load.force.push_back(own / all * force);
     } else {
-        load.pressure = evaluate(spec.pressure, setting.known);
+        load.pressure = evaluate(spec.pressure, setting.known, Quantity::stress);
     }
     machine.apparatus.load.push_back(std::move(load));
-    machine.load_strength.emplace_back(spec.strength, setting.known);
-}
-
-// What `value` gives; where an expression in it has none, with whose it is and when.
-template <typename Value>
-auto told_at(const Machine& machine, const std::string& whose, double t, const Value& value) {
-    try {
-        return value();
-    } catch (const TextError& error) {
-        fail(ExitCode::scene, "machine {}: {} at t = {:.4g}: {}", machine.spec.name, whose, t,
-             error.what());
-    }
+    machine.load_strength.emplace_back(spec.strength, setting.known, Quantity::number);
 }
 
 template <typename Part>
@@ -282,8 +324,7 @@ std::vector<Pose> placed(const Machine& machine, const char* kind, const std::ve
                          double t) {
     std::vector<Pose> world_from_part;
     for (std::size_t n = 0; n < motion.size(); ++n) {
-        const Pose moved = told_at(machine, fmt::format("the motion of {} {}", kind, part[n].name),
-                                   t, [&] { return motion[n].at(t); });
+        const Pose moved = pose_at(motion[n], fmt::format("{} {}", kind, part[n].name), t);
         world_from_part.push_back(machine.frame.world_from_work * moved * work_from_part[n]);
     }
     return world_from_part;
@@ -312,10 +353,12 @@ Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame) 
             {kMaterialFriction, matter.material.friction}};
 }
 
-Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
-                      const WorkFrame& frame, const Aggregate& matter,
-                      const std::vector<Material>& beside) try {
-    Setting setting{spec, frame, matter.lattice.spacing, {}, {}, {}};
+namespace {
+
+Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& given,
+               const WorkFrame& frame, const Aggregate& matter,
+               const std::vector<Material>& beside) {
+    Setting setting{frame, matter.lattice.spacing, {}, {}, {}};
     const Pose work_from_world = frame.world_from_work.inverse();
     for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
     const TouchPoints touch(matter);
@@ -348,27 +391,35 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
     for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
     for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
     if (!spec.gravity_strength.empty()) {
-        machine.gravity_strength.emplace(spec.gravity_strength, setting.known);
+        machine.gravity_strength.emplace(spec.gravity_strength, setting.known, Quantity::number);
     }
     for (const CheckSpec& check : spec.check) {
         if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
     }
     return machine;
-} catch (const TextError& error) {  // in one of the machine's expressions
-    fail(ExitCode::scene, "machine {}: {}", spec.name, error.what());
+}
+
+}  // namespace
+
+Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
+                      const WorkFrame& frame, const Aggregate& matter,
+                      const std::vector<Material>& beside) {
+    return naming(spec, [&] { return set_up(spec, given, frame, matter, beside); });
 }
 
 std::vector<double> strengths_at(const Machine& machine, double t) {
     const Apparatus& apparatus = machine.apparatus;
-    std::vector<double> strength;
-    for (std::size_t n = 0; n < machine.load_strength.size(); ++n) {
-        strength.push_back(told_at(machine, "the strength of load " + apparatus.load[n].name, t,
-                                   [&] { return machine.load_strength[n].at(t); }));
-    }
-    strength.push_back(told_at(machine, "gravity_strength", t, [&] {
-        return machine.gravity_strength ? machine.gravity_strength->at(t) : 1.0;
-    }));
-    return strength;
+    return naming(machine.spec, [&] {
+        std::vector<double> strength;
+        for (std::size_t n = 0; n < machine.load_strength.size(); ++n) {
+            strength.push_back(told_at("the strength of load " + apparatus.load[n].name, t,
+                                       [&] { return machine.load_strength[n].at(t); }));
+        }
+        strength.push_back(told_at("gravity_strength", t, [&] {
+            return machine.gravity_strength ? machine.gravity_strength->at(t) : 1.0;
+        }));
+        return strength;
+    });
 }
 
 Drive drive_at(const Machine& machine, double t, double duration) {
@@ -376,13 +427,16 @@ Drive drive_at(const Machine& machine, double t, double duration) {
     std::vector<double> strength = strengths_at(machine, t);
     const double gravity = strength.back();
     strength.pop_back();
-    return {
-        t * duration,
-        placed(machine, "tool", apparatus.tool, machine.work_from_tool, machine.tool_motion, t),
-        placed(machine, "grip", apparatus.grip, machine.work_from_grip, machine.grip_motion, t),
-        placed(machine, "blade", apparatus.blade, machine.work_from_blade, machine.blade_motion, t),
-        std::move(strength),
-        gravity};
+    return naming(machine.spec, [&] {
+        return Drive{
+            t * duration,
+            placed(machine, "tool", apparatus.tool, machine.work_from_tool, machine.tool_motion, t),
+            placed(machine, "grip", apparatus.grip, machine.work_from_grip, machine.grip_motion, t),
+            placed(machine, "blade", apparatus.blade, machine.work_from_blade, machine.blade_motion,
+                   t),
+            std::move(strength),
+            gravity};
+    });
 }
 
 }  // namespace swage

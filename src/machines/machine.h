@@ -51,9 +51,10 @@ struct Machine {
 // material_friction.
 Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame);
 
-// `given`: parameters by name, SI; the rest take their defaults. Throws Error(scene) naming machine
-// and parameter, tool, grip or blade: unknown or out of range; a tool that can never touch; a grip
-// that holds nothing, a point that two hold, or one that does not start at rest; a load on nothing.
+// `given`: parameters by name, SI; the rest take their defaults. Throws ParameterError, and PlacedError
+// naming machine and tool, grip or blade: an expression without a value that can be meant; a tool
+// that can never touch, or whose mesh cannot be read; a grip that holds nothing, a point that two
+// hold, or one that does not start at rest; a load on nothing.
 // `beside`: the materials of the bodies beside the work-piece, on which tools whose friction
 // follows from that of the material have another.
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
@@ -63,7 +64,7 @@ Machine build_machine(const MachineSpec& spec, const std::map<std::string, doubl
 // Of each load, then gravity, at `t` (0 to 1). Throws as drive_at().
 std::vector<double> strengths_at(const Machine& machine, double t);
 
-// Poses at `t` (0 to 1) of a stage of `duration` [s]. Throws Error(scene) naming machine and part
+// Poses at `t` (0 to 1) of a stage of `duration` [s]. Throws PlacedError naming machine and part
 // where an expression has no value then.
 Drive drive_at(const Machine& machine, double t, double duration);
 

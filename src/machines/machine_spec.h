@@ -17,16 +17,28 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/math.h"
+#include "base/text_error.h"
 #include "base/units.h"
 #include "machines/world_axis.h"
 #include "matter/drive.h"
 
 namespace swage {
 
-using Expression = std::string;
+struct Expression {
+    std::string text;
+    TextPlace place = {};
+
+    Expression() = default;
+    Expression(std::string given, TextPlace at = {})
+        : text(std::move(given)), place(std::move(at)) {}
+    Expression(const char* given) : text(given) {}
+    bool empty() const { return text.empty(); }
+    bool operator==(const Expression& other) const { return text == other.text; }
+};
 using Expression3 = std::array<Expression, 3>;
 
 struct ParameterSpec {
@@ -58,6 +70,7 @@ struct ToolSpec {
     Expression3 size = {"0", "0", "0"};  // box
     Expression rounding = "0";           // box
     std::filesystem::path mesh;  // mesh: absolute; scaled so that its longest side is `length`
+    TextPlace mesh_place;        // where it is named
     Expression3 axis = {"0", "0", "1"};  // the shape's z axis, in the work frame
     Expression3 at = {"0", "0", "0"};    // centre before `touch`, in the work frame
     // Slides the tool along this direction (from far outside) until it just touches; zero: stays.

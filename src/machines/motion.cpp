@@ -9,14 +9,24 @@ namespace swage {
 
 namespace {
 
+[[noreturn]] void refuse(const Expression& text, const std::string& why) {
+    throw PlacedError(text.place, fmt::format("in \"{}\": {}", text.text, why));
+}
+
 // Calls `body` and adds the expression to what it throws.
 template <typename Body>
 auto quoting(const Expression& text, const Body& body) {
     try {
         return body();
     } catch (const TextError& error) {
-        throw TextError(error.at(), fmt::format("in \"{}\": {}", text, error.what()));
+        refuse(text, error.what());
     }
+}
+
+double meant(double value, const Expression& text, Quantity quantity) {
+    const std::string why = why_not_meant(value, quantity);
+    if (!why.empty()) refuse(text, why);
+    return value;
 }
 
 std::vector<std::string> names_and_t(const Variables& known) {
@@ -29,34 +39,41 @@ std::vector<std::string> names_and_t(const Variables& known) {
 }  // namespace
 
 double evaluate(const Expression& text, const Variables& variables) {
-    return quoting(text, [&] { return evaluate_text(text, variables); });
+    return quoting(text, [&] { return evaluate_text(text.text, variables); });
 }
 
-Vec3 evaluate(const Expression3& text, const Variables& variables) {
-    return {evaluate(text[0], variables), evaluate(text[1], variables),
-            evaluate(text[2], variables)};
+double evaluate(const Expression& text, const Variables& variables, Quantity quantity) {
+    return meant(evaluate(text, variables), text, quantity);
 }
 
-Timed::Timed(const Expression& text, const Variables& known)
-    : formula_(quoting(text, [&] { return Formula(text, names_and_t(known)); })) {
+Vec3 evaluate(const Expression3& text, const Variables& variables, Quantity quantity) {
+    return {evaluate(text[0], variables, quantity), evaluate(text[1], variables, quantity),
+            evaluate(text[2], variables, quantity)};
+}
+
+Timed::Timed(const Expression& text, const Variables& known, Quantity quantity)
+    : text_(text),
+      quantity_(quantity),
+      formula_(quoting(text, [&] { return Formula(text.text, names_and_t(known)); })) {
     for (const auto& [name, value] : known) value_.push_back(value);
     value_.push_back(0);
     const std::vector<std::string> used = formula_.used();
     varies_ = std::find(used.begin(), used.end(), "t") != used.end();
-    if (!varies_) constant_ = quoting(text, [&] { return formula_.evaluate(value_); });
+    if (varies_) return;
+    constant_ = meant(quoting(text, [&] { return formula_.evaluate(value_); }), text, quantity);
 }
 
 double Timed::at(double t) const {
     if (!varies_) return constant_;
     std::vector<double> value = value_;
     value.back() = t;
-    return quoting(formula_.text(), [&] { return formula_.evaluate(value); });
+    return meant(quoting(text_, [&] { return formula_.evaluate(value); }), text_, quantity_);
 }
 
 Motion::Motion(const MotionSpec& spec, const Variables& known) : axis_(spec.axis) {
-    for (const Expression& text : spec.move) move_.emplace_back(text, known);
-    for (const Expression& text : spec.pivot) pivot_.emplace_back(text, known);
-    turn_.emplace_back(spec.turn, known);
+    for (const Expression& text : spec.move) move_.emplace_back(text, known, Quantity::length);
+    for (const Expression& text : spec.pivot) pivot_.emplace_back(text, known, Quantity::length);
+    turn_.emplace_back(spec.turn, known, Quantity::angle);
     if (!(axis_.norm() > 0)) fail(ExitCode::scene, "the axis of a motion has no length");
     axis_.normalize();
 }

@@ -14,19 +14,24 @@ namespace swage {
 
 using Variables = std::map<std::string, double>;
 
-// Throw TextError, which quotes the expression.
+// Throw PlacedError, which quotes the expression: it has no finite value, or one that is larger
+// than its quantity's can be meant (base/units.h).
+double evaluate(const Expression& text, const Variables& variables, Quantity quantity);
+Vec3 evaluate(const Expression3& text, const Variables& variables, Quantity quantity);
+// The same of any size.
 double evaluate(const Expression& text, const Variables& variables);
-Vec3 evaluate(const Expression3& text, const Variables& variables);
 
 // The value of an expression that may depend on t.
 class Timed {
   public:
-    // Compiles the expression, which sees `known` and t. Throws TextError.
-    Timed(const Expression& text, const Variables& known);
-    // Safe to call from any thread. Throws TextError when there is no finite value.
+    // Compiles the expression, which sees `known` and t. Throws PlacedError.
+    Timed(const Expression& text, const Variables& known, Quantity quantity);
+    // Safe to call from any thread. Throws as evaluate().
     double at(double t) const;
 
   private:
+    Expression text_;
+    Quantity quantity_;
     Formula formula_;
     std::vector<double> value_;  // of the formula's variables; the last is t
     bool varies_;
@@ -36,11 +41,11 @@ class Timed {
 // Where a thing goes, as time goes from 0 to 1.
 class Motion {
   public:
-    // Compiles the expressions, which see `known` and t. Throws TextError.
+    // Compiles the expressions, which see `known` and t. Throws PlacedError.
     Motion(const MotionSpec& spec, const Variables& known);
 
     // Where the motion takes a point of the work frame: moved_from_start * point. Safe to call from
-    // any thread. Throws TextError when an expression has no finite value.
+    // any thread. Throws as evaluate().
     Pose at(double t) const;
 
   private:

@@ -60,7 +60,8 @@ Variables resolve_parameters(const MachineSpec& spec, const Variables& given,
     for (const ParameterSpec& parameter : spec.parameter) {
         const auto found = given.find(parameter.name);
         const bool is_given = found != given.end();
-        double value = is_given ? found->second : evaluate(parameter.default_value, seen);
+        double value =
+            is_given ? found->second : evaluate(parameter.default_value, seen, parameter.quantity);
         const Range range = range_of(parameter, seen);
         if (!range.holds(value)) {
             // What is wrong with a default after a mistake may only be that.

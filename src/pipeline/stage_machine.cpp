@@ -20,13 +20,21 @@ std::vector<Mistake> placed(const StageSpec& stage, const ParameterError& error)
     return mistakes;
 }
 
-// What a machine says of its own is a mistake of the stage that names it.
+// What a machine says of its own is told where its file has it, else where the stage names it.
 template <typename Act>
 auto at_stage(const StageSpec& stage, const Act& act) {
     try {
         return act();
     } catch (const ParameterError& error) {
         throw SceneError(placed(stage, error));
+    } catch (const PlacedError& error) {
+        if (error.place().file.empty()) {
+            throw SceneError({mistake_at(stage.place, error.what(), error.code())});
+        }
+        // The machine file does not say which stage it is that asks for it.
+        throw SceneError(
+            {mistake_at(error.place(), fmt::format("{} (stage \"{}\")", error.what(), stage.name),
+                        error.code())});
     } catch (const Error& error) {
         if (error.code() != ExitCode::scene) throw;
         throw SceneError({mistake_at(stage.place, error.what())});

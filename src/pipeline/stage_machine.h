@@ -10,7 +10,7 @@
 namespace swage {
 
 // A stage's machine, set up at the work-piece as it is now. `beside`: the materials of the other
-// bodies. Throws as build_machine does, but a SceneError for what the scene gives it.
+// bodies. Throws SceneError where build_machine throws.
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside);
 

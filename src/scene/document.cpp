@@ -82,13 +82,17 @@ Entry* Node::find(std::string_view key) {
     return const_cast<Entry*>(static_cast<const Node*>(this)->find(key));
 }
 
+TextPlace text_place(const Place& place) {
+    return {place.source == nullptr ? std::filesystem::path() : place.source->file, place.line,
+            place.column};
+}
+
+Mistake mistake_at(const TextPlace& place, const std::string& text, ExitCode code) {
+    return {place.file, place.line, place.column, text, false, code};
+}
+
 Mistake mistake_at(const Place& place, const std::string& text, ExitCode code) {
-    return {place.source == nullptr ? std::filesystem::path() : place.source->file,
-            place.line,
-            place.column,
-            text,
-            false,
-            code};
+    return mistake_at(text_place(place), text, code);
 }
 
 Place place_inside(const Node& node, std::size_t at) {

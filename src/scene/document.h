@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/text_error.h"
 #include "scene/mistake.h"
 
 namespace swage {
@@ -56,6 +57,10 @@ Place place_inside(const Node& text, std::size_t at);
 
 // "a text", "a whole number", ...
 std::string kind_text(const Node& node);
+
+// The same for rooms below.
+TextPlace text_place(const Place& place);
+Mistake mistake_at(const TextPlace& place, const std::string& text, ExitCode code);
 
 // Mistakes in the order in which they are found; beyond a limit they are only counted.
 class MistakeList {

@@ -34,7 +34,7 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
     MistakeList& mistakes = table.reading().mistakes;
     if (node.kind == Node::Kind::whole || node.kind == Node::Kind::real) {
         if (std::isfinite(node.number)) {
-            into = fmt::format("{}", node.number);
+            into = {fmt::format("{}", node.number), text_place(node.place)};
         } else {
             mistakes.add(node.place, key + " is not a finite number");
         }
@@ -51,14 +51,14 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
         if (formula.is_constant()) {
             formula.evaluate(std::vector<double>(known_.size(), 0.0));  // finite or refused
         }
-        into = node.text;
+        into = {node.text, text_place(node.place)};
     } catch (const TextError& error) {
         mistakes.add(place_inside(node, error.at()), key + ": " + error.what());
     }
 }
 
 bool ExpressionReader::read(TableReader& table, const std::string& key, Expression& into) {
-    table.describe(key, "expression", into);
+    table.describe(key, "expression", into.text);
     const Node* node = table.find(key);
     if (node != nullptr) read_one(table, key, *node, into);
     return node != nullptr;
@@ -66,7 +66,7 @@ bool ExpressionReader::read(TableReader& table, const std::string& key, Expressi
 
 bool ExpressionReader::read(TableReader& table, const std::string& key, Expression3& into) {
     table.describe(key, "[x, y, z] of expressions",
-                   fmt::format("[{}, {}, {}]", into[0], into[1], into[2]));
+                   fmt::format("[{}, {}, {}]", into[0].text, into[1].text, into[2].text));
     const Node* node = table.find(key);
     if (node != nullptr) read_item(table, key, *node, into);
     return node != nullptr;
@@ -83,8 +83,16 @@ void ExpressionReader::read_item(TableReader& table, const std::string& key, con
     for (std::size_t axis = 0; axis < 3; ++axis) read_one(table, key, item.item[axis], into[axis]);
 }
 
+void ExpressionReader::expect_meant(TableReader& table, const std::string& key, const Node& node,
+                                    Quantity quantity, bool is_positive) const {
+    const std::optional<double> value = certain(node);
+    const std::string why = value ? why_not_meant(*value, quantity, is_positive) : "";
+    if (!why.empty()) table.reading().mistakes.add(node.place, key + " = " + why);
+}
+
 void ExpressionReader::expect_unit(TableReader& table, const std::string& key, const Node& node,
                                    Quantity quantity) {
+    expect_meant(table, key, node, quantity);
     const bool is_number = node.kind == Node::Kind::whole || node.kind == Node::Kind::real;
     if (is_number && quantity == Quantity::angle) table.warn_of_turns(key, node, node.number);
     if (node.kind != Node::Kind::text) return;
@@ -110,7 +118,7 @@ void ExpressionReader::expect_unit(TableReader& table, const std::string& key, c
 
 bool ExpressionReader::read(TableReader& table, const std::string& key, Quantity quantity,
                             Expression& into) {
-    table.describe(key, quantity_name(quantity) + " or expression", into);
+    table.describe(key, quantity_name(quantity) + " or expression", into.text);
     if (!read(table, key, into)) return false;
     expect_unit(table, key, *table.find(key), quantity);
     return true;
@@ -149,9 +157,13 @@ void ExpressionReader::expect_positive(TableReader& table, const std::string& ke
     if (given == nullptr) return;
     const auto judge = [&](const Node& one) {
         const std::optional<double> value = certain(one);
-        if (!value || *value > 0) return;
-        table.reading().mistakes.add(one.place,
-                                     fmt::format("{} = {} has to be more than 0", key, *value));
+        if (!value) return;
+        if (*value <= 0) {
+            table.reading().mistakes.add(one.place,
+                                         fmt::format("{} = {} has to be more than 0", key, *value));
+        } else if (why_not_meant(*value, Quantity::length).empty()) {
+            expect_meant(table, key, one, Quantity::length, true);
+        }
     };
     if (given->kind != Node::Kind::array) return judge(*given);
     for (const Node& one : given->item) judge(one);

@@ -34,13 +34,14 @@ class ExpressionReader {
     void read_item(TableReader& table, const std::string& key, const Node& item, Expression3& into);
     // The same for one that has to be of a quantity; what is no more than a number and a unit is
     // refused when its unit is another's, and an angle of more than a turn without one warned of.
+    // What is certain already and larger than can be meant is refused.
     bool read(TableReader& table, const std::string& key, Quantity quantity, Expression& into);
     bool read(TableReader& table, const std::string& key, Quantity quantity, Expression3& into);
     void read_item(TableReader& table, const std::string& key, const Node& item, Quantity quantity,
                    Expression3& into);
 
-    // Report where what stands there, when its value is already certain, is not more than 0, or
-    // all of three are 0.
+    // Report where a length that stands there, when its value is already certain, is not more than
+    // 0, or less than can be meant; or all of three are 0.
     void expect_positive(TableReader& table, const std::string& key);
     void expect_direction(TableReader& table);  // of its axis
 
@@ -54,6 +55,8 @@ class ExpressionReader {
   private:
     std::optional<double> certain(const Node& node) const;  // no variable has a say in it
     void read_one(TableReader& table, const std::string& key, const Node& node, Expression& into);
+    void expect_meant(TableReader& table, const std::string& key, const Node& node,
+                      Quantity quantity, bool is_positive = false) const;
     void expect_unit(TableReader& table, const std::string& key, const Node& node,
                      Quantity quantity);
 

@@ -19,7 +19,7 @@ ParameterRanges::ParameterRanges(const MachineSpec& machine)
 
 ParameterRanges::Bound ParameterRanges::bound(const Expression& text) const {
     if (text.empty()) return {};
-    Bound bound{std::make_shared<const Formula>(text, name_), {}};
+    Bound bound{std::make_shared<const Formula>(text.text, name_), {}};
     for (const std::string& name : bound.formula->used()) {
         bound.needs.push_back(
             static_cast<std::size_t>(std::find(name_.begin(), name_.end(), name) - name_.begin()));

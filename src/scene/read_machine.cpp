@@ -132,7 +132,7 @@ class MachineReader {
     void check_range(TableReader& table, const ParameterSpec& parameter) {
         const auto certain = [](const Expression& text) -> std::optional<double> {
             try {
-                if (!text.empty()) return evaluate_text(text, {});
+                if (!text.empty()) return evaluate_text(text.text, {});
             } catch (const TextError&) {
             }
             return std::nullopt;
@@ -182,7 +182,7 @@ class MachineReader {
             expression_.expect_positive(table, "size");
             expression_.read(table, "rounding", Quantity::length, tool.rounding);
         }
-        if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh);
+        if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh, tool.mesh_place);
         expression_.read(table, "axis", Quantity::number, tool.axis);
         expression_.expect_direction(table);
         if (!expression_.read(table, "at", Quantity::length, tool.at)) {
@@ -217,13 +217,14 @@ class MachineReader {
         }
     }
 
-    void read_tool_mesh(TableReader& table, fs::path& mesh) {
+    void read_tool_mesh(TableReader& table, fs::path& mesh, TextPlace& place) {
         std::string name;
         if (!table.text("file", name)) {
             table.missing("file", "the mesh, relative to the machine file");
             return;
         }
         mesh = (folder_ / name).lexically_normal();
+        place = text_place(table.find("file")->place);
         if (const auto reason = why_no_mesh(mesh)) {
             table.mistake("file",
                           fmt::format("the mesh \"{}\" {} ({})", name, *reason, mesh.string()),

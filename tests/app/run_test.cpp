@@ -290,6 +290,29 @@ TEST_CASE("the skin of clay pressed to a quarter of its height keeps the volume"
           Approx(rest).epsilon(.003));
 }
 
+TEST_CASE(
+    "a first machine that cannot be set up leaves nothing, and is told where its file has it") {
+    const Scratch scratch;
+    put_small_scene(scratch.path());  // its mesh
+    const fs::path scene = scratch.path() / "odd.toml", run = scratch.path() / "run";
+    fs::create_directory(scratch.path() / "machines");
+    put_text(scratch.path() / "machines/vice.toml",
+             "[[grip]]\nname = \"jaw\"\nfrom = [5, 5, 5]\nto = [6, \"5 + length\", 6]\n");
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 2\n"
+             "[[stage]]\nmachine = \"vice\"\ngravity = 1\n");
+    for (const char* command : {"check", "run"}) {
+        std::vector<std::string> words = {command, scene.string()};
+        if (words[0] == "run") words.insert(words.end(), {"--out", run.string(), "--no-render"});
+        const Outcome outcome = run_swage(words);
+        INFO(outcome.err);
+        CHECK(outcome.code == 3);
+        CHECK(outcome.err.find("machines/vice.toml:3:9: machine vice: grip jaw holds nothing") !=
+              std::string::npos);
+        CHECK_FALSE(fs::exists(run));
+    }
+}
+
 TEST_CASE("a later machine that cannot be set up leaves what was done, and is told at its place") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 2,

@@ -208,6 +208,20 @@ TEST_CASE("mistakes in machine files are named at their letter") {
              "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, 0]\n"
              "radius = \"3 - 3\"\n",
          {"13:10: radius = 0 has to be more than 0"}},
+        {"size beyond sense",
+         kHead + kGrip +
+             "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, \"1e9 m\"]\n"
+             "radius = 1e300\n",
+         {"12:13: at = 1e+09 m is out of range",
+          "13:10: radius = 1e+300 m is out of range: it has to be -1e+07 m to 1e+07 m"}},
+        {"size of next to nothing",
+         kHead + kGrip +
+             "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, 1e-320]\n"
+             "radius = \"1e-12 m\"\n",
+         {"13:10: radius = 0.001 nm is out of range: it has to be 1 nm to 1e+07 m"}},
+        {"turn beyond sense",
+         kHead + kGrip + "[grip.motion]\nturn = \"2*pi*1e7\"\n",
+         {"10:8: turn = 3.6e+09 deg is out of range"}},
         {"size of another shape",
          kHead + kGrip +
              "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, 0]\nradius = "
