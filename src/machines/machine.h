@@ -51,7 +51,7 @@ struct Machine {
 // material_friction.
 Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame);
 
-// `given`: parameters by name, SI; the rest take their defaults. Throws ParameterError, and PlacedError
+// `given`: parameters by name, SI; the rest take defaults. Throws ParameterError, and PlacedError
 // naming machine and tool, grip or blade: an expression without a value that can be meant; a tool
 // that can never touch, or whose mesh cannot be read; a grip that holds nothing, a point that two
 // hold, or one that does not start at rest; a load on nothing.
