@@ -186,7 +186,10 @@ class ObjReader {
         for (const std::string& library : library_) all_read &= read_library(library);
         if (all_read) tell_undefined(asked);
         tell_unlike(Unlike::clear, clear_, "d, Tr");
-        tell_unlike(Unlike::clamped, clamped_, "-clamp on");
+        const bool repeats = std::any_of(mesh_.uv.begin(), mesh_.uv.end(), [](const Vec2& uv) {
+            return uv.minCoeff() < 0 || uv.maxCoeff() > 1;
+        });
+        if (repeats) tell_unlike(Unlike::clamped, clamped_, "-clamp on");
         add_polygons(polygons_, mesh_);
         place_images();
         return std::move(mesh_);
@@ -338,11 +341,12 @@ class ObjReader {
             } else if (key == "d" || key == "Tr") {
                 const double value = scalar(key == "d" ? 1 : 0);
                 if (number >= 0 && (key == "d" ? value < 1 : value > 0)) clear_.insert(number);
-            } else if (key == "Ks" || key == "Ke" || key == "Ni") {
-                bool has_effect = false;
-                const double none = key == "Ni" ? 1 : 0;
+            } else if (key == "Ks" || key == "Ke") {
+                // Grey gloss is what Ns makes of any material; exporters write some of it always.
+                double low = 1e9, high = 0;
                 for (double value = 0; to_number(next_word(rest), value);)
-                    has_effect = has_effect || value != none;
+                    low = std::min(low, value), high = std::max(high, value);
+                const bool has_effect = key == "Ks" ? high > low : high > 0;
                 if (has_effect && material != &unused) other_values.emplace_back(key);
             } else if (key.starts_with("map_") || key == "bump" || key == "norm") {
                 if (material != &unused) other_maps.emplace_back(key);

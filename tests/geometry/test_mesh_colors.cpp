@@ -165,14 +165,16 @@ TEST_CASE("what of an OBJ's materials is not drawn is told, where it would show"
         folder.write("a.mtl", "newmtl one\nKd 1 0 0\n" + of + "newmtl idle\nKs 1 1 1\n");
         std::string text = fixtures::cube_obj();
         text.insert(text.find("f 1"), "mtllib a.mtl\nusemtl one\n");
+        text.replace(text.find("vt 1 1"), 6, "vt 2 1");
         std::vector<std::string> finding;
         read_mesh(folder.write("a.obj", text), {}, &finding);
         return finding;
     };
-    CHECK(findings("Ks 0 0 0\nKe 0 0 0\nNi 1.0\nillum 2\nmap_Kd -clamp off a.png\n").empty());
-    CHECK(findings("Ks 0 0 0.5\nKe 2\nNi 1.45\nKa 1 1 1\nmap_Kd -clamp on a.png\n") ==
+    CHECK(
+        findings("Ks 0.5 0.5 0.5\nKe 0 0 0\nNi 1.45\nillum 2\nmap_Kd -clamp off a.png\n").empty());
+    CHECK(findings("Ks 0 0 0.5\nKe 2\nKa 1 1 1\nmap_Kd -clamp on a.png\n") ==
           std::vector<std::string>{
-              "of the materials' values only Kd, Ns, Pr and Pm are used, not Ke, Ks, Ni",
+              "of the materials' values only Kd, Ns, Pr and Pm are used, not Ke, Ks",
               "the material 'one' does not repeat its image beyond the borders (-clamp on): drawn "
               "repeated"});
 }

@@ -146,7 +146,7 @@ TEST_CASE("OBJ materials arrive with colours, shine and images, also from awkwar
     CHECK(mesh.triangle_material == std::vector<int>{0, 1, 2});
     CHECK(mesh.part_name == std::vector<std::string>{"first part", "second"});
     CHECK(mesh.triangle_part == std::vector<int>{0, 0, 1});
-    CHECK(finding.size() == 3);  // the map_Bump, -clamp, the missing image
+    CHECK(finding.size() == 2);  // the map_Bump, the missing image
 }
 
 TEST_CASE("a material that no library of an OBJ defines is told") {
