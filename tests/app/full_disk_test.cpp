@@ -22,12 +22,9 @@ class SmallDisk {
         ::getrlimit(RLIMIT_FSIZE, &before_);
         const rlimit limit = {bytes, before_.rlim_max};
         ::setrlimit(RLIMIT_FSIZE, &limit);
-        ::signal(SIGXFSZ, SIG_IGN);
+        ::signal(SIGXFSZ, SIG_DFL);  // as a shell has it
     }
-    ~SmallDisk() {
-        ::setrlimit(RLIMIT_FSIZE, &before_);
-        ::signal(SIGXFSZ, SIG_DFL);
-    }
+    ~SmallDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
 
   private:
     rlimit before_{};
