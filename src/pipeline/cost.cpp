@@ -43,6 +43,8 @@ constexpr double kBytesPerVertex = 600;
 constexpr double kVerticesPerFace = 6;  // of a boundary, a cell's face: four, and its steps
 constexpr double kDividedVerticesPerFace = 2.5;  // of a face that is divided to follow the matter
 constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and their buffers
+// Addresses beside that memory, which count where they are limited.
+constexpr double kDrawingAddresses = 550e6, kThreadAddresses = 32e6;
 constexpr double kStillBytesPerPixel = 0.7;
 constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two triangles
 constexpr double kLongestRun = 30 * 86400.0;
@@ -199,12 +201,6 @@ double number_in(const fs::path& file, double otherwise, const std::string& word
 double free_memory() {
     constexpr double kUnlimited = std::numeric_limits<double>::infinity();
     double bytes = 1024 * number_in("/proc/meminfo", kUnlimited, "MemAvailable:");
-    rlimit limit = {};
-    if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-        const double page = static_cast<double>(::sysconf(_SC_PAGESIZE));
-        bytes = std::min(
-            bytes, static_cast<double>(limit.rlim_cur) - page * number_in("/proc/self/statm", 0));
-    }
     // Of a group of processes; what it keeps of files it lets go of where that is asked for.
     const fs::path group = "/sys/fs/cgroup";
     double taken = number_in(group / "memory.current", 0);
@@ -213,6 +209,17 @@ double free_memory() {
     }
     bytes = std::min(bytes, number_in(group / "memory.max", kUnlimited) - std::max(0.0, taken));
     return std::max(0.0, bytes);
+}
+
+// What the limit on them leaves this process.
+double free_addresses() {
+    rlimit limit = {};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+        return std::numeric_limits<double>::infinity();
+    }
+    const double page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+    const double taken = page * number_in("/proc/self/statm", 0);
+    return std::max(0.0, static_cast<double>(limit.rlim_cur) - taken);
 }
 
 double free_disk(fs::path folder) {
@@ -376,6 +383,14 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
              "the run would need about {} of memory, and {} are free: a larger [mold] spacing "
              "needs less (--force runs all the same)",
              bytes_text(cost.memory_bytes), bytes_text(memory));
+    }
+    const double addresses = cost.memory_bytes + kThreadAddresses * thread_count() +
+                             (options.draw ? kDrawingAddresses : 0);
+    if (addresses > free_addresses()) {
+        fail(ExitCode::resources,
+             "the run would need about {} of addresses, and the limit on them (ulimit -v) leaves "
+             "{}: --no-render and fewer --threads need less (--force runs all the same)",
+             bytes_text(addresses), bytes_text(free_addresses()));
     }
     if (cost.disk_bytes > disk) {
         fail(ExitCode::resources,

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "geometry/box_mesh.h"
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
@@ -201,6 +202,7 @@ TEST_CASE("what a process has taken already is not free for its run") {
     constexpr double kRoom = 1e9;
     rlimit before = {};
     ::getrlimit(RLIMIT_AS, &before);
+    set_thread_count(1);
     const rlimit limit = {static_cast<rlim_t>(taken + kRoom), before.rlim_max};
     REQUIRE(::setrlimit(RLIMIT_AS, &limit) == 0);
     RunOptions options;
@@ -210,5 +212,13 @@ TEST_CASE("what a process has taken already is not free for its run") {
     CHECK_THROWS_AS(refuse_excess(cost, options), Error);
     cost.memory_bytes = 0.1 * kRoom;
     CHECK_NOTHROW(refuse_excess(cost, options));
+    // Nor are addresses that libraries for drawing and stacks of threads will take.
+    cost.memory_bytes = 0.6 * kRoom;
+    CHECK_THROWS_AS(refuse_excess(cost, options), Error);
+    options.draw = false;
+    CHECK_NOTHROW(refuse_excess(cost, options));
+    set_thread_count(16);
+    CHECK_THROWS_AS(refuse_excess(cost, options), Error);
+    set_thread_count(0);
     ::setrlimit(RLIMIT_AS, &before);
 }
