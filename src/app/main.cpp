@@ -4,7 +4,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <exception>
 #include <new>
+#include <string_view>
+#include <system_error>
 
 #include "app/command.h"
 #include "app/suggest.h"
@@ -68,9 +72,17 @@ void open_standard_streams() {
     }
 }
 
-int run_guarded(int argc, char** argv) {
+// A thread that could not be started; TBB has no type for it.
+bool is_want_of_threads(const std::exception& error) {
+    const auto* system = dynamic_cast<const std::system_error*>(&error);
+    return system != nullptr ? system->code() == std::errc::resource_unavailable_try_again
+                             : std::string_view(error.what()).starts_with("pthread_create");
+}
+
+// Of what is being handled; returns the exit code.
+int tell_failure() {
     try {
-        return run_command_line(argc, argv);
+        throw;
     } catch (const Error& error) {
         // A line for each mistake.
         for (const std::string& line : lines_of(error.what())) log_error_text(line);
@@ -85,8 +97,30 @@ int run_guarded(int argc, char** argv) {
         log_error_text(error.what());
         return exit_code(ExitCode::output);
     } catch (const std::exception& error) {
+        if (is_want_of_threads(error)) {
+            log_error_text(
+                "there is no memory, or no leave, for so many threads; --threads 1 needs "
+                "the least");
+            return exit_code(ExitCode::resources);
+        }
         log_error_text(std::string("unexpected, please report it: ") + error.what());
         return kUnexpected;
+    }
+}
+
+// TBB's threads start each other, where nobody can catch what that throws.
+[[noreturn]] void end_uncaught() {
+    std::set_terminate(std::abort);
+    if (!std::current_exception()) std::abort();
+    leave_at_once(tell_failure());
+}
+
+int run_guarded(int argc, char** argv) {
+    try {
+        watch_for_interrupts();
+        return run_command_line(argc, argv);
+    } catch (...) {
+        return tell_failure();
     }
 }
 
@@ -95,7 +129,7 @@ int run_guarded(int argc, char** argv) {
 }  // namespace swage
 
 int main(int argc, char** argv) {
+    std::set_terminate(swage::end_uncaught);
     swage::open_standard_streams();
-    swage::watch_for_interrupts();
     return swage::run_guarded(argc, argv);
 }

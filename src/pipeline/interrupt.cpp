@@ -61,11 +61,7 @@ void watch() {
         again = wait_for_signal(kPatienceMilliseconds);
     }
     if (!again && is_stopping()) wait_for_signal(kFarewellMilliseconds);
-    {
-        const std::lock_guard lock(unfinished_mutex);
-        if (!unfinished.empty()) remove_temporaries(unfinished, ::getpid());
-    }
-    ::_exit(128 + asked_to_stop());
+    leave_at_once(128 + asked_to_stop());
 }
 
 // ".frame_0001.part1234.png" of the process 1234 (see base/atomic_file.h). 0: of this process, or
@@ -101,6 +97,14 @@ void watch_for_interrupts() {
 void set_unfinished_work(const fs::path& directory) {
     const std::lock_guard lock(unfinished_mutex);
     unfinished = directory;
+}
+
+void leave_at_once(int code) {
+    {
+        const std::lock_guard lock(unfinished_mutex);
+        if (!unfinished.empty()) remove_temporaries(unfinished, ::getpid());
+    }
+    ::_exit(code);
 }
 
 void set_frames_at_stake(bool are_at_stake) { frames_at_stake = are_at_stake; }
