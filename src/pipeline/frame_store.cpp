@@ -4,6 +4,7 @@
 #include "pipeline/frame_store.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -174,7 +175,8 @@ void FrameStoreWriter::finish() {
 }
 
 FrameStore::FrameStore(const fs::path& file) : file_(file) {
-    handle_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    // What is no plain file might keep us waiting.
+    handle_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (handle_ < 0) {
         fail(ExitCode::output, "{}: cannot be read: {}", file.string(), std::strerror(errno));
     }
@@ -182,6 +184,8 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
         ::close(handle_);
         fail(ExitCode::output, "{}: {}", file_.string(), why);
     };
+    struct stat about = {};
+    if (::fstat(handle_, &about) != 0 || !S_ISREG(about.st_mode)) give_up("is no plain file");
     std::uint64_t magic = 0;
     if (!read_all(handle_, 0, &magic, sizeof magic) || magic != kMagic) {
         give_up("is no motion file of this version of swage");

@@ -70,7 +70,8 @@ RenderSettings render_settings_of(const Json& record) {
             settings.camera.push_back(key);
         }
     } catch (const Json::exception&) {
-        fail(ExitCode::output, "run.json does not say how the run was drawn; run it again");
+        fail(ExitCode::output,
+             "run.json does not say how the run was drawn; run it again with --fresh");
     }
     return settings;
 }

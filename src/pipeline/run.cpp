@@ -29,10 +29,21 @@ FrameRange wanted_frames(const SceneSpec& scene, const RunOptions& options) {
     return wanted;
 }
 
-bool is_simulated(const Json& record, const RunDirectory& directory) {
+// Throws Error(output) where what is to be gone on from has been damaged.
+bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory& directory) {
     const Json& state = record.at("state");
-    return (state == RunState::simulated || state == RunState::complete) &&
-           std::filesystem::exists(directory.store());
+    if ((state != RunState::simulated && state != RunState::complete) ||
+        !std::filesystem::exists(directory.store())) {
+        return false;
+    }
+    const Json frames = record.value("frames", Json());
+    const Json seconds = record.value("seconds", Json::object());
+    if (!frames.is_number_integer() || frames < 1 || frames > frame_count(scene) ||
+        !seconds.is_object()) {
+        fail(ExitCode::output, "{}: is damaged; --fresh throws that run away",
+             directory.record().string());
+    }
+    return true;
 }
 
 void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch) {
@@ -150,7 +161,7 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     RunOutcome outcome;
     const std::optional<Json> earlier =
         may_be_done ? read_record(directory.record()) : std::nullopt;
-    const bool simulated = earlier && is_simulated(*earlier, directory);
+    const bool simulated = earlier && is_simulated(*earlier, scene, directory);
     if (simulated && (!options.draw || is_drawn(*earlier, files, wanted, scene.render.film))) {
         log_info("{}: already complete", directory.root().string());
         outcome.record = *earlier;

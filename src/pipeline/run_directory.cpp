@@ -10,14 +10,15 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/json.h"
+#include "scene/file_text.h"
 
 namespace swage {
 
@@ -27,6 +28,7 @@ namespace {
 
 constexpr const char* kIdentityName = ".swage-run";
 constexpr const char* kLockName = ".swage-lock";
+constexpr std::uintmax_t kLongestRecord = 64 << 20;  // some kB a stage
 
 std::string host_name() {
     std::array<char, 256> name = {};
@@ -45,12 +47,9 @@ std::string identity_text(const RunIdentity& identity) {
 }
 
 RunIdentity read_identity(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
     RunIdentity identity;
     try {
-        const Json json = Json::parse(text.str());
+        const Json json = Json::parse(record_text(file, ExitCode::foreign));
         identity.version = json.at("version").get<std::string>();
         for (const Json& input : json.at("inputs")) {
             identity.input.push_back({input.at("role").get<std::string>(),
@@ -123,6 +122,19 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
         }
     }
     return found;
+}
+
+std::string record_text(const fs::path& file, ExitCode code) {
+    std::optional<std::string> amiss = why_unreadable(file);
+    std::error_code error;
+    if (!amiss && fs::file_size(file, error) > kLongestRecord) amiss = "is too long to be swage's";
+    if (amiss) {
+        fail(code, "{}: {}; swage run --fresh throws that run away", file.string(), *amiss);
+    }
+    std::ifstream in(file, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
 }
 
 void make_folder(const fs::path& folder) {

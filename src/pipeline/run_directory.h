@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
+
 namespace swage {
 
 inline constexpr const char* kVersion = SWAGE_VERSION;
@@ -64,6 +66,10 @@ struct DrawnFiles {
     std::filesystem::path film() const { return root / "film.mp4"; }
     std::filesystem::path contact_sheet() const { return root / "contact.png"; }
 };
+
+// All of a small file that a run has left. Throws Error(code) when that is no plain file, cannot be
+// read or is longer than any such file; never waits for what is none.
+std::string record_text(const std::filesystem::path& file, ExitCode code);
 
 // Makes a folder and those that it lies in; Error(output) when that fails or something else has the
 // name.

@@ -2,8 +2,6 @@
 #include "pipeline/run_record.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "base/hash.h"
 #include "base/parallel.h"
@@ -166,11 +164,9 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
 }
 
 std::optional<Json> read_record(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return std::nullopt;
-    std::stringstream text;
-    text << in.rdbuf();
-    Json json = Json::parse(text.str(), nullptr, false);
+    std::error_code error;
+    if (!fs::exists(file, error)) return std::nullopt;
+    Json json = Json::parse(record_text(file, ExitCode::output), nullptr, false);
     if (!json.is_object() || !json.contains("state")) return std::nullopt;
     return json;
 }

@@ -35,7 +35,8 @@ Json matter_json(const Aggregate& matter);
 Json drawing_json(const DrawOutcome& drawing);
 Json seconds_json(const Stopwatch& watch);
 
-// An earlier record; none when there is no readable one.
+// An earlier record; none when there is none, or no whole one. Throws Error(output) where something
+// else has its name.
 std::optional<Json> read_record(const std::filesystem::path& file);
 
 // Whether the record's pictures include all of these, and they still stand there.

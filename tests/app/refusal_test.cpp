@@ -2,11 +2,13 @@
 // What the program says where it is given too little, or what nobody can use.
 #include <sys/resource.h>
 
+#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 
 namespace fs = std::filesystem;
+using swage::Json;
 
 namespace {
 
@@ -34,3 +36,30 @@ TEST_CASE("where there is no room for threads a run is refused with 7, and nothi
     }
 }
 #endif
+
+TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes another") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 1);
+    const fs::path run = scratch.path() / "run", record = run / "run.json";
+    const auto again = [&](const std::string& more) {
+        return run_swage({"run", scene.string(), "--out", run.string(), "--no-render", more});
+    };
+    REQUIRE(again("--quiet").code == 0);
+    const std::string whole = bytes_of(record);
+    const auto damaged = [&](const char* key, const Json& value) {
+        Json json = Json::parse(whole);
+        json[key] = value;
+        return swage::json_text(json);
+    };
+    for (const std::string& text :
+         {std::string("{\"state\": \"complete\"}"), damaged("frames", "two"), damaged("frames", 0),
+          damaged("frames", 1e18), damaged("seconds", "two")}) {
+        put_text(record, text);
+        const Outcome refused = again("--quiet");
+        CHECK(refused.code == 5);
+        CHECK(says(refused, "run.json: is damaged; --fresh throws that run away"));
+        CHECK(bytes_of(record) == text);
+    }
+    CHECK(again("--fresh").code == 0);
+    CHECK(Json::parse(bytes_of(record)).at("frames") == 2);
+}

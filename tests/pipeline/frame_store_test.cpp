@@ -2,6 +2,7 @@
 #include "pipeline/frame_store.h"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <fstream>
@@ -190,6 +191,11 @@ TEST_CASE("a damaged motion file is refused") {
     }
     SECTION("something else") {
         std::ofstream(file) << "not a motion file at all";
+        CHECK_THROWS_AS(FrameStore(file), Error);
+    }
+    SECTION("what would keep a reader waiting") {
+        fs::remove(file);
+        REQUIRE(::mkfifo(file.c_str(), 0600) == 0);
         CHECK_THROWS_AS(FrameStore(file), Error);
     }
     SECTION("absent") { CHECK_THROWS_AS(FrameStore(scratch.path() / "none.bin"), Error); }

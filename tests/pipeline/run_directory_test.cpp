@@ -2,6 +2,7 @@
 #include "pipeline/run_directory.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -106,6 +107,19 @@ TEST_CASE("a directory of something else is refused, even when all is to be made
               ExitCode::foreign);
     }
     CHECK(fs::exists(scratch.path() / "thesis.txt"));
+}
+
+TEST_CASE("what nobody can read whose run it is is refused at once, and made fresh") {
+    const Scratch scratch;
+    put_text(scratch.path() / "run.json", "{}");
+    REQUIRE(::mkfifo((scratch.path() / ".swage-run").c_str(), 0600) == 0);
+    CHECK(code_of([&] { const RunDirectory run(scratch.path(), identity_of("1"), false); }) ==
+          ExitCode::foreign);
+    {
+        RunDirectory fresh(scratch.path(), identity_of("1"), true);
+        fresh.begin();
+    }
+    CHECK(fs::is_regular_file(scratch.path() / ".swage-run"));
 }
 
 TEST_CASE("a directory that cannot be made is an output error") {
