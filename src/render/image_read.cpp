@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one file that sees stb_image.
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -8,6 +9,26 @@
 #include "base/error.h"
 #include "render/png.h"
 
+namespace {
+
+// What a PNG unpacks to grows in its block, whatever its header says: none may become larger than
+// a few times what the picture takes.
+constexpr std::size_t kLargestPixel = 8;              // 16 bits of four channels
+constexpr std::size_t kRoom = 4;                      // stb doubles its blocks
+constexpr std::size_t kLeastRoom = 65536;             // of tiny pictures, with their rows' filters
+thread_local std::size_t largest_block = kLeastRoom;  // 0 once a larger one was refused
+
+void* grown(void* block, std::size_t size) {
+    if (size <= largest_block) return std::realloc(block, size);
+    largest_block = 0;
+    return nullptr;
+}
+
+}  // namespace
+
+#define STBI_MALLOC(size) std::malloc(size)
+#define STBI_REALLOC(block, size) grown(block, size)
+#define STBI_FREE(block) std::free(block)
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
@@ -30,7 +51,8 @@ struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-// The size stands in the header: a bomb is refused before it is unpacked.
+// The size stands in the header: what is too large is refused before it is unpacked, and what
+// unpacks to more than that has it asks for is refused before it takes more.
 template <typename Info, typename Load>
 Image unpacked(const std::string& name, int largest_side, const Info& info, const Load& load) {
     int width = 0, height = 0, channels = 0;
@@ -42,8 +64,13 @@ Image unpacked(const std::string& name, int largest_side, const Info& info, cons
         fail(ExitCode::output, "{}: {} x {} pixels are more than {} a side", name, width, height,
              largest_side);
     }
+    largest_block = kLeastRoom + kRoom * kLargestPixel * (static_cast<std::size_t>(width) + 1) *
+                                     static_cast<std::size_t>(height);
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(load(&width, &height, &channels),
                                                            stbi_image_free);
+    if (!pixels && largest_block == 0) {
+        fail(ExitCode::output, "{}: holds far more than its {} x {} pixels", name, width, height);
+    }
     if (!pixels) fail(ExitCode::output, "{}: {}", name, stbi_failure_reason());
     Image image{width, height, {}};
     image.rgb.assign(pixels.get(), pixels.get() + 3 * static_cast<std::size_t>(width) *

@@ -72,6 +72,19 @@ TEST_CASE("a picture that cannot be read says why", "[png]") {
     CHECK_THROWS_AS(encode_png(Image{}), Error);
 }
 
+TEST_CASE("a picture that unpacks to far more than its size asks for is refused", "[png]") {
+    std::string bomb = encode_png(pattern(1024, 1024));
+    const std::string sixteen = {0, 0, 0, 16};
+    for (const std::size_t side : {16, 20}) bomb.replace(side, 4, sixteen);  // where they stand
+    try {
+        decode_image(bomb, "bomb.png");
+        FAIL("it was unpacked");
+    } catch (const Error& error) {
+        CHECK(std::string(error.what()) == "bomb.png: holds far more than its 16 x 16 pixels");
+    }
+    CHECK(decode_image(encode_png(pattern(64, 64)), "whole.png").width == 64);
+}
+
 TEST_CASE("light and bytes turn into each other", "[srgb]") {
     for (int i = 0; i < 256; ++i) {
         CHECK(std::lround(255 * srgb_from_linear(linear_from_srgb(i / 255.0))) == i);
