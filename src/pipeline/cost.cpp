@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "machines/machine.h"
 #include "pipeline/accuracy.h"
+#include "pipeline/disk_cost.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 #include "sim/advance.h"
@@ -45,8 +46,6 @@ constexpr double kDividedVerticesPerFace = 2.5;  // of a face that is divided to
 constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and their buffers
 // Addresses beside that memory, which count where they are limited.
 constexpr double kDrawingAddresses = 550e6, kThreadAddresses = 32e6;
-constexpr double kStillBytesPerPixel = 0.7;
-constexpr double kMeshBytesPerVertex = 330;  // as OBJ and PLY, with its two triangles
 constexpr double kLongestRun = 30 * 86400.0;
 constexpr double kFarShorter = 4;          // a step than a body needs
 constexpr double kCountedCells = 300'000;  // molded for real by count_cost
@@ -182,10 +181,8 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
                         vertices * kBytesPerVertex +
                         (options.draw ? kDrawingBytes + pixels * 60 : 0);
-    const double meshes =
-        static_cast<double>(scene.output.meshes_per_frame ? cost.frames : scene.stage.size());
-    cost.disk_bytes = stills * pixels * kStillBytesPerPixel + cost.frames * (vertices * 12 + 400) +
-                      meshes * vertices * kMeshBytesPerVertex;
+    cost.disk_bytes =
+        disk_bytes(scene, input, {double(cost.frames), stills, cost.mold.active_cells, vertices});
 }
 
 // The number that comes first in a file, or next after a word; `otherwise`: there is none.

@@ -68,11 +68,16 @@ TEST_CASE(
     // Every line of the table: its heading, the start, three frames.
     const std::string table = bytes_of(run / "curves/1-bend.csv");
     CHECK(std::count(table.begin(), table.end(), '\n') == 5);
-    // No temporary, no lock.
+    // No temporary, no lock, and no more bytes than were told before.
+    std::size_t bytes_there = 0;
     for (const auto& [name, bytes] : files_below(run)) {
+        bytes_there += bytes.size();
         CHECK(name.find(".part") == std::string::npos);
         CHECK(name != ".swage-lock");
     }
+    const Json told = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    CHECK(told.at("cost").at("disk_bytes").get<std::size_t>() > bytes_there);
+    CHECK(told.at("cost").at("disk_bytes").get<std::size_t>() < 2 * bytes_there);
 
     const auto before = files_below(run);
     const Outcome again = run_swage({"run", scene.string(), "--out", run.string()});

@@ -78,7 +78,7 @@ TEST_CASE("what a boundary's meshes take is told by its cells, not by the mesh t
         const double each = estimate_cost(scene, {input}, options).disk_bytes;
         const TriMesh skin =
             boundary_skin(mold(input.mesh, scene.body[0].material, scene.body[0].mold));
-        const double vertices = (each - once) / (100 * 330);
+        const double vertices = (each - once) / (100 * 400);
         INFO(shape << ": " << vertices << " of " << skin.position.size());
         CHECK(vertices > 0.7 * static_cast<double>(skin.position.size()));
         CHECK(vertices < 2 * static_cast<double>(skin.position.size()));
@@ -98,6 +98,24 @@ TEST_CASE("what a mesh of few triangles takes is told as it is once it is divide
     CHECK(disk(coarse, true) == Approx(disk(divided, true)).epsilon(0.2));
     CHECK(disk(divided, true) == disk(divided, false));
     CHECK(disk(coarse, false) < 0.1 * disk(coarse, true));
+}
+
+TEST_CASE("what a run writes is told with tools, textures and skins that are stored anew") {
+    BarScene bar(6);
+    StageSpec& stage = bar.scene.stage[0];
+    const double plain = bar.cost().disk_bytes;
+    const double skin = 130 * static_cast<double>(bar.input.mesh.position.size());
+    stage.machine.tool.resize(2);
+    const double pressed = bar.cost().disk_bytes;
+    CHECK(pressed > plain + 146e3);  // two plates
+    bar.input.mesh.material.resize(1);
+    bar.input.mesh.material[0].embedded_texture = std::make_shared<std::string>(1000, ' ');
+    CHECK(bar.cost().disk_bytes - pressed == Approx(2000));
+    stage.machine.blade.resize(1);
+    CHECK(bar.cost().disk_bytes > pressed + stage.frames * skin);
+    stage.machine.blade.clear();
+    bar.scene.body[0].material.strength = 1e6;
+    CHECK(bar.cost().disk_bytes > pressed + stage.frames * skin);
 }
 
 TEST_CASE("a step that damps, or of matter that yields, is told to take longer") {

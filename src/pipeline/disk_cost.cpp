@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/disk_cost.h"
+
+#include <algorithm>
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What files take at the most, in ordinary runs; half of that is common.
+constexpr double kStillBytes = 2000, kStillBytesPerPixel = 1.05;  // with its share of the film
+constexpr double kSheetStills = 20, kSheetSide = 384;             // as in draw.cpp
+constexpr double kMeshBytesPerVertex = 400;             // as OBJ and PLY, with its two triangles
+constexpr double kSkinBytesPerVertex = 140;             // in the motion file, likewise
+constexpr double kPartBytes = 170e3;                    // there: of a machine's tool, grip or blade
+constexpr double kBallBytes = 1e6;                      // there: of a tool that is a sphere
+constexpr double kToolFileShare = 3;                    // there: of a tool's own mesh file
+constexpr double kFrameBytes = 1000;                    // of poses and curves
+constexpr double kStageBytes = 60e3, kRunBytes = 20e3;  // of plots and records
+constexpr double kBrokenVertices = 3;                   // a cell, on the faces where matter broke
+
+// Of a machine as it is drawn.
+double machine_bytes(const MachineSpec& machine) {
+    double bytes = kPartBytes * static_cast<double>(machine.tool.size() + machine.grip.size() +
+                                                    machine.blade.size());
+    for (const ToolSpec& tool : machine.tool) {
+        if (tool.shape == ToolShape::sphere) bytes += kBallBytes;
+        std::error_code none;
+        const std::uintmax_t size = tool.mesh.empty() ? 0 : fs::file_size(tool.mesh, none);
+        if (!none) bytes += kToolFileShare * static_cast<double>(size);
+    }
+    return bytes;
+}
+
+// Pictures of the mesh: beside its meshes, and what its file holds in the motion file too.
+double texture_bytes(const TriMesh& mesh) {
+    double bytes = 0;
+    for (const SurfaceMaterial& material : mesh.material) {
+        if (material.embedded_texture) {
+            bytes += 2 * static_cast<double>(material.embedded_texture->size());
+        } else if (!material.texture.empty()) {
+            std::error_code none;
+            const std::uintmax_t size = fs::file_size(material.texture, none);
+            if (!none) bytes += static_cast<double>(size);
+        }
+    }
+    return bytes;
+}
+
+double picture_bytes(const RenderSettings& render, double stills) {
+    const double pixels = static_cast<double>(render.width) * render.height;
+    const double shrunk = std::min(1.0, kSheetSide / std::max(render.width, render.height));
+    const double on_sheet = std::min(stills, kSheetStills) * shrunk * shrunk * pixels;
+    return stills * kStillBytes + kStillBytesPerPixel * (stills * pixels + on_sheet);
+}
+
+bool may_break(const SceneSpec& scene) {
+    for (const BodySpec& body : scene.body) {
+        for (const Material* m : body.materials()) {
+            if (m->breaks()) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                  const DiskShare& of) {
+    const bool breaks = may_break(scene);
+    const double vertices = of.vertices + (breaks ? kBrokenVertices * of.cells : 0);
+    double skins = 1;  // stored: where matter may part in every frame
+    double bytes = kRunBytes;
+    for (const StageSpec& stage : scene.stage) {
+        bytes += kStageBytes + machine_bytes(stage.machine);
+        if (stage.remold) ++skins;
+        if (breaks || !stage.machine.blade.empty()) skins += stage.frames;
+    }
+    for (const InputMesh& one : input) bytes += texture_bytes(one.mesh);
+    const double meshes =
+        scene.output.meshes_per_frame ? of.frames : static_cast<double>(scene.stage.size());
+    return bytes + picture_bytes(scene.render, of.stills) +
+           of.frames * (vertices * 12 + kFrameBytes) +
+           vertices * (skins * kSkinBytesPerVertex + meshes * kMeshBytesPerVertex);
+}
+
+}  // namespace swage
