@@ -48,14 +48,16 @@ void write_shape(const fs::path& file, MadeShape shape) {
     if (ending != ".obj" && ending != ".ply") {
         fail(ExitCode::command_line, "{}: can be written as .obj or .ply", file.string());
     }
+    FilesBeside picture;
     if (shape.texture && !shape.mesh.material.empty()) {
         const fs::path folder = fs::absolute(file).parent_path();
         shape.mesh.material[0].texture =
-            folder / write_beside(folder, file.stem().string() + ".png",
-                                  encode_png({shape.texture->width, shape.texture->height,
-                                              shape.texture->rgb}));
+            folder / picture.add(folder, file.stem().string() + ".png",
+                                 encode_png({shape.texture->width, shape.texture->height,
+                                             shape.texture->rgb}));
     }
     ending == ".obj" ? write_obj(file, shape.mesh) : write_ply(file, shape.mesh);
+    picture.stay();
 }
 
 int make(const ShapeInfo& info, const MakeArguments& given) {

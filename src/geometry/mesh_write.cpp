@@ -81,7 +81,8 @@ std::string image_ending(std::string_view bytes) {
 // Puts each material's image beside `file`; returns the names, empty for no image. An equal file
 // that stands there already is left alone, a different one of that name is not touched.
 std::vector<std::string> copy_textures(const fs::path& file,
-                                       const std::vector<SurfaceMaterial>& material) {
+                                       const std::vector<SurfaceMaterial>& material,
+                                       FilesBeside& beside) {
     std::vector<std::string> names;
     for (const SurfaceMaterial& m : material) {
         std::string bytes, wanted;
@@ -98,14 +99,14 @@ std::vector<std::string> copy_textures(const fs::path& file,
             names.emplace_back();
             continue;
         }
-        names.push_back(write_beside(file.parent_path(), wanted, bytes));
+        names.push_back(beside.add(file.parent_path(), wanted, bytes));
     }
     return names;
 }
 
 void write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& material,
-               const std::vector<std::string>& name) {
-    const std::vector<std::string> image = copy_textures(file, material);
+               const std::vector<std::string>& name, FilesBeside& beside) {
+    const std::vector<std::string> image = copy_textures(file, material, beside);
     std::string text;
     for (std::size_t i = 0; i < material.size(); ++i) {
         const SurfaceMaterial& m = material[i];
@@ -117,7 +118,7 @@ void write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& materia
         if (!image[i].empty()) text += "map_Kd " + image[i] + "\n";
         text += "\n";
     }
-    write_file_whole(file, text);
+    beside.write(file, text);
 }
 
 void check_indices(const fs::path& file, const TriMesh& mesh) {
@@ -163,14 +164,26 @@ void pack(std::string& bytes, T value) {
 
 }  // namespace
 
-std::string write_beside(const fs::path& folder, const std::string& wanted,
-                         const std::string& bytes) {
+FilesBeside::~FilesBeside() {
+    std::error_code ignored;
+    for (const fs::path& file : made_) fs::remove(file, ignored);
+}
+
+void FilesBeside::write(const fs::path& file, const std::string& bytes) {
+    std::error_code ignored;
+    const bool is_new = !fs::exists(file, ignored);
+    write_file_whole(file, bytes);
+    if (is_new) made_.push_back(file);
+}
+
+std::string FilesBeside::add(const fs::path& folder, const std::string& wanted,
+                             const std::string& bytes) {
     std::string name = wanted, there;
     for (int n = 2; read_whole(folder / name, there) && there != bytes; ++n) {
         name = fmt::format("{}_{}{}", fs::path(wanted).stem().string(), n,
                            fs::path(wanted).extension().string());
     }
-    if (there != bytes || !fs::exists(folder / name)) write_file_whole(folder / name, bytes);
+    if (there != bytes || !fs::exists(folder / name)) write(folder / name, bytes);
     return name;
 }
 
@@ -181,12 +194,13 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
     Text text(64 * mesh.position.size() + 24 * mesh.uv.size() + 28 * mesh.smooth_group_count +
               10 * polygons.corner.size() * (1 + has_uv + has_normal) + 4096);
 
+    FilesBeside beside;
     std::vector<std::string> material_name;
     if (!mesh.material.empty()) {
         for (const SurfaceMaterial& m : mesh.material) material_name.push_back(m.name);
         material_name = unique_names(material_name, "material");
         const fs::path library = fs::path(file).replace_extension(".mtl");
-        write_mtl(library, mesh.material, material_name);
+        write_mtl(library, mesh.material, material_name, beside);
         text.put("mtllib " + library.filename().string() + "\n");
     }
     for (std::size_t i = 0; i < mesh.position.size(); ++i) {
@@ -236,6 +250,7 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
         text.put("\n");
     }
     write_file_whole(file, text.bytes());
+    beside.stay();
 }
 
 void write_ply(const fs::path& file, const TriMesh& mesh) {
@@ -251,7 +266,8 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     std::string bytes = "ply\nformat binary_little_endian 1.0\n";
     std::vector<int> image_of;  // of each material, -1: none
     int images = 0;
-    for (const std::string& image : copy_textures(file, mesh.material)) {
+    FilesBeside beside;
+    for (const std::string& image : copy_textures(file, mesh.material, beside)) {
         image_of.push_back(image.empty() ? -1 : images++);
         if (!image.empty()) bytes += "comment TextureFile " + image + "\n";
     }
@@ -323,6 +339,7 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
         if (chosen) pack(bytes, std::int32_t{face_image[p]});
     }
     write_file_whole(file, bytes);
+    beside.stay();
 }
 
 }  // namespace swage

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "geometry/trimesh.h"
 
@@ -22,9 +23,24 @@ void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 // texnumber (-1: none).
 void write_ply(const std::filesystem::path& file, const TriMesh& mesh);
 
-// A file of these bytes in the folder, under the wanted name or, where something else has that,
-// under one like it. Returns its name.
-std::string write_beside(const std::filesystem::path& folder, const std::string& wanted,
-                         const std::string& bytes);
+// Files that go with a mesh. Those that were not there before go away with it, unless they are to
+// stay, once the mesh itself stands.
+class FilesBeside {
+  public:
+    FilesBeside() = default;
+    ~FilesBeside();
+    FilesBeside(const FilesBeside&) = delete;
+    FilesBeside& operator=(const FilesBeside&) = delete;
+
+    void write(const std::filesystem::path& file, const std::string& bytes);
+    // A file of these bytes in the folder, under the wanted name or, where something else has that,
+    // under one like it. Returns its name.
+    std::string add(const std::filesystem::path& folder, const std::string& wanted,
+                    const std::string& bytes);
+    void stay() { made_.clear(); }
+
+  private:
+    std::vector<std::filesystem::path> made_;
+};
 
 }  // namespace swage

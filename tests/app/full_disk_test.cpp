@@ -65,3 +65,22 @@ TEST_CASE("a stage that the disk is too full for leaves an account of what it di
     // Those who come after it may draw it.
     CHECK(run_swage({"render", run.string(), "--no-film", "--frames", "1-2"}).code == 0);
 }
+
+TEST_CASE("of a mesh that finds no room nothing is left, what was there before stays") {
+    const Scratch scratch;
+    const auto make = [&](const char* folder) {
+        fs::create_directory(scratch.path() / folder);
+        return run_swage({"make", "sphere", "--out", (scratch.path() / folder / "x.obj").string()});
+    };
+    REQUIRE(make("whole").code == 0);
+    const std::uintmax_t room = fs::file_size(scratch.path() / "whole" / "x.obj") - 1;
+    const SmallDisk disk(room);
+    const Outcome outcome = make("full");
+    CHECK(outcome.code == 5);
+    CHECK(outcome.err.find("x.obj: cannot be written: File too large") != std::string::npos);
+    CHECK(fs::is_empty(scratch.path() / "full"));
+    CHECK(make("whole").code == 5);
+    for (const char* name : {"x.obj", "x.mtl"}) {
+        CHECK(fs::exists(scratch.path() / "whole" / name));
+    }
+}

@@ -215,6 +215,30 @@ TEST_CASE("exports beside each other share equal textures and never overwrite ot
     CHECK(read_quietly(folder / "out/f2.obj").material[0].texture.filename() == "t_2.png");
 }
 
+TEST_CASE("a mesh that cannot be written leaves no library and no picture, but those of others") {
+    const Folder folder;
+    TriMesh mesh = fixtures::ball_mesh(3, 0.5);
+    mesh.material.resize(1);
+    mesh.material[0].name = "hide";
+    mesh.material[0].embedded_texture = std::make_shared<const std::string>("image");
+    for (const char* name : {"ball.obj", "ball.ply"}) {
+        std::filesystem::create_directory(folder / name);
+        const auto write = [&] {
+            std::string(name) == "ball.obj" ? write_obj(folder / name, mesh)
+                                            : write_ply(folder / name, mesh);
+        };
+        CHECK_THROWS_AS(write(), Error);
+        std::filesystem::remove(folder / name);
+        CHECK(std::filesystem::is_empty(folder / "."));
+        std::filesystem::create_directory(folder / name);
+        const auto own = folder.write("hide.img", "image");
+        CHECK_THROWS_AS(write(), Error);
+        CHECK(std::filesystem::exists(own));
+        std::filesystem::remove(own);
+        std::filesystem::remove(folder / name);
+    }
+}
+
 TEST_CASE("a mesh with bad indices or a folder that is not there is an output error") {
     const Folder folder;
     TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
