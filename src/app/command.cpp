@@ -50,6 +50,9 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
     return command;
 }
 
+const CLI::Validator kSomewhere(
+    [](const std::string& text) { return text.empty() ? "\"\" is no name" : std::string(); }, "");
+
 void apply_common_options() {
     set_log_level(common.quiet     ? LogLevel::quiet
                   : common.verbose ? LogLevel::verbose

@@ -37,6 +37,9 @@ void add_render_command(CLI::App& app, Action& chosen);
 void add_make_command(CLI::App& app, Action& chosen);
 void add_verify_command(CLI::App& app, Action& chosen);
 
+// Of an option that says where to write: anything but "", which nobody means.
+extern const CLI::Validator kSomewhere;
+
 // Data for stdout; a reader that has gone away is no error, a full disk is.
 void put_out(std::string_view text);
 void put_json(const Json& json);

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -54,7 +55,12 @@ int run_command_line(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // help, version: on stdout
+        if (error.get_exit_code() == 0) {  // help, version
+            std::ostringstream text;
+            app.exit(error, text);
+            put_out(text.str());
+            return exit_code(ExitCode::done);
+        }
         log_error_text(parse_error_text(app, error, {argv + 1, argv + argc}));
         log_text("swage --help, or swage COMMAND --help, tells what there is");
         return exit_code(ExitCode::command_line);
@@ -94,7 +100,7 @@ int tell_failure() {
         log_error_text("there is not enough memory for this; a larger [mold] spacing needs less");
         return exit_code(ExitCode::resources);
     } catch (const std::filesystem::filesystem_error& error) {
-        log_error_text(error.what());
+        log_error_text(fmt::format("{}: {}", error.path1().string(), error.code().message()));
         return exit_code(ExitCode::output);
     } catch (const std::exception& error) {
         if (is_want_of_threads(error)) {

@@ -97,6 +97,7 @@ void add_make_command(CLI::App& app, Action& chosen) {
                                                   info.name),
                                       chosen, [&info] { return make(info, given); });
         shape->add_option("-o,--out", given.out, "OBJ or PLY file (default: SHAPE.obj)")
+            ->check(kSomewhere)
             ->type_name("FILE");
         for (const ShapeParameter& parameter : info.parameters) {
             shape

@@ -83,7 +83,8 @@ int render(const RenderArguments& given) {
 
     // The run's own pictures stay what its scene says they are.
     const fs::path out = given.out.empty() ? run / "again" : fs::path(given.out);
-    if (fs::exists(out / ".swage-run")) {
+    std::error_code unknown;
+    if (fs::exists(out / ".swage-run", unknown)) {
         fail(ExitCode::foreign,
              "{}: is a run; its pictures are those of its scene. Choose another "
              "--out",
@@ -125,7 +126,9 @@ void add_render_command(CLI::App& app, Action& chosen) {
         "  swage render renders/calf-line --camera-eye 0.5 0.2 0.4 --camera-target 0 0.1 0\n",
         chosen, [] { return render(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
-    command->add_option("--out", given.out, "where to draw (default: RUN/again)")->type_name("DIR");
+    command->add_option("--out", given.out, "where to draw (default: RUN/again)")
+        ->check(kSomewhere)
+        ->type_name("DIR");
     command
         ->add_option("--camera-azimuth", given.azimuth,
                      "where the camera stands about the upward axis, at the film's start: 0 is +z "

@@ -40,6 +40,7 @@ void add_run_command(CLI::App& app, Action& chosen) {
         chosen, [] { return run(given); });
     add_scene_argument(*command, given.scene);
     command->add_option("--out", given.out, "run directory (default: renders/NAME-OF-SCENE)")
+        ->check(kSomewhere)
         ->type_name("DIR");
     command->add_option("--frames", given.frames, "draw only the stills A to B; 1 is the start")
         ->type_name("A-B")

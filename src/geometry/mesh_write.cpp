@@ -183,7 +183,8 @@ std::string FilesBeside::add(const fs::path& folder, const std::string& wanted,
         name = fmt::format("{}_{}{}", fs::path(wanted).stem().string(), n,
                            fs::path(wanted).extension().string());
     }
-    if (there != bytes || !fs::exists(folder / name)) write(folder / name, bytes);
+    std::error_code unknown;
+    if (there != bytes || !fs::exists(folder / name, unknown)) write(folder / name, bytes);
     return name;
 }
 

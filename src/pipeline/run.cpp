@@ -153,7 +153,9 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
         if (options.draw) check_drawing(scene.render);
     };
     // Where nothing can have been done yet, nothing is made before it is known to be worth it.
-    const bool may_be_done = !options.fresh && std::filesystem::exists(options.out / "run.json");
+    std::error_code unknown;
+    const bool may_be_done =
+        !options.fresh && std::filesystem::exists(options.out / "run.json", unknown);
     if (!may_be_done) refuse_early();
     RunDirectory directory(options.out, identity, options.fresh);
     const DrawnFiles files{directory.root()};

@@ -163,7 +163,7 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
         if (it->path().filename() != kLockName) empty = false;
     }
     if (error) fail(ExitCode::output, "{}: cannot be read: {}", root_.string(), error.message());
-    if (!empty && !fs::exists(root_ / kIdentityName)) {
+    if (!empty && !fs::exists(root_ / kIdentityName, error)) {
         fail(ExitCode::foreign, "{}: holds files that are no run of swage; choose another --out",
              root_.string());
     }
@@ -221,7 +221,8 @@ void RunDirectory::lock() {
 
 void RunDirectory::claim(const RunIdentity& identity) {
     const fs::path file = root_ / kIdentityName;
-    if (!fs::exists(file) || !holds_products(root_)) {
+    std::error_code unknown;
+    if (!fs::exists(file, unknown) || !holds_products(root_)) {
         write_file_whole(file, identity_text_);
         return;
     }

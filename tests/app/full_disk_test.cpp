@@ -84,3 +84,12 @@ TEST_CASE("of a mesh that finds no room nothing is left, what was there before s
         CHECK(fs::exists(scratch.path() / "whole" / name));
     }
 }
+
+TEST_CASE("what stdout has no room for ends with 5, help and version too") {
+    for (const auto& words :
+         {std::vector<std::string>{"--version"}, {"--help"}, {"run", "--help"}}) {
+        CHECK(run_swage(words).code == 0);
+        const SmallDisk disk(4);
+        CHECK(run_swage(words).code == 5);
+    }
+}

@@ -13,7 +13,6 @@ using swage::Json;
 namespace {
 
 bool says(const Outcome& outcome, const std::string& words) {
-    INFO(outcome.err);
     return outcome.err.find(words) != std::string::npos;
 }
 
@@ -62,4 +61,31 @@ TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes anothe
     }
     CHECK(again("--fresh").code == 0);
     CHECK(Json::parse(bytes_of(record)).at("frames") == 2);
+}
+
+TEST_CASE(
+    "an empty name is no place to write to, and one that is too long is told with its place") {
+    const Scratch scratch;
+    const std::string scene = put_small_scene(scratch.path(), 1).string();
+    const std::string run = (scratch.path() / "run").string();
+    const std::string longer = (scratch.path() / std::string(300, 'x')).string();
+    REQUIRE(run_swage({"run", scene, "--out", run, "--no-render"}).code == 0);
+    for (const auto& words :
+         {std::vector<std::string>{"run", scene, "--no-render"}, {"render", run}}) {
+        const auto to = [&](const std::string& out) {
+            std::vector<std::string> all = words;
+            all.insert(all.end(), {"--out", out});
+            return run_swage(all, scratch.path());
+        };
+        const Outcome nowhere = to("");
+        CHECK(nowhere.code == 2);
+        CHECK(says(nowhere, "--out: \"\" is no name"));
+        const Outcome refused = to(longer);
+        CHECK(refused.code == 5);
+        CHECK(says(refused, longer + ": cannot be made: File name too long"));
+    }
+    CHECK(run_swage({"make", "bar", "--out", ""}, scratch.path()).code == 2);
+    CHECK(run_swage({"verify", "stretch", "--out", ""}, scratch.path()).code == 2);
+    CHECK_FALSE(fs::exists(scratch.path() / "renders"));
+    CHECK_FALSE(fs::exists(scratch.path() / "run" / "again"));
 }
