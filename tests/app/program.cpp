@@ -88,3 +88,19 @@ fs::path put_small_scene(const fs::path& folder, int frames, const std::string& 
                  std::to_string(frames) + "\n[render]\nsize = [160, 90]\n" + more);
     return file;
 }
+
+std::map<std::string, std::string> files_below(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) {
+            files[std::filesystem::relative(entry.path(), folder).string()] =
+                bytes_of(entry.path());
+        }
+    }
+    return files;
+}
+
+bool is_whole_png(const std::string& bytes) {
+    return bytes.size() > 50 && bytes.compare(1, 3, "PNG") == 0 &&
+           bytes.compare(bytes.size() - 8, 4, "IEND") == 0;
+}

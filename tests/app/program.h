@@ -44,6 +44,9 @@ Outcome run_swage(const std::vector<std::string>& argument,
                   const std::filesystem::path& program = SWAGE_BINARY);
 
 std::string bytes_of(const std::filesystem::path& file);
+// Name and bytes of every file below a folder.
+std::map<std::string, std::string> files_below(const std::filesystem::path& folder);
+bool is_whole_png(const std::string& bytes);
 void put_text(const std::filesystem::path& file, const std::string& text);
 
 // A bar of 10 x 2 x 2 cells bent by a few degrees in `frames` frames, drawn small.

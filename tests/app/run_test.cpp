@@ -19,20 +19,12 @@ namespace {
 // the laws and solver are meant to give other numbers.
 constexpr const char* kShippedBarHash = "ddf3d364fedf3b81";
 
-// Name and bytes of every file below a folder.
-std::map<std::string, std::string> files_below(const fs::path& folder) {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (entry.is_regular_file()) {
-            files[fs::relative(entry.path(), folder).string()] = bytes_of(entry.path());
-        }
-    }
-    return files;
-}
-
-bool is_whole_png(const std::string& bytes) {
-    return bytes.size() > 50 && bytes.compare(1, 3, "PNG") == 0 &&
-           bytes.compare(bytes.size() - 8, 4, "IEND") == 0;
+// Runs a scene with a bar of 10 cm, bar.obj, into run/.
+Outcome run_with_bar(const fs::path& folder, const std::string& text) {
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, folder);
+    put_text(folder / "scene.toml", text);
+    return run_swage({"run", (folder / "scene.toml").string(), "--out", (folder / "run").string(),
+                      "--no-render"});
 }
 
 std::string state_hash(const fs::path& run) {
@@ -197,21 +189,6 @@ TEST_CASE("drawn again, a run has no pictures of another time beside the new one
     CHECK(fs::exists(run / "again/notes.txt"));
 }
 
-TEST_CASE("a stage that cannot begin leaves what those before it have done") {
-    const Scratch scratch;
-    const fs::path scene = put_small_scene(
-        scratch.path(), 3, "[[stage]]\nmachine = \"twist\"\nangle = \"5 deg\"\nremold = true\n");
-    const fs::path run = scratch.path() / "run";
-    const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--set", "mold.cell_limit=60"});
-    INFO(outcome.err);
-    CHECK(outcome.code == 7);
-    REQUIRE(fs::exists(run / "run.json"));
-    CHECK(Json::parse(bytes_of(run / "run.json")).at("frames") == 4);
-    CHECK(is_whole_png(bytes_of(run / "frames/frame_0004.png")));
-    CHECK(run_swage({"render", run.string(), "--no-film"}).code == 0);
-}
-
 TEST_CASE("how often a run is looked at does not change what its machine does") {
     const Scratch scratch;
     run_swage({"make", "bar", "--length", "10 cm", "--out", (scratch.path() / "bar.obj").string()},
@@ -271,17 +248,6 @@ TEST_CASE("meshes are written for every frame when the scene asks for it") {
     CHECK(bytes_of(run / "meshes/1-bend/frame_0003.ply") == bytes_of(run / "meshes/1-bend.ply"));
 }
 
-TEST_CASE("a run that cannot be written is refused before it is simulated") {
-    const Scratch scratch;
-    const fs::path scene = put_small_scene(scratch.path());
-    put_text(scratch.path() / "file", "");
-    CHECK(run_swage({"run", scene.string(), "--out", (scratch.path() / "file").string()}).code ==
-          5);
-    CHECK(run_swage({"run", scene.string(), "--out", (scratch.path() / "file/below").string()})
-              .code == 5);
-    CHECK(run_swage({"run", scene.string(), "--out", scratch.path().string()}).code == 8);
-}
-
 TEST_CASE("the skin of clay pressed to a quarter of its height keeps the volume") {
     const Scratch scratch;
     const fs::path run = scratch.path() / "run";
@@ -293,70 +259,6 @@ TEST_CASE("the skin of clay pressed to a quarter of its height keeps the volume"
     const double rest = signed_volume(swage::read_mesh(scene.parent_path() / "../meshes/ball.obj"));
     CHECK(signed_volume(swage::read_mesh(run / "meshes/1-press.obj")) ==
           Approx(rest).epsilon(.003));
-}
-
-TEST_CASE(
-    "a first machine that cannot be set up leaves nothing, and is told where its file has it") {
-    const Scratch scratch;
-    put_small_scene(scratch.path());  // its mesh
-    const fs::path scene = scratch.path() / "odd.toml", run = scratch.path() / "run";
-    fs::create_directory(scratch.path() / "machines");
-    put_text(scratch.path() / "machines/vice.toml",
-             "[[grip]]\nname = \"jaw\"\nfrom = [5, 5, 5]\nto = [6, \"5 + length\", 6]\n");
-    put_text(scene,
-             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 2\n"
-             "[[stage]]\nmachine = \"vice\"\ngravity = 1\n");
-    for (const char* command : {"check", "run"}) {
-        std::vector<std::string> words = {command, scene.string()};
-        if (words[0] == "run") words.insert(words.end(), {"--out", run.string(), "--no-render"});
-        const Outcome outcome = run_swage(words);
-        INFO(outcome.err);
-        CHECK(outcome.code == 3);
-        CHECK(outcome.err.find("machines/vice.toml:3:9: machine vice: grip jaw holds nothing") !=
-              std::string::npos);
-        CHECK_FALSE(fs::exists(run));
-    }
-}
-
-TEST_CASE("a later machine that cannot be set up leaves what was done, and is told at its place") {
-    const Scratch scratch;
-    const fs::path scene = put_small_scene(scratch.path(), 2,
-                                           "[[stage]]\nmachine = \"bend\"\nframes = 2\n"
-                                           "radius = \"1 um\"\n");
-    const fs::path run = scratch.path() / "run";
-    const Outcome outcome = run_swage({"run", scene.string(), "--out", run.string()});
-    INFO(outcome.err);
-    CHECK(outcome.code == 3);
-    CHECK(outcome.err.find("small.toml:16:10: machine bend: radius = 1 um is out of range") !=
-          std::string::npos);
-    CHECK(fs::exists(run / "frames/frame_0003.png"));
-    const Json record = Json::parse(bytes_of(run / "run.json"));
-    CHECK(record["state"] == "stopped");
-    CHECK(record["frames"] == 3);
-}
-
-TEST_CASE(
-    "what a machine did of a frame that it gives up is on the books, as it is in the matter") {
-    const Scratch scratch;
-    const fs::path scene = scratch.path() / "twist.toml", run = scratch.path() / "run";
-    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
-    // An equilibrium every 62 degrees, of which the fifth is not found in so few iterations.
-    put_text(scene,
-             "[mesh]\nfile = \"bar.obj\"\n[material]\nyoung_modulus = \"1 MPa\"\n"
-             "density = \"1000 kg/m3\"\nyield_stress = \"50 kPa\"\n[mold]\nacross = 2\n"
-             "[[stage]]\nmachine = \"twist\"\nangle = \"3600 deg\"\nframes = 1\n"
-             "tolerance = 1e-4\niteration_limit = 100\nhalving_limit = 0\n");
-    const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
-    INFO(outcome.err);
-    REQUIRE(outcome.err.find("1-twist, frame 2: twist: no equilibrium found") != std::string::npos);
-    const Json record = Json::parse(bytes_of(run / "run.json"));
-    CHECK(record.at("frames") == 1);
-    const Json& stage = record.at("stages").at(0);
-    CHECK(stage.at("frames") == Json({2, 2}));
-    CHECK(stage.at("increments") > 0);
-    CHECK(stage.at("energies_J").at("machine_work") > 0);
-    CHECK(bytes_of(run / "curves/1-twist.csv").find("\n2,") != std::string::npos);
 }
 
 TEST_CASE("a stage whose steps have damped what they move by themselves says so") {
@@ -409,48 +311,6 @@ TEST_CASE("what is amiss with the file of an inset is told as that of a body") {
     CHECK(check.err.find("core.obj: the material file 'core.mtl' cannot be read") !=
           std::string::npos);
 }
-
-TEST_CASE("a fresh run that cannot start leaves the run that was there, one that can replaces it") {
-    const Scratch scratch;
-    const fs::path scene = put_small_scene(scratch.path(), 2), run = scratch.path() / "run";
-    const auto go = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), {"run", scene.string(), "--out", run.string(), "--no-render"});
-        return run_swage(more).code;
-    };
-    REQUIRE(go({}) == 0);
-    const auto before = files_below(run);
-    CHECK(go({"--fresh", "--set", "stage.1.frames=100000000"}) == 7);
-    CHECK(files_below(run) == before);
-    CHECK(go({"--fresh", "--set", "stage.1.radius=1 um"}) == 3);
-    CHECK(files_below(run) == before);
-    CHECK(go({"--fresh", "--set", "stage.1.frames=1"}) == 0);
-    CHECK(Json::parse(bytes_of(run / "run.json")).at("frames") == 2);
-}
-
-TEST_CASE("a run that failed before its first frame does not keep the mended one out") {
-    const Scratch scratch;
-    const fs::path scene = put_small_scene(scratch.path(), 2), run = scratch.path() / "run";
-    const auto go = [&](const char* radius) {
-        return run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--set",
-                          std::string("stage.1.radius=") + radius})
-            .code;
-    };
-    CHECK(go("1 um") == 3);
-    CHECK(go("2 cm") == 0);
-    CHECK(go("3 cm") == 8);
-}
-
-namespace {
-
-// Runs a scene with a bar of 10 cm, bar.obj, into run/.
-Outcome run_with_bar(const fs::path& folder, const std::string& text) {
-    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, folder);
-    put_text(folder / "scene.toml", text);
-    return run_swage({"run", (folder / "scene.toml").string(), "--out", (folder / "run").string(),
-                      "--no-render"});
-}
-
-}  // namespace
 
 TEST_CASE("what comes in several legs of a frame is told of that frame once") {
     const Scratch scratch;
