@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "pipeline/free_room.h"
 
 namespace swage {
 
@@ -58,6 +59,7 @@ void apply_common_options() {
                   : common.verbose ? LogLevel::verbose
                                    : LogLevel::normal);
     set_thread_count(common.threads);
+    refuse_threads(thread_count());
 }
 
 void put_out(std::string_view text) { write_out(printable(text)); }

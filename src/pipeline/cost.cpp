@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/cost.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "base/error.h"
@@ -15,6 +11,7 @@
 #include "machines/machine.h"
 #include "pipeline/accuracy.h"
 #include "pipeline/disk_cost.h"
+#include "pipeline/free_room.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 #include "sim/advance.h"
@@ -44,8 +41,8 @@ constexpr double kBytesPerVertex = 600;
 constexpr double kVerticesPerFace = 6;  // of a boundary, a cell's face: four, and its steps
 constexpr double kDividedVerticesPerFace = 2.5;  // of a face that is divided to follow the matter
 constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and their buffers
-// Addresses beside that memory, which count where they are limited.
-constexpr double kDrawingAddresses = 550e6, kThreadAddresses = 32e6;
+// Addresses beside that memory and those of threads.
+constexpr double kDrawingAddresses = 550e6;
 constexpr double kLongestRun = 30 * 86400.0;
 constexpr double kFarShorter = 4;          // a step than a body needs
 constexpr double kCountedCells = 300'000;  // molded for real by count_cost
@@ -183,49 +180,6 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
                         (options.draw ? kDrawingBytes + pixels * 60 : 0);
     cost.disk_bytes =
         disk_bytes(scene, input, {double(cost.frames), stills, cost.mold.active_cells, vertices});
-}
-
-// The number that comes first in a file, or next after a word; `otherwise`: there is none.
-double number_in(const fs::path& file, double otherwise, const std::string& word = {}) {
-    std::ifstream in(file);
-    for (std::string read; read != word && in >> read;) {
-    }
-    double value = 0;
-    return in >> value ? value : otherwise;
-}
-
-// What this process may still allocate.
-double free_memory() {
-    constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-    double bytes = 1024 * number_in("/proc/meminfo", kUnlimited, "MemAvailable:");
-    // Of a group of processes; what it keeps of files it lets go of where that is asked for.
-    const fs::path group = "/sys/fs/cgroup";
-    double taken = number_in(group / "memory.current", 0);
-    for (const char* kept : {"inactive_file", "active_file", "slab_reclaimable"}) {
-        taken -= number_in(group / "memory.stat", 0, kept);
-    }
-    bytes = std::min(bytes, number_in(group / "memory.max", kUnlimited) - std::max(0.0, taken));
-    return std::max(0.0, bytes);
-}
-
-// What the limit on them leaves this process.
-double free_addresses() {
-    rlimit limit = {};
-    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
-        return std::numeric_limits<double>::infinity();
-    }
-    const double page = static_cast<double>(::sysconf(_SC_PAGESIZE));
-    const double taken = page * number_in("/proc/self/statm", 0);
-    return std::max(0.0, static_cast<double>(limit.rlim_cur) - taken);
-}
-
-double free_disk(fs::path folder) {
-    std::error_code error;
-    while (!folder.empty() && !fs::exists(folder, error) && folder != folder.parent_path()) {
-        folder = folder.parent_path();
-    }
-    const fs::space_info space = fs::space(folder.empty() ? "." : folder, error);
-    return error ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
 // Of a body's mesh and of its strength.

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the machine, and limits on the process, leave it [byte].
+#pragma once
+
+#include <filesystem>
+
+namespace swage {
+
+inline constexpr double kThreadAddresses = 32e6;  // of each thread, which count where limited
+
+double free_memory();                            // that may still be allocated
+double free_addresses();                         // infinite without a limit
+double free_disk(std::filesystem::path folder);  // which need not be there yet
+
+// Throws Error(resources) where so many threads find no room. NOTE: what starts a thread in vain
+// ends the process in places where nobody can say so.
+void refuse_threads(int count);
+
+}  // namespace swage
