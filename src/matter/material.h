@@ -34,15 +34,15 @@ struct Material {
     // young_modulus; inf: never. Energy of a new crack, both its faces together [J/m2], > 0.
     double strength = std::numeric_limits<double>::infinity();
     double toughness = std::numeric_limits<double>::infinity();
-    double damping_ratio =
-        0.05;               // of every swing, 0 to 0.3: half its loss factor; explicit steps only
-    double friction = 0.3;  // Coulomb, against tools that do not say otherwise, >= 0
+    // The following but for friction act in motion, not in implicit steps.
+    double damping_ratio = 0.05;  // of every swing, 0 to 0.3: half its loss factor
+    double friction = 0.3;        // Coulomb, against tools that do not say otherwise, >= 0
     // Where nothing slides yet, >= friction; less counts as friction. On tools whose friction is
-    // another, in its proportion. Explicit steps only.
+    // another, in its proportion.
     double static_friction = 0;
-    // Speed after over speed before, where its surface meets another, 0 to 1; explicit steps only.
+    // Speed after over speed before, where its surface meets another, 0 to 1.
     double restitution = 0.5;
-    // Tension that it holds once it touches other matter or a tool [Pa], >= 0; explicit steps only.
+    // Tension that it holds once it touches other matter or a tool [Pa], >= 0.
     double stickiness = 0;
 
     double holding_friction() const {
