@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one file that sees stb_image.
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
+#include <sstream>
+#include <string_view>
 
 #include "base/error.h"
 #include "render/png.h"
@@ -36,6 +38,7 @@ void* grown(void* block, std::size_t size) {
 #define STBI_ONLY_BMP
 #define STBI_ONLY_TGA
 #define STBI_NO_HDR
+#define STBI_NO_STDIO
 #define STBI_NO_LINEAR
 #define STBI_FAILURE_USERMSG
 #define STBI_MAX_DIMENSIONS 16384
@@ -47,9 +50,31 @@ void* grown(void* block, std::size_t size) {
 namespace swage {
 
 namespace {
-struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
+// Whether no Huffman table of a JPEG has more codes than there are bytes for them to stand for.
+// NOTE: stb_image 2.27 writes them all, past the end of its table.
+bool has_sound_tables(std::string_view jpeg) {
+    const auto byte = [&](std::size_t at) {
+        return at < jpeg.size() ? static_cast<unsigned char>(jpeg[at]) : 0u;
+    };
+    if (!jpeg.starts_with("\xff\xd8")) return true;
+    for (std::size_t at = 2; at + 3 < jpeg.size();) {
+        const unsigned marker = byte(at) == 0xff ? byte(at + 1) : 0;
+        const bool is_alone = marker == 1 || (marker >= 0xd0 && marker <= 0xd8);
+        if (marker == 0 || marker == 0xff || is_alone) {
+            ++at;  // of an image's bits, or what fills up
+            continue;
+        }
+        const std::size_t end = at + 2 + 256 * byte(at + 2) + byte(at + 3);
+        for (std::size_t table = at + 4; marker == 0xc4 && table < end;) {
+            std::size_t codes = 0;
+            for (std::size_t length = 1; length <= 16; ++length) codes += byte(table + length);
+            if (codes > 256) return false;
+            table += 17 + codes;
+        }
+        at = end;
+    }
+    return true;
+}
 
 // The size stands in the header: what is too large is refused before it is unpacked, and what
 // unpacks to more than that has it asks for is refused before it takes more.
@@ -86,18 +111,18 @@ Image read_image(const std::filesystem::path& path, int largest_side) {
     if (!std::filesystem::is_regular_file(path, ignored)) {
         fail(ExitCode::output, "{}: no such picture", name);
     }
-    const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(name.c_str(), "rb"));
+    std::ifstream file(path, std::ios::binary);
     if (!file) fail(ExitCode::output, "{}: cannot be opened", name);
-    return unpacked(
-        name, largest_side,
-        [&](int* w, int* h, int* n) { return stbi_info_from_file(file.get(), w, h, n); },
-        [&](int* w, int* h, int* n) { return stbi_load_from_file(file.get(), w, h, n, 3); });
+    std::stringstream bytes;
+    bytes << file.rdbuf();
+    return decode_image(bytes.str(), name, largest_side);
 }
 
 Image decode_image(const std::string& bytes, const std::string& name, int largest_side) {
     if (bytes.size() > std::numeric_limits<int>::max()) {
         fail(ExitCode::output, "{}: more than 2 GiB", name);
     }
+    if (!has_sound_tables(bytes)) fail(ExitCode::output, "{}: not a sound JPEG picture", name);
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());
     return unpacked(

@@ -6,10 +6,10 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/process.h"
+#include "base/srgb.h"
 #include "render/contact_sheet.h"
 #include "render/film.h"
 #include "render/png.h"
-#include "base/srgb.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -70,6 +70,20 @@ TEST_CASE("a picture that cannot be read says why", "[png]") {
     std::ofstream(folder.path / "whole.png", std::ios::binary) << whole;
     CHECK_THROWS_AS(read_image(folder.path / "whole.png", 63), Error);
     CHECK_THROWS_AS(encode_png(Image{}), Error);
+}
+
+TEST_CASE("a JPEG with more codes than bytes is refused before it is decoded") {
+    // One Huffman table of 16 * 17 codes, before anything else.
+    std::string jpeg = std::string("\xff\xd8\xff\xc4\x01\x23", 6) + '\0' + std::string(16, 17);
+    for (const std::size_t shown : {jpeg.size() + 272, jpeg.size()}) {
+        jpeg.resize(shown, 'x');
+        try {
+            decode_image(jpeg, "codes.jpg");
+            FAIL("it was decoded");
+        } catch (const Error& error) {
+            CHECK(std::string(error.what()) == "codes.jpg: not a sound JPEG picture");
+        }
+    }
 }
 
 TEST_CASE("a picture that unpacks to far more than its size asks for is refused", "[png]") {
