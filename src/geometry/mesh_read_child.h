@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/file_contents.h"
 #include "geometry/trimesh.h"
 
 namespace swage {
@@ -105,9 +106,6 @@ std::string unlike_sentence(Unlike how, std::size_t count, const std::string& na
 
 // "my%20image" is "my image".
 std::string url_decoded(const std::string& text);
-
-// A regular file's contents, or nothing; never blocks on a pipe or device.
-std::optional<std::string> file_contents(const std::filesystem::path& file, std::uint64_t limit);
 
 std::string to_bytes(const RawMesh& mesh);
 // Throws Error(mesh) when the bytes are not a whole mesh.

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The plain arrays that cross the pipe between the reading process and its parent.
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -133,25 +129,6 @@ void check_ids(const std::vector<int>& ids, std::size_t triangles, std::size_t c
 }
 
 }  // namespace
-
-std::optional<std::string> file_contents(const std::filesystem::path& file, std::uint64_t limit) {
-    const int handle = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (handle < 0) return std::nullopt;
-    struct stat status {};
-    std::optional<std::string> contents;
-    if (::fstat(handle, &status) == 0 && S_ISREG(status.st_mode) &&
-        static_cast<std::uint64_t>(status.st_size) <= limit) {
-        std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
-        std::size_t have = 0;
-        for (ssize_t got; have < bytes.size() &&
-                          (got = ::read(handle, bytes.data() + have, bytes.size() - have)) > 0;)
-            have += static_cast<std::size_t>(got);
-        bytes.resize(have);
-        contents = std::move(bytes);
-    }
-    ::close(handle);
-    return contents;
-}
 
 void add_polygons(const PolygonList& polygons, RawMesh& mesh) {
     const auto where = [&](std::size_t p) {

@@ -7,11 +7,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_contents.h"
 #include "base/srgb.h"
 #include "geometry/polygon.h"
 
@@ -61,14 +61,6 @@ std::vector<std::string> unique_names(const std::vector<std::string>& wanted,
     return names;
 }
 
-bool read_whole(const fs::path& file, std::string& bytes) {
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) return false;
-    std::ifstream in(file, std::ios::binary);
-    bytes.assign(std::istreambuf_iterator<char>(in), {});
-    return !in.bad();
-}
-
 std::string image_ending(std::string_view bytes) {
     if (bytes.starts_with("\x89PNG")) return ".png";
     if (bytes.starts_with("\xff\xd8\xff")) return ".jpg";
@@ -91,9 +83,11 @@ std::vector<std::string> copy_textures(const fs::path& file,
             wanted = plain_name(m.name, "texture") + image_ending(bytes);
             std::replace(wanted.begin(), wanted.end(), '/', '_');
         } else if (!m.texture.empty()) {
-            if (!read_whole(m.texture, bytes))
+            const std::optional<std::string> image = file_contents(m.texture);
+            if (!image)
                 fail(ExitCode::output, "{}: the texture {} cannot be read", file.string(),
                      m.texture.string());
+            bytes = *image;
             wanted = m.texture.filename().string();
         } else {
             names.emplace_back();
@@ -178,13 +172,13 @@ void FilesBeside::write(const fs::path& file, const std::string& bytes) {
 
 std::string FilesBeside::add(const fs::path& folder, const std::string& wanted,
                              const std::string& bytes) {
-    std::string name = wanted, there;
-    for (int n = 2; read_whole(folder / name, there) && there != bytes; ++n) {
+    std::string name = wanted;
+    std::optional<std::string> there;
+    for (int n = 2; (there = file_contents(folder / name)) && *there != bytes; ++n) {
         name = fmt::format("{}_{}{}", fs::path(wanted).stem().string(), n,
                            fs::path(wanted).extension().string());
     }
-    std::error_code unknown;
-    if (there != bytes || !fs::exists(folder / name, unknown)) write(folder / name, bytes);
+    if (!there) write(folder / name, bytes);
     return name;
 }
 

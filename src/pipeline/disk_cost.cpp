@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "pipeline/draw.h"
+
 namespace swage {
 
 namespace fs = std::filesystem;
@@ -11,7 +13,6 @@ namespace {
 
 // What files take at the most, in ordinary runs; half of that is common.
 constexpr double kStillBytes = 2000, kStillBytesPerPixel = 1.05;  // with its share of the film
-constexpr double kSheetStills = 20, kSheetSide = 384;             // as in draw.cpp
 constexpr double kMeshBytesPerVertex = 400;             // as OBJ and PLY, with its two triangles
 constexpr double kSkinBytesPerVertex = 140;             // in the motion file, likewise
 constexpr double kPartBytes = 170e3;                    // there: of a machine's tool, grip or blade
@@ -51,8 +52,9 @@ double texture_bytes(const TriMesh& mesh) {
 
 double picture_bytes(const RenderSettings& render, double stills) {
     const double pixels = static_cast<double>(render.width) * render.height;
-    const double shrunk = std::min(1.0, kSheetSide / std::max(render.width, render.height));
-    const double on_sheet = std::min(stills, kSheetStills) * shrunk * shrunk * pixels;
+    const double shrunk =
+        std::min(1.0, double(kSheetPictureWidth) / std::max(render.width, render.height));
+    const double on_sheet = std::min(stills, double(kSheetPictures)) * shrunk * shrunk * pixels;
     return stills * kStillBytes + kStillBytesPerPixel * (stills * pixels + on_sheet);
 }
 

@@ -20,9 +20,6 @@ namespace swage {
 
 namespace {
 
-constexpr int kSheetPictures = 20;  // about
-constexpr int kSheetPictureWidth = 384;
-
 // One frame of the run as the renderer wants it; skins and machines are read when they change.
 class FrameSource {
   public:

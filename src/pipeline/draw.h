@@ -12,6 +12,9 @@
 
 namespace swage {
 
+inline constexpr int kSheetPictures = 20;       // on the sheet, about
+inline constexpr int kSheetPictureWidth = 384;  // [pixel]
+
 struct DrawOutcome {
     std::string renderer;  // what OpenGL calls itself
     int width = 0, height = 0;

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "base/atomic_file.h"
+#include "base/file_contents.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "pipeline/interrupt.h"
@@ -125,16 +126,12 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
 }
 
 std::string record_text(const fs::path& file, ExitCode code) {
-    std::optional<std::string> amiss = why_unreadable(file);
-    std::error_code error;
-    if (!amiss && fs::file_size(file, error) > kLongestRecord) amiss = "is too long to be swage's";
-    if (amiss) {
-        fail(code, "{}: {}; swage run --fresh throws that run away", file.string(), *amiss);
+    std::optional<std::string> text = file_contents(file, kLongestRecord);
+    if (!text) {
+        fail(code, "{}: {}; swage run --fresh throws that run away", file.string(),
+             why_unreadable(file).value_or("is too long to be swage's"));
     }
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
+    return std::move(*text);
 }
 
 void make_folder(const fs::path& folder) {

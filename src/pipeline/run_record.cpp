@@ -39,6 +39,12 @@ std::string add_file(RunIdentity& identity, const std::string& kind, const fs::p
     return free_role;
 }
 
+// Whether the numbers of a mesh lie in other files.
+bool keeps_numbers_beside(const fs::path& file) {
+    const std::string ending = file.extension().string();
+    return ending == ".gltf" || ending == ".GLTF";
+}
+
 void add_as_read(RunIdentity& identity, const std::string& role, const fs::path& file,
                  const TriMesh& mesh) {
     identity.input.push_back(
@@ -49,6 +55,15 @@ Json box_json(const Box& box) {
     if (box.empty()) return nullptr;
     return {{"low", {box.low[0], box.low[1], box.low[2]}},
             {"high", {box.high[0], box.high[1], box.high[2]}}};
+}
+
+// What is amiss with it is told where it is used.
+void add_as_read(RunIdentity& identity, const std::string& role, const fs::path& file) {
+    std::vector<std::string> findings;
+    try {
+        add_as_read(identity, role, file, read_mesh(file, {}, &findings));
+    } catch (const Error&) {
+    }
 }
 
 }  // namespace
@@ -76,8 +91,7 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
     }
     for (const fs::path& file : files) {
         const std::string role = add_file(identity, file == scene.file ? "scene" : "", file);
-        // Its numbers lie in files beside it.
-        if (file.extension() == ".gltf") add_as_read(identity, role, file, read_mesh(file));
+        if (keeps_numbers_beside(file)) add_as_read(identity, role, file);
     }
     for (std::size_t b = 0; b < input.size(); ++b) {
         const BodySpec& body = scene.body[b];

@@ -230,7 +230,7 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = piece.matter.lattice.spacing;
     // Pressed or drawn, matter takes up another volume; it is as heavy as it was.
-    as_it_stands.material.density = piece.matter.mass() / check_mesh(input.to_mold()).volume;
+    as_it_stands.material.density = piece.matter.mass() / signed_volume(input.to_mold());
     WorkPiece anew = make_work_piece(input, as_it_stands, skin);
     carry_hardening(piece.matter, anew.matter);
     carry_motion(piece.matter, anew.matter);

@@ -2,13 +2,13 @@
 // The one file that sees stb_image.
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
-#include <sstream>
+#include <optional>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/file_contents.h"
 #include "render/png.h"
 
 namespace {
@@ -50,6 +50,9 @@ void* grown(void* block, std::size_t size) {
 namespace swage {
 
 namespace {
+
+constexpr std::size_t kLargestFile = std::numeric_limits<int>::max();  // as stb counts
+
 // Whether no Huffman table of a JPEG has more codes than there are bytes for them to stand for.
 // NOTE: stb_image 2.27 writes them all, past the end of its table.
 bool has_sound_tables(std::string_view jpeg) {
@@ -111,17 +114,13 @@ Image read_image(const std::filesystem::path& path, int largest_side) {
     if (!std::filesystem::is_regular_file(path, ignored)) {
         fail(ExitCode::output, "{}: no such picture", name);
     }
-    std::ifstream file(path, std::ios::binary);
-    if (!file) fail(ExitCode::output, "{}: cannot be opened", name);
-    std::stringstream bytes;
-    bytes << file.rdbuf();
-    return decode_image(bytes.str(), name, largest_side);
+    const std::optional<std::string> bytes = file_contents(path, kLargestFile);
+    if (!bytes) fail(ExitCode::output, "{}: cannot be read, or is more than 2 GiB", name);
+    return decode_image(*bytes, name, largest_side);
 }
 
 Image decode_image(const std::string& bytes, const std::string& name, int largest_side) {
-    if (bytes.size() > std::numeric_limits<int>::max()) {
-        fail(ExitCode::output, "{}: more than 2 GiB", name);
-    }
+    if (bytes.size() > kLargestFile) fail(ExitCode::output, "{}: more than 2 GiB", name);
     if (!has_sound_tables(bytes)) fail(ExitCode::output, "{}: not a sound JPEG picture", name);
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());

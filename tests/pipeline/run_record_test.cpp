@@ -49,6 +49,9 @@ TEST_CASE("what lies beside a glTF file of an inset or a tool belongs to what a 
     CHECK(hashes() == one);
     put_corners(2);
     CHECK(hashes() != one);
+    // What cannot be read is refused where it is used, which knows its place.
+    put("core.gltf", "no glTF");
+    CHECK_NOTHROW(hashes());
 }
 
 TEST_CASE("what is no plain file, or far too long, is no record, and says so at once") {

@@ -72,6 +72,20 @@ TEST_CASE("a picture that cannot be read says why", "[png]") {
     CHECK_THROWS_AS(encode_png(Image{}), Error);
 }
 
+TEST_CASE("a file larger than any picture is refused unread") {
+    const Folder folder;
+    const fs::path file = folder.path / "huge.png";
+    std::ofstream(file) << "x";
+    fs::resize_file(file, std::uintmax_t{3} << 30);  // a hole
+    try {
+        read_image(file);
+        FAIL("it was read");
+    } catch (const Error& error) {
+        const std::string what = error.what();
+        CHECK(what.find("huge.png: cannot be read, or is more than 2 GiB") != std::string::npos);
+    }
+}
+
 TEST_CASE("a JPEG with more codes than bytes is refused before it is decoded") {
     // One Huffman table of 16 * 17 codes, before anything else.
     std::string jpeg = std::string("\xff\xd8\xff\xc4\x01\x23", 6) + '\0' + std::string(16, 17);
