@@ -34,9 +34,18 @@
 // any pull, and tremble; were that sliding already, bodies would slide as wholes below the static
 // coefficient (at a tenth, a block on a slope did at 0.85 to 0.95 of it; so none does below 0.99).
 //
-// Dashpots are taken at the end of the step, one contact after the other, each with its own mass m:
+// Dashpots are taken at the end of the step, all at once, given what all springs do. Were they
+// taken one after the other, those of what rests would bear against each other, the first would
+// slip before the last, and losses would hang on their order. Points i share carriers p, which they
+// load with w_ip, so that dashpots together would overshoot; each is therefore taken as if all that
+// touch worked as it does, in proportion to their stiffness, 1 / m of the above being S:
 //
-//     F = c d'(end),   d'(end) = d'(*) - dt (k d + F) / m,   d'(*) with all other forces' push
+//     S_i = sum_p |w_ip| sum_j |w_jp| k_j / (m_p k_i),   F_i = c_i v_i / (1 + c_i dt S_i)
+//
+// With P = dt F = D v they change v by -A D v; A is symmetric and not negative, D diagonal and D_i
+// at most 1 / S_i = k_i / (|A| k)_i. The eigenvalues of A D, those of D^1/2 A D^1/2, grow with D,
+// and with the largest one are those of A_ij k_j / (|A| k)_i, none of whose rows sums up to more
+// than 1. So they lie from 0 to 1: dashpots never turn a speed round.
 //
 // x(n+1) - 2 x(n) + x(n-1) + dt M^-1 C (x(n+1) - x(n)) + dt^2 M^-1 K x(n) = 0 has for each mode
 // m (l - 1)^2 + dt c l (l - 1) + dt^2 k l = 0, whose roots stay within the unit circle while
@@ -111,7 +120,7 @@ struct ImpactState {
     Vec3 now;           // velocity [m/s]
     Vec3 velocity;      // at the end of the step without this contact [m/s]
     Vec3 reach;         // from the point to where it sticks [m]
-    double give;        // 1 / m: speed that a unit of impulse on both sides makes [1/kg]
+    double give;        // 1 / m: S [1/kg]
     double step;        // [s]
     double beside = 0;  // v of what touches beside it [m/s]
 };

@@ -198,7 +198,16 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
                                            other.now + other.turned + other.gone);
         way_[w].push(share_of(own.now, other.now), 0.5 * (begins - turns), 0.5 * (turns - ends));
     }
-    for (std::size_t w : awake) way_[w].respond(step, again);
+    for (std::size_t b = 0; b < side_.size(); ++b) {
+        if (acts[b]) side_[b].patch().find_springs();
+    }
+    if (thread_count() == 1) {
+        for (std::size_t w : awake) way_[w].respond_and_answer(step, again);
+    } else {
+        parallel_for(awake.size(), candidates() / kThreadShare,
+                     [&](std::size_t n) { way_[awake[n]].respond(step, again); });
+        for (std::size_t w : awake) way_[w].answer();
+    }
     // NOTE: what friction lets go of may be any part of what a way holds, however short the step,
     // and the shares that both have then are others. With those from before it counted as less that
     // is kept, and more that friction took; the next step found energy that came from nowhere.

@@ -130,18 +130,11 @@ struct ContactWay::Kernel {
                               const CellCorners& corner, const CellGradient& gradient, double step,
                               Meeting& at, Chunk& sums) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
-        double give = 0;
         at.now = Vec4{};
         for (int c = 0; c < contact.carriers; ++c) {
-            const double w = contact.share[c];
-            const ContactPatch::Motion& motion = a.motion(contact.carrier[c]);
-            at.now += w * motion.speed;
-            give += w * w * motion.place[3];
+            at.now += double(contact.share[c]) * a.motion(contact.carrier[c]).speed;
         }
-        for (int c = 0; c < 8; ++c) {
-            at.now -= weight[c] * corner.now[c]->speed;
-            give += weight[c] * weight[c] * corner.now[c]->place[3];
-        }
+        for (int c = 0; c < 8; ++c) at.now -= weight[c] * corner.now[c]->speed;
         sums.took -= dot3(at.now, vec4(contact.dashed));
         const double hold = way.hold_[contact.point];
         if (at.is_known() && (last.is_new || last.sunk > 0)) take_off_sunk(last, step, hold, at);
@@ -174,8 +167,7 @@ struct ContactWay::Kernel {
             if (size > limit) limit = std::max(limit, k * std::sqrt(dot3(held, held)));
             at.spring += size > limit ? limit / size * along : along;
         }
-        at.spring[3] = 0;
-        at.set_give(give);
+        at.spring[3] = k;
         sums.held.now += 0.5 / k * dot3(at.spring, at.spring);
         if (push > k * at.depth()) sums.held.now += push * (at.depth() - push / k);
     }
@@ -218,15 +210,6 @@ struct ContactWay::Kernel {
         }
     }
 
-    // Adds a force on the point and its opposite on the cell that holds it.
-    SWAGE_INLINE void spread(const Contact& contact, const std::array<double, 8>& weight,
-                             Vec4 f) const {
-        for (int c = 0; c < contact.carriers; ++c) {
-            a.force(contact.carrier[c]) += double(contact.share[c]) * f;
-        }
-        for (int c = 0; c < 8; ++c) b.force(contact.corner[c]) -= weight[c] * f;
-    }
-
     SWAGE_INLINE void push_chunk(std::size_t chunk) const {
         Pushed &point = way.point_push_, &cell = way.cell_push_;
         const std::size_t end = way.begin_of(chunk + 1);
@@ -236,10 +219,11 @@ struct ContactWay::Kernel {
             const std::array<double, 8> weight = trilinear_weights(contact.place);
             const Vec4 f = way.meeting_[n].spring;
             for (int c = 0; c < contact.carriers; ++c) {
-                point.force[contact.carrier[c] - point.low].value += double(contact.share[c]) * f;
+                point.force[contact.carrier[c] - point.low].value +=
+                    share_lanes(contact.share[c]) * f;
             }
             for (int c = 0; c < 8; ++c) {
-                cell.force[contact.corner[c] - cell.low].value -= weight[c] * f;
+                cell.force[contact.corner[c] - cell.low].value += share_lanes(-weight[c]) * f;
             }
         }
     }
@@ -247,17 +231,11 @@ struct ContactWay::Kernel {
     SWAGE_INLINE ImpactForce impact(const Contact& contact, const ContactMemory& last,
                                     const Meeting& at, double step) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
-        const double give = at.give();
-        const Vec4 spring = way.share_ * at.spring;
-        Vec4 push = -give * spring;  // of all others, over the mass
+        Vec4 push{};  // of all but dashpots, over the mass
         for (int c = 0; c < contact.carriers; ++c) {
-            const Vec4& f = a.force(contact.carrier[c]);
-            push += contact.share[c] * f[3] * f;
+            push += share_lanes(contact.share[c]) * a.springs(contact.carrier[c]);
         }
-        for (int c = 0; c < 8; ++c) {
-            const Vec4& f = b.force(contact.corner[c]);
-            push -= weight[c] * f[3] * f;
-        }
+        for (int c = 0; c < 8; ++c) push += share_lanes(-weight[c]) * b.springs(contact.corner[c]);
         double beside = 0;
         for (int c = 0; c < contact.carriers && !way.met_.empty(); ++c) {
             beside =
@@ -266,18 +244,19 @@ struct ContactWay::Kernel {
         ImpactLaw law = way.law_;
         law.stiffness = way.share_ * at.stiffness();
         law.hold = way.share_ * way.hold_[contact.point];
-        const ImpactForce f = impact_force(law,
-                                           {.depth = at.depth(),
-                                            .normal = vec3(at.normal),
-                                            .now = vec3(at.now),
-                                            .velocity = vec3(at.now + step * push),
-                                            .reach = vec3(at.reach),
-                                            .give = give,
-                                            .step = step,
-                                            .beside = beside},
-                                           last.history);
-        spread(contact, weight, vec4(f.force) - spring);
-        return f;
+        const double give = push[3] / law.stiffness;
+        // The law takes its own spring off again.
+        push -= give * way.share_ * at.spring;
+        return impact_force(law,
+                            {.depth = at.depth(),
+                             .normal = vec3(at.normal),
+                             .now = vec3(at.now),
+                             .velocity = vec3(at.now + step * push),
+                             .reach = vec3(at.reach),
+                             .give = give,
+                             .step = step,
+                             .beside = beside},
+                            last.history);
     }
 
     // Of what has touched when last committed, and is still where it was then: found by dashpots
@@ -297,25 +276,23 @@ struct ContactWay::Kernel {
         f.force = f.elastic + contact.dashed;
         f.bond = last.bond;  // `bound` is found with what is kept
         f.history = last.history;
-        spread(contact, trilinear_weights(contact.place), vec4(f.force) - way.share_ * at.spring);
         return f;
     }
 
-    SWAGE_INLINE void respond(double step, bool again) const {
-        ContactSums& sums = way.sums_ = {};
-        sums.damped = 0.5 * way.broken_;
-        sums.friction = 0.5 * way.turned_;
-        for (const Chunk& chunk : way.chunk_) sums.took += 0.5 * chunk.took;
-        way.kept_ = 0;
-        for (std::size_t n = 0; n < way.list_.size(); ++n) {
+    SWAGE_INLINE void respond_chunk(std::size_t chunk, double step, bool again) const {
+        ContactSums& sums = way.chunk_[chunk].sums = {};
+        double& kept = way.chunk_[chunk].kept = 0;
+        const std::size_t end = way.begin_of(chunk + 1);
+        for (std::size_t n = way.begin_of(chunk); n < end; ++n) {
             Contact& contact = way.list_.contact[n];
             const ContactMemory& last = way.list_.memory[n];
-            const Meeting& at = way.meeting_[n];
+            Meeting& at = way.meeting_[n];
             ContactMemory& next = way.next_[n];
             ImpactForce f;
             if (at.meets()) {
                 f = again && last.history.touches ? same_as(contact, last, at)
                                                   : impact(contact, last, at, step);
+                at.spring = vec4(f.force) - way.share_ * at.spring;
             }
             next.history = f.history;
             next.bond = f.bond;
@@ -324,7 +301,7 @@ struct ContactWay::Kernel {
             next.pressed = at.stretch() * at.depth();
             next.soft = at.soft();
             next.stored = f.stored / way.share_;
-            way.kept_ += next.stored;
+            kept += next.stored;
             next.is_new = !at.is_known() && (last.is_new || !way.is_static());
             contact.dashed = f.force - f.elastic;
             next.bound = 0;
@@ -356,6 +333,21 @@ struct ContactWay::Kernel {
             }
         }
     }
+
+    // On the points, and their opposites on the cells that hold them.
+    SWAGE_INLINE void answer_chunk(std::size_t chunk) const {
+        const std::size_t end = way.begin_of(chunk + 1);
+        for (std::size_t n = way.begin_of(chunk); n < end; ++n) {
+            if (!way.meeting_[n].meets()) continue;
+            const Contact& contact = way.list_.contact[n];
+            const std::array<double, 8> weight = trilinear_weights(contact.place);
+            const Vec4 f = way.meeting_[n].spring;
+            for (int c = 0; c < contact.carriers; ++c) {
+                a.force(contact.carrier[c]) += double(contact.share[c]) * f;
+            }
+            for (int c = 0; c < 8; ++c) b.force(contact.corner[c]) -= weight[c] * f;
+        }
+    }
 };
 
 void ContactWay::find_chunk(std::size_t chunk, double step) {
@@ -369,11 +361,14 @@ void ContactWay::push_chunk(std::size_t chunk) {
     by_fours([&]() __attribute__((always_inline)) { Kernel{*this}.push_chunk(chunk); });
 }
 
-void ContactWay::respond(double step, bool again) {
-    next_.resize(list_.size());
-    find_met();
-    by_fours([&]() __attribute__((always_inline)) { Kernel{*this}.respond(step, again); });
-    is_found_ = true;
+void ContactWay::respond_chunk(std::size_t chunk, double step, bool again) {
+    by_fours([&]() __attribute__((always_inline)) {
+        Kernel{*this}.respond_chunk(chunk, step, again);
+    });
+}
+
+void ContactWay::answer_chunk(std::size_t chunk) {
+    by_fours([&]() __attribute__((always_inline)) { Kernel{*this}.answer_chunk(chunk); });
 }
 
 }  // namespace swage

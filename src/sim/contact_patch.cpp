@@ -38,8 +38,16 @@ void ContactPatch::read(std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
         const ParticleId p = particle_[n];
         motion_[n] = motion_of(p);
-        force_[n].force = vec4(others_->at(p), motion_[n].place[3]);
+        force_[n].all = vec4(others_->at(p));
     }
+}
+
+void ContactPatch::find_springs() {
+    parallel_chunks(particle_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            force_[n].springs = motion_[n].place[3] * force_[n].all;
+        }
+    });
 }
 
 void ContactPatch::read(const Vec3Array& force) {
@@ -56,10 +64,10 @@ void ContactPatch::write(Vec3Array& force, const Vec3& gravity, double step, Con
         Power power;
         for (std::size_t n = begin; n < end; ++n) {
             const ParticleId p = particle_[n];
-            const Vec3 all = vec3(force_[n].force), done = all - force.at(p);
+            const Vec3 all = vec3(force_[n].all), done = all - force.at(p);
             const Vec3 v = vec3(motion_[n].speed);
             power.came += done.dot(v);
-            power.goes += done.dot(v + step * (gravity + force_[n].force[3] * all));
+            power.goes += done.dot(v + step * (gravity + motion_[n].place[3] * all));
             force.set(p, all);
         }
         return power;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The particles of one body that its contacts touch, copied side by side for the time of one step's
-// contact: a cache line for how each moves and half of one for the force on it, where the body's
-// own arrays would ask for seven lines. They stand in the order in which contacts first ask.
+// contact: a cache line for how each moves and another for the forces on it, where the body's own
+// arrays would ask for seven lines. They stand in the order in which contacts first ask.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,8 @@ class ContactPatch {
         Vec4 speed;  // [m/s], and 0
     };
     struct alignas(32) Force {
-        Vec4 force;  // [N], and 1 / mass
+        Vec4 all;      // [N], and what points that touch have of stiffness on it [N/m]
+        Vec4 springs;  // the same over its mass, of all forces but those of dashpots
     };
 
     // The body must outlive it.
@@ -32,12 +33,15 @@ class ContactPatch {
 
     // Begins a step's contact with what else acts on the body [N].
     void read(const Vec3Array& force);
+    // All springs have been added: from here on springs() stay, whatever else is.
+    void find_springs();
     // Ends it, and adds what contacts have done to the powers in `sums`: speeds go on for `step`
     // [s] with these forces and gravity [m/s2].
     void write(Vec3Array& force, const Vec3& gravity, double step, ContactSums& sums);
 
     const Motion& motion(int slot) const { return motion_[slot]; }
-    Vec4& force(int slot) { return force_[slot].force; }  // the last lane stays as it is
+    Vec4& force(int slot) { return force_[slot].all; }
+    const Vec4& springs(int slot) const { return force_[slot].springs; }
     Motion motion_of(ParticleId particle) const;
 
   private:

@@ -260,6 +260,43 @@ void ContactWay::push(double share, double gone, double turned) {
     cell_push_.add_to(onto_->patch(), share);
 }
 
+void ContactWay::begin_response() {
+    next_.resize(list_.size());
+    find_met();
+}
+
+void ContactWay::respond(double step, bool again) {
+    begin_response();
+    parallel_for(chunk_.size(), [&](std::size_t chunk) { respond_chunk(chunk, step, again); });
+}
+
+void ContactWay::answer() {
+    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) answer_chunk(chunk);
+    sum_response();
+}
+
+void ContactWay::respond_and_answer(double step, bool again) {
+    begin_response();
+    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
+        respond_chunk(chunk, step, again);
+        answer_chunk(chunk);
+    }
+    sum_response();
+}
+
+void ContactWay::sum_response() {
+    sums_ = {};
+    sums_.damped = 0.5 * broken_;
+    sums_.friction = 0.5 * turned_;
+    kept_ = 0;
+    for (const Chunk& chunk : chunk_) {
+        sums_.took += 0.5 * chunk.took;
+        sums_.join(chunk.sums);
+        kept_ += chunk.kept;
+    }
+    is_found_ = true;
+}
+
 void ContactWay::keep_more(double energy) {
     if (!(law_.holding > 0)) return;  // round-off
     sums_.stored += 0.5 * energy;

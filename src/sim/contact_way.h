@@ -18,8 +18,8 @@
 // to what steps can follow (stiffest_of_points()).
 //
 // In each step: resolve() where contacts have been found anew; then of all ways find() and press(),
-// of all push(), of all respond(); and commit() where the step is kept. Both sides' patches are
-// read before and written after.
+// of all push(), of all respond() and answer(); and commit() where the step is kept. Both sides'
+// patches are read before, know all springs before respond(), and are written after.
 #pragma once
 
 #include <algorithm>
@@ -74,9 +74,12 @@ class ContactWay {
     // Adds this share of it. Half of what both ways hold less for what is gone, and for what the
     // surface turned away from [J].
     void push(double share, double gone, double turned);
-    // Dashpots and friction, one contact after the other, given what all springs do. `again`: as
-    // they were when last committed.
+    // Dashpots and friction, given what all springs do. `again`: as they were when last committed.
     void respond(double step, bool again);
+    // Adds what they do.
+    void answer();
+    // Both, for one thread.
+    void respond_and_answer(double step, bool again);
     // What its springs would hold alone, now that friction has let go of some of it [J].
     double kept() const { return kept_; }
     // What friction has let go of is less by this [J].
@@ -110,11 +113,11 @@ class ContactWay {
         Vec4 normal;
         Vec4 reach;       // from the point to where it sticks [m]
         Vec4 now;         // speed of the point over the other side [m/s]
-        Vec4 spring;      // what its springs would do if this way were alone [N]
+        Vec4 spring;      // what its springs would do if this way were alone, then what it does
+                          // beside that [N]
         Vec4 inverse[3];  // rows of J^-1 [1/m]
 
         SWAGE_INLINE double depth() const { return normal[3]; }  // that counts [m]
-        SWAGE_INLINE double give() const { return reach[3]; }    // ImpactState::give [1/kg]
         SWAGE_INLINE double sunk() const { return now[3]; }      // depth that does not count [m]
         SWAGE_INLINE double stretch() const { return inverse[0][3]; }    // s
         SWAGE_INLINE double soft() const { return inverse[1][3]; }       // ContactMemory::soft
@@ -123,7 +126,6 @@ class ContactWay {
         SWAGE_INLINE bool meets() const { return soft() != 0; }
 
         SWAGE_INLINE void set_depth(double value) { normal[3] = value; }
-        SWAGE_INLINE void set_give(double value) { reach[3] = value; }
         SWAGE_INLINE void set_sunk(double value) { now[3] = value; }
         SWAGE_INLINE void set_stretch(double value) { inverse[0][3] = value; }
         SWAGE_INLINE void set_soft(double value) { inverse[1][3] = value; }
@@ -138,8 +140,11 @@ class ContactWay {
         double took = 0;         // ContactSums::took, of the one half
         bool is_met = false;     // some touch that had not
         Held held;               // by springs of the whole stiffness
+        double kept = 0;         // of it, kept()
+        ContactSums sums{};
     };
-    // What springs do to the particles of a patch, from the slot `low` on [N].
+    // What springs do to the particles of a patch, from the slot `low` on [N], and how stiff they
+    // are [N/m].
     struct Pushed {
         int low = 0, high = -1;
         struct alignas(32) Force {
@@ -178,6 +183,10 @@ class ContactWay {
     void find_chunk(std::size_t chunk, double step);
     void find_met();
     void push_chunk(std::size_t chunk);
+    void begin_response();
+    void respond_chunk(std::size_t chunk, double step, bool again);
+    void answer_chunk(std::size_t chunk);
+    void sum_response();
 
     ContactSide *from_, *onto_;
     Solver solver_;

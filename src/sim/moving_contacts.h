@@ -2,18 +2,7 @@
 // What tools and grips do to a body in motion, but for implicit steps: the law of laws/impact.h on
 // the pairs of sim/tool_pairs.h, the tool rigid and as heavy as can be. A step first finds the
 // springs of all points that touch, then each one's dashpot from the speed that it would end the
-// step with. Were dashpots taken one after the other, those of what rests would bear against each
-// other, and the first would slip before the last. Points share carriers, so that the dashpots
-// together would overshoot; each is therefore taken as if all that touch worked as it does, in
-// proportion to their stiffness:
-//
-//     S_i = sum_p |w_ip| sum_j |w_jp| k_j / (m_p k_i),   P_i = c_i dt v_i / (1 + c_i dt S_i)
-//
-// With P = D v they change v by -A D v; A is symmetric and not negative, D diagonal and D_i at most
-// 1 / S_i = k_i / (|A| k)_i. The eigenvalues of A D, those of D^1/2 A D^1/2, grow with D, and with
-// the largest one are those of A_ij k_j / (|A| k)_i, none of whose rows sums up to more than 1. So
-// they lie from 0 to 1: dashpots never turn a speed round, and only widen the bound of the step, as
-// laws/impact.h says.
+// step with.
 #pragma once
 
 #include <vector>

@@ -24,6 +24,11 @@ SWAGE_INLINE Vec4 cross(Vec4 a, Vec4 b) {
     const Vec4 turned = a * __builtin_shuffle(b, next) - __builtin_shuffle(a, next) * b;
     return __builtin_shuffle(turned, next);
 }
+// A share of a force on the first three lanes, and its size on the fourth.
+SWAGE_INLINE Vec4 share_lanes(double share) {
+    const Index4 but_sign{-1, -1, -1, 0x7fffffffffffffff};
+    return (Vec4)((Index4)Vec4{share, share, share, share} & but_sign);
+}
 // Of the first three lanes.
 SWAGE_INLINE double dot3(Vec4 a, Vec4 b) {
     const Vec4 p = a * b;

@@ -326,33 +326,44 @@ TEST_CASE("a block on another body stays below static friction and slides above"
     m.friction = 0.3;
     m.static_friction = 0.45;
     const double g = 9.81;
-    for (const auto& [share, slides] : {std::pair(0.441, false), std::pair(0.459, true)}) {
-        Floor floor(m, Vec3(0, -g, 0));
-        // Pushed along the face that touches, so that it does not topple.
-        Load push = push_below(floor.block, share * floor.block.mass() * g);
-        push.body = 1;
-        floor.apparatus.load.push_back(push);
-        const auto drive = [&](double time) {
-            Drive d = floor.drive(time);
-            d.load_strength = {std::clamp((time - 0.4) / 0.3, 0.0, 1.0)};
-            return d;
-        };
-        Simulation simulation({&floor.plate, &floor.block}, floor.apparatus, floor.settings);
-        simulation.advance(drive(0), drive(0.3));
-        simulation.advance(drive(0.3), drive(0.4));
-        const double rest = floor.block.centre().x();
-        simulation.advance(drive(0.4), drive(0.7));
-        simulation.advance(drive(0.7), drive(0.8));
-        const double v = floor.block.mean_velocity().x();
-        simulation.advance(drive(0.8), drive(0.9));
-        const double gained = (floor.block.mean_velocity().x() - v) / 0.1;
-        INFO("push " << share << ", from " << rest << " to " << floor.block.centre().x()
-                     << ", gained " << gained);
-        if (slides) {
-            CHECK(gained == Approx(g * (share - 0.3)).epsilon(0.01));
-        } else {
-            CHECK(std::abs(floor.block.centre().x() - rest) < 1e-3);
-            CHECK(std::abs(floor.block.mean_velocity().x()) < 2e-3);
+    // Pushed along the face that touches, so that it does not topple; then on a slope, which is a
+    // level where gravity leans.
+    for (const bool leans : {false, true}) {
+        for (const auto& [share, slides] : {std::pair(0.441, false), std::pair(0.459, true)}) {
+            const double down = leans ? g / std::hypot(1, share) : g;
+            Floor floor(m, Vec3(0, -down, 0));
+            Load push = push_below(floor.block, share * floor.block.mass() * down);
+            if (leans) {
+                const double points = static_cast<double>(floor.block.surface.size());
+                push.point.clear();
+                for (int p = 0; p < points; ++p) push.point.push_back(p);
+                push.force.assign(push.point.size(),
+                                  Vec3(share * floor.block.mass() * down / points, 0, 0));
+            }
+            push.body = 1;
+            floor.apparatus.load.push_back(push);
+            const auto drive = [&](double time) {
+                Drive d = floor.drive(time);
+                d.load_strength = {std::clamp((time - 0.4) / 0.3, 0.0, 1.0)};
+                return d;
+            };
+            Simulation simulation({&floor.plate, &floor.block}, floor.apparatus, floor.settings);
+            simulation.advance(drive(0), drive(0.3));
+            simulation.advance(drive(0.3), drive(0.4));
+            const double rest = floor.block.centre().x();
+            simulation.advance(drive(0.4), drive(0.7));
+            simulation.advance(drive(0.7), drive(1.0));
+            const double v = floor.block.mean_velocity().x();
+            simulation.advance(drive(1.0), drive(1.2));
+            const double gained = (floor.block.mean_velocity().x() - v) / 0.2;
+            INFO("leans " << leans << ", push " << share << ", from " << rest << " to "
+                          << floor.block.centre().x() << ", gained " << gained);
+            if (slides) {
+                CHECK(gained == Approx(down * (share - 0.3)).epsilon(0.01));
+            } else {
+                CHECK(std::abs(floor.block.centre().x() - rest) < 1e-3);
+                CHECK(std::abs(floor.block.mean_velocity().x()) < 2e-3);
+            }
         }
     }
 }

@@ -39,6 +39,35 @@ TEST_CASE("the books of each of two bodies that collide balance by what they pas
     }
 }
 
+TEST_CASE("what bodies lose where they meet does not hang on which of them is named first") {
+    Material dull = kSpringy;
+    dull.restitution = 0.5;
+    dull.friction = 0.4;
+    dull.damping_ratio = 0.1;
+    const auto collide = [&](bool turned) {
+        Aggregate a = make_block(3, 3, 3, 0.1, dull), b = make_block(2, 2, 2, 0.1, dull);
+        place(b, {Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())), Vec3(0.42, 0.1, 0.05)});
+        for (double& v : b.particle_velocity.x) v = -2;
+        std::vector<Aggregate*> bodies = {&a, &b};
+        if (turned) std::swap(bodies[0], bodies[1]);
+        const Apparatus nothing;
+        Simulation simulation(bodies, nothing, motion_settings());
+        FrameReport r;
+        for (int n = 0; n < 10; ++n) {
+            r = simulation.advance(still(0.01 * n), still(0.01 * (n + 1)));
+        }
+        return std::tuple(r, a.mean_velocity(), b.mean_velocity());
+    };
+    const auto [one, a, b] = collide(false);
+    const auto [other, a2, b2] = collide(true);
+    CHECK(one.damped > 0.1);
+    CHECK(one.friction > 0.001);
+    CHECK(other.damped == Approx(one.damped).epsilon(1e-6));
+    CHECK(other.friction == Approx(one.friction).epsilon(1e-6));
+    CHECK((a2 - a).norm() < 1e-6);
+    CHECK((b2 - b).norm() < 1e-6);
+}
+
 TEST_CASE("what tumbling bodies leave in the books' remainder falls with the step") {
     const auto worst = [](double friction, double safety) {
         Material m = kSpringy;

@@ -105,7 +105,7 @@ TEST_CASE("a pebble that lands wakes what lies there, as if it had never slept")
         stiffer.damping_ratio = 0.15;  // more creeps too long to sleep by then
         // With dull contacts the blow is another where a tremor has lifted the rim of what lay
         // there.
-        stiffer.restitution = 0.5;
+        stiffer.restitution = 1;
         auto ground = std::make_unique<Ground>(std::vector<double>{0, 15.0}, sleep, stiffer);
         int asleep = 0;
         while (ground->time < 1.79) asleep = std::max(asleep, ground->go(0.05).asleep);
