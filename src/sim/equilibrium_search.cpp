@@ -51,6 +51,21 @@ NewtonProblem problem_of(StaticForces& forces, const Drive& to, double accuracy,
     return problem;
 }
 
+// What is in some grip, or all, has gone [m]: other pieces go anywhere.
+double farthest(const StaticForces& forces, const Vec3Array& from) {
+    Vec3Array gone = forces.matter.particle_position;
+    combine(1, -1, from, gone);
+    for (const std::vector<ParticleId>& piece : forces.free.loose_pieces()) {
+        for (ParticleId p : piece) gone.set(p, Vec3::Zero());
+    }
+    return longest_of(gone);
+}
+
+// That what is left over may take a body which has gone so far [m].
+double farthest_astray(const Aggregate& matter, double gone) {
+    return kAstray * (gone + kNudge * matter.lattice.spacing);
+}
+
 void look_around(StaticForces& forces, const Drive& to) {
     forces.contacts.find_candidates(forces.matter, to);
     forces.self.meet_anew();
@@ -140,6 +155,24 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
         result = {next.converged, result.iterations + next.iterations, next.residual, next.falls,
                   result.buckled};
     };
+    const auto leave_less = [&] {
+        const double enough = result.residual;
+        const Vec3Array there = x;
+        again(0.1 * accuracy);
+        if (result.converged) return true;
+        x = there;
+        result = {true, result.iterations, enough, false, result.buckled};
+        return false;
+    };
+    // What was cut, or lost its grips, has no push to measure by, and a tangent only where Newton's
+    // method serves.
+    const bool tried = move.let_go && !newton_ && !forces.touches();
+    while (tried && result.converged && accuracy >= kFinest * tolerance_) {
+        const Vec3Array before = x;
+        if (!leave_less()) break;
+        const double gone = farthest(forces, begun_at_);
+        if (farthest(forces, before) <= farthest_astray(matter, gone)) break;
+    }
     for (int turn = 0; turn < kMostTurns && newton_ && result.converged;) {
         if (floats_under_pressure(forces.apparatus) || forces.self.presses()) break;
         NewtonProblem problem =
@@ -156,14 +189,8 @@ Relaxation EquilibriumSearch::find(StaticForces& forces, StaticMove& move) {
             forces.find(move.to);
             forces.hold = hold;
             const Newton::Astray soft = newton_->astray(matter, forces.force, begun_at_);
-            if (soft.left <= kAstray * soft.gone + kNudge * kAstray * a) break;
-            const double enough = result.residual;
-            const Vec3Array there = x;
-            again(0.1 * accuracy);
-            if (result.converged) continue;
-            x = there;
-            result = {true, result.iterations, enough, false, result.buckled};
-            break;
+            if (soft.left <= farthest_astray(matter, soft.gone) || !leave_less()) break;
+            continue;
         }
         ++turn;
         const Vec3Array way = newton_->softest_motion();

@@ -73,6 +73,7 @@ MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
 bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
                                   MoveOutcome& outcome, Unsolved unsolved) {
     StaticMove move = begin_move(from, to, depth, outcome.body[0]);
+    move.let_go = unsolved == Unsolved::leave;
     Relaxation found = search_.find(forces_, move);
     outcome.iterations += found.iterations;
     outcome.residual = found.residual;

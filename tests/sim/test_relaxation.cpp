@@ -5,10 +5,14 @@
 #include <limits>
 #include <random>
 
+#include "sim/advance.h"
 #include "sim/push_measure.h"
 #include "sim/resting_contacts.h"
 #include "sim/vector_sums.h"
 #include "tests/catch.h"
+#include "tests/shared/block.h"
+#include "tests/shared/lattice_fixture.h"
+#include "tests/sim/loads_fixture.h"
 #include "tests/sim/motion.h"
 
 using namespace swage;
@@ -122,4 +126,27 @@ TEST_CASE("a residual is eased to what was let go of, and never to what is no nu
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         CHECK_FALSE(measure.ease(none, 0.5));
     }
+}
+
+TEST_CASE("a slender bar that is slit comes back all the way, little as its stiffness drives it") {
+    const double a = 0.01;
+    Aggregate bar = make_block(120, 2, 2, a, {.young_modulus = 1e7, .poisson_ratio = 0.3});
+    sever_plane(bar, Vec3::Zero(), Vec3::UnitY(), [](const Vec3& x) { return x.x() < -0.4; });
+    Apparatus apparatus;
+    apparatus.name = "hold";
+    apparatus.grip.push_back(
+        hold(bar, points_where(bar, [](const Vec3& x) { return x.x() < -0.585; })));
+    const auto bow = [](double x) { return 0.015 * (x + 0.585) * (x + 0.585); };
+    deform(bar, [&](const Vec3& x) {
+        return Vec3(x + std::max(0.0, bow(std::max(x.x(), -0.585))) * Vec3::UnitY());
+    });
+    const double far = bow(0.6);
+    Simulation simulation(bar, apparatus, SimSettings{});
+    simulation.advance(drive_of(apparatus, 0, 0), drive_of(apparatus, 1, 0));
+    double left = 0;
+    for (std::size_t p = 0; p < bar.particle_count(); ++p) {
+        left = std::max(left, (bar.particle_position.at(p) - bar.particle_reference.at(p)).norm());
+    }
+    INFO("bent by " << far << ", left " << left);
+    CHECK(left < 0.02 * far);
 }
