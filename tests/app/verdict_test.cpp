@@ -14,12 +14,12 @@ namespace {
 
 // What a run of this body in these stages says; `keys` stand in [mesh].
 std::string told_of(const swage::TriMesh& mesh, const std::string& stages,
-                    const std::string& keys = {}) {
+                    const std::string& keys = {}, const std::string& material = "rubber") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "scene.toml";
     swage::write_obj(scratch.path() / "body.obj", mesh);
-    put_text(scene, "[mesh]\nfile = \"body.obj\"\n" + keys +
-                        "[material]\nname = \"rubber\"\n[mold]\nacross = 2\n" + stages);
+    put_text(scene, "[mesh]\nfile = \"body.obj\"\n" + keys + "[material]\nname = \"" + material +
+                        "\"\n[mold]\nacross = 2\n" + stages);
     const Outcome outcome = run_swage(
         {"run", scene.string(), "--out", (scratch.path() / "run").string(), "--no-render"});
     INFO(outcome.err);
@@ -69,4 +69,15 @@ TEST_CASE("tools are said to have touched nothing only where that is known") {
     CHECK(!says(told, "never touched"));
     CHECK(says(told, "none of its tools bears on the work-piece at the end of any frame"));
     CHECK(!says(told_of(kBar, press), "its tools"));
+}
+
+TEST_CASE("a cut through matter at rest is said to have made no energy") {
+    const std::string material = GENERATE("copper", "structural_steel", "rubber");
+    for (const char* frames : {"8", "9", "12"}) {
+        const std::string told =
+            told_of(kBar, std::string("[[stage]]\nmachine = \"cut\"\nframes = ") + frames + "\n",
+                    {}, material);
+        INFO(material << ", " << frames << " frames: " << told);
+        CHECK(!says(told, "books do not close"));
+    }
 }

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/stage_verdict.h"
+
+#include "pipeline/stage_machine.h"
+#include "tests/catch.h"
+#include "tests/scene/scratch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+
+namespace {
+
+// A bar that the shipped cutter parts, 20 cm x 5 cm x 5 cm.
+struct CutBar {
+    explicit CutBar(const std::string& material) {
+        const test::Scratch scratch;
+        const std::string text = "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"" + material +
+                                 "\"\n[[stage]]\nmachine = \"cut\"\nframes = 8\n";
+        reading = read_scene(scratch.write("s.toml", text), {}, test::shipped());
+        REQUIRE(reading.scene);
+        bodies.emplace_back();
+        bodies[0].matter = test::make_block(16, 4, 4, 0.0125, reading.scene->work_piece().material);
+    }
+
+    double modulus() const { return bodies[0].matter.material.young_modulus; }
+    double stiffness() const { return modulus() * bodies[0].matter.volume(); }  // E V [J]
+
+    // What is said of a stage in which `work` was done and `remainder` of it is nowhere.
+    std::string told(double work, double remainder) {
+        const StageSpec& stage = reading.scene->stage[0];
+        const Machine machine = stage_machine(stage, bodies[0].matter, {});
+        StageTotals totals;
+        totals.severed = 1;
+        FrameReport last;
+        last.pieces = 2;
+        last.work = work;
+        last.remainder = remainder;
+        const StageEnd end{.stage = stage,
+                           .machine = machine,
+                           .bodies = bodies,
+                           .totals = totals,
+                           .first = {},
+                           .last = last,
+                           .first_frame = 1,
+                           .last_frame = 9,
+                           .legs = 8,
+                           .duration = 1,
+                           .connections_before = 0};
+        std::string text;
+        for (const std::string& line : judge_stage(end, 1, StageEnded::wholly).warning) {
+            text += line + "\n";
+        }
+        return text;
+    }
+
+    SceneReading reading;
+    std::vector<WorkPiece> bodies;
+};
+
+bool is_open(const std::string& told) {
+    return told.find("books do not close") != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the work of drawing away what is at rest, of rounded places, is no open book") {
+    CutBar bar(GENERATE("copper", "structural_steel", "rubber"));
+    // A place of 0.1 m is rounded by up to 1e-17 m, and its particle pushed by E a times that.
+    const double force = bar.modulus() * 0.0125 * 1e-17 * 16 * 4 * 4, way = 0.15 * 0.2;
+    CHECK_FALSE(is_open(bar.told(-force * way, -force * way)));
+    CHECK_FALSE(is_open(bar.told(1e-17 * bar.stiffness(), -1e-17 * bar.stiffness())));
+}
+
+TEST_CASE("work that nobody did is told as soon as it is that of strains of a millionth") {
+    CutBar bar(GENERATE("copper", "structural_steel", "rubber"));
+    const double work = 1e-12 * bar.stiffness();
+    CHECK(is_open(bar.told(-work, -work)));
+    CHECK(is_open(bar.told(work, -0.1 * work)));
+    CHECK(is_open(bar.told(1e3 * work, -1e2 * work)));
+    CHECK_FALSE(is_open(bar.told(1e3 * work, -1e1 * work)));
+}
