@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/file_handle.h"
 
 namespace swage {
 
@@ -31,28 +32,23 @@ fs::path temporary_for(const fs::path& file) {
 }
 
 void publish(const fs::path& temporary, const fs::path& file) {
-    const int handle = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
-    if (handle < 0) give_up(temporary, file, "be written");
-    const bool flushed = ::fsync(handle) == 0;
-    ::close(handle);
-    if (!flushed) give_up(temporary, file, "be flushed to disk");
+    const FileHandle handle(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!handle.is_open()) give_up(temporary, file, "be written");
+    if (::fsync(handle.id()) != 0) give_up(temporary, file, "be flushed to disk");
     if (std::rename(temporary.c_str(), file.c_str()) != 0) give_up(temporary, file, "be renamed");
 }
 
 void write_file_whole(const fs::path& file, std::string_view bytes) {
     const fs::path temporary = temporary_for(file);
-    const int handle = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (handle < 0) give_up(temporary, file, "be created");
+    FileHandle handle(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+    if (!handle.is_open()) give_up(temporary, file, "be created");
     while (!bytes.empty()) {
-        const ssize_t written = ::write(handle, bytes.data(), bytes.size());
+        const ssize_t written = ::write(handle.id(), bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) {
-            ::close(handle);
-            give_up(temporary, file, "be written");
-        }
+        if (written < 0) give_up(temporary, file, "be written");
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
-    ::close(handle);
+    handle.close();
     publish(temporary, file);
 }
 

@@ -4,9 +4,10 @@
 #include <xxhash.h>
 
 #include <array>
-#include <fstream>
+#include <optional>
 
 #include "base/error.h"
+#include "base/file_contents.h"
 
 namespace swage {
 
@@ -26,15 +27,17 @@ std::uint64_t Hasher::value() const {
 std::uint64_t hash_of(std::string_view bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 std::uint64_t hash_of_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) fail(ExitCode::mesh, "{}: cannot be read", file.string());
+    std::string why;
+    const FileHandle in = open_plain_file(file, why);
+    if (!in.is_open()) fail(ExitCode::mesh, "{}: {}", file.string(), why);
     Hasher hasher;
     std::array<char, 1 << 16> block;
-    while (in) {
-        in.read(block.data(), block.size());
-        hasher.add_bytes(block.data(), static_cast<std::size_t>(in.gcount()));
+    for (std::size_t got = block.size(); got == block.size();) {
+        const std::optional<std::size_t> next = read_up_to(in.id(), block.data(), block.size());
+        if (!next) fail(ExitCode::mesh, "{}: cannot be read to its end", file.string());
+        got = *next;
+        hasher.add_bytes(block.data(), got);
     }
-    if (in.bad()) fail(ExitCode::mesh, "{}: cannot be read to its end", file.string());
     return hasher.value();
 }
 

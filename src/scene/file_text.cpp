@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/file_text.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-
 #include "geometry/mesh_read.h"
 
 namespace swage {
@@ -62,21 +55,6 @@ bool check_letters(const std::string& text, const Place& place, MistakeList& mis
 
 }  // namespace
 
-std::optional<std::string> why_unreadable(const std::filesystem::path& file) {
-    struct stat about;
-    if (::stat(file.c_str(), &about) != 0) {
-        return errno == ENOENT || errno == ENOTDIR
-                   ? "does not exist"
-                   : std::string("cannot be read: ") + std::strerror(errno);
-    }
-    if (S_ISDIR(about.st_mode)) return "is a folder, not a file";
-    if (!S_ISREG(about.st_mode)) return "is not a plain file";
-    if (::access(file.c_str(), R_OK) != 0) {
-        return std::string("cannot be read: ") + std::strerror(errno);
-    }
-    return std::nullopt;
-}
-
 std::optional<std::string> why_no_mesh(const std::filesystem::path& file) {
     const std::optional<std::string> reason = why_unreadable(file);
     if (reason || is_mesh_file_name(file)) return reason;
@@ -85,34 +63,13 @@ std::optional<std::string> why_no_mesh(const std::filesystem::path& file) {
 
 std::optional<std::string> read_text(const std::filesystem::path& file, const Place& place,
                                      std::uint64_t limit, MistakeList& mistakes) {
-    if (const auto reason = why_unreadable(file)) {
-        mistakes.add(place, "the file " + *reason);
+    std::string why;
+    std::optional<std::string> text = file_contents(file, limit, &why);
+    if (!text) {
+        mistakes.add(place, "the file " + why);
         return std::nullopt;
     }
-    std::error_code unknown;
-    const std::uintmax_t expected = std::filesystem::file_size(file, unknown);
-    const int handle = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    std::string text;
-    ssize_t size = handle < 0 ? -1 : 1;
-    char block[1 << 16];
-    while (size > 0 && text.size() <= limit && (unknown || expected <= limit)) {
-        size = ::read(handle, block, sizeof block);
-        if (size < 0 && errno == EINTR)
-            size = 1;
-        else if (size > 0)
-            text.append(block, static_cast<std::size_t>(size));
-    }
-    const int error = errno;
-    if (handle >= 0) ::close(handle);
-    if (size < 0) {
-        mistakes.add(place, std::string("the file cannot be read: ") + std::strerror(error));
-        return std::nullopt;
-    }
-    if (text.size() > limit || (!unknown && expected > limit)) {
-        mistakes.add(place, fmt::format("the file is larger than {} MiB", limit >> 20));
-        return std::nullopt;
-    }
-    if (!check_letters(text, place, mistakes)) return std::nullopt;
+    if (!check_letters(*text, place, mistakes)) return std::nullopt;
     return text;
 }
 

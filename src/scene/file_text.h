@@ -7,14 +7,12 @@
 #include <optional>
 #include <string>
 
+#include "base/file_contents.h"  // why_unreadable
 #include "scene/document.h"
 
 namespace swage {
 
-// Why a file cannot be read ("does not exist", "is a folder", ...); never opens what could block.
-std::optional<std::string> why_unreadable(const std::filesystem::path& file);
-
-// The same of one that has to be a mesh, of a kind that can be read.
+// As why_unreadable(), of one that has to be a mesh, of a kind that can be read.
 std::optional<std::string> why_no_mesh(const std::filesystem::path& file);
 
 // The whole file. Reports and gives nothing when it cannot be read, is larger than `limit` or holds
