@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "mold/prepare.h"
 
 namespace swage {
@@ -136,12 +136,11 @@ void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings) {
              "{:.3g} GiB) are more than the limit of {:.4g} cells; use a larger spacing",
              count.x(), count.y(), count.z(), cells, e.spacing, e.bytes / gib, most);
     }
-    const double memory =
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double memory = whole_memory();
     if (e.bytes > memory) {
         fail(ExitCode::resources,
-             "refused to mold: about {:.4g} cells of {:.4g} m want {:.3g} GiB, more than this "
-             "machine's {:.3g} GiB; use a larger spacing",
+             "refused to mold: about {:.4g} cells of {:.4g} m want {:.3g} GiB, more than the "
+             "{:.3g} GiB that there are; use a larger spacing",
              e.active_cells, e.spacing, e.bytes / gib, memory / gib);
     }
 }

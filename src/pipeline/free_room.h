@@ -4,11 +4,12 @@
 
 #include <filesystem>
 
+#include "base/memory.h"  // free_memory
+
 namespace swage {
 
 inline constexpr double kThreadAddresses = 32e6;  // of each thread, which count where limited
 
-double free_memory();                            // that may still be allocated
 double free_addresses();                         // infinite without a limit
 double free_disk(std::filesystem::path folder);  // which need not be there yet
 
