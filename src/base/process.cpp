@@ -58,11 +58,6 @@ class PipeSignalGuard {
     bool was_pending_;
 };
 
-void close_if_open(int& handle) {
-    if (handle >= 0) ::close(handle);
-    handle = -1;
-}
-
 }  // namespace
 
 bool program_exists(const std::string& name) {
@@ -79,21 +74,38 @@ bool program_exists(const std::string& name) {
     return false;
 }
 
+void expect_children() {
+    struct sigaction now {};
+    if (::sigaction(SIGCHLD, nullptr, &now) != 0) return;
+    if (now.sa_handler != SIG_IGN && (now.sa_flags & SA_NOCLDWAIT) == 0) return;
+    ::signal(SIGCHLD, SIG_DFL);
+}
+
+std::optional<int> wait_for(pid_t child) {
+    int status = 0;
+    pid_t ended = -1;
+    do {
+        ended = ::waitpid(child, &status, 0);
+    } while (ended < 0 && errno == EINTR);
+    return ended == child ? std::optional(status) : std::nullopt;
+}
+
 PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
     if (argument.empty()) fail(ExitCode::output, "no program to start");
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) {
         fail(ExitCode::output, "cannot make a pipe to {}: {}", argument[0], std::strerror(errno));
     }
-    input_ = ends[1];
-    errors_ = ::memfd_create("errors", MFD_CLOEXEC);
+    const FileHandle to_program(ends[0]);
+    input_ = FileHandle(ends[1]);
+    errors_ = FileHandle(::memfd_create("errors", MFD_CLOEXEC));
 
     posix_spawn_file_actions_t action;
     posix_spawn_file_actions_init(&action);
-    posix_spawn_file_actions_adddup2(&action, ends[0], STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&action, to_program.id(), STDIN_FILENO);
     posix_spawn_file_actions_addopen(&action, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    if (errors_ >= 0) {
-        posix_spawn_file_actions_adddup2(&action, errors_, STDERR_FILENO);
+    if (errors_.is_open()) {
+        posix_spawn_file_actions_adddup2(&action, errors_.id(), STDERR_FILENO);
     } else {
         posix_spawn_file_actions_addopen(&action, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     }
@@ -111,14 +123,12 @@ PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
     std::vector<char*> argv;
     for (const std::string& a : argument) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
+    expect_children();
     const int error = posix_spawnp(&process_, argv[0], &action, &attribute, argv.data(), environ);
     posix_spawn_file_actions_destroy(&action);
     posix_spawnattr_destroy(&attribute);
-    ::close(ends[0]);
     if (error != 0) {
         process_ = -1;
-        close_if_open(input_);
-        close_if_open(errors_);
         fail(ExitCode::output, "cannot start {}: {}", argument[0], std::strerror(error));
     }
 }
@@ -126,18 +136,17 @@ PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
 PipedProgram::~PipedProgram() {
     if (process_ > 0) ::kill(process_, SIGKILL);
     finish();
-    close_if_open(errors_);
 }
 
 bool PipedProgram::write(const void* bytes, std::size_t size) {
-    if (input_ < 0) return false;
+    if (!input_.is_open()) return false;
     const PipeSignalGuard guard;
     const char* from = static_cast<const char*>(bytes);
     while (size > 0) {
-        const ssize_t written = ::write(input_, from, size);
+        const ssize_t written = ::write(input_.id(), from, size);
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) {
-            close_if_open(input_);
+            input_.close();
             return false;
         }
         from += written;
@@ -147,22 +156,21 @@ bool PipedProgram::write(const void* bytes, std::size_t size) {
 }
 
 int PipedProgram::finish() {
-    close_if_open(input_);
+    input_.close();
     if (process_ <= 0) return -1;
-    int status = 0;
-    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-    }
+    const std::optional<int> status = wait_for(process_);
     process_ = -1;
-    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    if (!status) return -1;
+    return WIFSIGNALED(*status) ? 128 + WTERMSIG(*status) : WEXITSTATUS(*status);
 }
 
 std::string PipedProgram::error_tail() const {
     constexpr off_t kKept = 4096;
     struct stat status {};
-    if (errors_ < 0 || ::fstat(errors_, &status) != 0) return {};
+    if (!errors_.is_open() || ::fstat(errors_.id(), &status) != 0) return {};
     const off_t from = std::max<off_t>(0, status.st_size - kKept);
     std::string text(static_cast<std::size_t>(status.st_size - from), '\0');
-    const ssize_t got = ::pread(errors_, text.data(), text.size(), from);
+    const ssize_t got = ::pread(errors_.id(), text.data(), text.size(), from);
     text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
     return text;
 }

@@ -4,14 +4,24 @@
 
 #include <sys/types.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/file_handle.h"
 
 namespace swage {
 
 // Whether `name` is an executable file in PATH (or, when it has a slash, that file).
 bool program_exists(const std::string& name);
+
+// To be called before a child is started. Whoever ignores the end of children hands that on to what
+// it starts, and nobody can then wait for a child of it.
+void expect_children();
+// Waits for a child of this process and gives what waitpid() says of it; nothing, and errno, where
+// nobody can know how it ended.
+std::optional<int> wait_for(pid_t child);
 
 // A running program whose standard input we write. Its standard output is thrown away, its
 // standard error kept. It stands in a process group of its own, so that an interrupt from the
@@ -29,7 +39,8 @@ class PipedProgram {
     bool write(const void* bytes, std::size_t size);
     bool write(std::string_view text) { return write(text.data(), text.size()); }
 
-    // Ends the input, waits, and gives the exit status (128 + n when ended by signal n).
+    // Ends the input, waits, and gives the exit status: 128 + n when ended by signal n, -1 when
+    // that is not known.
     int finish();
 
     // The last lines that the program wrote to standard error; the last non-empty one of them.
@@ -38,8 +49,8 @@ class PipedProgram {
 
   private:
     pid_t process_ = -1;
-    int input_ = -1;   // our end of the pipe
-    int errors_ = -1;  // a file in memory, so that a talkative program never blocks
+    FileHandle input_;   // our end of the pipe
+    FileHandle errors_;  // a file in memory, so that a talkative program never blocks
 };
 
 }  // namespace swage

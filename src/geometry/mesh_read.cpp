@@ -16,14 +16,17 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/error.h"
+#include "base/file_contents.h"
 #include "base/log.h"
+#include "base/memory.h"
+#include "base/process.h"
 #include "geometry/mesh_read_child.h"
 
 namespace swage {
@@ -42,22 +45,6 @@ constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;
 #endif
-
-class Handle {  // a file descriptor
-  public:
-    explicit Handle(int id = -1) : id_(id) {}
-    Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
-    Handle& operator=(Handle&&) = delete;
-    ~Handle() { close(); }
-    int id() const { return id_; }
-    void close() {
-        if (id_ >= 0) ::close(id_);
-        id_ = -1;
-    }
-
-  private:
-    int id_;
-};
 
 bool format_of(const fs::path& file, MeshFormat& format) {
     std::string ending = file.extension().string();
@@ -82,8 +69,8 @@ const char* kind_of(mode_t mode) {
 }
 
 // Opens regular files only, and never waits for anybody.
-Handle open_checked(const fs::path& file, const ReadLimits& limits) {
-    Handle handle(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+FileHandle open_checked(const fs::path& file, const ReadLimits& limits) {
+    FileHandle handle(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
     if (handle.id() < 0) fail(ExitCode::mesh, "{}: {}", file.string(), std::strerror(errno));
     struct stat status {};
     if (::fstat(handle.id(), &status) != 0)
@@ -96,15 +83,6 @@ Handle open_checked(const fs::path& file, const ReadLimits& limits) {
         fail(ExitCode::mesh, "{}: {:.1f} MiB is more than the limit of {:.1f} MiB", file.string(),
              status.st_size / 1048576.0, static_cast<double>(limits.file_bytes) / 1048576.0);
     return handle;
-}
-
-std::uint64_t address_space_in_use() {
-    unsigned long long pages = 0;
-    if (std::FILE* file = std::fopen("/proc/self/statm", "re")) {
-        if (std::fscanf(file, "%llu", &pages) != 1) pages = 0;
-        std::fclose(file);
-    }
-    return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 void send_all(int pipe, std::string_view bytes) {
@@ -125,8 +103,8 @@ void set_limit(__rlimit_resource what, std::uint64_t value) {
 // library has no program of its own to start. In a process with threads that is sound as long as
 // the child stays clear of locks that another thread may hold: it logs nothing, starts no parallel
 // loop, never returns; the heap is made safe for forks by glibc.
-[[noreturn]] void run_child(MeshSource& source, int pipe, int file, std::uint64_t file_size,
-                            const ReadLimits& limits, std::uint64_t memory_limit, pid_t parent) {
+[[noreturn]] void run_child(MeshSource& source, int pipe, int file, const ReadLimits& limits,
+                            std::uint64_t memory_limit, pid_t parent) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);
     for (const int signal :
@@ -146,16 +124,10 @@ void set_limit(__rlimit_resource what, std::uint64_t value) {
     try {
         std::string bytes;
         try {
-            source.bytes.resize(file_size);
-            std::size_t have = 0;
-            while (have < file_size) {
-                const ssize_t got = ::read(file, source.bytes.data() + have, file_size - have);
-                if (got < 0 && errno == EINTR) continue;
-                if (got < 0) fail(ExitCode::mesh, "cannot be read: {}", std::strerror(errno));
-                if (got == 0) break;
-                have += static_cast<std::size_t>(got);
-            }
-            source.bytes.resize(have);
+            std::string why;
+            std::optional<std::string> contents = rest_of_file(file, limits.file_bytes, why);
+            if (!contents) fail(ExitCode::mesh, "{}", why);
+            source.bytes = std::move(*contents);
             const RawMesh mesh = read_raw(source);
             check_raw(mesh);
             bytes = kMeshFollows + to_bytes(mesh);
@@ -211,7 +183,7 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
     const std::string name = file.string();
     if (name.find('\0') != std::string::npos || file.empty())
         fail(ExitCode::mesh, "a mesh file needs a name");
-    const Handle opened = open_checked(file, limits);
+    const FileHandle opened = open_checked(file, limits);
     MeshSource source;
     if (!format_of(file, source.format))
         fail(ExitCode::mesh, "{}: '{}' is no kind of mesh that can be read ({})", name,
@@ -219,22 +191,19 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
     source.file = fs::absolute(file).lexically_normal();
     source.file_bytes = limits.file_bytes;
     source.memory_bytes = limits.memory_bytes;
-    struct stat status {};
-    ::fstat(opened.id(), &status);
 
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0)
         fail(ExitCode::resources, "{}: no pipe to read it through: {}", name, std::strerror(errno));
-    const Handle from_child(ends[0]);
-    Handle to_parent(ends[1]);
+    const FileHandle from_child(ends[0]);
+    FileHandle to_parent(ends[1]);
     const std::uint64_t memory_limit = address_space_in_use() + limits.memory_bytes;
     const pid_t parent = ::getpid();
+    expect_children();
     const pid_t child = ::fork();
     if (child < 0)
         fail(ExitCode::resources, "{}: no process to read it in: {}", name, std::strerror(errno));
-    if (child == 0)
-        run_child(source, to_parent.id(), opened.id(), static_cast<std::uint64_t>(status.st_size),
-                  limits, memory_limit, parent);
+    if (child == 0) run_child(source, to_parent.id(), opened.id(), limits, memory_limit, parent);
     to_parent.close();
     std::string bytes;
     bool too_large = false, in_time = false;
@@ -244,9 +213,11 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
         too_large = true;
     }
     if (!in_time) ::kill(child, SIGKILL);
-    int outcome = 0;
-    while (::waitpid(child, &outcome, 0) < 0 && errno == EINTR) {
-    }
+    const std::optional<int> ended = wait_for(child);
+    if (!ended)
+        fail(ExitCode::resources, "{}: nobody knows how its reader ended: {}", name,
+             std::strerror(errno));
+    const int outcome = *ended;
     const double limit_gib = static_cast<double>(limits.memory_bytes) / (1 << 30);
     if (too_large || (WIFEXITED(outcome) && WEXITSTATUS(outcome) == kOutOfMemory))
         fail(ExitCode::mesh, "{}: reading it takes more than the {:.3g} GiB allowed", name,

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/process.h"
+
+#include <unistd.h>
+
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 
 #include "base/error.h"
-#include "base/process.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -62,8 +66,33 @@ TEST_CASE("a program that cannot be started is an error that names it", "[proces
 }
 
 TEST_CASE("a program left behind is ended", "[process]") {
-    // Would take an hour to pass otherwise.
-    PipedProgram sleeper({"sleep", "3600"});
+    const auto begin = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    pid_t process = 0;
+    {
+        PipedProgram sleeper({"sh", "-c", "echo $$ >&2; exec sleep 300"});
+        while (sleeper.last_error_line().empty() && seconds() < 60) ::usleep(1000);
+        REQUIRE_FALSE(sleeper.last_error_line().empty());
+        process = static_cast<pid_t>(std::stol(sleeper.last_error_line()));
+        CHECK(::kill(process, 0) == 0);
+    }
+    const bool lives = ::kill(process, 0) == 0;
+    CHECK_FALSE(lives);
+    CHECK(seconds() < 200);
+}
+
+TEST_CASE("a failure comes back also where the end of children is ignored", "[process]") {
+    const auto before = std::signal(SIGCHLD, SIG_IGN);
+    PipedProgram five({"sh", "-c", "cat >/dev/null; exit 5"});
+    CHECK(five.finish() == 5);
+    // What is ignored from here on nobody can wait for: it is no success.
+    PipedProgram lost({"sh", "-c", "cat >/dev/null"});
+    std::signal(SIGCHLD, SIG_IGN);
+    CHECK(lost.finish() == -1);
+    std::signal(SIGCHLD, before);
+    CHECK_FALSE(wait_for(::getppid()));
 }
 
 TEST_CASE("no shell reads the arguments", "[process]") {

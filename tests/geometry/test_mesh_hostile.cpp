@@ -2,7 +2,9 @@
 // What a broken or hostile file costs: one error, soon.
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <random>
 #include <thread>
 
@@ -174,7 +176,8 @@ TEST_CASE("lying glTF, GLB, STL, DAE, 3DS and 3MF files are refused") {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they run without the limit
-TEST_CASE("a reader out of memory is stopped, and said so") {
+TEST_CASE("a reader out of memory is stopped, and said so, however its end is listened for") {
+    const auto before = std::signal(SIGCHLD, GENERATE(false, true) ? SIG_IGN : SIG_DFL);
     const Folder folder;
     std::string text;
     for (int i = 0; i < 400000; ++i) text += "v 0.123 0.234 0.345\n";
@@ -183,8 +186,19 @@ TEST_CASE("a reader out of memory is stopped, and said so") {
     ReadLimits limits;
     limits.memory_bytes = 8 << 20;
     says(refusal(file, limits), "GiB");
+    std::signal(SIGCHLD, before);
 }
 #endif
+
+TEST_CASE("a material file that cannot be read is told, not taken for an empty one") {
+    const Folder folder;
+    std::filesystem::create_symlink("/proc/self/mem", folder / "m.mtl");
+    std::vector<std::string> finding;
+    read_mesh(folder.write("a.obj", "mtllib m.mtl\nusemtl steel\n" + fixtures::cube_obj()), {},
+              &finding);
+    const std::string wanted = "the material file 'm.mtl' cannot be read";
+    CHECK(std::find(finding.begin(), finding.end(), wanted) != finding.end());
+}
 
 TEST_CASE("nodes that name a child twice, forty deep, are refused before they become trees") {
     const Folder folder;
