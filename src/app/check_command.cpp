@@ -7,6 +7,7 @@
 #include "app/scene_argument.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "base/whole.h"
 #include "pipeline/accuracy.h"
 #include "pipeline/cost.h"
 #include "pipeline/run_record.h"
@@ -42,7 +43,7 @@ std::vector<Mistake> mistakes_of(const Error& error, const std::string& scene) {
 
 // With which the body's thinnest parts come within 1 %.
 int across_for_percent(const BodyCost& body) {
-    return static_cast<int>(
+    return to_int(
         std::ceil(accuracy_at(body.thickness).cells_for_percent * body.across / body.thickness));
 }
 

@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "base/text.h"
+#include "base/whole.h"
 
 namespace swage {
 
@@ -32,7 +33,7 @@ void put_line(const std::string& line, const std::string& head = {}) {
 }
 
 std::string duration_text(double seconds) {
-    const int s = static_cast<int>(seconds + 0.5);
+    const int s = to_int(seconds + 0.5);
     if (s < 60) return fmt::format("{} s", s);
     return fmt::format("{}:{:02d}", s / 60, s % 60);
 }
@@ -90,7 +91,7 @@ void Progress::advance(int done, const std::string& note) {
         bar_is_drawn = true;
         return;
     }
-    const int tenth = 10 * done / total_;
+    const int tenth = static_cast<int>(10LL * done / total_);
     if (tenth == last_tenth_) return;
     last_tenth_ = tenth;
     put_line(

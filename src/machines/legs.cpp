@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/whole.h"
+
 namespace swage {
 
 namespace {
@@ -19,6 +21,11 @@ constexpr double kAsked[] = {0.2113, 0.5, 0.8090};
 constexpr int kLooks = 256;          // at loads, in a frame
 constexpr int kMostLooks = 1 << 20;  // in all
 
+// Of a stage: of ints not the last, which no loop gets beyond.
+int looks_of(int frames) {
+    return to_int(static_cast<double>(frames) * std::clamp(kMostLooks / frames, 4, kLooks) + 1) - 1;
+}
+
 class Straightness {
   public:
     Straightness(const Machine& machine, int frames, double slack, bool in_motion)
@@ -26,7 +33,7 @@ class Straightness {
           slack_(slack),
           strength_slack_(in_motion ? kSlackInMotion : kStrengthSlack),
           reach_(0.5 * machine.frame.size.norm()),
-          looks_(frames * std::clamp(kMostLooks / frames, 4, kLooks)) {
+          looks_(looks_of(frames)) {
         full_.resize(machine.load_strength.size() + 1, 0.0);
         for (int n = 0; n <= looks_; ++n) {
             strength_.push_back(strengths_at(machine, static_cast<double>(n) / looks_));

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/math.h"
+#include "base/whole.h"
 
 namespace swage {
 
@@ -51,8 +52,8 @@ struct BinRange {
 // Bins that a part of a surface spans along one axis. One that lies in a plane between two bins
 // belongs to the bin behind it, where the material is.
 inline BinRange bins_between(double low, double high, double normal, int bin_count) {
-    int first = static_cast<int>(std::floor(low));
-    int last = static_cast<int>(std::ceil(high)) - 1;
+    int first = to_int(std::floor(low));
+    int last = to_int(std::ceil(high) - 1);
     if (last < first) first = last = normal > 0 ? last : first;  // in a plane
     return {std::clamp(first, 0, bin_count - 1), std::clamp(last, 0, bin_count - 1)};
 }

@@ -8,6 +8,7 @@
 
 #include "base/portable_math.h"
 #include "base/units.h"
+#include "base/whole.h"
 #include "geometry/mesh_check.h"
 #include "laws/fracture.h"
 
@@ -18,6 +19,8 @@ namespace {
 // `swage verify oblique-bar oblique-rod`: bending 5.68 % at 4 cells and 1.36 % at 8 (the rod),
 // torsion 6.87 % and 1.93 % (the bar); both fall with the square.
 constexpr double kBending = 0.91, kTorsion = 1.24;
+
+constexpr int kMostAcross = 1'000'000'000;  // cells in all of a mold
 
 // With which the spacing resolves it [J/m2].
 double toughness_for(const Material& material, double spacing) {
@@ -44,19 +47,23 @@ Resolved resolved_strength(const Material& material, double spacing, double cell
     const double needed = fracture_reach(e, strength, material.toughness) / kLeastReach;
     if (spacing <= needed * (1 + 1e-9)) return {strength, 0};
     return {strength_at(e, strength, material.toughness, spacing),
-            static_cast<int>(std::ceil(cells * spacing / needed))};
+            to_int(std::ceil(cells * spacing / needed))};
 }
 
 std::string strength_warning(const Material& material, double spacing, double cells,
                              const std::string& section) {
     const Resolved resolved = resolved_strength(material, spacing, cells);
     if (resolved.whole()) return "";
+    const std::string finer = resolved.cells_for_whole < kMostAcross
+                                  ? fmt::format("{} across = {} would do, or at this one", section,
+                                                resolved.cells_for_whole)
+                                  : "nothing is fine enough; at this size it takes";
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
-        "breaks at {} instead of {}; {} across = {} would do, or at this one a toughness of {}",
+        "breaks at {} instead of {}; {} a toughness of {}",
         length_text(spacing), material.name == Material{}.name ? "the material" : material.name,
         quantity_text(told(resolved.strength), Quantity::stress),
-        quantity_text(material.strength, Quantity::stress), section, resolved.cells_for_whole,
+        quantity_text(material.strength, Quantity::stress), finer,
         quantity_text(told(toughness_for(material, spacing), std::ceil), Quantity::toughness));
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/math.h"
 
+#include <limits>
+
 #include "base/hash.h"
 #include "base/portable_math.h"
+#include "base/whole.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -87,3 +90,15 @@ TEST_CASE("sums of products are cut the same on every machine") {
     CHECK(Eigen::l3CacheSize() == 2 << 20);
 }
 #endif
+
+TEST_CASE("a number beyond all whole ones is the nearest of them") {
+    constexpr int kLow = std::numeric_limits<int>::min(), kHigh = std::numeric_limits<int>::max();
+    for (const double value : {0.0, -0.5, 2.9, -2.9, 1e9, -1e9, 2147483646.5, -2147483647.5}) {
+        CHECK(to_int(value) == static_cast<int>(value));
+    }
+    for (const double value : {2147483647.0, 2147483648.0, 1e300, HUGE_VAL}) {
+        CHECK(to_int(value) == kHigh);
+        CHECK(to_int(-value - 1) == kLow);
+    }
+    CHECK(to_int(std::nan("")) == 0);
+}

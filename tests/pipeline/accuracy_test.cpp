@@ -42,3 +42,14 @@ TEST_CASE("what is told to resolve a break does: so many cells, or so much tough
     tough.toughness *= 0.97;
     CHECK(strength_warning(tough, spacing, cells) != "");
 }
+
+TEST_CASE("where no mold is fine enough for a break only more toughness is told to do") {
+    Material brittle;
+    brittle.young_modulus = 210e9, brittle.strength = 1e9, brittle.toughness = 1e-9;
+    CHECK(resolved_strength(brittle, 7e-3, 3).cells_for_whole > 1000000000);
+    const std::string told = strength_warning(brittle, 7e-3, 3);
+    INFO(told);
+    CHECK(told.find("across") == std::string::npos);
+    CHECK(told.find("nothing is fine enough; at this size it takes a toughness of ") !=
+          std::string::npos);
+}
