@@ -103,18 +103,33 @@ bool paint_by_faces(RawMesh& raw) {
     int paints = 0;
     std::vector<int> paint = number_equal(key, paints);
     if (paints > kMostPaints) return false;
+    std::vector<std::size_t> first;  // triangle of each paint
+    for (std::size_t t = 0; t < count; ++t)
+        if (paint[t] == static_cast<int>(first.size())) first.push_back(t);
+    const bool has_material = !raw.triangle_material.empty();
+    std::vector<int> paints_of(raw.material.size(), 0);
+    for (const std::size_t t : first)
+        if (has_material) ++paints_of[raw.triangle_material[t]];
     std::vector<RawMaterial> material;
-    for (std::size_t t = 0; t < count; ++t) {
-        if (paint[t] < static_cast<int>(material.size())) continue;
+    for (const std::size_t t : first) {
         const Vec3 color(key[t][1], key[t][2], key[t][3]);
-        RawMaterial painted{.name = "paint", .color = Vec3::Ones()};
-        if (!raw.triangle_material.empty()) painted = raw.material[raw.triangle_material[t]];
+        RawMaterial painted{.name = {}, .color = Vec3::Ones()};
+        bool is_itself = false;  // a material without colours, or of one alone
+        if (has_material) {
+            const int number = raw.triangle_material[t];
+            painted = raw.material[number];
+            is_itself = color == Vec3::Ones() || paints_of[number] == 1;
+        }
         painted.color = painted.color.cwiseProduct(color);
         const auto byte = [&](int c) {
             return std::lround(255 * srgb_from_linear(std::clamp(color[c], 0.0, 1.0)));
         };
-        if (painted.name.empty()) painted.name = "paint";
-        painted.name += fmt::format("_{:02x}{:02x}{:02x}", byte(0), byte(1), byte(2));
+        if (painted.name.empty()) {
+            painted.name = "paint";
+            is_itself = false;
+        }
+        if (!is_itself)
+            painted.name += fmt::format("_{:02x}{:02x}{:02x}", byte(0), byte(1), byte(2));
         material.push_back(std::move(painted));
     }
     raw.material = std::move(material);

@@ -237,6 +237,33 @@ TEST_CASE("colours that jump at an edge stay with their faces") {
           "at 8 of 8 vertices its colours jump from face to face: one of them was taken");
 }
 
+TEST_CASE("materials keep their names where they have no colours, or one alone") {
+    const Folder folder;
+    // Three triangles side by side in a row, each with places of its own, two of them coloured.
+    std::string text;
+    const auto triangle = [&](int x, const char* color) {
+        for (const auto& [dx, y] : {std::pair(0, 0), {1, 0}, {x % 2, 1}})
+            text += fmt::format("v {} {} 0{}\n", x + dx, y, color);
+    };
+    triangle(0, "");
+    triangle(1, " 1 0 0");
+    triangle(2, " 0 1 0");
+    const auto names = [&](const std::string& faces) {
+        std::vector<std::string> finding, name;
+        const TriMesh mesh = read_mesh(folder.write("a.obj", text + faces), {}, &finding);
+        CHECK(mesh.position_color.empty());
+        for (const SurfaceMaterial& m : mesh.material) name.push_back(m.name);
+        return name;
+    };
+    using Names = std::vector<std::string>;
+    CHECK(names("usemtl side checks\nf 1 2 3\nusemtl red\nf 4 5 6\nusemtl green\nf 7 8 9\n") ==
+          Names{"side checks", "red", "green"});
+    CHECK(names("usemtl side checks\nf 1 2 3\nusemtl motley\nf 4 5 6\nf 7 8 9\n") ==
+          Names{"side checks", "motley_ff0000", "motley_00ff00"});
+    CHECK(names("usemtl one\nf 1 2 3\nf 4 5 6\nf 7 8 9\n") ==
+          Names{"one", "one_ff0000", "one_00ff00"});
+}
+
 TEST_CASE("an OFF's values stand in the order that Geomview gives them") {
     const Folder folder;
     const std::string rest = "3 0 1 2\n";
