@@ -40,6 +40,7 @@ struct PolygonList {
     std::vector<int> first = {0};  // corners of polygon p: first[p] .. first[p + 1]
     std::vector<int> position, uv, normal;
     std::vector<int> material, part, line;  // one a polygon; line in the file or 0
+    std::vector<int> smooth;                // likewise (RawMesh::triangle_smooth), or empty
 
     void add_corner(int p, int t, int n) {
         position.push_back(p);
@@ -63,6 +64,9 @@ struct RawMesh {
     std::vector<Eigen::Vector3f> normal;
     std::vector<Corners> triangle, triangle_uv, triangle_normal;
     std::vector<int> polygon, triangle_material, triangle_part;
+    // Faces of one number are smooth with each other, those of 0 with none. Empty: nobody said.
+    // Normals, where all corners have them, say more.
+    std::vector<int> triangle_smooth;
     std::vector<RawMaterial> material;
     std::vector<std::string> part_name;
     std::vector<std::string> finding;

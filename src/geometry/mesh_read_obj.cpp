@@ -101,6 +101,9 @@ class ObjReader {
             mesh_.normal.emplace_back(value[0], value[1], value[2]);
         } else if (key == "f") {
             read_face(line);
+        } else if (key == "s") {
+            says_smooth_ = true;
+            smooth_ = smoothing_group(trimmed(line));
         } else if (key == "usemtl") {
             material_ = id_of(std::string(trimmed(line)), material_id_, material_name_);
         } else if (key == "mtllib") {
@@ -114,6 +117,13 @@ class ObjReader {
         } else if (key == "curv" || key == "surf" || key == "curv2") {
             ++free_forms_;
         }
+    }
+
+    int smoothing_group(std::string_view name) {
+        name = name.substr(0, name.find('#'));
+        const std::string_view word = next_word(name);
+        if (word.empty() || word == "off" || word == "0") return 0;
+        return smooth_id_.emplace(word, static_cast<int>(smooth_id_.size()) + 1).first->second;
     }
 
     static int id_of(const std::string& name, std::map<std::string, int>& ids,
@@ -152,6 +162,7 @@ class ObjReader {
             polygons_.add_corner(id[0], id[1], id[2]);
         }
         polygons_.end_polygon(material_, part_, line_);
+        polygons_.smooth.push_back(smooth_);
     }
 
     RawMesh finish() {
@@ -190,6 +201,7 @@ class ObjReader {
             return uv.minCoeff() < 0 || uv.maxCoeff() > 1;
         });
         if (repeats) tell_unlike(Unlike::clamped, clamped_, "-clamp on");
+        if (!says_smooth_) polygons_.smooth.clear();
         add_polygons(polygons_, mesh_);
         place_images();
         return std::move(mesh_);
@@ -361,8 +373,11 @@ class ObjReader {
     PolygonList polygons_;
     int line_ = 0, material_ = -1, part_ = -1;
     bool has_objects_ = false;
+    // Of the faces to come (`s`): the group in which they are smooth; 0: none, as it begins.
+    bool says_smooth_ = false;
+    int smooth_ = 0;
     int lines_and_points_ = 0, free_forms_ = 0;
-    std::map<std::string, int> material_id_, part_id_;
+    std::map<std::string, int> material_id_, part_id_, smooth_id_;
     std::vector<std::string> material_name_, library_;
     std::set<std::string> defined_;    // materials of the libraries
     std::map<int, OnImage> on_image_;  // of the materials that are scaled or shifted

@@ -29,6 +29,7 @@ void each_field(Mesh& mesh, const F& f) {
     f(mesh.polygon);
     f(mesh.triangle_material);
     f(mesh.triangle_part);
+    f(mesh.triangle_smooth);
     f(mesh.part_name);
     f(mesh.finding);
     f(mesh.at_vertices);
@@ -145,6 +146,7 @@ void add_polygons(const PolygonList& polygons, RawMesh& mesh) {
     };
     const bool has_uv = any(polygons.uv), has_normal = any(polygons.normal);
     const bool has_material = any(polygons.material), has_part = any(polygons.part);
+    const bool has_smooth = !polygons.smooth.empty();
     std::size_t thin = 0, crossed = 0;
     std::vector<int> corner;
     std::vector<Vec3> place;
@@ -180,6 +182,7 @@ void add_polygons(const PolygonList& polygons, RawMesh& mesh) {
             mesh.polygon.push_back(static_cast<int>(p));
             if (has_material) mesh.triangle_material.push_back(polygons.material[p]);
             if (has_part) mesh.triangle_part.push_back(polygons.part[p]);
+            if (has_smooth) mesh.triangle_smooth.push_back(polygons.smooth[p]);
         }
     }
     if (thin > 0)
@@ -223,6 +226,8 @@ void check_raw(const RawMesh& mesh) {
         if (n != 0 && n != count) fail(ExitCode::mesh, "attributes do not fit the triangles");
     if (!mesh.color.empty() && mesh.color.size() != mesh.position.size())
         fail(ExitCode::mesh, "vertex colours do not fit the vertices");
+    if (!mesh.triangle_smooth.empty() && mesh.triangle_smooth.size() != count)
+        fail(ExitCode::mesh, "smoothing does not fit the triangles");
     if (mesh.polygon.size() != count) fail(ExitCode::mesh, "polygons do not fit the triangles");
     check_ids(mesh.triangle_material, count, mesh.material.size(), "material");
     check_ids(mesh.triangle_part, count, mesh.part_name.size(), "part");

@@ -217,7 +217,12 @@ TriMesh weld(RawMesh& raw) {
                 std::make_shared<const std::string>(std::move(m.texture_bytes));
         mesh.material.push_back(std::move(material));
     }
-    if (!smooth_by_normals(raw, mesh)) smooth_by_crease_angle(mesh);
+    if (smooth_by_normals(raw, mesh)) return mesh;
+    if (raw.triangle_smooth.empty()) {
+        smooth_by_crease_angle(mesh);
+    } else {
+        smooth_by_face_groups(mesh, raw.triangle_smooth);
+    }
     return mesh;
 }
 

@@ -22,6 +22,31 @@ double sum_over_triangles(const TriMesh& mesh, const Term& term) {
                           [&](std::size_t t) { return term(mesh.triangle[t]); });
 }
 
+// Corners are joined across an edge when its two faces run along it in opposite directions (they
+// agree on the outside) and are smooth(one, other).
+template <typename Smooth>
+void smooth_across_edges(TriMesh& mesh, const Smooth& smooth) {
+    const std::size_t count = mesh.triangle.size();
+    DisjointSets corners(3 * count);
+    const auto join = [&](const EdgeUse& a, const EdgeUse& b) {
+        if (a.forward == b.forward || !smooth(a.triangle, b.triangle)) return;
+        corners.unite(3 * a.triangle + a.side, 3 * b.triangle + (b.side + 1) % 3);
+        corners.unite(3 * a.triangle + (a.side + 1) % 3, 3 * b.triangle + b.side);
+    };
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        // All pairs; where many faces share an edge, each with its next, to stay linear.
+        const std::size_t reach = uses.size() <= 8 ? uses.size() : 2;
+        for (std::size_t i = 0; i < uses.size(); ++i)
+            for (std::size_t j = i + 1; j < std::min(uses.size(), i + reach); ++j)
+                join(uses[i], uses[j]);
+    });
+    std::vector<int> group;
+    mesh.smooth_group_count = corners.number_sets(group);
+    mesh.triangle_smooth.resize(count);
+    for (std::size_t t = 0; t < count; ++t)
+        mesh.triangle_smooth[t] = {group[3 * t], group[3 * t + 1], group[3 * t + 2]};
+}
+
 }  // namespace
 
 double signed_volume(const TriMesh& mesh) {
@@ -91,28 +116,16 @@ void smooth_by_crease_angle(TriMesh& mesh, double crease_angle) {
     for (std::size_t t = 0; t < count; ++t)
         normal[t] = area_vector(mesh.position, mesh.triangle[t]).stableNormalized();
     const double least_cosine = portable::cos(crease_angle);
+    smooth_across_edges(mesh,
+                        [&](int a, int b) { return !(normal[a].dot(normal[b]) < least_cosine); });
+}
 
-    // Corners are joined across an edge when its two faces run along it in opposite directions
-    // (they agree on the outside) and meet at less than the angle.
-    DisjointSets corners(3 * count);
-    const auto join = [&](const EdgeUse& a, const EdgeUse& b) {
-        if (a.forward == b.forward || normal[a.triangle].dot(normal[b.triangle]) < least_cosine)
-            return;
-        corners.unite(3 * a.triangle + a.side, 3 * b.triangle + (b.side + 1) % 3);
-        corners.unite(3 * a.triangle + (a.side + 1) % 3, 3 * b.triangle + b.side);
-    };
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
-        // All pairs; where many faces share an edge, each with its next, to stay linear.
-        const std::size_t reach = uses.size() <= 8 ? uses.size() : 2;
-        for (std::size_t i = 0; i < uses.size(); ++i)
-            for (std::size_t j = i + 1; j < std::min(uses.size(), i + reach); ++j)
-                join(uses[i], uses[j]);
+void smooth_by_face_groups(TriMesh& mesh, const std::vector<int>& triangle_group) {
+    smooth_across_edges(mesh, [&](int a, int b) {
+        if (triangle_group[a] > 0) return triangle_group[a] == triangle_group[b];
+        return !mesh.triangle_polygon.empty() &&
+               mesh.triangle_polygon[a] == mesh.triangle_polygon[b];
     });
-    std::vector<int> group;
-    mesh.smooth_group_count = corners.number_sets(group);
-    mesh.triangle_smooth.resize(count);
-    for (std::size_t t = 0; t < count; ++t)
-        mesh.triangle_smooth[t] = {group[3 * t], group[3 * t + 1], group[3 * t + 2]};
 }
 
 std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& position) {

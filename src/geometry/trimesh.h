@@ -86,6 +86,10 @@ Components surface_components(const TriMesh& mesh);
 // faces meet at less than `crease_angle` [rad].
 void smooth_by_crease_angle(TriMesh& mesh, double crease_angle = 40 * kPi / 180);
 
+// The same where faces say with which they are smooth: those of one number above 0 (one a
+// triangle), and triangles of one polygon.
+void smooth_by_face_groups(TriMesh& mesh, const std::vector<int>& triangle_group);
+
 // One unit normal a smooth group, weighted by corner angle, for the given positions (as many as
 // mesh.position). Groups must be present.
 std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& position);

@@ -435,3 +435,40 @@ TEST_CASE("Spot the cow is read whole, with the image that her file does not nam
     CHECK(check_mesh(quads).polygons == 2928);
     CHECK(signed_volume(quads) == Approx(signed_volume(spot)).epsilon(0.01));
 }
+
+TEST_CASE(
+    "an OBJ file without normals is smooth within its groups, and where it says nothing by "
+    "angles") {
+    const Folder folder;
+    // A drum of 24 sides, 15 degrees from one to the next.
+    constexpr int kSides = 24;
+    std::string places;
+    for (int n = 0; n < 2 * kSides; ++n) {
+        const double angle = 2 * kPi / kSides * (n % kSides);
+        places += fmt::format("v {} {} {}\n", std::cos(angle), std::sin(angle), n / kSides);
+    }
+    const auto groups = [&](const std::string& sides, const std::string& caps,
+                            const std::string& normal = {}) {
+        std::string text = places + (normal.empty() ? "" : "vn 0 0 1\n") + sides;
+        for (int n = 1; n <= kSides; ++n)
+            text += fmt::format("f {0}{4} {1}{4} {2}{4} {3}{4}\n", n, n % kSides + 1,
+                                n % kSides + 1 + kSides, n + kSides, normal);
+        std::string low = "f", high = "f";
+        for (int n = 1; n <= kSides; ++n) {
+            low += fmt::format(" {}{}", kSides + 1 - n, normal);
+            high += fmt::format(" {}{}", kSides + n, normal);
+        }
+        const TriMesh mesh = read_quietly(folder.write("a.obj", text + caps + low + "\n" + high));
+        REQUIRE(mesh.triangle.size() == 4 * kSides - 4);
+        return mesh.smooth_group_count;
+    };
+    const int creased = 4 * kSides, facets = 6 * kSides, round = 2 * kSides;
+    CHECK(groups("", "") == creased);
+    CHECK(groups("s off\n", "") == facets);
+    CHECK(groups("s 0\n", "") == facets);
+    CHECK(groups("", "s off\n") == facets);  // off until told
+    CHECK(groups("s 1\n", "s 2\n") == creased);
+    CHECK(groups("s 1 # sides\n", "s 1\n") == round);
+    CHECK(groups("s 3\n", "s off\n") == creased);
+    CHECK(groups("s off\n", "", "//1") == round);  // normals say more
+}
