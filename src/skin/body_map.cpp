@@ -117,8 +117,7 @@ BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<MappedCell>& ce
             const Vec3 local = (place->reference - box.low).cwiseQuotient(box.size);
             double outside = (local - local.cwiseMax(0.0).cwiseMin(1.0)).norm();
             const auto weight = trilinear_weights(local.cwiseMax(0.0).cwiseMin(1.0));
-            const auto heaviest = std::max_element(weight.begin(), weight.end()) - weight.begin();
-            if (!(group >> heaviest & 1)) outside += 0.5;
+            if (!(group >> heaviest_corner(weight, kAllCorners) & 1)) outside += 0.5;
             outside += (world - this->world(*place)).norm() / a;
             if (outside < least) least = outside, best = place;
         }
@@ -151,11 +150,7 @@ int BodyMap::piece_of(const BodyPlace& place) const {
     const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);
     const CornerMask followed =
         followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
-    const auto weight = trilinear_weights(carrier.local);
-    int heaviest = -1;
-    for (int c = 0; c < 8; ++c) {
-        if (followed >> c & 1 && (heaviest < 0 || weight[c] > weight[heaviest])) heaviest = c;
-    }
+    const int heaviest = heaviest_corner(trilinear_weights(carrier.local), followed);
     return pieces_.particle_piece[corner[heaviest]];
 }
 
@@ -163,14 +158,10 @@ CornerMask BodyMap::side_of_piece(CellId cell, const Vec3& reference, int piece)
     const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
     const CornerGroups groups = corner_groups(matter_, corner);
     if (groups[0] == kAllCorners) return kAllCorners;
-    const auto weight = trilinear_weights(carrier_in(cell_box(matter_, cell), reference).local);
-    int heaviest = -1;
-    for (int c = 0; c < 8; ++c) {
-        if (pieces_.particle_piece[corner[c]] == piece &&
-            (heaviest < 0 || weight[c] > weight[heaviest])) {
-            heaviest = c;
-        }
-    }
+    CornerMask own = 0;
+    for (int c = 0; c < 8; ++c) own |= (pieces_.particle_piece[corner[c]] == piece) << c;
+    const Vec3 local = carrier_in(cell_box(matter_, cell), reference).local;
+    const int heaviest = heaviest_corner(trilinear_weights(local), own);
     return heaviest < 0 ? kAllCorners : groups[heaviest];
 }
 

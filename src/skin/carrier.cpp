@@ -67,55 +67,9 @@ Carrier carrier_in(const CellBox& box, const Vec3& place) {
     return carrier;
 }
 
-bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
-    float least = 1;
-    for (const auto& [direction, low] : kCellConnection) {
-        least = std::min(least, matter.connection[direction].weight[corner[low]]);
-    }
-    if (least > 0) return true;
-    return corner_groups(matter, corner)[0] == kAllCorners;
-}
-
-namespace {
-
-template <class Joined>
-CornerGroups grouped(Joined&& is_joined) {
-    CornerGroups group;
-    for (int c = 0; c < 8; ++c) group[c] = static_cast<CornerMask>(1 << c);
-    for (const CellConnection& link : kCellConnection) {
-        if (!is_joined(link)) continue;
-        const CornerMask joined = group[link.corner] | group[upper_corner(link)];
-        for (int c = 0; c < 8; ++c) {
-            if (joined >> c & 1) group[c] = joined;
-        }
-    }
-    return group;
-}
-
-}  // namespace
-
-CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner) {
-    return grouped([&](const CellConnection& link) {
-        return matter.connection[link.direction].weight[corner[link.corner]] > 0;
-    });
-}
-
-CornerGroups corner_groups_of_cut(const Aggregate& matter,
-                                  const std::array<ParticleId, 8>& corner) {
-    return grouped([&](const CellConnection& link) {
-        const ConnectionArrays& all = matter.connection[link.direction];
-        const ParticleId lower = corner[link.corner];
-        return all.weight[lower] > 0 || (!all.damage.empty() && all.damage[lower] >= 1);
-    });
-}
-
 CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const Vec3& local) {
     if (groups[0] == kAllCorners) return kAllCorners;
-    const std::array<double, 8> weight = trilinear_weights(local);
-    int heaviest = -1;
-    for (int c = 0; c < 8; ++c) {
-        if (side >> c & 1 && (heaviest < 0 || weight[c] > weight[heaviest])) heaviest = c;
-    }
+    const int heaviest = heaviest_corner(trilinear_weights(local), side);
     return heaviest < 0 ? kAllCorners : groups[heaviest] & side;
 }
 

@@ -2,16 +2,10 @@
 // How a place of the body at molding is carried by the eight particles of a cell.
 #pragma once
 
-#include <array>
-#include <cstdint>
-
-#include "matter/aggregate.h"
+#include "matter/cell_parts.h"
 #include "skin/particle_frames.h"
 
 namespace swage {
-
-using CornerMask = std::uint8_t;  // a bit for each corner of a cell
-inline constexpr CornerMask kAllCorners = 0xff;
 
 // A place of the body at molding, with the cell and the corners that it follows.
 struct BodyPlace {
@@ -42,14 +36,6 @@ CellBox cell_box(const Aggregate& matter, CellId cell);
 // The active cell that holds the place (at molding), or the nearest one.
 CellId carrying_cell(const Aggregate& matter, const Vec3& place);
 Carrier carrier_in(const CellBox& box, const Vec3& place);
-
-// For each corner the corners that hang together with it by connections within the cell. Every
-// entry is kAllCorners in a whole cell.
-using CornerGroups = std::array<CornerMask, 8>;
-CornerGroups corner_groups(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
-// As if nothing had broken by load: what blades have left together.
-CornerGroups corner_groups_of_cut(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
-bool is_whole(const Aggregate& matter, const std::array<ParticleId, 8>& corner);
 
 // The corners that a place follows: all of them in a whole cell, else those of `side` that hang
 // together with the one of `side` that weighs most.

@@ -28,11 +28,7 @@ Vec3 moved_by(const Vec3& place, const Vec3& u) {
 // replaced by the column of o's own frame.
 Vec3 frame4_displacement(const Aggregate& matter, const std::array<ParticleId, 8>& corner,
                          const CellFrames& cell, const Carrier& carrier, CornerMask followed) {
-    const std::array<double, 8> weight = trilinear_weights(carrier.local);
-    int o = -1;
-    for (int c = 0; c < 8; ++c) {
-        if (followed >> c & 1 && (o < 0 || weight[c] > weight[o])) o = c;
-    }
+    const int o = heaviest_corner(trilinear_weights(carrier.local), followed);
     const auto own = cell.corner.col(o);
     Mat3 basis;
     for (int axis = 0; axis < 3; ++axis) {
