@@ -2,7 +2,6 @@
 #include "skin/body_map.h"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <limits>
@@ -19,20 +18,7 @@ constexpr double kThinnest = 1e-3;  // of a cell's volume at rest, below which n
 
 }  // namespace
 
-Vec3 hold_between(const Vec3& reference, std::span<const BodyPlace> others) {
-    const BodyPlace& first = others.front();
-    Eigen::Matrix<double, 3, 2> way = Eigen::Matrix<double, 3, 2>::Zero(), change = way;
-    for (std::size_t n = 1; n < others.size(); ++n) {
-        way.col(n - 1) = others[n].reference - first.reference;
-        change.col(n - 1) = others[n].hold - first.hold;
-    }
-    if (change.isZero(0)) return first.hold;
-    const Eigen::Vector2d share =
-        way.colPivHouseholderQr().solve(reference - first.reference).cwiseMax(0.0).cwiseMin(1.0);
-    return first.hold + change * share;
-}
-
-BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(find_pieces(matter)) {
+BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(matter) {
     std::vector<ParticleId> all(matter.particle_count());
     std::iota(all.begin(), all.end(), 0);
     particle_frames(matter, make_frame_stencil(matter), all, frame_);
@@ -129,40 +115,6 @@ BodyPlace BodyMap::place_at(const Vec3& world, const std::vector<MappedCell>& ce
     const Mat3 slope = this->slope(near.cell, near.side);
     guess.reference += std::abs(slope.determinant()) < kThinnest ? way : slope.inverse() * way;
     return guess;
-}
-
-BodyPlace BodyMap::beside(const Vec3& reference, std::span<const BodyPlace> others) const {
-    BodyPlace place{reference, carrying_cell(matter_, reference), kAllCorners,
-                    hold_between(reference, others)};
-    if (is_whole(matter_, matter_.lattice.cell_corners(place.cell))) return place;
-    for (const BodyPlace& other : others) {
-        if (other.cell == place.cell) {
-            place.side = other.side;
-            return place;
-        }
-    }
-    place.side = side_of_piece(place.cell, reference, piece_of(others.front()));
-    return place;
-}
-
-int BodyMap::piece_of(const BodyPlace& place) const {
-    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(place.cell);
-    const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);
-    const CornerMask followed =
-        followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
-    const int heaviest = heaviest_corner(trilinear_weights(carrier.local), followed);
-    return pieces_.particle_piece[corner[heaviest]];
-}
-
-CornerMask BodyMap::side_of_piece(CellId cell, const Vec3& reference, int piece) const {
-    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
-    const CornerGroups groups = corner_groups(matter_, corner);
-    if (groups[0] == kAllCorners) return kAllCorners;
-    CornerMask own = 0;
-    for (int c = 0; c < 8; ++c) own |= (pieces_.particle_piece[corner[c]] == piece) << c;
-    const Vec3 local = carrier_in(cell_box(matter_, cell), reference).local;
-    const int heaviest = heaviest_corner(trilinear_weights(local), own);
-    return heaviest < 0 ? kAllCorners : groups[heaviest];
 }
 
 }  // namespace swage

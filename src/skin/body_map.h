@@ -3,16 +3,13 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "matter/aggregate.h"
 #include "skin/carrier.h"
+#include "skin/piece_map.h"
 
 namespace swage {
-
-// `hold` of a place between up to three others: linear in the place.
-Vec3 hold_between(const Vec3& reference, std::span<const BodyPlace> others);
 
 // Where a cell's middle is now, and was at molding.
 struct MappedCell {
@@ -33,13 +30,11 @@ class BodyMap {
                        const BodyPlace& near) const;
     MappedCell mapped(CellId cell) const;
 
-    const Pieces& pieces() const { return pieces_; }
-    // Corners of the cell that belong to one piece and hang together with the one next to the
-    // place.
-    CornerMask side_of_piece(CellId cell, const Vec3& reference, int piece) const;
-    // A place between others of one side of every cut: in a severed cell it follows what they do.
-    BodyPlace beside(const Vec3& reference, std::span<const BodyPlace> others) const;
-    int piece_of(const BodyPlace& place) const;  // of the particle that weighs most
+    const PieceMap& pieces() const { return pieces_; }
+    // As of pieces().
+    BodyPlace beside(const Vec3& reference, std::span<const BodyPlace> others) const {
+        return pieces_.beside(reference, others);
+    }
 
   private:
     CellFrames frames(const std::array<ParticleId, 8>& corner) const;
@@ -49,7 +44,7 @@ class BodyMap {
 
     const Aggregate& matter_;
     std::vector<ParticleFrame> frame_;
-    Pieces pieces_;
+    PieceMap pieces_;
 };
 
 }  // namespace swage

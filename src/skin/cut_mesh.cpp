@@ -282,7 +282,7 @@ class PlaneCut {
     // None of the cell's corners is on the vertex's side: the nearest cell that has one takes it.
     void change_cell(int v, int own) {
         const Vec3& reference = mount_.reference[v];
-        const int piece = map_.piece_of(mount_.place(v));
+        const int piece = map_.pieces().piece_of(mount_.place(v));
         const Vec3i site = matter_.lattice.cell_site(mount_.cell[v]);
         double least = std::numeric_limits<double>::infinity();
         CellId best = -1;
@@ -292,7 +292,7 @@ class PlaneCut {
             const CellId cell = matter_.lattice.cell_at(at.x(), at.y(), at.z());
             if (cell < 0) continue;
             const CornerMask side =
-                corners_on_side(cell, own) & map_.side_of_piece(cell, reference, piece);
+                corners_on_side(cell, own) & map_.pieces().side_of_piece(cell, reference, piece);
             const CellBox box = cell_box(matter_, cell);
             const Vec3 nearest = reference.cwiseMax(box.low).cwiseMin(box.low + box.size);
             const double distance = (reference - nearest).norm();
@@ -337,10 +337,10 @@ CutResult cut_skin(TriMesh& mesh, const std::vector<Vec3>& position, Mount& moun
 }
 
 int remove_torn_triangles(TriMesh& mesh, const Mount& mount, const Aggregate& matter) {
-    const BodyMap map(matter);
+    const PieceMap pieces(matter);
     std::vector<int> piece;
     for (std::size_t v = 0; v < mount.reference.size(); ++v) {
-        piece.push_back(map.piece_of(mount.place(static_cast<int>(v))));
+        piece.push_back(pieces.piece_of(mount.place(static_cast<int>(v))));
     }
     std::vector<char> keep;
     for (const Corners& c : mesh.triangle) {
