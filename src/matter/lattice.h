@@ -119,6 +119,17 @@ struct Lattice {
     }
     // The cell at this site, or -1.
     CellId cell_at(int i, int j, int k) const;
+    CellId cell_at(const Vec3i& site) const { return cell_at(site.x(), site.y(), site.z()); }
+    // Calls visit(cell, its site) with the cells there are at and around a site, in the order of
+    // neighbor_step.
+    template <typename Visit>
+    void for_each_cell_around(const Vec3i& site, const Visit& visit) const {
+        for (int n = 0; n < 27; ++n) {
+            const Vec3i at = site + neighbor_step(n);
+            const CellId cell = cell_at(at);
+            if (cell >= 0) visit(cell, at);
+        }
+    }
     Vec3i cell_site(CellId cell) const;
     // Corner c has bit 0 along x, bit 1 along y, bit 2 along z.
     std::array<ParticleId, 8> cell_corners(CellId cell) const;

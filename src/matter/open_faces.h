@@ -29,7 +29,7 @@ void for_each_open_face(const Lattice& lattice, const std::vector<char>& whole, 
             for (int face = 0; face < 6; ++face) {
                 const Vec3i next =
                     Vec3i(run.i + n, run.j, run.k) + (face & 1 ? 1 : -1) * Vec3i::Unit(face >> 1);
-                const CellId other = lattice.cell_at(next.x(), next.y(), next.z());
+                const CellId other = lattice.cell_at(next);
                 if (other >= 0 && !whole[other]) act(run, n, face);
             }
         }

@@ -41,7 +41,7 @@ CellId nearest_cell(const Lattice& lattice, const Vec3i& home, const Vec3& point
                 const bool inner = std::max(std::abs(dk), std::abs(dj)) < ring;
                 for (int di = -ring; di <= ring; di += inner ? 2 * ring : 1) {
                     const Vec3i site = home + Vec3i(di, dj, dk);
-                    const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+                    const CellId cell = lattice.cell_at(site);
                     if (cell >= 0) consider(cell, site);
                 }
             }
@@ -60,12 +60,9 @@ CellId firm_cell(const Lattice& lattice, const std::vector<float>& fill, const V
                  const Vec3& point) {
     CellId best = -1;
     double best_distance = 0;
-    for (int n = 0; n < 27; ++n) {
-        const Vec3i site = home + neighbor_step(n);
-        const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
-        if (cell < 0) continue;
+    lattice.for_each_cell_around(home, [&](CellId cell, const Vec3i& site) {
         const double d = distance_squared(point, site);
-        if (d >= kReach * kReach) continue;
+        if (d >= kReach * kReach) return;
         const auto better = [&] {
             if (best < 0) return true;
             const bool firm = fill[cell] >= kFirmFill, best_firm = fill[best] >= kFirmFill;
@@ -74,7 +71,7 @@ CellId firm_cell(const Lattice& lattice, const std::vector<float>& fill, const V
             return fill[cell] > fill[best];
         };
         if (better()) best = cell, best_distance = d;
-    }
+    });
     return best;
 }
 
@@ -105,7 +102,7 @@ SurfacePoints carry_patches(const std::vector<CellLayer>& layers, const Lattice&
             const std::size_t p = chunk.first + n - chunk.begin;
             const Vec3 point = 0.5 * patch.center;
             Vec3i site(patch.i, patch.j, chunk.k);
-            CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+            CellId cell = lattice.cell_at(site);
             double overhang = kOverhang;
             if (cell < 0 || fill[cell] < kFirmFill) {
                 const CellId firm = firm_cell(lattice, fill, site, point);

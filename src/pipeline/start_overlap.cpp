@@ -64,7 +64,7 @@ bool is_deep_in(const Aggregate& matter, CellId near, const RestSurface& surface
     const Vec3 at = (reference - matter.lattice.origin) / matter.lattice.spacing;
     const Vec3 low(std::floor(at.x()), std::floor(at.y()), std::floor(at.z()));
     const Vec3i site = low.cast<int>();
-    const CellId cell = matter.lattice.cell_at(site.x(), site.y(), site.z());
+    const CellId cell = matter.lattice.cell_at(site);
     if (cell < 0) return false;
     return !surface.is_rim(cell) || surface.at(cell, at - low).distance < -kDeep;
 }

@@ -15,7 +15,7 @@ Onward walk_on(const ContactSide& onto, bool found, CellPlace& at, CellCorners& 
     bool is_deep = false;  // what lies on is no rim
     const auto try_step = [&](const Vec3i& s) {
         const Vec3i site = at.site + s;
-        const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+        const CellId cell = lattice.cell_at(site);
         const bool holds = onto.may_hold(cell);
         opens = opens || (cell >= 0 && !onto.is_whole(cell));
         is_deep = is_deep || (cell >= 0 && onto.is_whole(cell) && !holds);

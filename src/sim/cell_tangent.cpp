@@ -442,8 +442,7 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
     const std::vector<CellMatrix>& mixed = mixed_.matrices(matter, kind);
     for (std::size_t n = 0; n < mixed.size(); ++n) {
         const Vec3i site = mixed_.site(n), at = site.cwiseQuotient(ratio);
-        add_followed(mixed[n], site - at.cwiseProduct(ratio), ratio,
-                     sum[coarse.cell_at(at.x(), at.y(), at.z())]);
+        add_followed(mixed[n], site - at.cwiseProduct(ratio), ratio, sum[coarse.cell_at(at)]);
     }
     return sum;
 }

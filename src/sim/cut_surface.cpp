@@ -48,7 +48,7 @@ CutSurface::CutSurface(const Lattice& lattice, const std::vector<char>& is_whole
     for (const Vec3i& site : site_of_skin) {
         around(kReach, [&](const Vec3i& way) {
             const Vec3i at = site + way;
-            const CellId cell = lattice.cell_at(at.x(), at.y(), at.z());
+            const CellId cell = lattice.cell_at(at);
             if (cell < 0 || !is_whole[cell] || slot_[cell] >= 0) return;
             slot_[cell] = static_cast<int>(corner_.size());
             corner_.emplace_back();

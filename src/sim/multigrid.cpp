@@ -46,7 +46,7 @@ void Multigrid::add_points(Level& level, const std::vector<HeldPoint>& held) con
     for (const HeldPoint& h : held) {
         const Vec3i low = site_[h.corner[0]];
         const Vec3i cell = low.cwiseQuotient(level.ratio);
-        const CellId id = level.lattice.cell_at(cell.x(), cell.y(), cell.z());
+        const CellId id = level.lattice.cell_at(cell);
         std::array<double, 8> weight{};
         for (int c = 0; c < 8; ++c) {
             const double carried = h.weight[c];

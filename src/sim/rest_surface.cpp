@@ -95,7 +95,7 @@ RestSurface::RestSurface(const Aggregate& matter) {
         for (int k = -kRings; k <= kRings; ++k) {
             for (int j = -kRings; j <= kRings; ++j) {
                 for (int i = -kRings; i <= kRings; ++i) {
-                    const CellId cell = lattice.cell_at(site.x() + i, site.y() + j, site.z() + k);
+                    const CellId cell = lattice.cell_at(site + Vec3i(i, j, k));
                     if (cell < 0 || slot_[cell] == 0) continue;
                     slot_[cell] = 0;
                     rim.push_back(cell);
@@ -234,8 +234,7 @@ void RestSurface::measure_corners(const Lattice& lattice) {
         value[n] = static_cast<float>(distance(corner[n].cast<double>()));
         bool is_outer = false;
         for (int c = 0; c < 8; ++c) {
-            const Vec3i at = corner[n] - corner_step(c);
-            is_outer = is_outer || lattice.cell_at(at.x(), at.y(), at.z()) < 0;
+            is_outer = is_outer || lattice.cell_at(corner[n] - corner_step(c)) < 0;
         }
         if (is_outer) value[n] = static_cast<float>(at_end(value[n]));
     });
@@ -310,8 +309,7 @@ void RestSurface::measure_fine(const Lattice& lattice, const std::vector<char>& 
         // Neighbours that are sampled at their corners only.
         std::array<bool, 27> coarse, none;
         for (int m = 0; m < 27; ++m) {
-            const Vec3i at = site_[n] + neighbor_step(m);
-            const CellId cell = lattice.cell_at(at.x(), at.y(), at.z());
+            const CellId cell = lattice.cell_at(site_[n] + neighbor_step(m));
             none[m] = cell < 0;
             coarse[m] = cell >= 0 && slot_[cell] >= 0 && !is_fine[slot_[cell]];
         }

@@ -34,7 +34,7 @@ CellId carrying_cell(const Aggregate& matter, const Vec3& place) {
     const Vec3 at = (place - lattice.origin) / lattice.spacing;
     const Vec3 floor = at.array().floor().max(-1e9).min(1e9);
     const Vec3i site = floor.cast<int>();
-    const CellId home = lattice.cell_at(site.x(), site.y(), site.z());
+    const CellId home = lattice.cell_at(site);
     if (home >= 0) return home;
 
     CellId nearest = -1;
@@ -43,13 +43,10 @@ CellId carrying_cell(const Aggregate& matter, const Vec3& place) {
     const auto offer = [&](CellId cell, double d) {
         if (d < least || (d == least && cell < nearest)) least = d, nearest = cell;
     };
-    for (int n = 0; n < 27; ++n) {
-        const Vec3i next = site + neighbor_step(n);
-        const CellId cell = lattice.cell_at(next.x(), next.y(), next.z());
-        if (cell < 0) continue;
+    lattice.for_each_cell_around(site, [&](CellId cell, const Vec3i& next) {
         const Vec3 low = next.cast<double>(), high = low + Vec3::Ones();
         offer(cell, (at - at.cwiseMax(low).cwiseMin(high)).squaredNorm());
-    }
+    });
     if (nearest >= 0 && least <= 1) return nearest;
     for (const CellRun& run : lattice.cell_run) {
         if (distance2(run, 0, run.count, at) > least) continue;

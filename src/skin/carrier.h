@@ -2,6 +2,8 @@
 // How a place of the body at molding is carried by the eight particles of a cell.
 #pragma once
 
+#include <limits>
+
 #include "matter/cell_parts.h"
 #include "skin/particle_frames.h"
 
@@ -36,6 +38,28 @@ CellBox cell_box(const Aggregate& matter, CellId cell);
 // The active cell that holds the place (at molding), or the nearest one.
 CellId carrying_cell(const Aggregate& matter, const Vec3& place);
 Carrier carrier_in(const CellBox& box, const Vec3& place);
+
+// Of the cells at and around `home` the nearest to the place (at molding) in which
+// side_in(cell, site) has a corner, and what it is there. `cell` -1: there is none.
+struct CellSide {
+    CellId cell = -1;
+    CornerMask side = 0;
+};
+template <typename SideIn>
+CellSide nearest_side(const Aggregate& matter, CellId home, const Vec3& place,
+                      const SideIn& side_in) {
+    CellSide best;
+    double least = std::numeric_limits<double>::infinity();
+    const auto offer = [&](CellId cell, const Vec3i& site) {
+        const CornerMask side = side_in(cell, site);
+        const CellBox box = cell_box(matter, cell);
+        const Vec3 nearest = place.cwiseMax(box.low).cwiseMin(box.low + box.size);
+        const double distance = (place - nearest).norm();
+        if (side != 0 && distance < least) least = distance, best = {cell, side};
+    };
+    matter.lattice.for_each_cell_around(matter.lattice.cell_site(home), offer);
+    return best;
+}
 
 // The corners that a place follows: all of them in a whole cell, else those of `side` that hang
 // together with the one of `side` that weighs most.

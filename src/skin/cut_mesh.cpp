@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -283,24 +282,13 @@ class PlaneCut {
     void change_cell(int v, int own) {
         const Vec3& reference = mount_.reference[v];
         const int piece = map_.pieces().piece_of(mount_.place(v));
-        const Vec3i site = matter_.lattice.cell_site(mount_.cell[v]);
-        double least = std::numeric_limits<double>::infinity();
-        CellId best = -1;
-        CornerMask best_side = 0;
-        for (int n = 0; n < 27; ++n) {
-            const Vec3i at = site + neighbor_step(n);
-            const CellId cell = matter_.lattice.cell_at(at.x(), at.y(), at.z());
-            if (cell < 0) continue;
-            const CornerMask side =
-                corners_on_side(cell, own) & map_.pieces().side_of_piece(cell, reference, piece);
-            const CellBox box = cell_box(matter_, cell);
-            const Vec3 nearest = reference.cwiseMax(box.low).cwiseMin(box.low + box.size);
-            const double distance = (reference - nearest).norm();
-            if (side != 0 && distance < least) least = distance, best = cell, best_side = side;
-        }
-        if (best < 0) return;  // a sliver without a particle of its own stays where it is
-        mount_.cell[v] = best;
-        mount_.side[v] = best_side;
+        const auto side_in = [&](CellId cell, const Vec3i&) -> CornerMask {
+            return corners_on_side(cell, own) & map_.pieces().side_of_piece(cell, reference, piece);
+        };
+        const CellSide best = nearest_side(matter_, mount_.cell[v], reference, side_in);
+        if (best.cell < 0) return;  // a sliver without a particle of its own stays where it is
+        mount_.cell[v] = best.cell;
+        mount_.side[v] = best.side;
     }
 
     TriMesh& mesh_;

@@ -51,8 +51,7 @@ std::uint32_t firm_around(const Aggregate& matter, CellId cell) {
     const Vec3i site = matter.lattice.cell_site(cell);
     std::uint32_t firm = 0;
     for (int n = 0; n < 27; ++n) {
-        const Vec3i at = site + neighbor_step(n);
-        const CellId next = matter.lattice.cell_at(at.x(), at.y(), at.z());
+        const CellId next = matter.lattice.cell_at(site + neighbor_step(n));
         if (next >= 0 && is_firm(matter, next)) firm |= 1u << n;
     }
     return firm;
@@ -74,8 +73,7 @@ std::vector<CellId> nearest_firm(const Aggregate& matter, std::span<const Sliver
             const double d = (own - step.cast<double>() - Vec3::Constant(0.5)).squaredNorm();
             if (d > least) continue;
             if (d < least) nearest.clear(), least = d;
-            const Vec3i at = matter.lattice.cell_site(sliver.cell) + step;
-            nearest.push_back(matter.lattice.cell_at(at.x(), at.y(), at.z()));
+            nearest.push_back(matter.lattice.cell_at(matter.lattice.cell_site(sliver.cell) + step));
         }
     }
     std::sort(nearest.begin(), nearest.end());
@@ -142,7 +140,7 @@ std::vector<CellId> firm_left(const Aggregate& matter, ParticleId particle,
             }
             const double d = (at - step.cast<double>() - Vec3::Constant(0.5)).squaredNorm();
             if (!shares || d > least) continue;
-            const CellId cell = matter.lattice.cell_at(next.x(), next.y(), next.z());
+            const CellId cell = matter.lattice.cell_at(next);
             if (cell < 0 || !is_firm(matter, cell) || !all_edges_hold(matter, cell)) continue;
             if (d < least) nearest.clear(), least = d;
             nearest.push_back(cell);

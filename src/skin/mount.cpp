@@ -162,12 +162,10 @@ void for_each_vertex(const Mount& mount, const Aggregate& matter, const Visit& v
 
 double flowed_around(const Aggregate& matter, CellId cell) {
     float most = 0;
-    const Vec3i site = matter.lattice.cell_site(cell);
-    for (int n = 0; n < 27; ++n) {
-        const Vec3i at = site + neighbor_step(n);
-        const CellId near = matter.lattice.cell_at(at.x(), at.y(), at.z());
-        if (near >= 0) most = std::max(most, matter.hardening_of(near));
-    }
+    const Lattice& lattice = matter.lattice;
+    lattice.for_each_cell_around(lattice.cell_site(cell), [&](CellId near, const Vec3i&) {
+        most = std::max(most, matter.hardening_of(near));
+    });
     return most;
 }
 

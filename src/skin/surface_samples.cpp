@@ -45,7 +45,7 @@ void SurfaceSamples::for_each_near(const Vec3& at, double reach, const F& f) con
     for (int n = 0; n < 27; ++n) {
         const int i = n % 3, j = n / 3 % 3, k = n / 9;
         if (gap2[0][i] + gap2[1][j] + gap2[2][k] > reach * reach) continue;
-        const CellId cell = lattice_.cell_at(site.x() + i - 1, site.y() + j - 1, site.z() + k - 1);
+        const CellId cell = lattice_.cell_at(site + neighbor_step(n));
         if (cell < 0) continue;
         for (int s = first_[cell]; s < first_[cell + 1]; ++s) {
             const Vec3 way = at - sample_[s].place;

@@ -136,7 +136,7 @@ class Thinning {
         std::array<CellId, 8> beside;
         for (int n = 0; n < 8; ++n) {
             const Vec3i at = site + corner_step(n).cwiseProduct(2 * half - Vec3i::Ones());
-            beside[n] = matter_.lattice.cell_at(at.x(), at.y(), at.z());
+            beside[n] = matter_.lattice.cell_at(at);
         }
         return beside;
     }
@@ -151,8 +151,7 @@ class Thinning {
     // NOTE: of parts thinner than cells nothing may be left to hold what is taken away.
     bool lies_by_full(const Vec3i& site) const {
         for (int n = 0; n < 27; ++n) {
-            const Vec3i at = site + neighbor_step(n);
-            const CellId cell = matter_.lattice.cell_at(at.x(), at.y(), at.z());
+            const CellId cell = matter_.lattice.cell_at(site + neighbor_step(n));
             if (cell >= 0 && matter_.cell_fill[cell] >= kFull) return true;
         }
         return false;

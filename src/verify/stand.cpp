@@ -162,7 +162,7 @@ void Stand::start_from(const Aggregate& coarse) {
         const Vec3 at = (matter.particle_reference.at(p) - lattice.origin) / lattice.spacing;
         const Vec3i site =
             at.array().floor().cast<int>().max(0).min(lattice.cell_count.array() - 1);
-        const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+        const CellId cell = lattice.cell_at(site);
         if (cell < 0) continue;
         const Vec3 local = at - site.cast<double>();
         const auto corner = lattice.cell_corners(cell);

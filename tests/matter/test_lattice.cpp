@@ -34,7 +34,7 @@ TEST_CASE("every active cell finds its own corners, also across holes") {
         for (int n = 0; n < run.count; ++n) site.emplace_back(run.i + n, run.j, run.k);
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        CHECK(lattice.cell_at(cells[c].x(), cells[c].y(), cells[c].z()) == static_cast<int>(c));
+        CHECK(lattice.cell_at(cells[c]) == static_cast<int>(c));
         CHECK(lattice.cell_site(static_cast<CellId>(c)) == cells[c]);
         const auto corner = lattice.cell_corners(static_cast<CellId>(c));
         for (int n = 0; n < 8; ++n) {

@@ -81,7 +81,7 @@ TEST_CASE("a box keeps its edges, and a plate one cell thick its two sides") {
             if (wanted < -0.4) continue;
             const Vec3 g = (x - m.lattice.origin) / 0.1;
             const Vec3i site = g.array().floor().cast<int>();
-            const CellId cell = m.lattice.cell_at(site.x(), site.y(), site.z());
+            const CellId cell = m.lattice.cell_at(site);
             const RestSurface::Depth d = surface.at(cell, g - site.cast<double>());
             REQUIRE(d.distance / d.gradient.norm() == Approx(wanted).margin(0.05));
         }
@@ -94,7 +94,7 @@ namespace {
 bool depth_at(const Aggregate& m, const RestSurface& surface, const Vec3& g,
               RestSurface::Depth& depth) {
     const Vec3i site = g.array().floor().cast<int>();
-    const CellId cell = m.lattice.cell_at(site.x(), site.y(), site.z());
+    const CellId cell = m.lattice.cell_at(site);
     if (cell < 0 || !surface.is_rim(cell)) return false;
     depth = surface.at(cell, g - site.cast<double>());
     return true;
@@ -173,7 +173,7 @@ TEST_CASE("nothing is deeper than a sliver where the cells of parts thinner than
             for (int face = 0; face < 6; ++face) {
                 const int axis_of = face >> 1, side = face & 1;
                 const Vec3i next = site + (side ? 1 : -1) * Vec3i(Vec3i::Unit(axis_of));
-                if (m.lattice.cell_at(next.x(), next.y(), next.z()) >= 0) continue;
+                if (m.lattice.cell_at(next) >= 0) continue;
                 for (int n = 0; n < 25; ++n) {
                     Vec3 place;
                     place[axis_of] = side;
