@@ -19,6 +19,10 @@ struct Box {
     }
     Vec3 size() const { return high - low; }
     Vec3 center() const { return 0.5 * (low + high); }
+    // Bit 0 along x, bit 1 along y, bit 2 along z.
+    Vec3 corner(int c) const {
+        return {(c & 1 ? high : low).x(), (c & 2 ? high : low).y(), (c & 4 ? high : low).z()};
+    }
     void grow(const Vec3& point) {
         for (int i = 0; i < 3; ++i) {
             low[i] = std::min(low[i], point[i]);

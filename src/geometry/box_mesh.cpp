@@ -5,11 +5,7 @@ namespace swage {
 
 TriMesh box_mesh(const Box& box) {
     TriMesh mesh;
-    for (int c = 0; c < 8; ++c) {
-        mesh.position.emplace_back(c & 1 ? box.high.x() : box.low.x(),
-                                   c & 2 ? box.high.y() : box.low.y(),
-                                   c & 4 ? box.high.z() : box.low.z());
-    }
+    for (int c = 0; c < 8; ++c) mesh.position.push_back(box.corner(c));
     for (const auto& [a, b, c, d] : {std::array{0, 4, 6, 2},
                                      {1, 3, 7, 5},
                                      {0, 1, 5, 4},

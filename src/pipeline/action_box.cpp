@@ -178,11 +178,7 @@ ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_fro
         for (std::size_t b = 0; b < boxes.size() && b < frame.pose.size(); ++b) {
             if (boxes[b].empty()) continue;
             for (int corner = 0; corner < 8; ++corner) {
-                const Vec3 at =
-                    drawn_from_world *
-                    (frame.pose[b] * Vec3(corner & 1 ? boxes[b].high[0] : boxes[b].low[0],
-                                          corner & 2 ? boxes[b].high[1] : boxes[b].low[1],
-                                          corner & 4 ? boxes[b].high[2] : boxes[b].low[2]));
+                const Vec3 at = drawn_from_world * (frame.pose[b] * boxes[b].corner(corner));
                 machines.grow(at);
                 tool_corners.push_back(at);
             }

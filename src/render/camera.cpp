@@ -40,12 +40,9 @@ Box sensible(Box box) {
 }  // namespace
 
 std::vector<Vec3> corners_of(const Box& box) {
-    std::vector<Vec3> corner(8);
-    for (std::size_t i = 0; i < 8; ++i) {
-        corner[i] = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(),
-                     (i & 4 ? box.high : box.low).z()};
-    }
-    return corner;
+    std::vector<Vec3> corners;
+    for (int c = 0; c < 8; ++c) corners.push_back(box.corner(c));
+    return corners;
 }
 
 Lens lens_of(const RenderSettings& settings) {

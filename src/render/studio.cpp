@@ -29,11 +29,7 @@ struct ShadowBox {
 // A square map along the light, as small as holds the box.
 ShadowBox fit_shadow(const Box& box, const Mat3& stage_from_light) {
     Box lit;
-    for (int i = 0; i < 8; ++i) {
-        const Vec3 corner = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(),
-                             (i & 4 ? box.high : box.low).z()};
-        lit.grow(stage_from_light.transpose() * corner);
-    }
+    for (int c = 0; c < 8; ++c) lit.grow(stage_from_light.transpose() * box.corner(c));
     const double side = 1.06 * std::max(lit.size().x(), lit.size().y());
     const double depth = 1.06 * lit.size().z() + 1e-3;
     const Vec3 c = lit.center();

@@ -27,8 +27,7 @@ double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
     const Box box = bounds_of(tool.shape);
     double farthest = 0;
     for (int c = 0; c < 8; ++c) {
-        const Vec3 corner(c & 1 ? box.high.x() : box.low.x(), c & 2 ? box.high.y() : box.low.y(),
-                          c & 4 ? box.high.z() : box.low.z());
+        const Vec3 corner = box.corner(c);
         farthest = std::max(farthest, (to * corner - from * corner).norm());
     }
     return farthest;
