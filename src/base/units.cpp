@@ -305,4 +305,23 @@ std::string quantity_text(double value, Quantity quantity) {
     return text(value / smallest->factor, smallest->name);
 }
 
+bool Range::holds(double value) const {
+    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+bool Range::nearly_holds(double value) const {
+    const double slack = 1e-9 * std::max(1e-6, std::abs(value));
+    return Range{low - slack, high + slack, low_open, high_open}.holds(value);
+}
+
+std::string Range::text(Quantity quantity) const {
+    const std::string from = quantity_text(low, quantity), to = quantity_text(high, quantity);
+    if (std::isinf(high)) return (low_open ? "more than " : "at least ") + from;
+    if (std::isinf(low)) return (high_open ? "less than " : "at most ") + to;
+    if (low_open && high_open) return "between " + from + " and " + to + ", both excluded";
+    if (low_open) return "more than " + from + ", at most " + to;
+    if (high_open) return "at least " + from + ", less than " + to;
+    return from + " to " + to;
+}
+
 }  // namespace swage

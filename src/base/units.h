@@ -3,6 +3,7 @@
 // number is SI. No locale has a say, ever: the decimal sign is a point.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,5 +63,18 @@ std::optional<LeadingUnit> leading_unit(std::string_view text);
 
 // For people: 0.18 m is "18 cm", 2.1e11 Pa "210 GPa", angles are in degrees. Six digits.
 std::string quantity_text(double value, Quantity quantity);
+
+// Allowed values. An open end is itself not allowed.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_open = false, high_open = false;
+
+    bool holds(double value) const;
+    // A value computed to lie at an end may miss it by the last bits.
+    bool nearly_holds(double value) const;
+    // "more than 0 m", "1 mm to 2 cm", ...; `quantity` shows the ends.
+    std::string text(Quantity quantity) const;
+};
 
 }  // namespace swage

@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostFrames = 1'000'000'000;  // of a scene; what a machine can hold is judged later
-constexpr double kRangeSlack = 1e-9;        // a value computed to lie at its limit may miss it
 
 const std::vector<std::string> kStageKeys = {"machine",
                                              "name",
@@ -155,11 +154,7 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
         const ParameterSpec& parameter = loaded.machine->parameter[n];
         const auto given = stage.parameter.find(parameter.name);
         if (given == stage.parameter.end()) continue;
-        Range range = ranges[n];
-        const double slack = kRangeSlack * std::max(1e-6, std::abs(given->second));
-        range.low -= slack;
-        range.high += slack;
-        if (range.holds(given->second)) continue;
+        if (ranges[n].nearly_holds(given->second)) continue;
         table.mistake(parameter.name,
                       fmt::format("{} = {} is out of range: the machine {} takes {}",
                                   parameter.name, quantity_text(given->second, parameter.quantity),

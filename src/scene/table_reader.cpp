@@ -58,20 +58,6 @@ const std::map<std::string, std::string> kOtherNames = {
 
 }  // namespace
 
-bool Range::holds(double value) const {
-    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-}
-
-std::string Range::text(Quantity quantity) const {
-    const std::string from = quantity_text(low, quantity), to = quantity_text(high, quantity);
-    if (std::isinf(high)) return (low_open ? "more than " : "at least ") + from;
-    if (std::isinf(low)) return (high_open ? "less than " : "at most ") + to;
-    if (low_open && high_open) return "between " + from + " and " + to + ", both excluded";
-    if (low_open) return "more than " + from + ", at most " + to;
-    if (high_open) return "at least " + from + ", less than " + to;
-    return from + " to " + to;
-}
-
 void Reading::report_unknown() {
     for (const UnknownKey& one : unknown) {
         if (mistakes.is_full()) {

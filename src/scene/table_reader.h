@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -19,16 +18,6 @@
 
 namespace swage {
 
-// Allowed values. An open end is itself not allowed.
-struct Range {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-    bool low_open = false, high_open = false;
-
-    bool holds(double value) const;
-    // "more than 0 m", "1 mm to 2 cm", ...; `quantity` shows the ends.
-    std::string text(Quantity quantity) const;
-};
 inline Range above(double low) { return {.low = low, .low_open = true}; }
 inline Range at_least(double low) { return {.low = low}; }
 inline Range between(double low, double high) { return {.low = low, .high = high}; }
