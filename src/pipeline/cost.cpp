@@ -77,22 +77,13 @@ double least_damping(const SceneSpec& scene) {
     return least;
 }
 
-template <class Test>
-bool any_material(const SceneSpec& scene, Test&& test) {
-    for (const BodySpec& body : scene.body) {
-        for (const Material* m : body.materials()) {
-            if (test(*m)) return true;
-        }
-    }
-    return false;
-}
 bool yields(const SceneSpec& scene) {
-    return any_material(scene, [](const Material& m) { return std::isfinite(m.yield_stress); });
+    return scene.any_material([](const Material& m) { return std::isfinite(m.yield_stress); });
 }
 
 // What laws make of an explicit step's time.
 double law_share(const SceneSpec& scene) {
-    const bool damps = any_material(scene, [](const Material& m) { return m.damping_ratio > 0; });
+    const bool damps = scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
     return (damps ? kDampedShare : 1) * (yields(scene) ? kYieldingShare : 1);
 }
 

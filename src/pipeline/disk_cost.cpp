@@ -58,20 +58,11 @@ double picture_bytes(const RenderSettings& render, double stills) {
     return stills * kStillBytes + kStillBytesPerPixel * (stills * pixels + on_sheet);
 }
 
-bool may_break(const SceneSpec& scene) {
-    for (const BodySpec& body : scene.body) {
-        for (const Material* m : body.materials()) {
-            if (m->breaks()) return true;
-        }
-    }
-    return false;
-}
-
 }  // namespace
 
 double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
                   const DiskShare& of) {
-    const bool breaks = may_break(scene);
+    const bool breaks = scene.any_material([](const Material& m) { return m.breaks(); });
     const double vertices = of.vertices + (breaks ? kBrokenVertices * of.cells : 0);
     double skins = 1;  // stored: where matter may part in every frame
     double bytes = kRunBytes;

@@ -75,20 +75,6 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
     for (const fs::path& file : scene.inputs) {
         if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
     }
-    for (const StageSpec& stage : scene.stage) {
-        for (const ToolSpec& tool : stage.machine.tool) {
-            if (tool.mesh.empty()) continue;
-            if (std::find(files.begin(), files.end(), tool.mesh) == files.end()) {
-                files.push_back(tool.mesh);
-            }
-        }
-    }
-    for (const InsetSpec& inset : scene.work_piece().inset) {
-        if (inset.file.empty()) continue;
-        if (std::find(files.begin(), files.end(), inset.file) == files.end()) {
-            files.push_back(inset.file);
-        }
-    }
     for (const fs::path& file : files) {
         const std::string role = add_file(identity, file == scene.file ? "scene" : "", file);
         if (keeps_numbers_beside(file)) add_as_read(identity, role, file);

@@ -137,6 +137,9 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
         scene.stage.push_back(stages.read(*node));
     }
     scene.inputs.insert(scene.inputs.end(), stages.inputs().begin(), stages.inputs().end());
+    for (const InsetSpec& inset : scene.work_piece().inset) {
+        if (!inset.file.empty()) scene.inputs.push_back(inset.file);
+    }
     refuse_with_insets(root, scene);
     refuse_remolded_blocks(root, scene);
     if (root.find("stage") == nullptr && reading.is_complete) {

@@ -87,13 +87,24 @@ struct SceneSpec {
     std::vector<StageSpec> stage;
 
     const BodySpec& work_piece() const { return body.front(); }
+    template <typename Test>
+    bool any_material(const Test& test) const {
+        for (const BodySpec& one : body) {
+            for (const Material* m : one.materials()) {
+                if (test(*m)) return true;
+            }
+        }
+        return false;
+    }
     double duration_of(const StageSpec& of) const {  // [s]
         return of.duration > 0 ? of.duration
                                : static_cast<double>(of.frames) / render.frames_per_second;
     }
     RenderSettings render;
     OutputSpec output;
-    std::vector<std::filesystem::path> inputs;  // every file that was read, scene and machines
+    // Every file that was read but for the meshes of bodies: the scene, materials, machines, the
+    // meshes of tools and insets.
+    std::vector<std::filesystem::path> inputs;
 };
 
 }  // namespace swage

@@ -9,7 +9,7 @@
 
 using namespace swage;
 
-TEST_CASE("what lies beside a glTF file of an inset or a tool belongs to what a run was made of") {
+TEST_CASE("what lies beside a glTF file that a scene reads belongs to what a run was made of") {
     const Scratch scratch;
     const auto put = [&](const char* name, const std::string& bytes) {
         std::ofstream(scratch.path() / name, std::ios::binary) << bytes;
@@ -21,11 +21,6 @@ TEST_CASE("what lies beside a glTF file of an inset or a tool belongs to what a 
     };
     SceneSpec scene;
     scene.body.emplace_back();
-    SECTION("an inset") { scene.body[0].inset.emplace_back(); }
-    SECTION("a tool") {
-        scene.stage.emplace_back();
-        scene.stage[0].machine.tool.emplace_back();
-    }
     const auto file = put("core.gltf",
                           R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
             "nodes": [{"mesh": 0}],
@@ -34,11 +29,7 @@ TEST_CASE("what lies beside a glTF file of an inset or a tool belongs to what a 
                            "min": [0, 0, 0], "max": [2, 2, 0]}],
             "bufferViews": [{"buffer": 0, "byteLength": 36}],
             "buffers": [{"uri": "corners.bin", "byteLength": 36}]})");
-    if (scene.stage.empty()) {
-        scene.body[0].inset[0].file = file;
-    } else {
-        scene.stage[0].machine.tool[0].mesh = file;
-    }
+    scene.inputs = {file};
     const auto hashes = [&] {
         std::vector<std::string> hash;
         for (const RunInput& input : identity_of(scene, {}, {}).input) hash.push_back(input.hash);

@@ -301,7 +301,9 @@ TEST_CASE("paths are relative to the file they stand in, from wherever the progr
     const Scratch scratch;
     scratch.write("deep/er/scene.toml",
                   "[mesh]\nfile = \"../../bar.obj\"\n[material]\nname = "
-                  "\"rubber\"\n[[stage]]\nmachine = \"../mine/press.toml\"\n");
+                  "\"rubber\"\n[[inset]]\nname = \"lead\"\nfile = \"../core.obj\"\n"
+                  "[[stage]]\nmachine = \"../mine/press.toml\"\n");
+    scratch.write("deep/core.obj", "v 0 0 0\n");
     scratch.write("deep/mine/tool.obj", "v 0 0 0\n");
     scratch.write("deep/mine/press.toml",
                   "[[tool]]\nname = \"a\"\nshape = \"mesh\"\nfile = \"tool.obj\"\nlength = "
@@ -317,8 +319,11 @@ TEST_CASE("paths are relative to the file they stand in, from wherever the progr
         CHECK(reading.scene->work_piece().mesh.file == scratch.folder() / "bar.obj");
         CHECK(reading.scene->stage[0].machine.tool[0].mesh ==
               scratch.folder() / "deep/mine/tool.obj");
+        CHECK(reading.scene->work_piece().inset[0].file == scratch.folder() / "deep/core.obj");
         const auto& inputs = reading.scene->inputs;
-        CHECK(std::count(inputs.begin(), inputs.end(), scratch.folder() / "deep/mine/tool.obj"));
+        for (const char* file : {"deep/mine/tool.obj", "deep/core.obj"}) {
+            CHECK(std::count(inputs.begin(), inputs.end(), scratch.folder() / file) == 1);
+        }
     }
     std::filesystem::current_path(before);
 }
