@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "matter/aggregate.h"
+#include "tests/shared/block.h"
 
 namespace swage::test {
 
@@ -16,48 +16,6 @@ inline Vec3 gradient_of(const Distance& distance, const Vec3& at, double reach) 
         g[d] = distance(at + reach * Vec3::Unit(d)) - distance(at - reach * Vec3::Unit(d));
     }
     return g.normalized();
-}
-
-// Particles, masses and connections with share weights for cells of the given fill, and whole
-// cells' worth of everything else. Cells sorted by z, y, x.
-inline Aggregate make_matter(const Vec3& origin, double a, const Vec3i& count,
-                             const std::vector<Vec3i>& cells, const std::vector<float>& fill) {
-    Aggregate m;
-    m.lattice = make_lattice(origin, a, count, cells);
-    std::size_t particles = 0;
-    for (const ParticleRun& run : m.lattice.particle_run) particles += run.count;
-    m.particle_reference = ReferencePlaces(origin, Vec3::Constant(a), m.lattice);
-    m.particle_velocity.resize(particles);
-    m.particle_mass.assign(particles, 0.0);
-    m.particle_position = m.particle_reference.all();
-    std::array<std::vector<float>, kForwardCount> weight;
-    for (auto& w : weight) w.assign(particles, 0.0f);
-    m.cell_fill = fill;
-    m.cell_centroid = SparseArray<Eigen::Vector3f>(cells.size(), Eigen::Vector3f::Zero());
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-        const auto corner = m.lattice.cell_corners(static_cast<CellId>(c));
-        for (ParticleId p : corner) {
-            m.particle_mass[p] += fill[c] * m.material.density * a * a * a / 8;
-        }
-        for (int low = 0; low < 8; ++low) {
-            for (int d = 0; d < kForwardCount; ++d) {
-                int high = 0;
-                bool inside = true;
-                for (int axis = 0; axis < 3; ++axis) {
-                    const int at = (low >> axis & 1) + kForward[d][axis];
-                    inside = inside && at >= 0 && at <= 1;
-                    high |= (at & 1) << axis;
-                }
-                if (inside) {
-                    weight[d][corner[low]] += fill[c] * (d < kEdgeCount ? .25f : .5f);
-                }
-            }
-        }
-    }
-    for (int d = 0; d < kForwardCount; ++d) {
-        m.connection[d].weight = SparseArray<float>(weight[d], 1.0f);
-    }
-    return m;
 }
 
 // Fills the shape with cells of edge `a` over the box `low` to `low + a * count`. Each cell's fill
