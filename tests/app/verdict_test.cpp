@@ -7,8 +7,8 @@
 #include "tests/shared/meshes.h"
 
 namespace fs = std::filesystem;
-using swage::fixtures::box_mesh;
-using swage::fixtures::together;
+using swage::test::box_mesh;
+using swage::test::together;
 
 namespace {
 

@@ -12,8 +12,8 @@
 using namespace swage;
 
 int main() {
-    const TriMesh knot = fixtures::knot_mesh(500, 100);
-    TriMesh ball = fixtures::sphere_mesh(1, 6);
+    const TriMesh knot = test::knot_mesh(500, 100);
+    TriMesh ball = test::sphere_mesh(1, 6);
     for (Vec3& p : ball.position)
         p *= 1 + 0.05 * std::sin(9 * p.x()) * std::sin(9 * p.y()) * std::sin(9 * p.z());
     const auto measure = [](const char* name, const TriMesh& mesh, double spacing, int threads) {

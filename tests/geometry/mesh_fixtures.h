@@ -15,7 +15,7 @@
 #include "geometry/trimesh.h"
 #include "tests/catch.h"
 
-namespace swage::fixtures {
+namespace swage::test {
 
 class Folder {
   public:
@@ -132,4 +132,4 @@ inline std::string replaced(std::string text, const std::string& what, const std
     return text;
 }
 
-}  // namespace swage::fixtures
+}  // namespace swage::test

@@ -60,7 +60,7 @@ TEST_CASE("every shape is one closed outward surface with even triangles") {
         INFO(info.name);
         const MadeShape made = make_small(info.name);
         const TriMesh& mesh = made.mesh;
-        CHECK(fixtures::is_closed(mesh));
+        CHECK(test::is_closed(mesh));
         CHECK(surface_components(mesh).count == 1);
         CHECK(signed_volume(mesh) > 0);
         CHECK(mesh.triangle.size() > 1500);
@@ -84,7 +84,7 @@ TEST_CASE("a gear of any width and bore crosses itself nowhere") {
         for (const double bore : {0.006, 0.02, 0.05}) {
             INFO("width " << width << ", bore " << bore);
             const TriMesh gear = make_small("gear", {{"width", width}, {"bore", bore}}).mesh;
-            CHECK(fixtures::is_closed(gear));
+            CHECK(test::is_closed(gear));
             CHECK(handles(gear) == 1);
             CHECK(signed_volume(gear) > 0);
             // Each place is inside once or not at all.

@@ -7,7 +7,7 @@
 #include "tests/geometry/zip_fixture.h"
 
 using namespace swage;
-using fixtures::Folder;
+using test::Folder;
 
 namespace {
 
@@ -17,7 +17,7 @@ const std::string kProduction = "http://schemas.microsoft.com/3dmanufacturing/pr
 // An object that is a box from 0 to `size`.
 std::string box_object(int id, const Vec3& size, const std::string& paint = "") {
     std::string vertices, triangles;
-    const TriMesh box = fixtures::box_mesh({0, 0, 0}, size);
+    const TriMesh box = test::box_mesh({0, 0, 0}, size);
     for (const Vec3& p : box.position)
         vertices += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", p.x(), p.y(), p.z());
     for (const Corners& t : box.triangle)
@@ -56,16 +56,17 @@ TEST_CASE("a 3MF is scaled by the unit it states, millimetres where it states no
         CAPTURE(unit);
         std::vector<std::string> finding;
         const TriMesh mesh = read_mesh(
-            folder.write("a.3mf", fixtures::zip_of(
-                                      files_of(model(unit, box_object(1, {1, 2, 3}), kOneItem)))),
+            folder.write("a.3mf",
+                         test::zip_of(files_of(model(unit, box_object(1, {1, 2, 3}), kOneItem)))),
             {}, &finding);
         CHECK((box_of(mesh.position).size() - metres * Vec3(1, 2, 3)).norm() < 1e-9 * metres);
         CHECK(finding.empty());
     }
-    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write(
-                          "a.3mf", fixtures::zip_of(files_of(model(
-                                       R"(unit="ell")", box_object(1, {1, 1, 1}), kOneItem))))),
-                      Catch::Contains("'ell' is no unit of 3MF"));
+    CHECK_THROWS_WITH(
+        test::read_quietly(folder.write(
+            "a.3mf",
+            test::zip_of(files_of(model(R"(unit="ell")", box_object(1, {1, 1, 1}), kOneItem))))),
+        Catch::Contains("'ell' is no unit of 3MF"));
 }
 
 TEST_CASE("parts of a 3MF's model that stand in other files are read from there") {
@@ -87,8 +88,7 @@ TEST_CASE("parts of a 3MF's model that stand in other files are read from there"
                        model(R"(unit="centimeter")", box_object(1, {3, 3, 3}), ""));
     for (const bool packed : {false, true}) {
         CAPTURE(packed);
-        const TriMesh mesh =
-            fixtures::read_quietly(folder.write("a.3mf", fixtures::zip_of(files, packed)));
+        const TriMesh mesh = test::read_quietly(folder.write("a.3mf", test::zip_of(files, packed)));
         CHECK(mesh.triangle.size() == 36);
         CHECK(signed_volume(mesh) == Approx(36e-6).epsilon(1e-6));
         const Box box = box_of(mesh.position);
@@ -97,15 +97,15 @@ TEST_CASE("parts of a 3MF's model that stand in other files are read from there"
         CHECK(std::any_of(mesh.material.begin(), mesh.material.end(),
                           [](const SurfaceMaterial& m) { return m.color == Vec3(1, 0, 0); }));
     }
-    std::string damaged = fixtures::zip_of(files);
+    std::string damaged = test::zip_of(files);
     damaged[damaged.find("displaycolor") + 15] = '0';
-    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("b.3mf", damaged)),
+    CHECK_THROWS_WITH(test::read_quietly(folder.write("b.3mf", damaged)),
                       Catch::Contains("its part '3D/Objects/a.model' is damaged"));
     files.pop_back();
-    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("b.3mf", fixtures::zip_of(files))),
+    CHECK_THROWS_WITH(test::read_quietly(folder.write("b.3mf", test::zip_of(files))),
                       Catch::Contains("its part '3D/Objects/b.model' is missing"));
     files.emplace_back("3D/Objects/b.model", model("", box_object(1, {3, 3, 3}), ""));
-    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("b.3mf", fixtures::zip_of(files))),
+    CHECK_THROWS_WITH(test::read_quietly(folder.write("b.3mf", test::zip_of(files))),
                       Catch::Contains("'3D/Objects/b.model' has another unit"));
 }
 
@@ -115,13 +115,12 @@ TEST_CASE("a 3MF that asks for an extension which nobody follows is refused by i
         R"(xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02" )";
     const auto written = [&](const std::string& attributes) {
         return folder.write(
-            "a.3mf",
-            fixtures::zip_of(files_of(model(attributes, box_object(1, {1, 1, 1}), kOneItem))));
+            "a.3mf", test::zip_of(files_of(model(attributes, box_object(1, {1, 1, 1}), kOneItem))));
     };
-    CHECK_THROWS_WITH(fixtures::read_quietly(written(beams + R"(requiredextensions="p b")")),
+    CHECK_THROWS_WITH(test::read_quietly(written(beams + R"(requiredextensions="p b")")),
                       Catch::Contains("asks for the extension http://schemas.microsoft.com/"
                                       "3dmanufacturing/beamlattice/2017/02, which is not known"));
-    CHECK_NOTHROW(fixtures::read_quietly(written(beams)));
+    CHECK_NOTHROW(test::read_quietly(written(beams)));
 }
 
 TEST_CASE("a damaged 3MF is refused by the part that is damaged") {
@@ -142,32 +141,31 @@ TEST_CASE("a damaged 3MF is refused by the part that is damaged") {
           std::string(good).replace(good.find("</vertices>"), 11, "</triangles>"),
           std::string(good).insert(good.find("<resources>"), std::string(100000, '<'))}) {
         CAPTURE(text.substr(0, 300));
-        CHECK_THAT(refusal(fixtures::zip_of(files_of(text))),
+        CHECK_THAT(refusal(test::zip_of(files_of(text))),
                    says("its part '3D/3dmodel.model' is damaged near byte"));
     }
     // However deep: what is not known is passed over.
     std::string deep;
     for (int k = 0; k < 100000; ++k) deep += "<a>";
     for (int k = 0; k < 100000; ++k) deep += "</a>";
-    CHECK(refusal(fixtures::zip_of(files_of(std::string(good).insert(good.find("<build>"), deep))))
+    CHECK(refusal(test::zip_of(files_of(std::string(good).insert(good.find("<build>"), deep))))
               .empty());
 
     // A size that is not so, in the directory; larger than a file may be; packed in ways unknown.
     for (const bool packed : {false, true}) {
         CAPTURE(packed);
-        const std::string zip = fixtures::zip_of(files_of(good), packed);
+        const std::string zip = test::zip_of(files_of(good), packed);
         const std::size_t entry = zip.rfind("3D/3dmodel.model") - 46;
         for (const std::size_t size : {std::size_t{0}, good.size() - 1, good.size() + 1}) {
             std::string lies = zip;
-            lies.replace(entry + 24, 4, fixtures::raw(static_cast<std::uint32_t>(size)));
+            lies.replace(entry + 24, 4, test::raw(static_cast<std::uint32_t>(size)));
             CHECK_THAT(refusal(lies), says("its part '3D/3dmodel.model' is damaged"));
         }
         ReadLimits limits;
         limits.file_bytes = zip.size() + 100;
         CHECK(refusal(zip, limits).empty());
         std::string bomb = zip;
-        bomb.replace(entry + 24, 4,
-                     fixtures::raw(static_cast<std::uint32_t>(limits.file_bytes + 1)));
+        bomb.replace(entry + 24, 4, test::raw(static_cast<std::uint32_t>(limits.file_bytes + 1)));
         CHECK_THAT(refusal(bomb, limits),
                    says("its part '3D/3dmodel.model' is larger than a file may be"));
         std::string unknown = zip;
@@ -185,7 +183,7 @@ TEST_CASE("what a 3MF's model says is taken as XML means it") {
         R"(<metadata name="note">a &lt; b<![CDATA[<resources>&]]></metadata><object id="5"><components><component p:path="/3D/a&amp;b.model" objectid="1"/></components></object>)",
         R"(<item objectid="5"/>)"));
     files.emplace_back("3D/a&b.model", model(R"(unit="centimeter")", box_object(1, {1, 2, 3}), ""));
-    const TriMesh mesh = fixtures::read_quietly(folder.write("a.3mf", fixtures::zip_of(files)));
+    const TriMesh mesh = test::read_quietly(folder.write("a.3mf", test::zip_of(files)));
     CHECK((box_of(mesh.position).size() - Vec3(0.01, 0.02, 0.03)).norm() < 1e-9);
 }
 
@@ -199,8 +197,8 @@ TEST_CASE("objects of a 3MF that are made of another twice, 28 deep, are refused
 <component objectid="{}" transform="1 0 0 0 1 0 0 0 1 {} 0 0"/></components></object>)",
                 n, n - 1, n - 1, 2 << n);
         const std::string item = fmt::format(R"(<item objectid="{}"/>)", levels);
-        return fixtures::read_quietly(
-            folder.write("a.3mf", fixtures::zip_of(files_of(model("", objects, item)))));
+        return test::read_quietly(
+            folder.write("a.3mf", test::zip_of(files_of(model("", objects, item)))));
     };
     CHECK(read(4).triangle.size() == 8 * 12);
     CHECK_THROWS_WITH(read(28), Catch::Contains("reading it takes more than the 8 GiB allowed"));

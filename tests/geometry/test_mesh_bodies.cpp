@@ -13,9 +13,9 @@
 #include "tests/geometry/mesh_fixtures.h"
 
 using namespace swage;
-using fixtures::append;
-using fixtures::box_mesh;
-using fixtures::told;
+using test::append;
+using test::box_mesh;
+using test::told;
 
 namespace {
 

@@ -10,22 +10,22 @@
 #include "tests/geometry/zip_fixture.h"
 
 using namespace swage;
-using fixtures::Folder;
-using fixtures::raw;
-using fixtures::read_quietly;
+using test::Folder;
+using test::raw;
+using test::read_quietly;
 
 namespace {
 
 std::string cube_3mf(const std::string& color) {
     std::string vertices, triangles;
-    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {10, 10, 10});
+    const TriMesh cube = test::box_mesh({0, 0, 0}, {10, 10, 10});
     for (const Vec3& p : cube.position)
         vertices += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", p.x(), p.y(), p.z());
     for (const Corners& t : cube.triangle)
         triangles +=
             fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}" pid="5" p1="0"/>)", t[0], t[1], t[2]);
     const std::string relations = "http://schemas.openxmlformats.org/package/2006/relationships";
-    return fixtures::zip_of(
+    return test::zip_of(
         {{"[Content_Types].xml",
           R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)"},
          {"_rels/.rels",
@@ -85,7 +85,7 @@ TEST_CASE("colours that a file gives as screens show them arrive as light") {
     CHECK((color(painted) - mixed).norm() < 1e-6);
 
     // A binary STL file's facets hold 5 bits a colour: blue, green, red, and that it is there.
-    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    const TriMesh cube = test::box_mesh({0, 0, 0}, {1, 1, 1});
     std::string bytes(80, ' ');
     bytes += raw<std::uint32_t>(12);
     for (const Corners& t : cube.triangle) {
@@ -140,7 +140,7 @@ TEST_CASE("an image lies where an OBJ file's material scales and shifts it to") 
     folder.write("a.mtl",
                  "newmtl plain\nmap_Kd a.png\nnewmtl moved\nmap_Kd -s 2 3 1 -o 0.5 0.25 a.png\n"
                  "d 0.5\n");
-    std::string text = fixtures::cube_obj();
+    std::string text = test::cube_obj();
     text.insert(text.find("f 1"), "mtllib a.mtl\nusemtl plain\n");
     text.insert(text.find("f 4/1"), "usemtl moved\n");
     std::vector<std::string> finding;
@@ -163,7 +163,7 @@ TEST_CASE("what of an OBJ's materials is not drawn is told, where it would show"
     folder.write("a.png", "png");
     const auto findings = [&](const std::string& of) {
         folder.write("a.mtl", "newmtl one\nKd 1 0 0\n" + of + "newmtl idle\nKs 1 1 1\n");
-        std::string text = fixtures::cube_obj();
+        std::string text = test::cube_obj();
         text.insert(text.find("f 1"), "mtllib a.mtl\nusemtl one\n");
         text.replace(text.find("vt 1 1"), 6, "vt 2 1");
         std::vector<std::string> finding;
@@ -181,7 +181,7 @@ TEST_CASE("what of an OBJ's materials is not drawn is told, where it would show"
 
 TEST_CASE("colours that jump at an edge stay with their faces") {
     const Folder folder;
-    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    const TriMesh cube = test::box_mesh({0, 0, 0}, {1, 1, 1});
     // What a triangle is called by its material's colour, rounded.
     const auto check = [&](const TriMesh& mesh, const std::vector<std::string>& finding) {
         CHECK(finding.empty());

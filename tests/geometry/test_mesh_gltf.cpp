@@ -6,8 +6,8 @@
 #include "tests/geometry/mesh_fixtures.h"
 
 using namespace swage;
-using fixtures::Folder;
-using fixtures::raw;
+using test::Folder;
+using test::raw;
 
 namespace {
 
@@ -98,7 +98,7 @@ Reading read(const Folder& folder, const std::vector<Values>& attributes,
     const auto file = folder.write("a.glb", "glTF" + size(2) + size(28 + json.size() + bin.size()) +
                                                 size(json.size()) + "JSON" + json +
                                                 size(bin.size()) + std::string("BIN\0", 4) + bin);
-    const TriMesh packed = fixtures::read_quietly(file);
+    const TriMesh packed = test::read_quietly(file);
     CHECK(packed.position == reading.mesh.position);
     CHECK(packed.uv == reading.mesh.uv);
     CHECK(packed.position_color == reading.mesh.position_color);
@@ -180,7 +180,7 @@ TEST_CASE("whole numbers in a glTF that reach beyond their data are refused") {
     folder.write("a.bin", document.bin);
     const std::size_t at = document.json.find(R"("count":4)");
     document.json.replace(at, 9, R"("count":5)");
-    CHECK_THROWS_WITH(fixtures::read_quietly(folder.write("a.gltf", document.json)),
+    CHECK_THROWS_WITH(test::read_quietly(folder.write("a.gltf", document.json)),
                       Catch::Contains("buffer view 0 holds less than is read from it"));
 }
 

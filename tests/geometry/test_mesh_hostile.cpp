@@ -17,7 +17,7 @@
 #include "tests/geometry/mesh_fixtures.h"
 
 using namespace swage;
-using fixtures::Folder;
+using test::Folder;
 
 namespace {
 
@@ -57,10 +57,10 @@ TEST_CASE("what is no mesh file is refused at once") {
     says(refusal(folder / "zero.obj"), "a device");
     says(refusal(folder.write("empty.obj", "")), "empty");
     says(refusal(folder.write("cube.fbx", "x")), ".fbx");
-    says(refusal(folder.write("cube", fixtures::cube_obj())), "no kind of mesh");
+    says(refusal(folder.write("cube", test::cube_obj())), "no kind of mesh");
     ReadLimits small;
     small.file_bytes = 10;
-    says(refusal(folder.write("large.obj", fixtures::cube_obj()), small), "limit");
+    says(refusal(folder.write("large.obj", test::cube_obj()), small), "limit");
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
     CHECK(took.count() < 2);
 }
@@ -141,9 +141,9 @@ TEST_CASE("faces that the header of an OFF or PLY does not count are told of") {
         "property float z\nelement face 2\n"
         "property list uchar int vertex_indices\nend_header\n";
     std::string binary = "ply\nformat binary_little_endian 1.0\n" + header;
-    for (int i = 0; i < 12; ++i) binary += fixtures::raw(i % 4 == 3 ? 1.f : 0.f);
+    for (int i = 0; i < 12; ++i) binary += test::raw(i % 4 == 3 ? 1.f : 0.f);
     for (int i = 0; i < 2; ++i)
-        binary += '\3' + fixtures::raw(0) + fixtures::raw(1 + i) + fixtures::raw(3 - 2 * i);
+        binary += '\3' + test::raw(0) + test::raw(1 + i) + test::raw(3 - 2 * i);
     std::vector<std::string> finding;
     read_mesh(folder.write("a.off", "OFF\n4 2 0\n" + vertices + faces + "# the end\n"), {},
               &finding);
@@ -172,7 +172,7 @@ TEST_CASE("lying glTF, GLB, STL, DAE, 3DS and 3MF files are refused") {
     CHECK(!refusal(folder.write("f.dae", "<COLLADA>")).empty());
     CHECK(!refusal(folder.write("g.3ds", "MM")).empty());
     CHECK(!refusal(folder.write("h.3mf", "PK\x03\x04")).empty());
-    CHECK(!refusal(folder.write("i.stl", fixtures::cube_obj())).empty());
+    CHECK(!refusal(folder.write("i.stl", test::cube_obj())).empty());
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they run without the limit
@@ -194,7 +194,7 @@ TEST_CASE("a material file that cannot be read is told, not taken for an empty o
     const Folder folder;
     std::filesystem::create_symlink("/proc/self/mem", folder / "m.mtl");
     std::vector<std::string> finding;
-    read_mesh(folder.write("a.obj", "mtllib m.mtl\nusemtl steel\n" + fixtures::cube_obj()), {},
+    read_mesh(folder.write("a.obj", "mtllib m.mtl\nusemtl steel\n" + test::cube_obj()), {},
               &finding);
     const std::string wanted = "the material file 'm.mtl' cannot be read";
     CHECK(std::find(finding.begin(), finding.end(), wanted) != finding.end());
@@ -219,7 +219,7 @@ TEST_CASE("nodes that name a child twice, forty deep, are refused before they be
 
 TEST_CASE("random damage to good files never harms the reader's parent") {
     const Folder folder;
-    TriMesh ball = fixtures::ball_mesh(6, 0.5);
+    TriMesh ball = test::ball_mesh(6, 0.5);
     smooth_by_crease_angle(ball, 0.7);
     write_obj(folder / "ball.obj", ball);
     write_ply(folder / "ball.ply", ball);
@@ -239,7 +239,7 @@ TEST_CASE("random damage to good files never harms the reader's parent") {
     limits.wall_seconds = 10;
     int read = 0, refused = 0;
     for (const char* name : {"ball.obj", "ball.ply", "ball.stl"}) {
-        const std::string good = fixtures::bytes_of(folder / name);
+        const std::string good = test::bytes_of(folder / name);
         for (int round = 0; round < 40; ++round) {
             std::string bad = good;
             // Flip a few bytes, mostly near the start where the structure is; sometimes cut.
@@ -273,7 +273,7 @@ TEST_CASE("random damage to good files never harms the reader's parent") {
 
 TEST_CASE("meshes are read from several threads at once") {
     const Folder folder;
-    const auto file = folder.write("cube.obj", fixtures::cube_obj());
+    const auto file = folder.write("cube.obj", test::cube_obj());
     std::vector<std::thread> threads;
     std::vector<double> volume(8, 0);
     for (int i = 0; i < 8; ++i)

@@ -11,10 +11,10 @@
 #include "tests/geometry/mesh_fixtures.h"
 
 using namespace swage;
-using fixtures::Folder;
-using fixtures::raw;
-using fixtures::read_quietly;
-using fixtures::replaced;
+using test::Folder;
+using test::raw;
+using test::read_quietly;
+using test::replaced;
 
 namespace {
 
@@ -89,7 +89,7 @@ void check_square(const TriMesh& mesh) {
 
 TEST_CASE("an OBJ cube of quads keeps quads, order, welds and texture corners") {
     const Folder folder;
-    const TriMesh cube = read_quietly(folder.write("cube.obj", fixtures::cube_obj()));
+    const TriMesh cube = read_quietly(folder.write("cube.obj", test::cube_obj()));
     CHECK(cube.position.size() == 8);
     CHECK(cube.triangle.size() == 12);
     CHECK(cube.uv.size() == 4);
@@ -324,7 +324,7 @@ TEST_CASE("glTF and GLB arrive with node transforms, physical materials and imag
     write_obj(folder / "out/square.obj", inside);
     const TriMesh again = read_quietly(folder / "out/square.obj");
     CHECK(again.material[0].texture.filename() == "paint.png");
-    CHECK(fixtures::bytes_of(again.material[0].texture) == std::string("\x89PNG1234", 8));
+    CHECK(test::bytes_of(again.material[0].texture) == std::string("\x89PNG1234", 8));
 }
 
 TEST_CASE("a glTF whose faces name missing vertices is refused, not read with a hole") {

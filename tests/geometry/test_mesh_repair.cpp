@@ -10,10 +10,10 @@
 #include "tests/geometry/mesh_fixtures.h"
 
 using namespace swage;
-using fixtures::append;
-using fixtures::ball_mesh;
-using fixtures::box_mesh;
-using fixtures::told;
+using test::append;
+using test::ball_mesh;
+using test::box_mesh;
+using test::told;
 
 namespace {
 

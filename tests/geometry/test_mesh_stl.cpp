@@ -7,16 +7,16 @@
 #include "tests/geometry/mesh_fixtures.h"
 
 using namespace swage;
-using fixtures::Folder;
-using fixtures::raw;
-using fixtures::read_quietly;
-using fixtures::replaced;
+using test::Folder;
+using test::raw;
+using test::read_quietly;
+using test::replaced;
 
 namespace {
 
 // A unit cube as split triangles, for formats without shared vertices.
 std::string cube_stl_ascii() {
-    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    const TriMesh cube = test::box_mesh({0, 0, 0}, {1, 1, 1});
     std::string text = "solid cube\n";
     for (const Corners& t : cube.triangle) {
         text += "facet normal 0 0 0\nouter loop\n";
@@ -29,7 +29,7 @@ std::string cube_stl_ascii() {
 }
 
 std::string cube_stl_binary() {
-    const TriMesh cube = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    const TriMesh cube = test::box_mesh({0, 0, 0}, {1, 1, 1});
     std::string bytes(80, ' ');
     bytes += raw<std::uint32_t>(12);
     for (const Corners& t : cube.triangle) {

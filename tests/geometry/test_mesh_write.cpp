@@ -9,8 +9,8 @@
 #include "tests/geometry/mesh_fixtures.h"
 
 using namespace swage;
-using fixtures::Folder;
-using fixtures::read_quietly;
+using test::Folder;
+using test::read_quietly;
 
 namespace {
 
@@ -56,15 +56,15 @@ TEST_CASE("an OBJ read, written and read again is the same mesh, bit for bit") {
     CHECK(second.material[0].roughness == 0.4);
     CHECK(second.material[0].metallic == 0.5);
     CHECK(second.material[0].texture == std::filesystem::weakly_canonical(folder / "out/i.png"));
-    const std::string bytes = fixtures::bytes_of(folder / "out/p.obj");
+    const std::string bytes = test::bytes_of(folder / "out/p.obj");
     write_obj(folder / "out/q.obj", second);
-    CHECK(fixtures::bytes_of(folder / "out/q.obj").substr(13) == bytes.substr(13));  // mtllib aside
+    CHECK(test::bytes_of(folder / "out/q.obj").substr(13) == bytes.substr(13));  // mtllib aside
 }
 
 TEST_CASE("quads and large polygons come out of the writer whole") {
     const Folder folder;
-    write_obj(folder / "cube.obj", read_quietly(folder.write("in.obj", fixtures::cube_obj())));
-    const std::string text = fixtures::bytes_of(folder / "cube.obj");
+    write_obj(folder / "cube.obj", read_quietly(folder.write("in.obj", test::cube_obj())));
+    const std::string text = test::bytes_of(folder / "cube.obj");
     CHECK(text.find("\nf 1/1/1 4/2/2 3/3/3 2/4/4\n") != std::string::npos);
     std::size_t faces = 0;
     for (std::size_t at = 0; (at = text.find("\nf ", at)) != std::string::npos; ++at) ++faces;
@@ -73,7 +73,7 @@ TEST_CASE("quads and large polygons come out of the writer whole") {
 
 TEST_CASE("PLY keeps double precision, polygons, colours and texture seams") {
     const Folder folder;
-    TriMesh cube = read_quietly(folder.write("in.obj", fixtures::cube_obj()));
+    TriMesh cube = read_quietly(folder.write("in.obj", test::cube_obj()));
     for (Vec3& p : cube.position) p = p / 3 + Vec3(1e-7, 0, 2.0 / 7);
     for (int i = 0; i < 8; ++i) cube.position_color.push_back({0.25f, 1.0f, 0.125f * i});
     write_ply(folder / "cube.ply", cube);
@@ -101,17 +101,17 @@ TEST_CASE("PLY keeps double precision, polygons, colours and texture seams") {
     TriMesh bare = cube;
     bare.uv.clear(), bare.triangle_uv.clear();
     write_ply(folder / "bare.ply", bare);
-    CHECK(fixtures::bytes_of(folder / "bare.ply").find("property double s") == std::string::npos);
+    CHECK(test::bytes_of(folder / "bare.ply").find("property double s") == std::string::npos);
 
-    TriMesh ball = fixtures::ball_mesh(4, 1);  // no seam: coordinates at the vertices
+    TriMesh ball = test::ball_mesh(4, 1);  // no seam: coordinates at the vertices
     write_ply(folder / "ball.ply", ball);
-    CHECK(fixtures::bytes_of(folder / "ball.ply").find("property double s") != std::string::npos);
+    CHECK(test::bytes_of(folder / "ball.ply").find("property double s") != std::string::npos);
     CHECK(read_quietly(folder / "ball.ply").triangle == ball.triangle);
 }
 
 TEST_CASE("each face of a PLY keeps its texture, and those without have none") {
     const Folder folder;
-    TriMesh cube = read_quietly(folder.write("in.obj", fixtures::cube_obj()));
+    TriMesh cube = read_quietly(folder.write("in.obj", test::cube_obj()));
     cube.material.assign(3, {});
     for (int m : {0, 2}) {  // the second material has no texture
         const std::string name = fmt::format("image_{}.png", m);
@@ -134,7 +134,7 @@ TEST_CASE("each face of a PLY keeps its texture, and those without have none") {
 
 TEST_CASE("a face without coordinates among those that have them has no texture in a PLY") {
     const Folder folder;
-    TriMesh cut = read_quietly(folder.write("in.obj", fixtures::cube_obj()));
+    TriMesh cut = read_quietly(folder.write("in.obj", test::cube_obj()));
     cut.material.assign(2, {});
     cut.material[0].texture = folder.write("image.png", "image");
     cut.triangle_material.assign(cut.triangle.size(), 0);
@@ -142,7 +142,7 @@ TEST_CASE("a face without coordinates among those that have them has no texture 
     for (const std::size_t t : {8u, 9u}) cut.triangle_material[t] = 1;
     std::filesystem::create_directory(folder / "out");
     write_ply(folder / "out/cut.ply", cut);
-    const std::string bytes = fixtures::bytes_of(folder / "out/cut.ply");
+    const std::string bytes = test::bytes_of(folder / "out/cut.ply");
     CHECK(bytes.find("property int texnumber\n") != std::string::npos);
     // The same from one who names an image and leaves the choice to the coordinates.
     const auto file =
@@ -166,7 +166,7 @@ TEST_CASE("a face without coordinates among those that have them has no texture 
     cut.triangle_uv = read_quietly(folder / "in.obj").triangle_uv;
     cut.triangle_material.assign(cut.triangle.size(), 0);
     write_ply(folder / "out/whole.ply", cut);
-    CHECK(fixtures::bytes_of(folder / "out/whole.ply").find("texnumber") == std::string::npos);
+    CHECK(test::bytes_of(folder / "out/whole.ply").find("texnumber") == std::string::npos);
     CHECK(textured(read_quietly(folder / "out/whole.ply"), 4));
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("of several textures of a PLY whose faces choose none the first is tak
 
 TEST_CASE("vertex colours survive an OBJ") {
     const Folder folder;
-    TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
+    TriMesh box = test::box_mesh({0, 0, 0}, {1, 2, 3});
     for (int i = 0; i < 8; ++i) box.position_color.push_back({0.1f * i, 0.5f, 1 - 0.1f * i});
     write_obj(folder / "box.obj", box);
     const TriMesh again = read_quietly(folder / "box.obj");
@@ -199,7 +199,7 @@ TEST_CASE("vertex colours survive an OBJ") {
 
 TEST_CASE("exports beside each other share equal textures and never overwrite others") {
     const Folder folder;
-    TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
+    TriMesh box = test::box_mesh({0, 0, 0}, {1, 2, 3});
     box.material.push_back({});
     box.triangle_material.assign(box.triangle.size(), 0);
     std::filesystem::create_directories(folder / "a");
@@ -209,15 +209,15 @@ TEST_CASE("exports beside each other share equal textures and never overwrite ot
     box.material[0].texture = folder / "a/t.png";
     write_obj(folder / "out/f1.obj", box);
     write_obj(folder / "out/f2.obj", box);
-    CHECK(fixtures::bytes_of(folder / "out/t.png") == "another");
-    CHECK(fixtures::bytes_of(folder / "out/t_2.png") == "one");
+    CHECK(test::bytes_of(folder / "out/t.png") == "another");
+    CHECK(test::bytes_of(folder / "out/t_2.png") == "one");
     CHECK(!std::filesystem::exists(folder / "out/t_3.png"));
     CHECK(read_quietly(folder / "out/f2.obj").material[0].texture.filename() == "t_2.png");
 }
 
 TEST_CASE("a mesh that cannot be written leaves no library and no picture, but those of others") {
     const Folder folder;
-    TriMesh mesh = fixtures::ball_mesh(3, 0.5);
+    TriMesh mesh = test::ball_mesh(3, 0.5);
     mesh.material.resize(1);
     mesh.material[0].name = "hide";
     mesh.material[0].embedded_texture = std::make_shared<const std::string>("image");
@@ -241,7 +241,7 @@ TEST_CASE("a mesh that cannot be written leaves no library and no picture, but t
 
 TEST_CASE("a mesh with bad indices or a folder that is not there is an output error") {
     const Folder folder;
-    TriMesh box = fixtures::box_mesh({0, 0, 0}, {1, 2, 3});
+    TriMesh box = test::box_mesh({0, 0, 0}, {1, 2, 3});
     const auto code = [&](const std::filesystem::path& file) {
         try {
             write_obj(file, box);
@@ -258,7 +258,7 @@ TEST_CASE("a mesh with bad indices or a folder that is not there is an output er
 
 TEST_CASE("a hundred thousand triangles are written in well under a second") {
     const Folder folder;
-    TriMesh ball = fixtures::ball_mesh(160, 1);
+    TriMesh ball = test::ball_mesh(160, 1);
     smooth_by_crease_angle(ball, 0.7);
     const auto started = std::chrono::steady_clock::now();
     write_obj(folder / "ball.obj", ball);

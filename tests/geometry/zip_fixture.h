@@ -4,7 +4,7 @@
 
 #include "tests/geometry/mesh_fixtures.h"
 
-namespace swage::fixtures {
+namespace swage::test {
 
 inline std::uint32_t crc32(const std::string& bytes) {
     std::uint32_t crc = ~0u;
@@ -40,4 +40,4 @@ inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>
            raw(static_cast<std::uint32_t>(bytes.size())) + raw<std::uint16_t>(0);
 }
 
-}  // namespace swage::fixtures
+}  // namespace swage::test

@@ -7,7 +7,7 @@
 #include "tests/catch.h"
 #include "tests/shared/meshes.h"
 
-namespace swage::fixtures {
+namespace swage::test {
 
 inline Aggregate mold_across(const TriMesh& mesh, int across) {
     MoldSettings settings;
@@ -78,4 +78,4 @@ inline void check_matter(const TriMesh& mesh, const Aggregate& matter) {
     CHECK(lightest > 0);
 }
 
-}  // namespace swage::fixtures
+}  // namespace swage::test

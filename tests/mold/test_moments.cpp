@@ -7,7 +7,7 @@
 #include "tests/mold/checks.h"
 
 using namespace swage;
-using namespace swage::fixtures;
+using namespace swage::test;
 
 namespace {
 

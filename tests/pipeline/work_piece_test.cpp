@@ -11,9 +11,9 @@
 #include "tests/shared/meshes.h"
 
 using namespace swage;
-using fixtures::box_mesh;
-using fixtures::together;
-using fixtures::turned_inside_out;
+using test::box_mesh;
+using test::together;
+using test::turned_inside_out;
 
 namespace {
 
@@ -211,8 +211,8 @@ TEST_CASE("a mesh with one body inside out is molded whole") {
 }
 
 TEST_CASE("what two bodies of a mesh share is molded once") {
-    const TriMesh ball = fixtures::sphere_mesh(1, 3);
-    const TriMesh other = fixtures::moved(ball, {Quat::Identity(), {0.9, 0.1, 0.2}});
+    const TriMesh ball = test::sphere_mesh(1, 3);
+    const TriMesh other = test::moved(ball, {Quat::Identity(), {0.9, 0.1, 0.2}});
     const InputMesh crossing = read_from_file(together(ball, other));
     REQUIRE(crossing.repair.size() == 1);
     CHECK(crossing.repair[0].find("united 2 crossing bodies") == 0);

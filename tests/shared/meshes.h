@@ -11,7 +11,7 @@
 #include "geometry/box_mesh.h"
 #include "geometry/edges.h"
 
-namespace swage::fixtures {
+namespace swage::test {
 
 using swage::box_mesh;
 
@@ -116,4 +116,4 @@ inline TriMesh together(const TriMesh& a, const TriMesh& b) {
     return mesh;
 }
 
-}  // namespace swage::fixtures
+}  // namespace swage::test

@@ -80,7 +80,7 @@ inline void dress(TriMesh& mesh) {
 }
 
 inline void check_sound(const TriMesh& mesh, const std::vector<Vec3>& position) {
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     std::set<Corners> seen;
     double least_area = 1e30;
     for (Corners t : mesh.triangle) {

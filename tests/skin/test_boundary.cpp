@@ -67,7 +67,7 @@ double cut_area(const TriMesh& mesh) {
 TEST_CASE("the boundary of a block of whole cells is the block") {
     const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
     const TriMesh mesh = boundary_skin(block);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(.7 * .4 * .3).epsilon(1e-12));
     CHECK(surface_area(mesh) == Approx(2 * (.7 * .4 + .7 * .3 + .4 * .3)).epsilon(1e-12));
@@ -78,7 +78,7 @@ TEST_CASE("round shapes get round boundaries of their true volume") {
         GENERATE(table<int, double>({{4, .01}, {8, .003}, {13, .003}}));
     const Aggregate matter = rod(across);
     const TriMesh mesh = boundary_skin(matter);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(volume_bar));
     double worst = 0;
@@ -100,7 +100,7 @@ TEST_CASE("a box that lies askew in its lattice keeps its sides flat and its edg
         },
         Vec3::Constant(-1.2), Vec3i::Constant(17), a);
     const TriMesh mesh = boundary_skin(matter);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     double square = 0;
     for (const Vec3& p : mesh.position) {
@@ -129,7 +129,7 @@ TEST_CASE("a box that lies askew in its lattice keeps its sides flat and its edg
 
 TEST_CASE("handles are kept") {
     const TriMesh mesh = boundary_skin(torus());
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 0);
     CHECK(surface_components(mesh).count == 1);
     CHECK(signed_volume(mesh) == Approx(2 * kPi * kPi * .16).epsilon(.01));
@@ -145,7 +145,7 @@ TEST_CASE("thin sheets keep both sides") {
         },
         Vec3(-6, -5, -.93), Vec3i(12, 10, 2), 1.0);
     const TriMesh mesh = boundary_skin(sheet);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(sheet.volume()).epsilon(.02));
 }
@@ -159,7 +159,7 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
     test::sever_plane(matter, point, n);
     REQUIRE(find_pieces(matter).count == 2);
     TriMesh mesh = boundary_skin(matter);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     const Components halves = surface_components(mesh);
     CHECK(halves.count == 2);
     CHECK(signed_volume(mesh) == Approx(whole).epsilon(.01));
@@ -248,7 +248,7 @@ TEST_CASE("a body half severed stays in one piece, with a slit") {
     const TriMesh mesh = boundary_skin(matter);
     CHECK(surface_components(mesh).count == 1);
     CHECK(euler_number(mesh) == 2);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(1e-9));
     CHECK(cut_area(mesh) > 0);
 }
@@ -301,7 +301,7 @@ TEST_CASE("cells that only touch at an edge or a corner get separate vertices") 
     const Aggregate matter = test::make_matter(Vec3::Zero(), 1, Vec3i(4, 3, 3), cells,
                                                std::vector<float>(cells.size(), 1.f));
     const TriMesh mesh = boundary_skin(matter);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(surface_components(mesh).count == 6);
     CHECK(euler_number(mesh) == 12);
     // Apart, so that nothing joins them again: by that much less than 6.

@@ -101,7 +101,7 @@ TEST_CASE("a diced skin is the skin, each triangle around one particle") {
     const bool part = GENERATE(false, true);
     const auto wanted = [&](const Vec3i& site) { return !part || site.x() == 4; };
     const DicedSkin diced = dice_skin(f.mesh, f.matter.lattice, wanted);
-    CHECK(fixtures::is_closed(diced.mesh));
+    CHECK(test::is_closed(diced.mesh));
     CHECK(signed_volume(diced.mesh) == Approx(signed_volume(f.mesh)).epsilon(1e-12));
     CHECK(surface_area(diced.mesh) == Approx(surface_area(f.mesh)).epsilon(1e-12));
     const Lattice& lattice = f.matter.lattice;
@@ -136,7 +136,7 @@ TEST_CASE("what broke in two shows two closed surfaces that move on their own, a
     f.break_it();
     CHECK(f.broken.open_faces == 0);
     CHECK(f.broken.faces > 0);
-    CHECK(fixtures::is_closed(f.broken.mesh));
+    CHECK(test::is_closed(f.broken.mesh));
     CHECK(surface_components(f.broken.mesh).count == 2);
     CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
     for (std::size_t v = 0; v < f.mesh.position.size(); ++v) {
@@ -173,7 +173,7 @@ TEST_CASE("a crack that ends inside is a slit, and opens like a mouth") {
     f.break_it();
     CHECK(f.broken.faces > 0);
     CHECK(f.broken.open_faces == 0);
-    CHECK(fixtures::is_closed(f.broken.mesh));
+    CHECK(test::is_closed(f.broken.mesh));
     CHECK(surface_components(f.broken.mesh).count == 1);
     CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
     test::deform(f.matter, [](const Vec3& p) -> Vec3 {
@@ -192,7 +192,7 @@ TEST_CASE(
                 [&](const Vec3&, const Vec3&) { return random() < share * std::mt19937::max(); });
     f.break_it();
     CHECK(f.broken.open_faces == 0);
-    CHECK(fixtures::is_closed(f.broken.mesh));
+    CHECK(test::is_closed(f.broken.mesh));
     CHECK(signed_volume(f.broken.mesh) == Approx(signed_volume(f.mesh)).epsilon(1e-9));
     std::mt19937 shake(6);
     test::deform(f.matter, [&](const Vec3& p) -> Vec3 {
@@ -203,7 +203,7 @@ TEST_CASE(
 
 TEST_CASE("rubble is closed too where the surface comes as near to a cut as its two faces are") {
     const unsigned seed = GENERATE(89u, 113u, 137u);
-    Fixture f(ball().matter, fixtures::sphere_mesh(.5, 3));
+    Fixture f(ball().matter, test::sphere_mesh(.5, 3));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> any(-1, 1);
     for (Vec3& p : f.mesh.position) p += 2e-3 * Vec3(any(random), any(random), any(random));
@@ -217,7 +217,7 @@ TEST_CASE("rubble is closed too where the surface comes as near to a cut as its 
                 [&](const Vec3&, const Vec3&) { return draw() < .5 * std::mt19937::max(); });
     f.break_it();
     CHECK(f.broken.open_faces == 0);
-    CHECK(fixtures::is_closed(f.broken.mesh));
+    CHECK(test::is_closed(f.broken.mesh));
 }
 
 TEST_CASE("what a blade has cut and load breaks shows closed surfaces, all volume kept") {
@@ -250,7 +250,7 @@ TEST_CASE("what a blade has cut and load breaks shows closed surfaces, all volum
     // NOTE: at the end of a cut inside the body single edges may stay open or have four faces.
     if (extent == Extent::inside) return;
     CHECK(f.broken.open_faces == 0);
-    CHECK(fixtures::is_closed(f.broken.mesh));
+    CHECK(test::is_closed(f.broken.mesh));
 
     // Pieces move apart, each taking its own surface along.
     const Pieces pieces = find_pieces(f.matter);

@@ -41,7 +41,7 @@ TEST_CASE("a cut through gives closed halves whose volumes add up to the whole")
     CHECK(parts.size() >= 2);
     double sum = 0;
     for (const TriMesh& part : parts) {
-        CHECK(fixtures::is_closed(part));
+        CHECK(test::is_closed(part));
         CHECK(signed_volume(part) > 0);
         sum += signed_volume(part);
     }
@@ -210,7 +210,7 @@ TEST_CASE("a section that crosses itself where matter has folded into itself is 
     const CutResult result = f.cut(sweep_of({0, 0, .0123}, Vec3(.1, -.05, 1).normalized(), 3));
     CHECK(result.open_parts == 0);
     CHECK(result.cap_triangles > 0);
-    CHECK(fixtures::is_closed(f.mesh));
+    CHECK(test::is_closed(f.mesh));
     const std::vector<TriMesh> parts = parts_of(f.mesh);
     CHECK(parts.size() == 2);
     double sum = 0;
@@ -333,7 +333,7 @@ TEST_CASE("a chip thinner than the matter knows stays where it is cut from") {
         }
     }
     f.follow();
-    CHECK(fixtures::is_closed(f.mesh));
+    CHECK(test::is_closed(f.mesh));
     double volume = 0;
     int of_foot = 0;
     for (const TriMesh& part : parts_of(f.mesh)) {

@@ -17,7 +17,7 @@ TEST_CASE("a blade that stops inside the body leaves the surface in one piece") 
     CHECK(result.planes == 1);
     CHECK(result.cap_triangles > 0);
     CHECK(parts_of(f.mesh).size() == 1);
-    CHECK(fixtures::is_closed(f.mesh));
+    CHECK(test::is_closed(f.mesh));
     CHECK(signed_volume(f.mesh) == Approx(whole).epsilon(1e-9));
     // It opens like a mouth when the matter does.
     test::sever_plane(f.matter, {0.0137, 0, 0}, Vec3::UnitX(),

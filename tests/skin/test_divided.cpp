@@ -127,7 +127,7 @@ TEST_CASE("edges so far from the origin that they have no middle are left") {
 }
 
 TEST_CASE("a mesh of short edges is not touched, nor one of none") {
-    const TriMesh ball = fixtures::sphere_mesh(1, 3);
+    const TriMesh ball = test::sphere_mesh(1, 3);
     const TriMesh same = divide_edges(ball, longest_edge(ball));
     CHECK(same.position == ball.position);
     CHECK(same.triangle == ball.triangle);
