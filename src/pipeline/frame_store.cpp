@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The file: a magic word, then records of kind, size, hash and bytes, each head with a check of its
-// own; the last says that the file is whole.
+// own; the last says that the file is whole. It stands there from the start and moves on with every
+// record, so that it never wants for room.
 #include "pipeline/frame_store.h"
 
 #include <fcntl.h>
@@ -40,16 +41,24 @@ std::uint32_t check_of(const RecordHead& head) {
     return static_cast<std::uint32_t>(hasher.value());
 }
 
-void write_all(int handle, const fs::path& file, const void* data, std::size_t size) {
+RecordHead head_of(std::uint32_t kind, const std::string& bytes) {
+    RecordHead head{kind, 0, bytes.size(), hash_of(bytes)};
+    head.check = check_of(head);
+    return head;
+}
+
+void write_all(int handle, const fs::path& file, std::uint64_t offset, const void* data,
+               std::size_t size) {
     const char* at = static_cast<const char*>(data);
     while (size > 0) {
-        const ssize_t written = ::write(handle, at, size);
+        const ssize_t written = ::pwrite(handle, at, size, static_cast<off_t>(offset));
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) {
             fail(ExitCode::output, "{}: cannot be written: {}", file.string(),
                  std::strerror(errno));
         }
         at += written;
+        offset += static_cast<std::uint64_t>(written);
         size -= static_cast<std::size_t>(written);
     }
 }
@@ -89,28 +98,43 @@ FrameStoreWriter::FrameStoreWriter(const fs::path& file)
     if (handle_ < 0) {
         fail(ExitCode::output, "{}: cannot be created: {}", file.string(), std::strerror(errno));
     }
-    write_all(handle_, file_, &kMagic, sizeof kMagic);
-    size_ = sizeof kMagic;
+    try {
+        write_all(handle_, file_, 0, &kMagic, sizeof kMagic);
+        size_ = sizeof kMagic;
+        put_end();
+    } catch (const Error&) {
+        drop();
+        throw;
+    }
 }
 
-FrameStoreWriter::~FrameStoreWriter() {
+FrameStoreWriter::~FrameStoreWriter() { drop(); }
+
+void FrameStoreWriter::drop() {
     if (handle_ < 0) return;
     ::close(handle_);
     ::unlink(temporary_.c_str());
 }
 
+void FrameStoreWriter::put_end() {
+    const RecordHead end = head_of(kEnd, {});
+    write_all(handle_, file_, size_, &end, sizeof end);
+}
+
 void FrameStoreWriter::put(std::uint32_t kind, const std::string& bytes) {
-    RecordHead head{kind, 0, bytes.size(), hash_of(bytes)};
-    head.check = check_of(head);
+    const RecordHead head = head_of(kind, bytes);
+    const std::uint64_t before = size_;
     try {
-        write_all(handle_, file_, &head, sizeof head);
-        write_all(handle_, file_, bytes.data(), bytes.size());
+        write_all(handle_, file_, size_, &head, sizeof head);
+        write_all(handle_, file_, size_ + sizeof head, bytes.data(), bytes.size());
+        size_ += sizeof head + bytes.size();
+        put_end();
     } catch (const Error&) {
-        const auto end = static_cast<off_t>(size_);
-        if (::ftruncate(handle_, end) == 0) ::lseek(handle_, end, SEEK_SET);
+        // The room of the end that stood here is kept.
+        size_ = before;
+        if (::ftruncate(handle_, static_cast<off_t>(size_ + sizeof head)) == 0) put_end();
         throw;
     }
-    size_ += sizeof head + bytes.size();
 }
 
 // Once each: a skin may be another in every frame, its texture is the same.
@@ -168,7 +192,6 @@ void FrameStoreWriter::add_frame(const StoredFrame& frame) {
 }
 
 void FrameStoreWriter::finish() {
-    put(kEnd, {});
     ::close(handle_);
     handle_ = -1;
     publish(temporary_, file_);

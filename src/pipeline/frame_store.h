@@ -53,8 +53,10 @@ class FrameStoreWriter {
     void finish();
 
   private:
-    // All of it or nothing: a full disk leaves what came before.
+    // All of it or nothing: a full disk leaves what came before, with its end.
     void put(std::uint32_t kind, const std::string& bytes);
+    void put_end();  // behind what is whole
+    void drop();
     void put_images(const TriMesh& mesh);
 
     std::filesystem::path file_, temporary_;

@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "pipeline/cost.h"
+#include "pipeline/disk_reserve.h"
 #include "pipeline/draw.h"
 #include "pipeline/frame_store.h"
 #include "pipeline/interrupt.h"
@@ -45,6 +46,9 @@ bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory
     }
     return true;
 }
+
+// What run.json may need beside what it holds already: times, warnings, and each stage's books.
+constexpr std::uint64_t kRecordRoom = 64 << 10, kStageRecordRoom = 16 << 10;
 
 void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch) {
     // What is drawn later leaves what the simulation took.
@@ -97,8 +101,11 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     Progress progress("simulate", frame_count(scene) - 1);
     Ended ended;
     long steps = 0;
+    DiskReserve reserve;
     const auto begin = [&] {
         directory.begin();
+        reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
+                                           kStageRecordRoom * scene.stage.size());
         make_folder(directory.root() / "meshes");
         make_folder(directory.root() / "curves");
     };
@@ -123,6 +130,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         }
         if (ended.early()) break;
     }
+    reserve.release();
     recorder.finish();
     record["frames"] = recorder.frame_count();
     record["steps"] = steps;
@@ -187,21 +195,24 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
                              frame_count(scene), directory.root().string()));
         throw *ended.interrupted;
     }
-    if (options.draw && wanted.first <= reached) {
+    const auto draw = [&] {
+        if (!options.draw || wanted.first > reached) return;
         const FrameStore store(directory.store());
         const FrameRange drawn{wanted.first, std::min(wanted.last, reached)};
-        try {
-            outcome.record["drawing"] =
-                drawing_json(draw_run(store, scene.render, drawn, files, watch));
-        } catch (const Error& error) {
-            if (!ended.stopped) throw;
-            log_warning("{}", error.what());  // what ended the run before is its outcome
-        }
-    }
+        outcome.record["drawing"] =
+            drawing_json(draw_run(store, scene.render, drawn, files, watch));
+    };
     if (ended.stopped) {
-        write_record(directory, outcome.record, watch);
+        // What ended the run is its outcome, whether that can be drawn and told or not.
+        try {
+            draw();
+            write_record(directory, outcome.record, watch);
+        } catch (const Error& error) {
+            log_warning("{}", error.what());
+        }
         throw *ended.stopped;
     }
+    draw();
     outcome.record["state"] = RunState::complete;
     write_record(directory, outcome.record, watch);
     log_info("{}: done", directory.root().string());

@@ -167,14 +167,20 @@ class StageRun {
             write_meshes(bodies_[b].deformed(), meshes_[b] / fmt::format("frame_{:04d}", frame));
         }
     }
-    // What cannot be written, as on a full disk, ends the stage where it is, and no more.
+    // What cannot be written, as on a full disk, ends the stage where it is, and no more. What
+    // cannot be written after that is told.
     template <typename Write>
     void keep(const Write& write) {
         try {
             write();
         } catch (const Error& error) {
             if (error.code() != ExitCode::output) throw;
-            if (!outcome_.stopped) outcome_.stopped = error;
+            if (outcome_.stopped) {
+                outcome_.warning.push_back(error.what());
+                log_warning("{}", error.what());
+            } else {
+                outcome_.stopped = error;
+            }
         }
     }
 

@@ -30,7 +30,47 @@ class SmallDisk {
     rlimit before_{};
 };
 
+// What a shell does with a file system of its own at `full`, of so many kB, which is gone after it.
+Outcome in_small_room(const fs::path& folder, int kilobytes, const std::string& commands) {
+    fs::create_directories(folder / "full");
+    return run_swage(
+        {"-rm", "sh", "-c",
+         fmt::format("mount -t tmpfs -o size={}k tmpfs full || exit 99\n{}", kilobytes, commands)},
+        folder, {{"SWAGE", SWAGE_BINARY}}, "/usr/bin/unshare");
+}
+
 }  // namespace
+
+TEST_CASE("what a run has reached is kept and can be drawn when its disk is wholly full") {
+    const Scratch scratch;
+    if (in_small_room(scratch.path(), 64, "").code != 0) {
+        WARN("skipped: nobody but root may mount a file system here");
+        return;
+    }
+    put_small_scene(scratch.path(), 60);
+    const std::string run = "\"$SWAGE\" run small.toml --no-render --force --out ";
+    REQUIRE(in_small_room(scratch.path(), 64, run + "whole").code == 0);
+    const auto frames = int(fs::file_size(scratch.path() / "whole" / "motion.bin") / 1024);
+    // However much of its last room meshes and curves would take.
+    for (int kilobytes = frames / 2; kilobytes < frames / 2 + 40; kilobytes += 8) {
+        const Outcome outcome = in_small_room(
+            scratch.path(), kilobytes,
+            run +
+                "full/run\ncode=$?\nls -A full/run\ncp full/run/run.json record.json\n"
+                "\"$SWAGE\" render full/run --no-film --frames 1-2 --out drawn || exit 98\n"
+                "exit $code");
+        INFO(kilobytes << " kB: " << outcome.out << outcome.err);
+        CHECK(outcome.code == 5);
+        CHECK(outcome.err.find("motion.bin: cannot be written: No space left") !=
+              std::string::npos);
+        CHECK(outcome.out.find(".part") == std::string::npos);
+        const Json record = Json::parse(bytes_of(scratch.path() / "record.json"), nullptr, false);
+        REQUIRE(record.is_object());
+        CHECK(record.at("state") == "stopped");
+        CHECK(record.at("frames") > 10);
+        CHECK(is_whole_png(bytes_of(scratch.path() / "drawn/frames/frame_0002.png")));
+    }
+}
 
 TEST_CASE("a stage that the disk is too full for leaves an account of what it did") {
     const Scratch scratch;

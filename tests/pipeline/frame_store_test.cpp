@@ -163,6 +163,30 @@ TEST_CASE("what was written before the disk was full is kept") {
     CHECK(store.frame(1).body[0].position == some_frame(1).body[0].position);
 }
 
+TEST_CASE("a frame that leaves no room for the file's end is not kept, and those before it are") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    write_store(file, 3);
+    const std::uintmax_t whole = fs::file_size(file);
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit full{whole - 1, before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &full);
+    {
+        FrameStoreWriter writer(file);
+        for (int skin = 0; skin < 2; ++skin) writer.add_skin(tetrahedron());
+        writer.add_machine({{"pusher", tetrahedron(), {1, 0, 0}}});
+        for (int f = 0; f < 2; ++f) writer.add_frame(some_frame(f));
+        CHECK_THROWS_AS(writer.add_frame(some_frame(2)), Error);
+        CHECK_NOTHROW(writer.finish());
+    }
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    CHECK(fs::file_size(file) < whole);
+    CHECK(FrameStore(file).frame_count() == 2);
+}
+
 TEST_CASE("a damaged motion file is refused") {
     const Scratch scratch;
     const fs::path file = scratch.path() / "motion.bin";
