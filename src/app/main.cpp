@@ -6,14 +6,12 @@
 
 #include <cstdlib>
 #include <exception>
-#include <new>
+#include <optional>
 #include <sstream>
-#include <string_view>
-#include <system_error>
 
 #include "app/command.h"
 #include "app/suggest.h"
-#include "base/error.h"
+#include "base/failure.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "pipeline/interrupt.h"
@@ -78,36 +76,18 @@ void open_standard_streams() {
     }
 }
 
-// A thread that could not be started; TBB has no type for it.
-bool is_want_of_threads(const std::exception& error) {
-    const auto* system = dynamic_cast<const std::system_error*>(&error);
-    return system != nullptr ? system->code() == std::errc::resource_unavailable_try_again
-                             : std::string_view(error.what()).starts_with("pthread_create");
-}
-
 // Of what is being handled; returns the exit code.
 int tell_failure() {
     try {
         throw;
-    } catch (const Error& error) {
-        // A line for each mistake.
-        for (const std::string& line : lines_of(error.what())) log_error_text(line);
-        return exit_code(error.code());
     } catch (const Interrupted& interrupted) {
         log_text("stopped; whole files are kept");
         return 128 + interrupted.signal();
-    } catch (const std::bad_alloc&) {
-        log_error_text("there is not enough memory for this; a larger [mold] spacing needs less");
-        return exit_code(ExitCode::resources);
-    } catch (const std::filesystem::filesystem_error& error) {
-        log_error_text(fmt::format("{}: {}", error.path1().string(), error.code().message()));
-        return exit_code(ExitCode::output);
     } catch (const std::exception& error) {
-        if (is_want_of_threads(error)) {
-            log_error_text(
-                "there is no memory, or no leave, for so many threads; --threads 1 needs "
-                "the least");
-            return exit_code(ExitCode::resources);
+        if (const std::optional<Error> failure = failure_of(error)) {
+            // A line for each mistake.
+            for (const std::string& line : lines_of(failure->what())) log_error_text(line);
+            return exit_code(failure->code());
         }
         log_error_text(std::string("unexpected, please report it: ") + error.what());
         return kUnexpected;

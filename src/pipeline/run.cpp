@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/atomic_file.h"
+#include "base/failure.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "pipeline/cost.h"
@@ -123,10 +124,11 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             // While the stage was set up.
             if (recorder.frame_count() == 0) throw;
             ended.interrupted = interrupted;
-        } catch (const Error& error) {
-            // A stage that cannot be set up at what those before have made, or written.
-            if (recorder.frame_count() == 0) throw;
-            ended.stopped = error;
+        } catch (const std::exception& error) {
+            // A stage that cannot be set up at what those before have made, or written, or that
+            // wants for memory.
+            ended.stopped = failure_of(error);
+            if (recorder.frame_count() == 0 || !ended.stopped) throw;
         }
         if (ended.early()) break;
     }
@@ -207,8 +209,10 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
         try {
             draw();
             write_record(directory, outcome.record, watch);
-        } catch (const Error& error) {
-            log_warning("{}", error.what());
+        } catch (const std::exception& error) {
+            const std::optional<Error> failure = failure_of(error);
+            if (!failure) throw;
+            log_warning("{}", failure->what());
         }
         throw *ended.stopped;
     }

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/atomic_file.h"
+#include "base/failure.h"
 #include "geometry/mesh_write.h"
 #include "machines/legs.h"
 #include "pipeline/curves.h"
@@ -99,6 +100,16 @@ void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& pi
     }
 }
 
+// What is being handled, where it ends a stage that is told of as far as it came: a failure of this
+// kind, or want of memory or threads. Anything else is thrown on.
+Error failure_that_stops(ExitCode kind, const std::exception& error) {
+    const std::optional<Error> failure = failure_of(error);
+    if (failure && (failure->code() == kind || failure->code() == ExitCode::resources)) {
+        return *failure;
+    }
+    throw;
+}
+
 class StageRun {
   public:
     StageRun(const StageSpec& stage, std::vector<WorkPiece>& bodies, const StageContext& context)
@@ -167,19 +178,19 @@ class StageRun {
             write_meshes(bodies_[b].deformed(), meshes_[b] / fmt::format("frame_{:04d}", frame));
         }
     }
-    // What cannot be written, as on a full disk, ends the stage where it is, and no more. What
-    // cannot be written after that is told.
+    // What cannot be written, as on a full disk or for want of memory, ends the stage where it is,
+    // and no more. What cannot be written after that is told.
     template <typename Write>
     void keep(const Write& write) {
         try {
             write();
-        } catch (const Error& error) {
-            if (error.code() != ExitCode::output) throw;
+        } catch (const std::exception& error) {
+            const Error failure = failure_that_stops(ExitCode::output, error);
             if (outcome_.stopped) {
-                outcome_.warning.push_back(error.what());
-                log_warning("{}", error.what());
+                outcome_.warning.push_back(failure.what());
+                log_warning("{}", failure.what());
             } else {
-                outcome_.stopped = error;
+                outcome_.stopped = failure;
             }
         }
     }
@@ -207,10 +218,10 @@ class StageRun {
             }
         } catch (const Interrupted& interrupted) {
             outcome_.interrupted = interrupted;
-        } catch (const Error& error) {
-            if (error.code() != ExitCode::stopped) throw;
-            outcome_.stopped.emplace(ExitCode::stopped, fmt::format("{}, frame {}: {}", stage_.name,
-                                                                    number, error.what()));
+        } catch (const std::exception& error) {
+            const Error failure = failure_that_stops(ExitCode::stopped, error);
+            outcome_.stopped.emplace(failure.code(), fmt::format("{}, frame {}: {}", stage_.name,
+                                                                 number, failure.what()));
         }
         if (leg_ > begun) book(number, std::move(frame), curves);
         return !outcome_.interrupted && !outcome_.stopped;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that cannot begin, or end early: what is left of them.
+#include <sys/resource.h>
+
 #include <algorithm>
 
 #include "pipeline/json.h"
@@ -24,6 +26,30 @@ TEST_CASE("a stage that cannot begin leaves what those before it have done") {
     CHECK(is_whole_png(bytes_of(run / "frames/frame_0004.png")));
     CHECK(run_swage({"render", run.string(), "--no-film"}).code == 0);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they run without the limit
+TEST_CASE("a run that wants for memory on its way keeps the frames that it has finished") {
+    const Scratch scratch;
+    const fs::path scene =
+        put_small_scene(scratch.path(), 3, "[[stage]]\nmachine = \"bend\"\nframes = 100000000\n");
+    const fs::path run = scratch.path() / "run";
+    rlimit before = {};
+    ::getrlimit(RLIMIT_AS, &before);
+    const rlimit limit = {rlim_t(600) << 20, before.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_AS, &limit) == 0);
+    const Outcome outcome = run_swage(
+        {"run", scene.string(), "--out", run.string(), "--no-render", "--force", "--threads", "2"});
+    ::setrlimit(RLIMIT_AS, &before);
+    INFO(outcome.err);
+    CHECK(outcome.code == 7);
+    CHECK(outcome.err.find("there is not enough memory") != std::string::npos);
+    REQUIRE(fs::exists(run / "run.json"));
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(record.at("state") == "stopped");
+    CHECK(record.at("frames") == 4);
+    CHECK(run_swage({"render", run.string(), "--no-film", "--frames", "4"}).code == 0);
+}
+#endif
 
 TEST_CASE("a run that cannot be written is refused before it is simulated") {
     const Scratch scratch;
