@@ -336,15 +336,17 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
     std::vector<std::string> told;
     if (stage.remold) {
         const auto lap = context.watch.lap("mold");
+        std::vector<WorkPiece> anew;  // where one cannot be, all stay as they were
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             throw_if_interrupted();
-            bodies[b] = mold_anew(bodies[b], context.scene.body[b], context.scene.skin);
+            anew.push_back(mold_anew(bodies[b], context.scene.body[b], context.scene.skin));
             for (const std::string& warning :
-                 warnings_of_mold(bodies[b].name, bodies.size() > 1, bodies[b].finding)) {
+                 warnings_of_mold(anew[b].name, bodies.size() > 1, anew[b].finding)) {
                 told.push_back(fmt::format("{}: {}", stage.name, warning));
                 log_warning("{}", told.back());
             }
         }
+        bodies = std::move(anew);
         log_info("{}: molded anew: {} particles", stage.name, particle_count(bodies));
     }
     StageOutcome outcome = StageRun(stage, bodies, context).run(last_frame);

@@ -27,6 +27,25 @@ TEST_CASE("a stage that cannot begin leaves what those before it have done") {
     CHECK(run_swage({"render", run.string(), "--no-film"}).code == 0);
 }
 
+TEST_CASE("where one of the bodies cannot be molded anew, all stay as they were") {
+    const Scratch scratch;
+    put_small_scene(scratch.path());  // its mesh
+    const fs::path scene = scratch.path() / "two.toml", run = scratch.path() / "run";
+    const std::string stage = "[[stage]]\nmachine = \"floor\"\nframes = 1\nduration = \"1 ms\"\n";
+    // The other stands aslant, and so has a larger box then.
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 2\n"
+             "cell_limit = 100\n[[body]]\nname = \"other\"\nfile = \"bar.obj\"\n"
+             "at = [0, \"20 cm\", 0]\nturn = [0, 0, \"45 deg\"]\n" +
+                 stage + stage + "remold = true\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    INFO(outcome.err);
+    CHECK(outcome.code == 7);
+    const Json record = Json::parse(bytes_of(run / "run.json"));
+    CHECK(record.at("state_hash") == record.at("stages").at(0).at("state_hash"));
+}
+
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they run without the limit
 TEST_CASE("a run that wants for memory on its way keeps the frames that it has finished") {
     const Scratch scratch;
