@@ -226,6 +226,9 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     if (!input.report.bounds_a_volume()) make_solid(input, body.mold.kind);
     BodySpec as_it_stands = body;
     as_it_stands.start = {};
+    // It is painted already, but where it was cut; what is made for a block's box is not.
+    const bool is_blank = skin.kind == SkinKind::boundary && body.mold.kind == MoldKind::block;
+    if (!is_blank) as_it_stands.color.reset();
     // Bent, its box says nothing of how thick it is.
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = piece.matter.lattice.spacing;

@@ -279,6 +279,48 @@ TEST_CASE("a body in motion is molded anew in motion") {
     CHECK((after.turning - before.turning).norm() < 1e-9 * before.turning.norm());
 }
 
+TEST_CASE("a painted body that is molded anew keeps its colour, and cut faces keep theirs") {
+    const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
+    WorkPiece piece = block({}, kind);
+    const Vec3 a(0.01, -1, -1), b(0.01, 1, -1), up(0, 0, 2);
+    if (kind == SkinKind::mount) cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}});
+    test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
+    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
+        if (piece.matter.particle_reference.at(p).x() > 0.01) {
+            piece.matter.particle_position.add(p, {0.3, 0, 0});
+        }
+    }
+    show_matter(piece, kind, true);
+    REQUIRE(piece.skin.material.size() == 2);
+    BodySpec body;
+    body.mold.across = 3;
+    body.color = Vec3(0.5, 0, 0);
+    const TriMesh skin = mold_anew(piece, body, {kind}).skin;
+    REQUIRE(skin.material.size() >= 2);
+    CHECK(skin.material[0].color == Vec3(0.5, 0, 0));
+    CHECK(skin.material[1].color == piece.skin.material[1].color);
+    CHECK(skin.material[1].color != Vec3(0.5, 0, 0));
+    for (int material : {0, 1}) {
+        const auto& of = skin.triangle_material;
+        CHECK(std::find(of.begin(), of.end(), material) != of.end());
+    }
+}
+
+TEST_CASE("a painted block that is molded anew keeps its colour") {
+    InputMesh input;
+    input.mesh = box_mesh({-0.2, -0.05, -0.1}, {0.2, 0.05, 0.1});
+    BodySpec body;
+    body.mold.across = 3;
+    body.mold.kind = MoldKind::block;
+    body.color = Vec3(0.5, 0, 0);
+    for (SkinKind kind : {SkinKind::mount, SkinKind::boundary}) {
+        const WorkPiece piece = make_work_piece(input, body, {kind});
+        const TriMesh skin = mold_anew(piece, body, {kind}).skin;
+        REQUIRE(!skin.material.empty());
+        CHECK(skin.material[0].color == Vec3(0.5, 0, 0));
+    }
+}
+
 TEST_CASE("triangles that a blade tore stay away when the body breaks on, in any later stage") {
     const SkinKind kind = SkinKind::mount;
     WorkPiece piece = block({}, kind);
