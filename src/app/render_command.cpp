@@ -9,8 +9,9 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/stopwatch.h"
+#include "base/text.h"
 #include "pipeline/draw.h"
-#include "pipeline/interrupt.h"
+#include "pipeline/render_directory.h"
 #include "pipeline/render_record.h"
 #include "pipeline/run_record.h"
 #include "render/camera_change.h"
@@ -62,15 +63,6 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     return settings;
 }
 
-// Pictures of another time, and maybe of another camera.
-void remove_others(const DrawnFiles& files, const FrameRange& drawn, int frames, bool film) {
-    std::error_code ignored;
-    for (int f = 1; f <= frames; ++f) {
-        if (f < drawn.first || f > drawn.last) fs::remove(files.still(f), ignored);
-    }
-    if (!film) fs::remove(files.film(), ignored);
-}
-
 int render(const RenderArguments& given) {
     const fs::path run = given.run;
     const std::optional<Json> record = read_record(run / "run.json");
@@ -83,18 +75,15 @@ int render(const RenderArguments& given) {
 
     // The run's own pictures stay what its scene says they are.
     const fs::path out = given.out.empty() ? run / "again" : fs::path(given.out);
-    std::error_code unknown;
-    if (fs::exists(out / ".swage-run", unknown)) {
-        fail(ExitCode::foreign,
-             "{}: is a run; its pictures are those of its scene. Choose another "
-             "--out",
-             out.string());
-    }
-    make_folder(out);
-    set_unfinished_work(out);
+    const RenderDirectory directory(out, given.out.empty());
     Stopwatch watch;
-    const DrawOutcome drawn = draw_run(store, settings_of(given, *record), frames, {out}, watch);
-    if (given.out.empty()) remove_others({out}, frames, store.frame_count(), drawn.film);
+    const DrawOutcome drawn =
+        draw_run(store, settings_of(given, *record), frames, directory.files(), watch);
+    const int removed = directory.remove_others(frames, drawn.film);
+    if (removed > 0) {
+        log_info("{}: {} of an earlier drawing removed", out.string(),
+                 counted(std::size_t(removed), "picture", "pictures"));
+    }
     log_info("{}: done", out.string());
     if (given.json) {
         Json json = drawing_json(drawn);
@@ -126,7 +115,10 @@ void add_render_command(CLI::App& app, Action& chosen) {
         "  swage render renders/calf-line --camera-eye 0.5 0.2 0.4 --camera-target 0 0.1 0\n",
         chosen, [] { return render(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
-    command->add_option("--out", given.out, "where to draw (default: RUN/again)")
+    command
+        ->add_option("--out", given.out,
+                     "where to draw (default: RUN/again): a new or empty folder, or one that was "
+                     "drawn into before, whose earlier pictures go")
         ->check(kSomewhere)
         ->type_name("DIR");
     command

@@ -134,33 +134,23 @@ std::string record_text(const fs::path& file, ExitCode code) {
     return std::move(*text);
 }
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    if (fs::is_directory(folder, error)) return;
-    if (fs::exists(folder, error)) {
-        fail(ExitCode::output, "{}: is a file, not a directory", folder.string());
-    }
-    if (!fs::create_directories(folder, error) && error) {
-        fail(ExitCode::output, "{}: cannot be made: {}", folder.string(), error.message());
-    }
+bool holds_run(const fs::path& folder) {
+    std::error_code unknown;
+    return fs::exists(folder / kIdentityName, unknown);
 }
 
 RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bool fresh)
     : root_(root.has_filename() ? root : root.parent_path()),
+      folder_(root_),
       identity_text_(identity_text(identity)),
       anew_(fresh) {
-    std::error_code error;
-    for (fs::path at = fs::absolute(root_, error); !at.empty() && !fs::exists(at, error);
-         at = at.parent_path()) {
-        made_ = at;
-    }
-    make_folder(root_);
     bool empty = true;
+    std::error_code error;
     for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
         if (it->path().filename() != kLockName) empty = false;
     }
     if (error) fail(ExitCode::output, "{}: cannot be read: {}", root_.string(), error.message());
-    if (!empty && !fs::exists(root_ / kIdentityName, error)) {
+    if (!empty && !holds_run(root_)) {
         fail(ExitCode::foreign, "{}: holds files that are no run of swage; choose another --out",
              root_.string());
     }
@@ -246,11 +236,6 @@ RunDirectory::~RunDirectory() {
     if (!has_begun_) remove_unbegun();
     ::unlink((root_ / kLockName).c_str());
     ::close(lock_);
-    std::error_code error;  // a folder that is not empty stays
-    for (fs::path at = fs::absolute(root_, error); !has_begun_ && !made_.empty();
-         at = at.parent_path()) {
-        if (!fs::remove(at, error) || at == made_) break;
-    }
 }
 
 void RunDirectory::remove_unbegun() {

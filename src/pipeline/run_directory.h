@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "pipeline/made_folder.h"
 
 namespace swage {
 
@@ -26,6 +27,9 @@ struct RunIdentity {
 
 // One sentence a difference, empty when they are the same run. File names may differ.
 std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here);
+
+// Whether a run of swage lies in this folder, of whatever scene.
+bool holds_run(const std::filesystem::path& folder);
 
 class RunDirectory {
   public:
@@ -51,7 +55,7 @@ class RunDirectory {
     void remove_unbegun();
 
     std::filesystem::path root_;
-    std::filesystem::path made_;  // of the folders to it, the outermost that was not there
+    MadeFolder folder_;
     std::string identity_text_;
     bool anew_, has_begun_ = false;
     int lock_ = -1;
@@ -70,9 +74,5 @@ struct DrawnFiles {
 // All of a small file that a run has left. Throws Error(code) when that is no plain file, cannot be
 // read or is longer than any such file; never waits for what is none.
 std::string record_text(const std::filesystem::path& file, ExitCode code);
-
-// Makes a folder and those that it lies in; Error(output) when that fails or something else has the
-// name.
-void make_folder(const std::filesystem::path& folder);
 
 }  // namespace swage

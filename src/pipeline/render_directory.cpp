@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/render_directory.h"
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "pipeline/interrupt.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A name that DrawnFiles::still() gives.
+bool is_still(const fs::path& file) {
+    const std::string stem = file.stem().string(), begin = "frame_";
+    return file.extension() == ".png" && stem.starts_with(begin) && stem.size() > begin.size() &&
+           std::all_of(stem.begin() + std::ptrdiff_t(begin.size()), stem.end(),
+                       [](char c) { return c >= '0' && c <= '9'; });
+}
+
+}  // namespace
+
+RenderDirectory::RenderDirectory(const fs::path& root, bool in_run) : root_(root), folder_(root) {
+    std::error_code error;
+    if (holds_run(root_)) {
+        fail(ExitCode::foreign,
+             "{}: is a run; its pictures are those of its scene. Choose another --out",
+             root_.string());
+    }
+    if (!in_run && !fs::exists(mark(), error) && !fs::is_empty(root_, error)) {
+        if (error) {
+            fail(ExitCode::output, "{}: cannot be read: {}", root_.string(), error.message());
+        }
+        fail(ExitCode::foreign,
+             "{}: holds files that swage render did not draw; choose another --out",
+             root_.string());
+    }
+    remove_temporaries(root_, 0);
+    write_file_whole(mark(), "swage render draws here, and removes what it drew here before\n");
+    set_unfinished_work(root_);
+}
+
+RenderDirectory::~RenderDirectory() {
+    set_unfinished_work({});
+    remove_temporaries(root_, 0);  // a film program may outlive a process that was killed
+    std::error_code error;
+    fs::remove(files().folder(), error);  // where it is empty
+    for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
+        if (it->path() != mark()) return;
+    }
+    if (!error) fs::remove(mark(), error);
+}
+
+int RenderDirectory::remove_others(const FrameRange& drawn, bool film) const {
+    std::set<fs::path> of_now;
+    for (int f = drawn.first; f <= drawn.last; ++f) of_now.insert(files().still(f));
+    std::vector<fs::path> others;
+    std::error_code error;
+    for (fs::directory_iterator it(files().folder(), error), end; !error && it != end;
+         it.increment(error)) {
+        if (is_still(it->path()) && !of_now.contains(it->path())) others.push_back(it->path());
+    }
+    if (!film) others.push_back(files().film());
+    return static_cast<int>(std::count_if(others.begin(), others.end(), [&](const fs::path& file) {
+        return fs::remove(file, error);
+    }));
+}
+
+}  // namespace swage

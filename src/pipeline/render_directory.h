@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The folder that a run is drawn into once more: new, empty, or so drawn into before. What lies
+// elsewhere is never drawn over.
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/made_folder.h"
+#include "pipeline/run_directory.h"
+#include "pipeline/run_options.h"
+
+namespace swage {
+
+class RenderDirectory {
+  public:
+    // Makes the folder, and those that it is to lie in, or enters it, and clears away what a
+    // drawing that was killed left unfinished there. `in_run`: it is the run's own for this, which
+    // may hold anything. Throws Error(foreign) where it is a run or holds what no drawing left,
+    // Error(output) where it cannot be written.
+    RenderDirectory(const std::filesystem::path& root, bool in_run);
+    ~RenderDirectory();  // where nothing was drawn, nothing is left of it
+    RenderDirectory(const RenderDirectory&) = delete;
+    RenderDirectory& operator=(const RenderDirectory&) = delete;
+
+    DrawnFiles files() const { return {root_}; }
+    // Of earlier drawings, and maybe of another camera: stills beside these, and the film where
+    // there is none now. Returns how many files they were.
+    int remove_others(const FrameRange& drawn, bool film) const;
+
+  private:
+    std::filesystem::path mark() const { return root_ / ".swage-render"; }
+
+    std::filesystem::path root_;
+    MadeFolder folder_;
+};
+
+}  // namespace swage

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a run that is drawn once more goes, and where it does not.
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A run of four frames that can be drawn.
+class DrawableRun {
+  public:
+    DrawableRun() {
+        const fs::path scene = put_small_scene(scratch_.path());
+        REQUIRE(run_swage({"run", scene.string(), "--out", run().string(), "--no-render"}).code ==
+                0);
+    }
+    fs::path run() const { return scratch_.path() / "run"; }
+    fs::path out() const { return scratch_.path() / "out"; }
+    Outcome draw(const fs::path& out, std::vector<std::string> more = {}) const {
+        more.insert(more.begin(), {"render", run().string(), "--no-film", "--out", out.string()});
+        return run_swage(more);
+    }
+
+  private:
+    Scratch scratch_;
+};
+
+}  // namespace
+
+TEST_CASE("a run is not drawn over files that are no drawing of swage's") {
+    const DrawableRun drawable;
+    const fs::path out = drawable.out();
+    fs::create_directories(out / "frames");
+    put_text(out / "film.mp4", "my holiday");
+    put_text(out / "frames/frame_0001.png", "my cat");
+    const auto before = files_below(out);
+    const Outcome outcome = drawable.draw(out);
+    INFO(outcome.err);
+    CHECK(outcome.code == 8);
+    CHECK(outcome.err.find("holds files that swage render did not draw") != std::string::npos);
+    CHECK(files_below(out) == before);
+    CHECK(drawable.draw(drawable.run() / "meshes").code == 8);
+}
+
+TEST_CASE("a drawing that is refused leaves no folder behind, and none that was there goes") {
+    const DrawableRun drawable;
+    CHECK(drawable.draw(drawable.out() / "today", {"--frames", "12-99"}).code == 2);
+    CHECK_FALSE(fs::exists(drawable.out()));
+    fs::create_directory(drawable.out());
+    CHECK(drawable.draw(drawable.out() / "", {"--frames", "12-99"}).code == 2);
+    REQUIRE(fs::exists(drawable.out()));
+    CHECK(fs::is_empty(drawable.out()));
+    CHECK(drawable.draw(drawable.out(), {"--frames", "1"}).code == 0);
+    CHECK(drawable.draw(drawable.out(), {"--frames", "12-99"}).code == 2);
+    CHECK(fs::exists(drawable.out() / "frames/frame_0001.png"));
+}
+
+TEST_CASE(
+    "drawn into one folder twice, a run leaves the pictures of the second time, and says so") {
+    const DrawableRun drawable;
+    const Outcome first = drawable.draw(drawable.out());
+    CHECK(first.code == 0);
+    CHECK(first.err.find("removed") == std::string::npos);
+    REQUIRE(fs::exists(drawable.out() / "frames/frame_0004.png"));
+    put_text(drawable.out() / "frames/notes.png", "mine");
+    put_text(drawable.out() / "frames/frame_0077.png", "of a longer run");
+    put_text(drawable.out() / "film.mp4", "of that time");
+    const Outcome second =
+        drawable.draw(drawable.out(), {"--frames", "1-2", "--camera-azimuth", "120"});
+    INFO(second.err);
+    CHECK(second.code == 0);
+    CHECK(second.err.find("4 pictures of an earlier drawing removed") != std::string::npos);
+    CHECK(fs::exists(drawable.out() / "frames/frame_0002.png"));
+    CHECK(fs::exists(drawable.out() / "frames/notes.png"));
+    for (const char* name :
+         {"frames/frame_0003.png", "frames/frame_0004.png", "frames/frame_0077.png", "film.mp4"}) {
+        CHECK_FALSE(fs::exists(drawable.out() / name));
+    }
+}
+
+TEST_CASE("what a drawing that was killed left unfinished goes with the next") {
+    const DrawableRun drawable;
+    CHECK(drawable.draw(drawable.out(), {"--frames", "1"}).code == 0);
+    put_text(drawable.out() / ".film.part4194303.mp4", "half a film");
+    put_text(drawable.out() / "frames/.frame_0002.part4194303.png", "half a picture");
+    CHECK(drawable.draw(drawable.out(), {"--frames", "1"}).code == 0);
+    for (const auto& [name, bytes] : files_below(drawable.out())) {
+        INFO(name);
+        CHECK(name.find(".part") == std::string::npos);
+    }
+}
