@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -41,8 +42,9 @@ std::string identity_text(const RunIdentity& identity) {
     json["program"] = "swage";
     json["version"] = identity.version;
     for (const RunInput& input : identity.input) {
-        json["inputs"].push_back(
-            {{"role", input.role}, {"file", input.file.string()}, {"hash", input.hash}});
+        Json one = {{"role", input.role}, {"file", input.file.string()}, {"hash", input.hash}};
+        if (!input.text.empty()) one["text"] = input.text;
+        json["inputs"].push_back(std::move(one));
     }
     return json_text(json);
 }
@@ -53,9 +55,9 @@ RunIdentity read_identity(const fs::path& file) {
         const Json json = Json::parse(record_text(file, ExitCode::foreign));
         identity.version = json.at("version").get<std::string>();
         for (const Json& input : json.at("inputs")) {
-            identity.input.push_back({input.at("role").get<std::string>(),
-                                      input.at("file").get<std::string>(),
-                                      input.at("hash").get<std::string>()});
+            identity.input.push_back(
+                {input.at("role").get<std::string>(), input.at("file").get<std::string>(),
+                 input.at("hash").get<std::string>(), input.value("text", "")});
         }
     } catch (const Json::exception&) {
         fail(ExitCode::foreign,
@@ -71,6 +73,48 @@ const RunInput* find_role(const RunIdentity& identity, const std::string& role) 
         if (input.role == role) return &input;
     }
     return nullptr;
+}
+
+// The lines of one text that another has not, as they are to be told; no blanks, no remarks.
+std::string lines_beside(const std::string& text, const std::string& other) {
+    constexpr std::size_t kTold = 3;
+    const auto said_in = [](const std::string& all) {
+        std::vector<std::string> said;
+        for (const std::string& line : lines_of(all)) {
+            const std::size_t begin = line.find_first_not_of(" \t");
+            if (begin == std::string::npos || line[begin] == '#') continue;
+            said.push_back(line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin));
+        }
+        return said;
+    };
+    std::vector<std::string> there = said_in(other), beside;
+    for (const std::string& line : said_in(text)) {
+        const auto known = std::find(there.begin(), there.end(), line);
+        if (known == there.end()) {
+            beside.push_back(line);
+        } else {
+            there.erase(known);
+        }
+    }
+    if (beside.empty()) return "nothing more";
+    const std::size_t more = beside.size() - std::min(beside.size(), kTold);
+    beside.resize(beside.size() - more);
+    return joined(beside, ", ") + (more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+std::string difference(const RunInput& now, const RunInput& then) {
+    const auto told = [](const RunInput& of) {
+        return of.file.empty() ? std::string("none") : of.file.string();
+    };
+    if (now.file != then.file) {
+        return fmt::format("{} differs ({} now, {} then)", now.role, told(now), told(then));
+    }
+    if (now.text.empty() || then.text.empty()) {
+        return fmt::format("{} differs: the content of {} has changed", now.role, told(now));
+    }
+    return fmt::format("{} differs: the content of {} has changed (now {}; then {})", now.role,
+                       told(now), lines_beside(now.text, then.text),
+                       lines_beside(then.text, now.text));
 }
 
 // What a run leaves; nothing else in the directory is ever touched.
@@ -110,11 +154,7 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
         if (old == nullptr) {
             found.push_back(fmt::format("{} ({}) is new", input.role, input.file.string()));
         } else if (old->hash != input.hash) {
-            const auto told = [](const RunInput& of) {
-                return of.file.empty() ? std::string("none") : of.file.string();
-            };
-            found.push_back(
-                fmt::format("{} differs ({} now, {} then)", input.role, told(input), told(*old)));
+            found.push_back(difference(input, *old));
         }
     }
     for (const RunInput& input : there.input) {

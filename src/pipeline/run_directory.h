@@ -19,6 +19,7 @@ struct RunInput {
     std::string role;  // "scene", "machine bend", "mesh", ...; unique
     std::filesystem::path file;
     std::string hash;
+    std::string text = {};  // of a scene or machine, so that it can be told what was changed in it
 };
 struct RunIdentity {
     std::string version = kVersion;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/file_contents.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/text.h"
@@ -15,6 +16,8 @@ namespace swage {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::uint64_t kLongestKeptText = 64 << 10;  // of a scene or machine
 
 std::string hash_of_mesh(TriMesh mesh) {
     // Files may lie elsewhere; what the textures hold is hashed by itself.
@@ -36,6 +39,9 @@ std::string add_file(RunIdentity& identity, const std::string& kind, const fs::p
     std::string free_role = role;
     for (int n = 2; taken(free_role); ++n) free_role = fmt::format("{} ({})", role, n);
     identity.input.push_back({free_role, file, hash_text(hash_of_file(file))});
+    if (file.extension() == ".toml") {
+        identity.input.back().text = file_contents(file, kLongestKeptText).value_or("");
+    }
     return free_role;
 }
 

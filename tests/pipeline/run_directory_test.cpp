@@ -176,6 +176,38 @@ TEST_CASE("what differs between two runs is told item by item") {
     CHECK(differences(there, here).size() == 4);
 }
 
+TEST_CASE("of a scene that was edited it is told what it says now and what it said then") {
+    const Scratch scratch;
+    const auto with = [](const std::string& text) {
+        RunIdentity identity = identity_of(text);
+        identity.input[0].text = text;
+        return identity;
+    };
+    const fs::path root = scratch.path() / "run";
+    {
+        RunDirectory run(root, with("# one\nangle = 1\nframes = 3\nframes = 3\n"), false);
+        run.begin();
+        put_text(root / "run.json", "{}");
+    }
+    const auto refusal = [&](const RunIdentity& identity) {
+        try {
+            const RunDirectory other(root, identity, false);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    CHECK(refusal(with("# two\n  angle = 2\nframes = 3\nframes = 3\n"))
+              .find("scene differs: the content of a.toml has changed (now angle = 2; then angle = "
+                    "1);") != std::string::npos);
+    CHECK(refusal(with("angle = 1\nframes = 3\n")).find("(now nothing more; then frames = 3);") !=
+          std::string::npos);
+    CHECK(refusal(with("a = 1\nb = 2\nc = 3\nd = 4\ne = 5\n"))
+              .find("(now a = 1, b = 2, c = 3 and 2 more; then ") != std::string::npos);
+    CHECK(refusal(identity_of("2")).find("scene differs: the content of a.toml has changed;") !=
+          std::string::npos);
+}
+
 TEST_CASE("a directory in which nothing was recorded belongs to nobody") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "run";
