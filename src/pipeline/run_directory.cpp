@@ -41,6 +41,7 @@ std::string identity_text(const RunIdentity& identity) {
     Json json;
     json["program"] = "swage";
     json["version"] = identity.version;
+    json["build"] = identity.build;
     for (const RunInput& input : identity.input) {
         Json one = {{"role", input.role}, {"file", input.file.string()}, {"hash", input.hash}};
         if (!input.text.empty()) one["text"] = input.text;
@@ -54,6 +55,7 @@ RunIdentity read_identity(const fs::path& file) {
     try {
         const Json json = Json::parse(record_text(file, ExitCode::foreign));
         identity.version = json.at("version").get<std::string>();
+        identity.build = json.value("build", "unknown");
         for (const Json& input : json.at("inputs")) {
             identity.input.push_back(
                 {input.at("role").get<std::string>(), input.at("file").get<std::string>(),
@@ -148,6 +150,9 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
     std::vector<std::string> found;
     if (there.version != here.version) {
         found.push_back(fmt::format("swage {} made it, this is {}", there.version, here.version));
+    } else if (there.build != here.build) {
+        found.push_back(fmt::format("another build of swage {} made it ({}, this is {})",
+                                    there.version, there.build, here.build));
     }
     for (const RunInput& input : here.input) {
         const RunInput* old = find_role(there, input.role);

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "base/error.h"
+#include "pipeline/build_name.h"
 #include "pipeline/made_folder.h"
 
 namespace swage {
 
 inline constexpr const char* kVersion = SWAGE_VERSION;
 
-// What makes a run this run: the program's version and the bytes of everything that was read.
+// What makes a run this run: the program, to the build, and the bytes of everything that was read.
 struct RunInput {
     std::string role;  // "scene", "machine bend", "mesh", ...; unique
     std::filesystem::path file;
@@ -24,6 +25,7 @@ struct RunInput {
 struct RunIdentity {
     std::string version = kVersion;
     std::vector<RunInput> input;
+    std::string build = kBuildName;
 };
 
 // One sentence a difference, empty when they are the same run. File names may differ.

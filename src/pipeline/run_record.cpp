@@ -154,6 +154,7 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
     Json record;
     record["program"] = "swage";
     record["version"] = identity.version;
+    record["build"] = identity.build;
     record["state"] = RunState::begun;
     record["scene"] = scene.file.string();
     record["overrides"] = options.overrides;

@@ -63,6 +63,31 @@ TEST_CASE("a damaged record of a run is refused with 5, and --fresh makes anothe
     CHECK(Json::parse(bytes_of(record)).at("frames") == 2);
 }
 
+TEST_CASE("a run of another build is not taken for this one's, and can be drawn all the same") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 1);
+    const fs::path run = scratch.path() / "run", mark = run / ".swage-run";
+    const auto again = [&](const std::string& more) {
+        return run_swage({"run", scene.string(), "--out", run.string(), "--no-render", more});
+    };
+    REQUIRE(again("--quiet").code == 0);
+    CHECK(says(again("--threads=1"), "already complete"));
+    const std::string build = Json::parse(bytes_of(run / "run.json")).at("build");
+    CHECK(run_swage({"--version"}).out.find(build) != std::string::npos);
+    for (const bool is_old : {false, true}) {  // of one that named no build, too
+        Json json = Json::parse(bytes_of(mark));
+        REQUIRE(json.at("build") == build);
+        json["build"] = "0123456789ab";
+        if (is_old) json.erase("build");
+        put_text(mark, swage::json_text(json));
+        const Outcome refused = again("--quiet");
+        CHECK(refused.code == 8);
+        CHECK(says(refused, "another build of swage"));
+        CHECK(run_swage({"render", run.string(), "--no-film", "--frames", "1"}).code == 0);
+        CHECK(again("--fresh").code == 0);
+    }
+}
+
 TEST_CASE(
     "an empty name is no place to write to, and one that is too long is told with its place") {
     const Scratch scratch;

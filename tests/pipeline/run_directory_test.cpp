@@ -174,6 +174,10 @@ TEST_CASE("what differs between two runs is told item by item") {
     there.input.push_back({"texture", "a.png", "5"});
     there.version = "0.0.1";
     CHECK(differences(there, here).size() == 4);
+    there = here = identity_of("1");
+    there.build = "0123";
+    REQUIRE(differences(there, here).size() == 1);
+    CHECK(differences(there, here)[0].find("another build of swage") == 0);
 }
 
 TEST_CASE("of a scene that was edited it is told what it says now and what it said then") {
