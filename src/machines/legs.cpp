@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "base/whole.h"
 
 namespace swage {
 
@@ -20,10 +19,10 @@ constexpr double kStrengthSlack = 0.01, kSlackInMotion = 0.001;  // of a load's 
 constexpr double kAsked[] = {0.2113, 0.5, 0.8090};
 constexpr int kLooks = 256;          // at loads, in a frame
 constexpr int kMostLooks = 1 << 20;  // in all
+constexpr double kHeapShare = 24;    // [byte] that a short array takes beside what it holds
 
-// Of a stage: of ints not the last, which no loop gets beyond.
-int looks_of(int frames) {
-    return to_int(static_cast<double>(frames) * std::clamp(kMostLooks / frames, 4, kLooks) + 1) - 1;
+long looks_in(int frames) {
+    return static_cast<long>(frames) * std::clamp(kMostLooks / frames, 4, kLooks);
 }
 
 class Straightness {
@@ -33,10 +32,11 @@ class Straightness {
           slack_(slack),
           strength_slack_(in_motion ? kSlackInMotion : kStrengthSlack),
           reach_(0.5 * machine.frame.size.norm()),
-          looks_(looks_of(frames)) {
+          looks_(looks_in(frames)) {
         full_.resize(machine.load_strength.size() + 1, 0.0);
-        for (int n = 0; n <= looks_; ++n) {
-            strength_.push_back(strengths_at(machine, static_cast<double>(n) / looks_));
+        for (long n = 0; n <= looks_; ++n) {
+            strength_.push_back(
+                strengths_at(machine, static_cast<double>(n) / static_cast<double>(looks_)));
             for (std::size_t l = 0; l < full_.size(); ++l) {
                 full_[l] = std::max(full_[l], std::abs(strength_.back()[l]));
             }
@@ -79,8 +79,9 @@ class Straightness {
             const double t = begin + s * (end - begin);
             if (!is_near(t, strengths_at(machine_, t))) return false;
         }
-        for (int n = static_cast<int>(begin * looks_) + 1; n < end * looks_; ++n) {
-            if (!is_near(static_cast<double>(n) / looks_, strength_[std::size_t(n)])) return false;
+        const auto looks = static_cast<double>(looks_);
+        for (long n = static_cast<long>(begin * looks) + 1; n < end * looks; ++n) {
+            if (!is_near(static_cast<double>(n) / looks, strength_[std::size_t(n)])) return false;
         }
         return true;
     }
@@ -101,7 +102,7 @@ class Straightness {
 
     const Machine& machine_;
     double slack_, strength_slack_, reach_;
-    int looks_;                                  // over the stage
+    long looks_;                                 // over the stage
     std::vector<std::vector<double>> strength_;  // at each, and at the end
     std::vector<double> full_;                   // the largest of each
 };
@@ -147,7 +148,9 @@ Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
 
 std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& legs, int steps,
                              double duration) {
-    std::vector<Drive> drives{drive_at(machine, legs.front().begin, duration)};
+    std::vector<Drive> drives;
+    drives.reserve(legs.size() * static_cast<std::size_t>(steps) + 1);
+    drives.push_back(drive_at(machine, legs.front().begin, duration));
     for (const Leg& leg : legs) {
         for (int n = 1; n < steps; ++n) {
             const double s = static_cast<double>(n) / steps;
@@ -156,6 +159,17 @@ std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& leg
         drives.push_back(drive_at(machine, leg.end, duration));
     }
     return drives;
+}
+
+double bytes_of_way(const MachineSpec& spec, int frames) {
+    const auto loads = static_cast<double>(spec.load.size());
+    const auto parts = static_cast<double>(spec.tool.size() + spec.grip.size() + spec.blade.size());
+    const double looks = static_cast<double>(looks_in(frames)) *
+                         (sizeof(std::vector<double>) + kHeapShare + 8 * (loads + 1));
+    const double drives =
+        frames * (sizeof(Drive) + 2 * kHeapShare + parts * sizeof(Pose) + 8 * loads);
+    // What was looked at is forgotten before the drives are made.
+    return frames * static_cast<double>(sizeof(Leg)) + std::max(looks, drives);
 }
 
 }  // namespace swage

@@ -32,4 +32,7 @@ Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion);
 std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& legs, int steps,
                              double duration);
 
+// What legs and drives take, about, at one leg a frame [byte].
+double bytes_of_way(const MachineSpec& spec, int frames);
+
 }  // namespace swage

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "machines/machine.h"
+#include "machines/legs.h"
 #include "pipeline/accuracy.h"
 #include "pipeline/disk_cost.h"
 #include "pipeline/free_room.h"
@@ -127,7 +127,9 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.steps = 0;
     cost.slow.clear();
     double work = 0;  // the steps, as if nothing damped or yielded in them
+    double way = 0;   // [byte], of the machine's, one after another
     for (const StageSpec& stage : scene.stage) {
+        way = std::max(way, bytes_of_way(stage.machine, stage.frames));
         const Solver solver = stage.sim.solver;
         if (solver == Solver::quasistatic) {
             const bool relaxes = !stage.machine.tool.empty();
@@ -167,7 +169,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.seconds = work * cost.mold.particles * kSecondsPerParticleStep / cores +
                    stills * (0.02 + pixels * kSecondsPerPixel) * 2 / cores;
     cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
-                        vertices * kBytesPerVertex +
+                        vertices * kBytesPerVertex + way +
                         (options.draw ? kDrawingBytes + pixels * 60 : 0);
     cost.disk_bytes =
         disk_bytes(scene, input, {double(cost.frames), stills, cost.mold.active_cells, vertices});

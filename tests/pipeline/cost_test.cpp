@@ -118,6 +118,21 @@ TEST_CASE("what a run writes is told with tools, textures and skins that are sto
     CHECK(bar.cost().disk_bytes > pressed + stage.frames * skin);
 }
 
+TEST_CASE("what a machine's way over very many frames takes is told") {
+    BarScene bar(3);
+    bar.scene.stage[0].machine.grip.resize(2);
+    bar.scene.stage.resize(2);  // the other's way follows when that is gone
+    const auto memory = [&](int frames) {
+        bar.scene.stage[0].frames = frames;
+        return bar.cost().memory_bytes;
+    };
+    // 350 MB were measured at a million frames, the program's and the matter's among them.
+    CHECK(memory(1'000'000) - memory(1) == Approx(270e6).epsilon(0.3));
+    CHECK(memory(3'000'000) - memory(1) == Approx(3 * 270e6).epsilon(0.3));
+    CHECK(memory(1'000'000'000) > 2e11);
+    CHECK(memory(100) - memory(1) < 5e6);
+}
+
 TEST_CASE("a step that damps, or of matter that yields, is told to take longer") {
     const auto seconds_a_step = [&](double damping_ratio, double yield_stress) {
         BarScene bar(6);
