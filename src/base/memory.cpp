@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -63,7 +64,8 @@ GroupRoom group_room(const fs::path& root) {
     for (std::string line; std::getline(in, line);) {
         const std::size_t first = line.find(':'), second = line.find(':', first + 1);
         if (second == std::string::npos) continue;
-        const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+        const std::string controllers =
+            fmt::format(",{},", line.substr(first + 1, second - first - 1));
         const std::string group = line.substr(second + 1);
         if (controllers == ",,") narrow(room, mounted, group, kSecond);
         if (controllers.find(",memory,") != std::string::npos) {
