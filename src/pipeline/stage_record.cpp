@@ -23,6 +23,7 @@ Json energies_json(const Books& last) {
             {"kinetic", last.kinetic},
             {"elastic", last.elastic},
             {"contact", last.contact},
+            {"contact_at_start", last.contact_at_start},
             {"passed", last.passed},
             {"plastic", last.plastic},
             {"damped", last.damped},

@@ -37,7 +37,7 @@ struct StageEnd {
     const Machine& machine;
     std::vector<WorkPiece>& bodies;
     const StageTotals& totals;
-    const Books& first;  // as it began; `contact` is not known
+    const FrameReport& first;  // as it began; `contact` is not known
     const FrameReport& last;
     int first_frame, last_frame;
     std::size_t legs;

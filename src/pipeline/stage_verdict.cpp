@@ -83,6 +83,30 @@ double unaccounted(const Books& first, const Books& b, double least) {
     return play > least && std::abs(gap) > least ? gap / play : 0;
 }
 
+// What contacts and grips hold as a stage in motion begins is let go of at once, and no mistake
+// where it lifts a body by less than a cell, moves it by less in all of the stage or is little
+// beside how it flies. A body that is pressed by right is strained, and holds more itself.
+std::vector<std::string> pressed_at_start(const StageEnd& end) {
+    std::vector<std::string> told;
+    if (end.stage.sim.solver == Solver::quasistatic) return told;
+    for (std::size_t b = 0; b < end.last.body.size(); ++b) {
+        const Aggregate& matter = end.bodies[b].matter;
+        const double energy = end.last.body[b].contact_at_start, mass = matter.mass();
+        const double a = matter.lattice.spacing, slowly = a / end.duration;
+        const double harmless =
+            mass * std::max(end.stage.sim.gravity.norm() * a, 0.5 * slowly * slowly);
+        const Books& first = end.first.body[b];
+        if (energy > std::max({harmless, first.elastic, 0.01 * first.kinetic})) {
+            told.push_back(fmt::format(
+                "{} starts a little deep in what it touches, which throws it off by {:.3g} J, "
+                "enough for {}: put it further off, with `at`",
+                end.bodies[b].name, energy,
+                quantity_text(std::sqrt(2 * energy / mass), Quantity::speed)));
+        }
+    }
+    return told;
+}
+
 std::string how_to_close(Solver solver) {
     if (solver == Solver::quasistatic) {
         return "between frames that lie far apart the work of tools is misjudged: try more frames";
@@ -126,6 +150,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             "the work-piece only, by its place, its width or its way",
             end.totals.severed));
     }
+    for (const std::string& sentence : pressed_at_start(end)) warn(sentence);
     if (const double share = unaccounted(end.first, end.last, round_off(end));
         // At rest, what snaps or slips through is lost, and no mistake.
         sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {

@@ -62,6 +62,7 @@ void Books::add(const Books& other) {
     load_work += other.load_work;
     gravity_work += other.gravity_work;
     contact += other.contact;
+    contact_at_start += other.contact_at_start;
     passed += other.passed;
     plastic += other.plastic;
     friction += other.friction;
@@ -201,6 +202,7 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         if (!body[b].begun) {
             // What the blades took before the first move was in it too.
             body[b].stored_at_start = part.before.sum() + books.severed_energy;
+            books.contact_at_start = part.before.contact;
             body[b].begun = true;
         }
         books.remainder = books.work + books.load_work + books.gravity_work + books.passed -
