@@ -70,7 +70,53 @@ bool parts_all(const CutTarget& plane, const std::vector<Severed>& edges,
     });
 }
 
+// That parts what is severed nearest to a place. `members`: of the edges, those of one cut.
+std::optional<CutTarget> plane_around(const Vec3& place, const std::vector<Severed>& edges,
+                                      const std::vector<int>& members, double a) {
+    PlaneFit fit;
+    std::vector<int> near;
+    for (int e : members) {
+        const Vec3 way = edges[e].middle - place;
+        const double d2 = way.squaredNorm() / (a * a);
+        if (d2 < kReach * kReach) fit.add(way, portable::exp(-d2 / 2.25));
+        if (d2 < kNear * kNear) near.push_back(e);
+    }
+    if (fit.weight <= 0) return std::nullopt;
+    const CutTarget plane = fit.plane();
+    if (!parts_all(plane, edges, near, place, a, kSlack)) return std::nullopt;
+    return CutTarget{plane.normal, plane.height + plane.normal.dot(place)};
+}
+
 }  // namespace
+
+std::optional<CutTarget> cut_plane_near(const Aggregate& matter, const Vec3i& site) {
+    constexpr int kCells = static_cast<int>(kReach);
+    std::vector<std::array<int, 4>> found;  // lower site and axis; cells share edges
+    for (int n = 0; n < 8 * kCells * kCells * kCells; ++n) {
+        const Vec3i step(n % (2 * kCells), n / (2 * kCells) % (2 * kCells),
+                         n / (4 * kCells * kCells));
+        const Vec3i low = site + step - Vec3i::Constant(kCells);
+        const CellId cell = matter.lattice.cell_at(low.x(), low.y(), low.z());
+        if (cell < 0) continue;
+        const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
+        for (int c = 0; c < 8; ++c) {
+            const Vec3i at = low + corner_step(c);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (c >> axis & 1 || matter.connection[axis].weight[corner[c]] > 0) continue;
+                found.push_back({at.x(), at.y(), at.z(), axis});
+            }
+        }
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    std::vector<Severed> edges;
+    std::vector<int> all;
+    for (const auto& [i, j, k, axis] : found) {
+        all.push_back(static_cast<int>(edges.size()));
+        edges.push_back({Vec3(i, j, k) + 0.5 * Vec3::Unit(axis), axis, -1});
+    }
+    return plane_around(site.cast<double>(), edges, all, 1);
+}
 
 std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
                                                   const VoxelSurface& surface,
@@ -106,19 +152,7 @@ std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
         if (!on_cut[s]) continue;
         const int patch = patches.root(static_cast<int>(s));
         target[s] = whole[patch];
-        if (target[s]) continue;
-        PlaneFit fit;
-        std::vector<int> near;
-        for (int e : members[patch]) {
-            const Vec3 way = edges[e].middle - place[s];
-            const double d2 = way.squaredNorm() / (a * a);
-            if (d2 < kReach * kReach) fit.add(way, portable::exp(-d2 / 2.25));
-            if (d2 < kNear * kNear) near.push_back(e);
-        }
-        if (fit.weight <= 0) continue;
-        const CutTarget plane = fit.plane();
-        if (!parts_all(plane, edges, near, place[s], a, kSlack)) continue;
-        target[s] = CutTarget{plane.normal, plane.height + plane.normal.dot(place[s])};
+        if (!target[s]) target[s] = plane_around(place[s], edges, members[patch], a);
     }
     return target;
 }

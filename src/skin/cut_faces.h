@@ -21,4 +21,8 @@ std::vector<std::optional<CutTarget>> cut_targets(const Aggregate& matter,
                                                   const VoxelSurface& surface,
                                                   const std::vector<Vec3>& place);
 
+// The cut near a particle's site, as spacings from the lattice's origin; nothing where no plane
+// parts what is severed there.
+std::optional<CutTarget> cut_plane_near(const Aggregate& matter, const Vec3i& site);
+
 }  // namespace swage

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/parallel.h"
+#include "geometry/disjoint_sets.h"
+#include "skin/cut_faces.h"
 
 namespace swage {
 
@@ -77,6 +80,14 @@ class Thinning {
     }
 
     std::vector<CornerMask> run() {
+        thin();
+        takes_rims_ = std::any_of(shelf_.begin(), shelf_.end(), [](CornerMask m) { return m; });
+        if (takes_rims_) thin();
+        return std::move(kept_);
+    }
+
+  private:
+    void thin() {
         bool any = true;
         for (int pass = 0; any && pass < kMostPasses; ++pass) {
             any = false;
@@ -84,12 +95,11 @@ class Thinning {
                 if (candidate.gone || !may_go(candidate)) continue;
                 kept_[candidate.cell] &= static_cast<CornerMask>(~(1 << candidate.corner));
                 candidate.gone = any = true;
+                if (candidate.is_cut && !takes_rims_) add(shelf_, candidate);
             }
         }
-        return std::move(kept_);
     }
 
-  private:
     struct Candidate {
         double height;  // of its middle above the surface, in spacings
         CellId cell;
@@ -97,6 +107,7 @@ class Thinning {
         // That the voxels around it lie in, a bit for each axis along which they leave its own: -1
         // where there is none.
         std::array<CellId, 8> beside;
+        bool is_cut;  // a connection near it is severed
         bool gone = false;
     };
 
@@ -112,6 +123,9 @@ class Thinning {
             }
         };
         candidate_ = parallel_collect<Candidate>(runs.size(), kChunk, find);
+        hollow_.assign(kept_.size(), 0);
+        shelf_ = hollow_;
+        for (const Candidate& candidate : candidate_) add(hollow_, candidate);
         std::stable_sort(
             candidate_.begin(), candidate_.end(),
             [](const Candidate& p, const Candidate& q) { return p.height > q.height; });
@@ -119,16 +133,19 @@ class Thinning {
 
     void find_in_cell(const SurfaceSamples& samples, CellId cell, const Vec3i& site,
                       std::vector<Candidate>& found) const {
-        if (matter_.cell_fill[cell] >= kFull || !lies_by_full(site)) return;
+        if (matter_.cell_fill[cell] >= kFull) return;
+        const bool is_held = lies_by_full(site);
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3i half = corner_step(corner);
+            const std::array<CellId, 8> beside = cells_beside(site, half);
+            const bool is_cut = !all_whole(beside);
+            if (!is_held && !is_cut) continue;
             const Vec3 middle = (site.cast<double>() + 0.5 * half.cast<double>()).array() + 0.25;
             const double height =
                 samples.height(matter_.lattice.origin + matter_.lattice.spacing * middle);
-            if (height <= kOutside) continue;
-            const std::array<CellId, 8> beside = cells_beside(site, half);
-            if (!all_whole(beside)) continue;
-            found.push_back({height, cell, corner, beside});
+            const bool goes =
+                height > kOutside || (is_cut && holds_nothing(samples, cell, corner, site));
+            if (goes) found.push_back({height, cell, corner, beside, is_cut});
         }
     }
 
@@ -139,6 +156,45 @@ class Thinning {
             beside[n] = matter_.lattice.cell_at(at);
         }
         return beside;
+    }
+
+    // Of a voxel at a cut what lies between its particle and the cut, which may be more than the
+    // voxel or less: whether all of that is outside. NOTE: a blade that misses the surface by less
+    // than a cell leaves particles beyond it that hold nothing: a shelf of voxels, whose points,
+    // drawn to the surface and to the cut, ran to where these are nearest, in splinters of several
+    // cells.
+    bool holds_nothing(const SurfaceSamples& samples, CellId cell, int corner,
+                       const Vec3i& site) const {
+        const Lattice& lattice = matter_.lattice;
+        const Vec3i own = site + corner_step(corner);
+        const std::optional<CutTarget> cut = cut_plane_near(matter_, own);
+        if (!cut) return false;
+        const std::array<ParticleId, 8> particle = lattice.cell_corners(cell);
+        Vec3 reach;
+        for (int d = 0; d < 3; ++d) {
+            const bool severed = matter_.connection[d].weight[particle[corner & ~(1 << d)]] <= 0;
+            reach[d] = (corner >> d & 1 ? -1 : 1) * (severed ? 1 : 0.5);
+        }
+        std::array<Vec3, 8> end;
+        std::array<double, 8> over;  // the cut, on the particle's side
+        for (int c = 0; c < 8; ++c) {
+            end[c] = own.cast<double>() + corner_step(c).cast<double>().cwiseProduct(reach);
+            over[c] = cut->normal.dot(end[c]) - cut->height;
+        }
+        const bool is_under = over[0] < 0;
+        const auto is_outside = [&](const Vec3& at) {
+            return samples.height(lattice.origin + lattice.spacing * at) > 0;
+        };
+        for (int c = 0; c < 8; ++c) {
+            if ((over[c] < 0) == is_under && !is_outside(end[c])) return false;
+            for (int d = 0; d < 3; ++d) {
+                const int next = c | 1 << d;
+                if (next == c || (over[c] < 0) == (over[next] < 0)) continue;
+                const double share = over[c] / (over[c] - over[next]);
+                if (!is_outside(end[c] + share * (end[next] - end[c]))) return false;
+            }
+        }
+        return true;
     }
 
     // No cut runs near.
@@ -157,24 +213,87 @@ class Thinning {
         return false;
     }
 
+    // A voxel around a candidate: its cell, or -1, and its corner there.
+    struct Voxel {
+        CellId cell = -1;
+        int corner = 0;
+    };
+    static bool has(const std::vector<CornerMask>& mask, const Voxel& voxel) {
+        return voxel.cell >= 0 && mask[voxel.cell] >> voxel.corner & 1;
+    }
+    static void add(std::vector<CornerMask>& mask, const Candidate& candidate) {
+        mask[candidate.cell] |= static_cast<CornerMask>(1 << candidate.corner);
+    }
+    static Voxel voxel_around(const Candidate& candidate, int n) {
+        int leaves = 0, bits = 0;
+        for (int d = 0, rest = n; d < 3; ++d, rest /= 3) {
+            // -1 to 2; in the cell 0 or 1
+            const int at = (candidate.corner >> d & 1) + rest % 3 - 1;
+            leaves |= (at < 0 || at > 1) << d;
+            bits |= (at & 1) << d;
+        }
+        return {candidate.beside[leaves], bits};
+    }
+
+    // NOTE: voxels beside those that hold something are the rim of the cut, where uneven steps
+    // would fold the faces drawn around them. They go only where a shelf beyond them has gone, for
+    // they would be left as a thread.
     bool may_go(const Candidate& candidate) const {
+        std::array<Voxel, 27> voxel;
         Around body;
         for (int n = 0; n < 27; ++n) {
-            int leaves = 0, bits = 0;
-            for (int d = 0, rest = n; d < 3; ++d, rest /= 3) {
-                // -1 to 2; in the cell 0 or 1
-                const int at = (candidate.corner >> d & 1) + rest % 3 - 1;
-                leaves |= (at < 0 || at > 1) << d;
-                bits |= (at & 1) << d;
+            voxel[n] = voxel_around(candidate, n);
+            body[n] = has(kept_, voxel[n]);
+        }
+        if (candidate.is_cut) {
+            if (!keep_own_side(voxel, body)) return false;
+            bool at_rim = false, at_shelf = false;
+            for (int n = 0; n < 27; ++n) {
+                at_rim |= body[n] && !has(hollow_, voxel[n]);
+                at_shelf |= has(shelf_, voxel[n]);
             }
-            const CellId cell = candidate.beside[leaves];
-            body[n] = cell >= 0 && kept_[cell] >> bits & 1;
+            if (at_rim && !(takes_rims_ && at_shelf)) return false;
         }
         return is_simple(body);
     }
 
+    // Of the body around a candidate what hangs together with it there; false where a cut ends
+    // within that, whose two sides are one.
+    bool keep_own_side(const std::array<Voxel, 27>& voxel, Around& body) const {
+        const auto joined = [&](int low, int axis, int high) {
+            if (voxel[low].cell != voxel[high].cell) return true;  // the same particle
+            const auto corner = matter_.lattice.cell_corners(voxel[low].cell);
+            return matter_.connection[axis].weight[corner[voxel[low].corner]] > 0;
+        };
+        constexpr std::array<int, 3> kStep = {1, 3, 9};
+        DisjointSets sets(27);
+        const auto for_each_pair = [&](const auto& act) {
+            for (int n = 0; n < 27; ++n) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    const int next = n + kStep[axis];
+                    if (n / kStep[axis] % 3 < 2 && body[n] && body[next]) {
+                        act(n, next, joined(n, axis, next));
+                    }
+                }
+            }
+        };
+        for_each_pair([&](int low, int high, bool is) {
+            if (is) sets.unite(low, high);
+        });
+        bool ends = false;
+        for_each_pair([&](int low, int high, bool is) {
+            ends |=
+                !is && sets.root(low) == sets.root(high) && sets.root(low) == sets.root(kMiddle);
+        });
+        for (int n = 0; n < 27; ++n) body[n] = body[n] && sets.root(n) == sets.root(kMiddle);
+        return !ends;
+    }
+
     const Aggregate& matter_;
     std::vector<CornerMask> kept_;
+    std::vector<CornerMask> hollow_;  // all candidates
+    std::vector<CornerMask> shelf_;   // those at cuts that went before rims did
+    bool takes_rims_ = false;
     std::vector<Candidate> candidate_;
 };
 

@@ -10,9 +10,9 @@
 
 namespace swage {
 
-// A bit for each voxel of each cell: all but those that lie well outside the true surface, as long
-// as taking them away changes neither pieces nor holes nor handles. At cuts, and where no cell is
-// full, all stay.
+// A bit for each voxel of each cell: all but those that lie well outside the true surface, and at
+// cuts those that hold nothing, as long as taking them away changes neither pieces nor holes nor
+// handles. Where a cut ends all stay, and elsewhere those that no full cell is beside.
 std::vector<CornerMask> voxels_to_draw(const Aggregate& matter, const SurfaceSamples& samples);
 
 }  // namespace swage

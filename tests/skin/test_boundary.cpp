@@ -205,6 +205,32 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
     }
 }
 
+TEST_CASE(
+    "where a blade passes close above the surface, what it cuts off elsewhere does not reach") {
+    // A ball's cap is cut off; beside it the blade goes over a rod, through cells that hold nothing
+    // there: their corners above it hang together with the cap.
+    const double a = .125, above = GENERATE(.1, .3, .45), tilt = GENERATE(0., .04);
+    Aggregate matter = test::make_shape(
+        [](const Vec3& p) {
+            const double rod = std::max(std::hypot(p.y(), p.z()) - .55, std::abs(p.x()) - 2);
+            return std::min(rod, (p - Vec3(2, 0, 0)).norm() - .9);
+        },
+        Vec3(-2.1, -1, -1), Vec3i(41, 16, 16), a);
+    const Vec3 normal = Vec3(tilt, 0, 1).normalized(), point(.5, 0, .55 + above * a);
+    test::sever_plane(matter, point, normal);
+    REQUIRE(find_pieces(matter).count == 2);
+    test::deform(matter, [&](const Vec3& p) -> Vec3 {
+        return normal.dot(p - point) > 0 ? Vec3(p + Vec3(0, 0, 10)) : p;
+    });
+    const TriMesh mesh = boundary_skin(matter);
+    CHECK(fixtures::is_closed(mesh));
+    CHECK(surface_components(mesh).count == 2);
+    double least = 9;
+    for (const Vec3& p : mesh.position) least = p.z() > 5 ? std::min(least, p.x()) : least;
+    const double cap = 2 - std::sqrt(.81 - std::pow(.55 + above * a - 1.5 * tilt, 2));
+    CHECK(least > cap - a);
+}
+
 TEST_CASE("every vertex goes with its own piece, wherever a cut of any shape runs") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> any(-1, 1);
