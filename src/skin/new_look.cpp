@@ -215,6 +215,7 @@ void NewLook::paint(const std::vector<Vec3>& place, TriMesh& mesh) const {
     mesh.part_name = mesh_.part_name;
     if (!mesh_.triangle_part.empty()) mesh.triangle_part.resize(2 * count);
     if (!mesh_.triangle_uv.empty()) mesh.triangle_uv.assign(2 * count, {-1, -1, -1});
+    std::map<std::tuple<int, double, double>, int> made;  // values, by vertex
     for (std::size_t f = 0; f < count; ++f) {
         const bool is_cut = mesh.triangle_material[2 * f] == 1;
         const int own = mesh_.triangle_material.empty() ? 0 : mesh_.triangle_material[face[f].like];
@@ -224,10 +225,17 @@ void NewLook::paint(const std::vector<Vec3>& place, TriMesh& mesh) const {
                 mesh_.triangle_part[face[f].like];
         }
         if (!face[f].textured) continue;
-        const int at = static_cast<int>(mesh.uv.size());
-        mesh.uv.insert(mesh.uv.end(), face[f].uv.begin(), face[f].uv.end());
-        mesh.triangle_uv[2 * f] = {at, at + 1, at + 2};
-        mesh.triangle_uv[2 * f + 1] = {at, at + 2, at + 3};
+        std::array<int, 4> at;
+        for (int k = 0; k < 4; ++k) {
+            const int v = k < 3 ? mesh.triangle[2 * f][k] : mesh.triangle[2 * f + 1][2];
+            const Vec2& uv = face[f].uv[k];
+            const auto [entry, fresh] =
+                made.emplace(std::tuple(v, uv.x(), uv.y()), static_cast<int>(mesh.uv.size()));
+            if (fresh) mesh.uv.push_back(uv);
+            at[k] = entry->second;
+        }
+        mesh.triangle_uv[2 * f] = {at[0], at[1], at[2]};
+        mesh.triangle_uv[2 * f + 1] = {at[0], at[2], at[3]};
     }
     if (mesh_.position_color.empty()) return;
     for (const auto& [triangle, weight] : near) {

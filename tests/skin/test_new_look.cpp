@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
+#include <tuple>
 
 #include "geometry/box_mesh.h"
 #include "skin/boundary.h"
@@ -79,6 +81,21 @@ TEST_CASE("a boundary made anew keeps the mesh's texture, materials and colours,
     }
     CHECK(worst < 1e-9);
     CHECK(off < 1e-6);
+}
+
+TEST_CASE("faces of a boundary share their places in the texture, all but across seams") {
+    const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
+    const NewLook look(textured_box(block));
+    const TriMesh mesh = boundary_skin(block, &look);
+    std::set<std::tuple<int, double, double>> different;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        for (int c = 0; c < 3; ++c) {
+            const Vec2& uv = mesh.uv[mesh.triangle_uv[t][c]];
+            different.emplace(mesh.triangle[t][c], uv.x(), uv.y());
+        }
+    }
+    CHECK(different.size() == mesh.uv.size());
+    CHECK(mesh.uv.size() < 1.5 * double(mesh.position.size()));
 }
 
 TEST_CASE("faces across a seam take nothing of the picture that belongs to no side of it") {
