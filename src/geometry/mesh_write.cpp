@@ -130,6 +130,18 @@ void check_indices(const fs::path& file, const TriMesh& mesh) {
     check(mesh.triangle_smooth, static_cast<std::size_t>(mesh.smooth_group_count), 0);
 }
 
+// Of the values that corners have, each one's number from 1 on; 0: no corner has it.
+std::vector<int> numbers_of_used(const std::vector<Corners>& ids, std::size_t count) {
+    std::vector<int> number(count, 0);
+    for (const Corners& c : ids)
+        for (const int i : c)
+            if (i >= 0) number[i] = 1;
+    int last = 0;
+    for (int& n : number)
+        if (n > 0) n = ++last;
+    return number;
+}
+
 double srgb(float linear) { return srgb_from_linear(std::clamp<double>(linear, 0, 1)); }
 
 // Per-vertex texture coordinates, when every place has just one; empty otherwise.
@@ -206,18 +218,25 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
                 text.number(std::round(srgb(mesh.position_color[i][k]) * 1e7) / 1e7);
         text.put("\n");
     }
-    for (const Vec2& uv : mesh.uv) {
+    const std::vector<int> uv_number = numbers_of_used(mesh.triangle_uv, mesh.uv.size());
+    const std::vector<int> normal_number =
+        numbers_of_used(mesh.triangle_smooth, mesh.smooth_group_count);
+    for (std::size_t i = 0; i < mesh.uv.size(); ++i) {
+        if (uv_number[i] == 0) continue;
         text.put("vt");
-        text.number(uv.x());
-        text.number(uv.y());
+        text.number(mesh.uv[i].x());
+        text.number(mesh.uv[i].y());
         text.put("\n");
     }
-    if (has_normal)
-        for (const Vec3& n : smooth_normals(mesh, mesh.position)) {
+    if (has_normal) {
+        const std::vector<Vec3> normal = smooth_normals(mesh, mesh.position);
+        for (std::size_t g = 0; g < normal.size(); ++g) {
+            if (normal_number[g] == 0) continue;
             text.put("vn");
-            for (int k = 0; k < 3; ++k) text.number(std::round(n[k] * 1e5) / 1e5);
+            for (int k = 0; k < 3; ++k) text.number(std::round(normal[g][k] * 1e5) / 1e5);
             text.put("\n");
         }
+    }
 
     const std::vector<std::string> part_name = unique_names(mesh.part_name, "part");
     int part = -1, material = -1;
@@ -236,10 +255,10 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
             const int c = polygons.corner[i];
             text.number(' ', mesh.triangle[c / 3][c % 3] + 1);
             const int uv = has_uv ? mesh.triangle_uv[c / 3][c % 3] : -1;
-            if (uv >= 0) text.number('/', uv + 1);
+            if (uv >= 0) text.number('/', uv_number[uv]);
             if (has_normal) {
                 if (uv < 0) text.put("/");
-                text.number('/', mesh.triangle_smooth[c / 3][c % 3] + 1);
+                text.number('/', normal_number[mesh.triangle_smooth[c / 3][c % 3]]);
             }
         }
         text.put("\n");

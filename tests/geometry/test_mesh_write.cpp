@@ -61,6 +61,38 @@ TEST_CASE("an OBJ read, written and read again is the same mesh, bit for bit") {
     CHECK(test::bytes_of(folder / "out/q.obj").substr(13) == bytes.substr(13));  // mtllib aside
 }
 
+TEST_CASE("an OBJ holds the texture coordinates and normals that its faces name, no others") {
+    const Folder folder;
+    TriMesh mesh = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    smooth_by_crease_angle(mesh);
+    mesh.uv = {{9, 9}, {0, 0}, {8, 8}, {1, 0}, {0, 1}, {7, 7}};
+    mesh.triangle_uv.assign(mesh.triangle.size(), {3, 1, 4});
+    mesh.triangle_uv[2] = {-1, -1, -1};
+    for (Corners& c : mesh.triangle_smooth) {
+        for (int& g : c) g = 2 * g + 1;
+    }
+    const int groups = mesh.smooth_group_count;
+    mesh.smooth_group_count = 2 * groups + 5;
+    write_obj(folder / "u.obj", mesh);
+    const std::string text = fixtures::bytes_of(folder / "u.obj");
+    const auto lines = [&](const std::string& begin) {
+        int count = 0;
+        for (auto at = text.find(begin); at != text.npos; at = text.find(begin, at + 1)) ++count;
+        return count;
+    };
+    CHECK(lines("\nvt ") == 3);
+    CHECK(lines("\nvn ") == groups);
+    const TriMesh read = read_quietly(folder / "u.obj");
+    REQUIRE(read.triangle == mesh.triangle);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const int is = read.triangle_uv[t][k], was = mesh.triangle_uv[t][k];
+            REQUIRE((is < 0) == (was < 0));
+            if (was >= 0) CHECK(read.uv[is] == mesh.uv[was]);
+        }
+    }
+}
+
 TEST_CASE("quads and large polygons come out of the writer whole") {
     const Folder folder;
     write_obj(folder / "cube.obj", read_quietly(folder.write("in.obj", test::cube_obj())));
