@@ -101,6 +101,10 @@ void append_mesh(TriMesh& mesh, const TriMesh& other) {
     mesh.position.insert(mesh.position.end(), other.position.begin(), other.position.end());
     mesh.uv.insert(mesh.uv.end(), other.uv.begin(), other.uv.end());
     join(mesh.triangle_uv, here, moved(other.triangle_uv, uv_base), there, Corners{-1, -1, -1});
+    if (!other.smooth_normal.empty()) {
+        join<Vec3>(mesh.smooth_normal, mesh.smooth_group_count, other.smooth_normal,
+                   other.smooth_group_count, Vec3::Zero());
+    }
     if (!mesh.triangle_smooth.empty() && !other.triangle_smooth.empty()) {
         join(mesh.triangle_smooth, here, moved(other.triangle_smooth, mesh.smooth_group_count),
              there, Corners{0, 0, 0});

@@ -45,7 +45,9 @@ EdgeCount count_edges(const TriMesh& mesh) {
 
 class Repairer {
   public:
-    explicit Repairer(const TriMesh& input) : mesh_(input) {}
+    explicit Repairer(const TriMesh& input) : mesh_(input) {
+        mesh_.smooth_normal.clear();  // triangles may be turned over
+    }
 
     Repair run() {
         if (mesh_.triangle.empty()) fail(ExitCode::mesh, "the mesh has no triangles");

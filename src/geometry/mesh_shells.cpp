@@ -219,6 +219,7 @@ TriMesh join_shells(const TriMesh& whole, const std::vector<const TriMesh*>& par
     mesh.material = whole.material;
     mesh.part_name = whole.part_name;
     mesh.smooth_group_count = whole.smooth_group_count;
+    mesh.smooth_normal = whole.smooth_normal;
     for (const TriMesh* part : parts) {
         const int base = static_cast<int>(mesh.position.size());
         const std::size_t first = mesh.triangle.size();

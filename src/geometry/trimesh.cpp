@@ -42,6 +42,7 @@ void smooth_across_edges(TriMesh& mesh, const Smooth& smooth) {
     });
     std::vector<int> group;
     mesh.smooth_group_count = corners.number_sets(group);
+    mesh.smooth_normal.clear();
     mesh.triangle_smooth.resize(count);
     for (std::size_t t = 0; t < count; ++t)
         mesh.triangle_smooth[t] = {group[3 * t], group[3 * t + 1], group[3 * t + 2]};
@@ -128,9 +129,33 @@ void smooth_by_face_groups(TriMesh& mesh, const std::vector<int>& triangle_group
     });
 }
 
+namespace {
+
+// What a face makes of a normal as it moves: F^-T n, where F takes its edges `a` and `b` to `c` and
+// `d`, and what is behind it keeps its volume. Zero where the face has no area.
+Vec3 follow_face(const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 before = a.cross(b), now = c.cross(d);
+    const double area2_before = before.squaredNorm(), area2 = now.squaredNorm();
+    if (area2_before <= 0 || area2 <= 0) return Vec3::Zero();
+    const Vec3 slope = (normal.dot(a) * d.cross(now) + normal.dot(b) * now.cross(c)) / area2;
+    return (normal.dot(before) / area2_before * now + slope).stableNormalized();
+}
+
+std::vector<Vec3> sum_over_corners(const TriMesh& mesh,
+                                   const std::vector<std::array<Vec3, 3>>& share) {
+    std::vector<Vec3> sum(mesh.smooth_group_count, Vec3::Zero());
+    for (std::size_t t = 0; t < share.size(); ++t)
+        for (int k = 0; k < 3; ++k) sum[mesh.triangle_smooth[t][k]] += share[t][k];
+    return sum;
+}
+
+}  // namespace
+
 std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& position) {
     const std::size_t count = mesh.triangle.size();
+    const bool any_kept = !mesh.smooth_normal.empty();
     std::vector<std::array<Vec3, 3>> share(count);
+    std::vector<std::array<Vec3, 3>> kept(any_kept ? count : 0);
     parallel_each(count, kChunk, [&](std::size_t t) {
         const Corners& c = mesh.triangle[t];
         const std::array<Vec3, 3> p = {position[c[0]], position[c[1]], position[c[2]]};
@@ -139,20 +164,37 @@ std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& p
         for (int k = 0; k < 3; ++k) {
             const Vec3 out = p[(k + 1) % 3] - p[k];
             const Vec3 in = p[(k + 2) % 3] - p[k];
-            share[t][k] =
-                twice_area > 0
-                    ? Vec3(cross * (portable::atan2(twice_area, out.dot(in)) / twice_area))
-                    : Vec3(Vec3::Zero());
+            const double angle = twice_area > 0 ? portable::atan2(twice_area, out.dot(in)) : 0.0;
+            share[t][k] = twice_area > 0 ? Vec3(cross * (angle / twice_area)) : Vec3(Vec3::Zero());
+            if (!any_kept) continue;
+            const auto group = static_cast<std::size_t>(mesh.triangle_smooth[t][k]);
+            const bool is_kept = group < mesh.smooth_normal.size();
+            const Vec3& from = mesh.position[c[k]];
+            kept[t][k] =
+                is_kept ? Vec3(angle * follow_face(mesh.smooth_normal[group],
+                                                   mesh.position[c[(k + 1) % 3]] - from,
+                                                   mesh.position[c[(k + 2) % 3]] - from, out, in))
+                        : Vec3(Vec3::Zero());
         }
     });
-    std::vector<Vec3> normal(mesh.smooth_group_count, Vec3::Zero());
-    for (std::size_t t = 0; t < count; ++t)
-        for (int k = 0; k < 3; ++k) normal[mesh.triangle_smooth[t][k]] += share[t][k];
-    for (Vec3& n : normal) {
+    std::vector<Vec3> normal = sum_over_corners(mesh, share);
+    const std::vector<Vec3> followed = sum_over_corners(mesh, kept);
+    for (std::size_t g = 0; g < normal.size(); ++g) {
+        Vec3& n = normal[g];
+        if (any_kept && followed[g].norm() > 0) n = followed[g];
         const double length = n.norm();
         n = length > 0 ? Vec3(n / length) : Vec3(Vec3::UnitZ());  // only degenerate faces: any
     }
     return normal;
+}
+
+void keep_smooth_normals(TriMesh& mesh) {
+    if (mesh.triangle_smooth.empty()) return;
+    const std::vector<Vec3> now = smooth_normals(mesh, mesh.position);
+    mesh.smooth_normal.resize(now.size(), Vec3::Zero());
+    for (std::size_t g = 0; g < now.size(); ++g) {
+        if (mesh.smooth_normal[g] == Vec3::Zero()) mesh.smooth_normal[g] = now[g];
+    }
 }
 
 int excess(std::span<const EdgeUse> uses) {

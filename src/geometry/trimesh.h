@@ -48,6 +48,9 @@ struct TriMesh {
     std::vector<Corners> triangle_uv;             // one a triangle; -1 where a corner has none
     int smooth_group_count = 0;                   // corners of one group share a shading normal
     std::vector<Corners> triangle_smooth;         // one a triangle: ids of smooth groups
+    // Of the first groups: their normal at `position`, where it is not the one that the faces tell
+    // now, as on triangles that were divided or lost a neighbour; of any length, zero for none.
+    std::vector<Vec3> smooth_normal;
     std::vector<int> triangle_polygon;   // one a triangle: triangles of one polygon (a quad, say)
                                          // are consecutive and share the number
     std::vector<int> triangle_material;  // one a triangle, into material
@@ -91,7 +94,12 @@ void smooth_by_crease_angle(TriMesh& mesh, double crease_angle = 40 * kPi / 180)
 void smooth_by_face_groups(TriMesh& mesh, const std::vector<int>& triangle_group);
 
 // One unit normal a smooth group, weighted by corner angle, for the given positions (as many as
-// mesh.position). Groups must be present.
+// mesh.position): the mean of its faces', or of what each of them makes of its smooth_normal as it
+// moves. Groups must be present.
 std::vector<Vec3> smooth_normals(const TriMesh& mesh, const std::vector<Vec3>& position);
+
+// Gives each smooth group that has none its smooth_normal, so that it shades as it does now when
+// its triangles are divided or some of them taken away. Without groups nothing is done.
+void keep_smooth_normals(TriMesh& mesh);
 
 }  // namespace swage

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3530'6567'6177'7300;  // "\0swage05" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3630'6567'6177'7300;  // "\0swage06" on a little-endian machine
 
 enum RecordKind : std::uint32_t { kSkin = 1, kMachine, kFrame, kImage, kEnd };
 

@@ -13,6 +13,7 @@ void put_mesh(ByteWriter& out, const TriMesh& mesh) {
     out.put_array(mesh.triangle_uv);
     out.put(mesh.smooth_group_count);
     out.put_array(mesh.triangle_smooth);
+    out.put_array(mesh.smooth_normal);
     out.put_array(mesh.triangle_polygon);
     out.put_array(mesh.triangle_material);
     out.put_array(mesh.triangle_part);
@@ -40,6 +41,7 @@ TriMesh get_mesh(ByteReader& in, const FindImage& find_image) {
     mesh.triangle_uv = in.get_array<Corners>();
     mesh.smooth_group_count = in.get<int>();
     mesh.triangle_smooth = in.get_array<Corners>();
+    mesh.smooth_normal = in.get_array<Vec3>();
     mesh.triangle_polygon = in.get_array<int>();
     mesh.triangle_material = in.get_array<int>();
     mesh.triangle_part = in.get_array<int>();

@@ -147,6 +147,7 @@ InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind) {
 
 TriMesh WorkPiece::deformed() const {
     TriMesh mesh = skin;
+    if (!mesh.smooth_normal.empty()) mesh.smooth_normal = smooth_normals(skin, position);
     mesh.position = position;
     return mesh;
 }

@@ -33,12 +33,13 @@ std::uint64_t content_of(const TriMesh& mesh, bool with_position) {
     Hasher hasher;
     const std::uint64_t count = mesh.position.size();
     hasher.add_bytes(&count, sizeof count);
-    if (with_position) add_array(hasher, mesh.position);
+    if (with_position || !mesh.smooth_normal.empty()) add_array(hasher, mesh.position);
     add_array(hasher, mesh.triangle);
     add_array(hasher, mesh.position_color);
     add_array(hasher, mesh.uv);
     add_array(hasher, mesh.triangle_uv);
     add_array(hasher, mesh.triangle_smooth);
+    add_array(hasher, mesh.smooth_normal);
     add_array(hasher, mesh.triangle_material);
     return hasher.value();
 }

@@ -128,6 +128,7 @@ class PlaneCut {
         for (std::size_t v = 0; v < own.size(); ++v) {
             if (own[v] != 0) take_side(static_cast<int>(v), own[v], world[v]);
         }
+        keep_smooth_normals(mesh_);
         mesh_ = apply_split(mesh_, split, reference, share);
         finish_mount(mount_, matter_);
         hold_places(mount_, matter_, world);

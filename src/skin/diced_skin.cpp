@@ -9,6 +9,8 @@
 #include <span>
 #include <unordered_map>
 
+#include "geometry/edge_attributes.h"
+
 namespace swage {
 
 namespace {
@@ -26,10 +28,8 @@ class Dicer {
   public:
     Dicer(const TriMesh& mesh, const Lattice& lattice) : old_(mesh), lattice_(lattice) {
         edge_.assign(mesh.position.size(), {-1, -1});
-        skin_.mesh.position = mesh.position;
-        skin_.mesh.position_color = mesh.position_color;
-        skin_.mesh.uv = mesh.uv;
-        skin_.mesh.smooth_group_count = mesh.smooth_group_count;
+        skin_.mesh = mesh;
+        keep_smooth_normals(skin_.mesh);
         skin_.plane.assign(mesh.position.size(), {kNoPlane, kNoPlane, kNoPlane});
     }
 
@@ -131,28 +131,12 @@ class Dicer {
             skin_.plane.push_back(plane);
             edge_.push_back(old_edge(from, to));
             skin_.on_triangle.push_back(piece.parent);
-            if (!mesh.position_color.empty()) {
-                const Eigen::Vector3f low = mesh.position_color[from],
-                                      high = mesh.position_color[to];
-                mesh.position_color.push_back(low + static_cast<float>(share) * (high - low));
-            }
+            const Eigen::Vector3f color = attributes_.color(from, to, share);
+            if (!mesh.position_color.empty()) mesh.position_color.push_back(color);
         }
-        if (piece.uv[a] < 0 || piece.uv[b] < 0) {
-            made.uv[next] = -1;
-        } else {
-            const auto [at, is_new] = uv_.emplace(std::array<int, 3>{v, piece.uv[a], piece.uv[b]},
-                                                  static_cast<int>(mesh.uv.size()));
-            if (is_new) {
-                const Vec2 low = mesh.uv[piece.uv[a]], high = mesh.uv[piece.uv[b]];
-                mesh.uv.push_back(low + share * (high - low));
-            }
-            made.uv[next] = at->second;
-        }
+        made.uv[next] = attributes_.uv(v, piece.uv[a], piece.uv[b], share);
         if (!old_.triangle_smooth.empty()) {
-            const auto [at, is_new] = smooth_.emplace(
-                std::array<int, 3>{v, piece.smooth[a], piece.smooth[b]}, mesh.smooth_group_count);
-            mesh.smooth_group_count += is_new;
-            made.smooth[next] = at->second;
+            made.smooth[next] = attributes_.smooth(v, piece.smooth[a], piece.smooth[b], share);
         }
         return v;
     }
@@ -283,8 +267,7 @@ class Dicer {
 
     void finish(const std::vector<Piece>& pieces) {
         TriMesh& mesh = skin_.mesh;
-        mesh.material = old_.material;
-        mesh.part_name = old_.part_name;
+        for_each_triangle_array([](auto& values) { values.clear(); }, mesh);
         int polygon = -1, last = -1;
         for (std::size_t n = 0; n < pieces.size(); ++n) {
             const Piece& piece = pieces[n];
@@ -312,9 +295,9 @@ class Dicer {
     const TriMesh& old_;
     const Lattice& lattice_;
     DicedSkin skin_;
+    EdgeAttributes attributes_{skin_.mesh};
     std::vector<Segment> edge_;  // a vertex each: the old edge that it was made on, or -1, -1
     std::unordered_map<std::uint64_t, int> on_edge_;  // looked up only
-    std::map<std::array<int, 3>, int> uv_, smooth_;   // vertex and the values at its edge's ends
 };
 
 }  // namespace

@@ -86,6 +86,7 @@ TriMesh halve_edges(const TriMesh& mesh, double above) {
 
 TriMesh divide_edges(const TriMesh& mesh, double longest) {
     TriMesh divided = mesh;
+    if (longest_edge(mesh) > longest) keep_smooth_normals(divided);
     double before = std::numeric_limits<double>::infinity();
     for (double most = longest_edge(divided); most > longest && most < kShorter * before;
          most = longest_edge(divided)) {

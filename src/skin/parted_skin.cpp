@@ -303,18 +303,11 @@ void PartedSkin::part_vertices() {
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         for (int& v : mesh.triangle[t]) v = copy_of(v, site_[t]);
     }
-    // Corners that shared a shading normal no longer do where their vertices parted.
-    std::map<std::pair<int, int>, int> group;  // old group and vertex
-    std::vector<int> first(mesh.smooth_group_count, -1);
+    PartedGroups groups(mesh);
     for (std::size_t t = 0; t < mesh.triangle_smooth.size(); ++t) {
         for (int k = 0; k < 3; ++k) {
             int& own = mesh.triangle_smooth[t][k];
-            const int v = mesh.triangle[t][k];
-            if (first[own] < 0) first[own] = v;
-            if (first[own] == v) continue;
-            const auto [at, fresh] = group.emplace(std::pair(own, v), mesh.smooth_group_count);
-            mesh.smooth_group_count += fresh;
-            own = at->second;
+            own = groups.at(own, mesh.triangle[t][k]);
         }
     }
 }
@@ -383,12 +376,8 @@ std::array<int, 3> PartedSkin::common_planes(int v, int w) const {
 }
 
 int PartedSkin::half_way(int low, int high) {
-    Eigen::Vector3f color = Eigen::Vector3f::Ones();
-    if (!mesh.position_color.empty()) {
-        color = 0.5f * (mesh.position_color[low] + mesh.position_color[high]);
-    }
     return add_vertex(0.5 * (mesh.position[low] + mesh.position[high]), common_planes(low, high),
-                      color, low);
+                      halves_.color(low, high, 0.5), low);
 }
 
 void PartedSkin::bisect(std::size_t t, int k, int middle) {
@@ -402,18 +391,13 @@ void PartedSkin::bisect(std::size_t t, int k, int middle) {
     for_each_triangle_array(again, mesh);
     site_.push_back(site);
     mesh.triangle[t][next] = mesh.triangle.back()[k] = v;
-    if (!mesh.triangle_uv.empty() && mesh.triangle_uv[t][k] >= 0) {
-        const Vec2 uv =
-            0.5 * (mesh.uv[mesh.triangle_uv[t][k]] + mesh.uv[mesh.triangle_uv[t][next]]);
-        mesh.triangle_uv[t][next] = mesh.triangle_uv.back()[k] = static_cast<int>(mesh.uv.size());
-        mesh.uv.push_back(uv);
-    }
-    if (mesh.triangle_smooth.empty()) return;
-    const auto [low, high] = std::minmax(mesh.triangle_smooth[t][k], mesh.triangle_smooth[t][next]);
-    const auto [at, fresh] =
-        half_smooth_.emplace(std::array<int, 3>{v, low, high}, mesh.smooth_group_count);
-    mesh.smooth_group_count += fresh;
-    mesh.triangle_smooth[t][next] = mesh.triangle_smooth.back()[k] = at->second;
+    const auto halve = [&](std::vector<Corners>& corner, auto make) {
+        if (corner.empty()) return;
+        const auto [low, high] = std::minmax(corner[t][k], corner[t][next]);
+        corner[t][next] = corner.back()[k] = (halves_.*make)(v, low, high, 0.5);
+    };
+    halve(mesh.triangle_uv, &EdgeAttributes::uv);
+    halve(mesh.triangle_smooth, &EdgeAttributes::smooth);
 }
 
 }  // namespace swage

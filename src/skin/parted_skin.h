@@ -10,6 +10,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "geometry/edge_attributes.h"
 #include "skin/body_map.h"
 #include "skin/diced_skin.h"
 #include "skin/mount.h"
@@ -86,7 +87,7 @@ class PartedSkin {
     std::vector<CellId> whole_cell_;  // before it parted
     std::vector<CornerMask> whole_side_;
     std::map<std::pair<int, Mask>, int> taken_;
-    std::map<std::array<int, 3>, int> half_smooth_;
+    EdgeAttributes halves_{mesh};
 };
 
 }  // namespace swage

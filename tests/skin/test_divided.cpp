@@ -118,6 +118,67 @@ TEST_CASE("what a mesh carries goes on over the parts of its triangles") {
     }
 }
 
+namespace {
+
+// A prism of eight sides along z that shade as a cylinder, its ends flat, of 32 triangles.
+TriMesh round_prism() {
+    constexpr int kSides = 8;
+    TriMesh mesh;
+    for (int n = 0; n < kSides; ++n) {
+        const double angle = 2 * kPi * n / kSides;
+        for (double z : {0., 3.}) mesh.position.push_back({std::cos(angle), std::sin(angle), z});
+    }
+    mesh.position.insert(mesh.position.end(), {{0, 0, 0}, {0, 0, 3}});
+    const int low = 2 * kSides, high = low + 1;
+    for (int n = 0; n < kSides; ++n) {
+        const int a = 2 * n, b = 2 * ((n + 1) % kSides);
+        mesh.triangle.insert(mesh.triangle.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+        mesh.triangle.insert(mesh.triangle.end(), {{low, b, a}, {high, a + 1, b + 1}});
+    }
+    smooth_by_crease_angle(mesh, 0.9);
+    return mesh;
+}
+
+// The largest error of a normal on the sides and on the ends of that prism, each at `now`, against
+// what `map`, linear, makes of the straight line between the corners' normals.
+double worst_shade(const TriMesh& mesh, const Mat3& map) {
+    std::vector<Vec3> now;
+    for (const Vec3& p : mesh.position) now.push_back(map * p);
+    const std::vector<Vec3> normal = smooth_normals(mesh, now);
+    const Mat3 turn = map.inverse().transpose();
+    double worst = 0;
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const Vec3 face = area_vector(mesh.position, mesh.triangle[t]);
+        const bool is_end = std::abs(face.z()) > 0.5 * face.norm();
+        for (int k = 0; k < 3; ++k) {
+            Vec3 should = mesh.position[mesh.triangle[t][k]];
+            should = is_end ? Vec3(0, 0, face.z()) : Vec3(should.x(), should.y(), 0);
+            const Vec3& is = normal[mesh.triangle_smooth[t][k]];
+            worst = std::max(worst, (is - (turn * should).normalized()).norm());
+        }
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a divided mesh shades as the whole one, and its shade goes with what becomes of it") {
+    const TriMesh coarse = round_prism();
+    REQUIRE(worst_shade(coarse, Mat3::Identity()) < 1e-12);
+    const Mat3 drawn = Vec3(0.7, 0.7, 1 / 0.49).asDiagonal();  // of the same volume
+    const Mat3 pressed = Vec3(1.25, 0.8, 1).asDiagonal();
+    const Mat3 turn = Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())).toRotationMatrix();
+    for (double longest : {1.5, 0.3, 0.1}) {
+        const TriMesh fine = divide_edges(coarse, longest);
+        REQUIRE(fine.triangle.size() > coarse.triangle.size());
+        CHECK(worst_shade(fine, Mat3::Identity()) < 1e-9);
+        CHECK(worst_shade(fine, turn) < 1e-9);
+        CHECK(worst_shade(fine, turn * drawn) < 1e-9);
+        CHECK(worst_shade(fine, turn * pressed) < 0.1);  // flat faces: 0.4
+        CHECK(worst_shade(divide_edges(fine, longest / 2), Mat3::Identity()) < 1e-9);
+    }
+}
+
 TEST_CASE("edges so far from the origin that they have no middle are left") {
     TriMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
     for (Vec3& p : mesh.position) p += Vec3::Constant(1e15);
