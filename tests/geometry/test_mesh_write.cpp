@@ -63,7 +63,7 @@ TEST_CASE("an OBJ read, written and read again is the same mesh, bit for bit") {
 
 TEST_CASE("an OBJ holds the texture coordinates and normals that its faces name, no others") {
     const Folder folder;
-    TriMesh mesh = fixtures::box_mesh({0, 0, 0}, {1, 1, 1});
+    TriMesh mesh = test::box_mesh({0, 0, 0}, {1, 1, 1});
     smooth_by_crease_angle(mesh);
     mesh.uv = {{9, 9}, {0, 0}, {8, 8}, {1, 0}, {0, 1}, {7, 7}};
     mesh.triangle_uv.assign(mesh.triangle.size(), {3, 1, 4});
@@ -74,7 +74,7 @@ TEST_CASE("an OBJ holds the texture coordinates and normals that its faces name,
     const int groups = mesh.smooth_group_count;
     mesh.smooth_group_count = 2 * groups + 5;
     write_obj(folder / "u.obj", mesh);
-    const std::string text = fixtures::bytes_of(folder / "u.obj");
+    const std::string text = test::bytes_of(folder / "u.obj");
     const auto lines = [&](const std::string& begin) {
         int count = 0;
         for (auto at = text.find(begin); at != text.npos; at = text.find(begin, at + 1)) ++count;

@@ -223,7 +223,7 @@ TEST_CASE(
         return normal.dot(p - point) > 0 ? Vec3(p + Vec3(0, 0, 10)) : p;
     });
     const TriMesh mesh = boundary_skin(matter);
-    CHECK(fixtures::is_closed(mesh));
+    CHECK(test::is_closed(mesh));
     CHECK(surface_components(mesh).count == 2);
     double least = 9;
     for (const Vec3& p : mesh.position) least = p.z() > 5 ? std::min(least, p.x()) : least;

@@ -45,7 +45,7 @@ double worst_shade(const TriMesh& part, const TriMesh& whole) {
 }  // namespace
 
 TEST_CASE("what is left of a surface shades as before, diced, cut or broken") {
-    Fixture f(fixtures::sphere_mesh(.14, 1));
+    Fixture f(test::sphere_mesh(.14, 1));
     const TriMesh whole = f.mesh;
     SECTION("diced") {
         const DicedSkin diced = dice_skin(whole, f.matter.lattice, [](auto&) { return true; });
