@@ -86,8 +86,8 @@ struct Simulation::Rooms {
     double elastic(std::size_t b) {
         return std::visit([&](auto& any) { return any.elastic_energy(b); }, solver);
     }
-    void connections_changed(std::size_t b) {
-        std::visit([&](auto& any) { any.connections_changed(b); }, solver);
+    double connections_changed(std::size_t b, const Drive& now) {
+        return std::visit([&](auto& any) { return any.connections_changed(b, now); }, solver);
     }
 
     std::vector<SeverEvent> crossed(const Aggregate& matter, std::span<const Drive> way) const {
@@ -160,8 +160,8 @@ int Simulation::Rooms::cut(std::size_t b, const Drive& from, const Drive& to) {
     if (events.empty()) return 0;
     const double before = elastic(b);
     sever(*at.matter, events);
-    connections_changed(b);
-    at.books.severed_energy += before - elastic(b);
+    const double let_go = connections_changed(b, from);
+    at.books.severed_energy += before - elastic(b) + let_go;
     return static_cast<int>(events.size());
 }
 

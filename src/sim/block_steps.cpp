@@ -64,9 +64,9 @@ BlockSolver::BlockSolver(const std::vector<Aggregate*>& bodies, const Apparatus&
     if (settings.solver != Solver::implicit_steps) bodies_.limit_stiffness(step_);
 }
 
-void BlockSolver::connections_changed(std::size_t body) {
-    bodies_.connections_changed(body);  // fewer are never faster, so the step stays
+double BlockSolver::connections_changed(std::size_t body, const Drive& now) {
     implicit_[body] = {};
+    return bodies_.connections_changed(body, now);  // fewer are never faster, so the step stays
 }
 
 // What the state of the bodies and what the guard has asked for allow.

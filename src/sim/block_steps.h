@@ -45,7 +45,9 @@ class BlockSolver {
     // Throws Error(stopped) when the guard finds something wrong even in the shortest steps; the
     // matter is then as it was at the last block that was right.
     MoveOutcome advance(const Drive& from, const Drive& to);
-    void connections_changed(std::size_t body);
+    // A blade has severed connections of this body. Returns what contacts with tools and grips held
+    // by what is gone [J]; with other bodies that counts as damped in the next move.
+    double connections_changed(std::size_t body, const Drive& now);
     double elastic_energy(std::size_t body) { return bodies_[body].elastic_energy(); }  // [J]
     const LoadSet& pushes(std::size_t body) const { return bodies_[body].pushes(); }
 

@@ -32,11 +32,11 @@ struct ContactSums {
     }
     // The same contacts while nothing moves.
     void freeze() { friction = damped = came = goes = took = 0; }
-    // Nothing is taken yet where `now` holds.
+    // Nothing is taken yet where `now` holds, but what was let go of as a blade cut it.
     void start(const ContactSums& now) {
         *this = now;
-        stored_at_start = now.stored;
-        friction = damped = work = 0;
+        stored_at_start = now.stored + now.damped;
+        friction = work = 0;
     }
     // Those found at the end of the next step [s].
     void add(const ContactSums& next, double step) {

@@ -88,9 +88,10 @@ EnergySteps::EnergySteps(const std::vector<Aggregate*>& bodies, const Apparatus&
     }
 }
 
-void EnergySteps::connections_changed(std::size_t body) {
-    mover_[body].body.connections_changed();
+double EnergySteps::connections_changed(std::size_t body, const Drive& now) {
+    const double let_go = mover_[body].body.connections_changed(now);
     contact_.connections_changed(body);
+    return let_go;
 }
 
 // Bodies whose boxes may meet within the frame, in the order of their first. What one of a group

@@ -60,7 +60,7 @@ class EnergySteps {
 
     // Throws Error(stopped) when no step is short enough; the matter is then as it was before it.
     MoveOutcome advance(const Drive& from, const Drive& to);
-    void connections_changed(std::size_t body);
+    double connections_changed(std::size_t body, const Drive& now);  // as BlockSolver's
     double elastic_energy(std::size_t body) { return mover_[body].body.elastic_energy(); }
     const LoadSet& pushes(std::size_t body) const { return mover_[body].body.pushes(); }
     // Writes down every step from now on.

@@ -31,10 +31,11 @@ void MovingBodies::limit_stiffness(double step) {
     contact_.limit_stiffness(step);
 }
 
-void MovingBodies::connections_changed(std::size_t b) {
-    body_[b].connections_changed();
+double MovingBodies::connections_changed(std::size_t b, const Drive& now) {
+    const double let_go = body_[b].connections_changed(now);
     contact_.connections_changed(b);
     sleeping_.wake(b);
+    return let_go;
 }
 
 void MovingBodies::start(const Drive& from, double step, MoveOutcome& outcome) {

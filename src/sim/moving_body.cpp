@@ -144,11 +144,15 @@ void MovingBody::find_candidates(const Drive& now) {
     gone_ = 0;
 }
 
-void MovingBody::surface_changed() {
+double MovingBody::surface_changed(const Drive& now) {
     pushes_.connections_changed(matter_);
     drag_.connections_changed(matter_);
-    contacts_.connections_changed(matter_);
+    const RestingContacts& at_rest = contacts_.at_rest();
+    double held = implicit_ ? at_rest.stored_energy(matter_, now) : 0;
+    const double let_go = contacts_.connections_changed(matter_, now);
+    held = implicit_ ? held - at_rest.stored_energy(matter_, now) : let_go;
     if (touches_) gone_ = std::numeric_limits<double>::infinity();
+    return held;
 }
 
 void MovingBody::renew_candidates(const Drive& before, const Drive& now, double way) {
@@ -210,7 +214,7 @@ void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome
 }
 
 // What flows, softens, cracks and snaps at the present positions, whose forces were just found.
-bool MovingBody::remember(double step, BodyOutcome& outcome) {
+bool MovingBody::remember(const Drive& now, double step, BodyOutcome& outcome) {
     if (!remembers_) return false;
     branch_energy_ = -1;  // branches soften too
     int broken = 0;
@@ -232,7 +236,7 @@ bool MovingBody::remember(double step, BodyOutcome& outcome) {
             book(lattice_.snap(matter_));
         }
     }
-    if (broken > 0) surface_changed();
+    if (broken > 0) outcome.damped_work += surface_changed(now);
     return broken > 0 || cracked.cells > 0;
 }
 
@@ -241,7 +245,7 @@ void MovingBody::finish_step(const Drive& before, const Drive& now, double step,
     if (lattice_.saw_crushed() || inside_out_ > 0) {
         outcome.damped_work += calm_crushed(matter_, portable::exp(-kCalm * step / step_));
     }
-    if (remember(step, outcome)) find_forces(now, 0, outcome);
+    if (remember(now, step, outcome)) find_forces(now, 0, outcome);
     if (implicit_) {
         outcome.friction_work += contacts_.commit_implicit_step(matter_, now);
     } else {

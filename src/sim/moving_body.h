@@ -96,10 +96,12 @@ class MovingBody {
         return force_.at(p) / matter_.particle_mass[p] + gravity_;
     }
 
-    void connections_changed() {
+    // A blade has severed connections. Returns what contacts with tools and grips held by what is
+    // gone [J].
+    double connections_changed(const Drive& now) {
         lattice_.connections_changed(matter_, true);
         branch_energy_ = -1;
-        surface_changed();
+        return surface_changed(now);
     }
     // In the lattice and in the branches of its damping [J].
     double elastic_energy();
@@ -137,9 +139,10 @@ class MovingBody {
   private:
     double branch_energy();
     void let_go();  // the branches
-    void surface_changed();
+    double surface_changed(const Drive& now);
     void find_inner_forces(double step, BodyOutcome& outcome);
-    bool remember(double step, BodyOutcome& outcome);  // whether the forces have changed by it
+    bool remember(const Drive& now, double step,
+                  BodyOutcome& outcome);  // whether the forces have changed by it
 
     Aggregate& matter_;
     LatticeForces lattice_;

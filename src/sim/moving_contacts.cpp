@@ -2,6 +2,7 @@
 #include "sim/moving_contacts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/parallel.h"
 #include "sim/surface_forces.h"
@@ -39,6 +40,16 @@ void MovingContacts::limit_stiffness(const Aggregate& matter, double step) {
     last_step_ = step;
     rest_.grips().limit_stiffness(matter, step);
     rest_.pairs().limit_stiffness(matter, step);
+}
+
+double MovingContacts::connections_changed(const Aggregate& matter, const Drive& now) {
+    double held = rest_.grips().stored_energy(matter, now);
+    rest_.connections_changed(matter);
+    held -= rest_.grips().stored_energy(matter, now);
+    for (std::size_t n = 0; n < memory_.size(); ++n) {
+        if (rest_.pairs()[n].gone) held += std::exchange(memory_[n].next.stored, 0);
+    }
+    return held;
 }
 
 void MovingContacts::find_candidates(const Aggregate& matter, const Drive& now) {
@@ -257,8 +268,6 @@ ToolLosses MovingContacts::commit(const Drive& now) {
                 lost.damped += parting_loss(last.bound, last.bond, way / last_step_, last_step_);
             }
         }
-        // What its spring held when its cell broke.
-        if (pair.gone) lost.damped += next.stored;
         pair.come_out(next.depth);
         memory.history = next.history;
         pair.entry = next.history.touches ? next.entry : ToolEntry{};

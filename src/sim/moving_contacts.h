@@ -30,8 +30,8 @@ class MovingContacts {
     // or is gripped exceeds (stiffest_of_points()).
     void limit_stiffness(const Aggregate& matter, double step);
 
-    // As of sim/tool_pairs.h.
-    void connections_changed(const Aggregate& matter) { rest_.connections_changed(matter); }
+    // As of sim/tool_pairs.h. Returns what springs held by which nothing is held any more [J].
+    double connections_changed(const Aggregate& matter, const Drive& now);
     void find_candidates(const Aggregate& matter, const Drive& now);
 
     // An implicit step begins from this drive; it is kept, and explicit ones may follow. Returns as

@@ -34,10 +34,12 @@ QuasistaticSolver::QuasistaticSolver(Aggregate& matter, const Apparatus& apparat
       slips_(apparatus),
       load_(apparatus.tool.size() + apparatus.grip.size()) {}
 
-void QuasistaticSolver::connections_changed(std::size_t) {
+double QuasistaticSolver::connections_changed(std::size_t, const Drive& now) {
     severed_ = true;
     forces_.lattice.connections_changed(matter_, true);
+    const double held = begun_ ? forces_.stored(now).contact : 0;
     connections_renewed();
+    return begun_ ? held - forces_.stored(now).contact : 0;
 }
 
 void QuasistaticSolver::connections_renewed() {

@@ -30,8 +30,8 @@ class QuasistaticSolver {
     // it was before that increment.
     MoveOutcome advance(const Drive& from, const Drive& to);
 
-    // A blade has severed connections.
-    void connections_changed(std::size_t body = 0);
+    // A blade has severed connections. Returns what contacts and grips held by what is gone [J].
+    double connections_changed(std::size_t body, const Drive& now);
     double elastic_energy(std::size_t = 0) { return forces_.elastic_energy(); }  // [J]
     const LoadSet& pushes(std::size_t = 0) const { return forces_.pushes; }
 

@@ -6,6 +6,7 @@
 #include "sim/sever.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/sim/motion.h"
 #include "tests/sim/pulled_bar.h"
 
 using namespace swage;
@@ -232,4 +233,79 @@ TEST_CASE("crumbs of an earlier stage are not blamed on the first blade of the n
     CHECK(r.severed > 0);
     CHECK(r.pieces == 3);
     CHECK(r.warning.empty());
+}
+
+TEST_CASE("what contacts held by matter that a blade cuts through stays on the books") {
+    const Solver solver =
+        GENERATE(Solver::explicit_steps, Solver::energy_stepped, Solver::quasistatic);
+    const bool is_still = solver == Solver::quasistatic;
+    Aggregate block = make_block(4, 4, 4, 0.02,
+                                 {.young_modulus = 1e6,
+                                  .density = 1000,
+                                  .damping_ratio = 0.3,
+                                  .friction = 0.5,
+                                  .restitution = 0});
+    place(block, {Quat::Identity(), Vec3(0, 0.04, 0)});
+    Apparatus apparatus = floor_with(0.5);
+    // Through the lowest layer, which bears the block.
+    apparatus.blade.push_back({"blade", {Vec3(0, 0.01, -1), Vec3(0, 0.01, 1)}, {}});
+    SimSettings settings = motion_settings(solver);
+    settings.gravity = Vec3(0, -9.81, 0);
+    settings.contact_stiffness = 0.01;
+    settings.sleep = false;
+    settings.tolerance = 1e-3;
+    const auto drive = [&](double time, double x) {
+        Drive d = floor_at(time);
+        d.world_from_blade = {Pose{Quat::Identity(), Vec3(x, 0, 0)}};
+        if (is_still) d.gravity_strength = std::min(1.0, time / 0.2);
+        return d;
+    };
+    Simulation simulation(block, apparatus, settings);
+    FrameReport r;
+    for (int n = 0; n < 8; ++n) {
+        r = simulation.advance(drive(0.05 * n, -1), drive(0.05 * (n + 1), -1));
+    }
+    const double held = r.contact, open = r.remainder;
+    REQUIRE(held > 1e-4);
+    r = simulation.advance(drive(0.4, -1), drive(0.401, 1));
+    INFO("held " << held << ", remainder " << open << ", then " << r.remainder);
+    CHECK(r.severed > 0);
+    CHECK(r.severed_energy > 0.5 * held);
+    CHECK(std::abs(r.remainder - open) < 0.02 * held);
+}
+
+TEST_CASE("what a body held of one that a blade cuts under it stays on the books") {
+    const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
+    const Material soft{.young_modulus = 1e6,
+                        .density = 1000,
+                        .damping_ratio = 0.3,
+                        .friction = 0.5,
+                        .restitution = 0};
+    Material heavy = soft;
+    heavy.density = 20000;
+    Aggregate bed = make_block(6, 4, 4, 0.02, soft), weight = make_block(3, 2, 2, 0.02, heavy);
+    place(bed, {Quat::Identity(), Vec3(0, 0.04, 0)});
+    place(weight, {Quat::Identity(), Vec3(0, 0.1, 0)});
+    Apparatus apparatus = floor_with(0.5);
+    apparatus.blade.push_back({"blade", {Vec3(0, 0.07, -1), Vec3(0, 0.07, 1)}, {}});
+    SimSettings settings = motion_settings(solver);
+    settings.gravity = Vec3(0, -9.81, 0);
+    settings.contact_stiffness = 0.02;
+    settings.sleep = false;
+    const auto drive = [&](double time, double x) {
+        Drive d = floor_at(time);
+        d.world_from_blade = {Pose{Quat::Identity(), Vec3(x, 0, 0)}};
+        return d;
+    };
+    Simulation simulation({&bed, &weight}, apparatus, settings);
+    FrameReport r;
+    for (int n = 0; n < 8; ++n) {
+        r = simulation.advance(drive(0.05 * n, -1), drive(0.05 * (n + 1), -1));
+    }
+    const double held = r.body[1].contact, open = r.remainder;
+    REQUIRE(held > 1e-4);
+    r = simulation.advance(drive(0.4, -1), drive(0.401, 1));
+    INFO("held " << held << ", remainder " << open << ", then " << r.remainder);
+    CHECK(r.severed > 0);
+    CHECK(std::abs(r.remainder - open) < 0.02 * held);
 }

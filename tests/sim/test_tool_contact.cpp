@@ -469,6 +469,6 @@ TEST_CASE("a crack elsewhere changes nothing of what a step's contacts do") {
     const std::vector<double> whole = push(1e-4);
     CHECK(push(0) == whole);
     break_layer(block, 4);
-    contacts.connections_changed(block);
+    contacts.connections_changed(block, floor_at(1e-4));
     CHECK(push(0) == whole);
 }
