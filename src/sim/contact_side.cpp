@@ -72,7 +72,7 @@ RestSurface::Depth ContactSide::least_depth(const Vec3i& site, CellId cell,
         Vec3i((place.array() > 1).cast<int>()) - Vec3i((place.array() < 0).cast<int>());
     if (!out.isZero()) {
         const Vec3i next = site + out;
-        const CellId beside = matter_->lattice.cell_at(next.x(), next.y(), next.z());
+        const CellId beside = matter_->lattice.cell_at(next);
         if (beside >= 0 && molded_->is_rim(beside)) {
             at = beside;
             local -= out.cast<double>();
@@ -119,8 +119,7 @@ void ContactSide::find_near() {
                 if (!in_box(at)) return false;
                 const int bit = bit_of(at);
                 if (set[bit / 64] >> (bit % 64) & 1) return true;
-                const Vec3i site = home[s] + at;
-                const CellId cell = lattice.cell_at(site.x(), site.y(), site.z());
+                const CellId cell = lattice.cell_at(home[s] + at);
                 if (cell < 0 || !touch_.whole()[cell]) return false;
                 set[bit / 64] |= std::uint64_t(1) << (bit % 64);
                 open.push_back(at);

@@ -18,7 +18,7 @@ constexpr double kThinnest = 1e-3;  // of a cell's volume at rest, below which n
 
 }  // namespace
 
-BodyMap::BodyMap(const Aggregate& matter) : matter_(matter), pieces_(matter) {
+BodyMap::BodyMap(const Aggregate& matter) : matter_(matter) {
     std::vector<ParticleId> all(matter.particle_count());
     std::iota(all.begin(), all.end(), 0);
     particle_frames(matter, make_frame_stencil(matter), all, frame_);

@@ -7,7 +7,6 @@
 
 #include "matter/aggregate.h"
 #include "skin/carrier.h"
-#include "skin/piece_map.h"
 
 namespace swage {
 
@@ -30,12 +29,6 @@ class BodyMap {
                        const BodyPlace& near) const;
     MappedCell mapped(CellId cell) const;
 
-    const PieceMap& pieces() const { return pieces_; }
-    // As of pieces().
-    BodyPlace beside(const Vec3& reference, std::span<const BodyPlace> others) const {
-        return pieces_.beside(reference, others);
-    }
-
   private:
     CellFrames frames(const std::array<ParticleId, 8>& corner) const;
     Mat3 slope(CellId cell, CornerMask side) const;  // of the world by the body, in the mean
@@ -44,7 +37,6 @@ class BodyMap {
 
     const Aggregate& matter_;
     std::vector<ParticleFrame> frame_;
-    PieceMap pieces_;
 };
 
 }  // namespace swage

@@ -139,7 +139,7 @@ class Breaker {
 
     // `site`: of the cell in whose middle the place is.
     bool is_inside(const Vec3& place, const Vec3i& site) {
-        const CellId cell = matter_.lattice.cell_at(site.x(), site.y(), site.z());
+        const CellId cell = matter_.lattice.cell_at(site);
         if (cell >= 0 && matter_.cell_fill[cell] > 0.9999f) return true;
         if (!tree_) tree_ = std::make_unique<TriangleTree>(whole_);
         return tree_->winding_number(place) > 0.5;

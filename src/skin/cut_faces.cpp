@@ -96,7 +96,7 @@ std::optional<CutTarget> cut_plane_near(const Aggregate& matter, const Vec3i& si
         const Vec3i step(n % (2 * kCells), n / (2 * kCells) % (2 * kCells),
                          n / (4 * kCells * kCells));
         const Vec3i low = site + step - Vec3i::Constant(kCells);
-        const CellId cell = matter.lattice.cell_at(low.x(), low.y(), low.z());
+        const CellId cell = matter.lattice.cell_at(low);
         if (cell < 0) continue;
         const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(cell);
         for (int c = 0; c < 8; ++c) {

@@ -12,6 +12,7 @@
 #include "geometry/mesh_edit.h"
 #include "matter/cell_middle.h"
 #include "skin/body_map.h"
+#include "skin/piece_map.h"
 #include "skin/split_attributes.h"
 #include "skin/surface_split.h"
 #include "skin/sweep_plane.h"
@@ -90,7 +91,8 @@ class PlaneCut {
           mount_(mount),
           matter_(matter),
           plane_(plane),
-          map_(matter) {}
+          map_(matter),
+          pieces_(matter) {}
 
     SurfaceSplit run() {
         const double a = matter_.lattice.spacing;
@@ -165,8 +167,8 @@ class PlaneCut {
 
     BodyPlace on_edge(const CutPoint& cut, double share) const {
         const std::array<BodyPlace, 2> ends = {mount_.place(cut.low), mount_.place(cut.high)};
-        return map_.beside(ends[0].reference + share * (ends[1].reference - ends[0].reference),
-                           ends);
+        return pieces_.beside(ends[0].reference + share * (ends[1].reference - ends[0].reference),
+                              ends);
     }
 
     // Where each edge of the mesh, straight at molding and curved by now, meets the plane. Regula
@@ -282,9 +284,9 @@ class PlaneCut {
     // None of the cell's corners is on the vertex's side: the nearest cell that has one takes it.
     void change_cell(int v, int own) {
         const Vec3& reference = mount_.reference[v];
-        const int piece = map_.pieces().piece_of(mount_.place(v));
+        const int piece = pieces_.piece_of(mount_.place(v));
         const auto side_in = [&](CellId cell, const Vec3i&) -> CornerMask {
-            return corners_on_side(cell, own) & map_.pieces().side_of_piece(cell, reference, piece);
+            return corners_on_side(cell, own) & pieces_.side_of_piece(cell, reference, piece);
         };
         const CellSide best = nearest_side(matter_, mount_.cell[v], reference, side_in);
         if (best.cell < 0) return;  // a sliver without a particle of its own stays where it is
@@ -298,6 +300,7 @@ class PlaneCut {
     const Aggregate& matter_;
     const SweepPlane& plane_;
     const BodyMap map_;
+    const PieceMap pieces_;
 };
 
 }  // namespace

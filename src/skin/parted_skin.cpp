@@ -2,7 +2,6 @@
 #include "skin/parted_skin.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
@@ -56,7 +55,7 @@ std::vector<BrokenFace> faces_to_part(const Aggregate& matter, const Mount& moun
         for (int own = 0; own < 4; ++own) {  // the connection's place in a cell around it
             const auto corner = [&](int at) { return (at & 1) << a | (at >> 1) << b; };
             const Vec3i low = face.site - corner_step(corner(own));
-            const CellId cell = matter.lattice.cell_at(low.x(), low.y(), low.z());
+            const CellId cell = matter.lattice.cell_at(low);
             if (cell < 0) continue;
             const CornerGroups group =
                 corner_groups_of_cut(matter, matter.lattice.cell_corners(cell));
@@ -86,7 +85,7 @@ Aggregate without_cracks(const Aggregate& cracked) {
 }  // namespace
 
 PartedSkin::Uncracked::Uncracked(const Aggregate& cracked)
-    : matter(without_cracks(cracked)), map(matter) {}
+    : matter(without_cracks(cracked)), pieces(matter) {}
 
 PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter,
                        const std::vector<BrokenFace>& faces)
@@ -122,7 +121,7 @@ PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Agg
 }
 
 void PartedSkin::mount_beside(const Vec3& place, std::span<const BodyPlace> others) {
-    if (uncracked_) return mount.add(uncracked_->map.beside(place, others));
+    if (uncracked_) return mount.add(uncracked_->pieces.beside(place, others));
     mount.add({place, carrying_cell(matter_, place), kAllCorners, hold_between(place, others)});
 }
 
@@ -242,17 +241,8 @@ void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
         const Vec3i n = at - low;
         return (n.array() < 0).any() || (n.array() > 3).any() ? -1 : n[0] + 4 * (n[1] + 4 * n[2]);
     };
-    struct Near {
-        CellId cell;
-        Vec3i site;
-    };
-    std::vector<Near> near;
     DisjointSets uncracked(64), uncut(64);
-    for (int n = 0; n < 27; ++n) {
-        const Vec3i at = low + Vec3i(n % 3, n / 3 % 3, n / 9);
-        const CellId cell = lattice.cell_at(at.x(), at.y(), at.z());
-        if (cell < 0) continue;
-        near.push_back({cell, at});
+    lattice.for_each_cell_around(low + Vec3i::Ones(), [&](CellId cell, const Vec3i& at) {
         const std::array<ParticleId, 8> corner = lattice.cell_corners(cell);
         for (int c = 0; c < 8; ++c) {
             for (int d = 0; d < 3; ++d) {
@@ -264,7 +254,7 @@ void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
                 }
             }
         }
-    }
+    });
     std::array<char, 64> in_group{}, on_side{};
     Vec3i cube = site;
     for (int d = 0; d < 3; ++d) {
@@ -277,23 +267,19 @@ void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
             on_side[uncut.root(number(low + Vec3i::Ones() + corner_step(c)))] = 1;
         }
     }
-    double least = std::numeric_limits<double>::infinity();
-    for (const Near& other : near) {
+    const auto side_in = [&](CellId, const Vec3i& at) {
         CornerMask side = 0;
         for (int c = 0; c < 8; ++c) {
-            const int own = number(other.site + corner_step(c));
+            const int own = number(at + corner_step(c));
             const bool is = in_group[uncracked.root(own)] && on_side[uncut.root(own)];
             side |= static_cast<CornerMask>(is << c);
         }
-        const CellBox box = cell_box(matter_, other.cell);
-        const Vec3& place = mount.reference[copy];
-        const Vec3 nearest = place.cwiseMax(box.low).cwiseMin(box.low + box.size);
-        const double distance = (place - nearest).norm();
-        if (side == 0 || distance >= least) continue;
-        least = distance;
-        mount.cell[copy] = other.cell;
-        mount.side[copy] = side;
-    }
+        return side;
+    };
+    const CellSide best = nearest_side(matter_, mount.cell[copy], mount.reference[copy], side_in);
+    if (best.cell < 0) return;
+    mount.cell[copy] = best.cell;
+    mount.side[copy] = best.side;
 }
 
 void PartedSkin::part_vertices() {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "geometry/edge_attributes.h"
-#include "skin/body_map.h"
 #include "skin/diced_skin.h"
 #include "skin/mount.h"
+#include "skin/piece_map.h"
 
 namespace swage {
 
@@ -64,7 +64,7 @@ class PartedSkin {
     struct Uncracked {
         explicit Uncracked(const Aggregate& cracked);
         Aggregate matter;
-        BodyMap map;
+        PieceMap pieces;
     };
     void mount_beside(const Vec3& place, std::span<const BodyPlace> others);
     Mask group_of(int v, const Vec3i& site) const;
