@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/atomic_file.h"
+#include "base/file_handle.h"
 
 namespace swage {
 
@@ -12,12 +13,10 @@ void DiskReserve::hold(const std::filesystem::path& folder, std::uint64_t bytes)
     release();
     // Named as a temporary, so that it goes with those of a process that was killed.
     const std::filesystem::path file = temporary_for(folder / "reserve");
-    const int handle = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    if (handle < 0) return;
+    const FileHandle handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    if (!handle.is_open()) return;
     file_ = file;
-    const bool is_held = ::posix_fallocate(handle, 0, static_cast<off_t>(bytes)) == 0;
-    ::close(handle);
-    if (!is_held) release();
+    if (::posix_fallocate(handle.id(), 0, static_cast<off_t>(bytes)) != 0) release();
 }
 
 void DiskReserve::release() {

@@ -5,14 +5,15 @@
 #include "pipeline/frame_store.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 
 #include "base/atomic_file.h"
+#include "base/file_contents.h"
 #include "base/hash.h"
 #include "pipeline/mesh_bytes.h"
 
@@ -93,16 +94,17 @@ Vec3 median(const std::vector<Vec3>& position) {
 }  // namespace
 
 FrameStoreWriter::FrameStoreWriter(const fs::path& file)
-    : file_(file), temporary_(temporary_for(file)) {
-    handle_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (handle_ < 0) {
+    : file_(file),
+      temporary_(temporary_for(file)),
+      handle_(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
+    if (!handle_.is_open()) {
         fail(ExitCode::output, "{}: cannot be created: {}", file.string(), std::strerror(errno));
     }
     try {
-        write_all(handle_, file_, 0, &kMagic, sizeof kMagic);
+        write_all(handle_.id(), file_, 0, &kMagic, sizeof kMagic);
         size_ = sizeof kMagic;
         put_end();
-    } catch (const Error&) {
+    } catch (...) {
         drop();
         throw;
     }
@@ -111,28 +113,28 @@ FrameStoreWriter::FrameStoreWriter(const fs::path& file)
 FrameStoreWriter::~FrameStoreWriter() { drop(); }
 
 void FrameStoreWriter::drop() {
-    if (handle_ < 0) return;
-    ::close(handle_);
+    if (!handle_.is_open()) return;
+    handle_.close();
     ::unlink(temporary_.c_str());
 }
 
 void FrameStoreWriter::put_end() {
     const RecordHead end = head_of(kEnd, {});
-    write_all(handle_, file_, size_, &end, sizeof end);
+    write_all(handle_.id(), file_, size_, &end, sizeof end);
 }
 
 void FrameStoreWriter::put(std::uint32_t kind, const std::string& bytes) {
     const RecordHead head = head_of(kind, bytes);
     const std::uint64_t before = size_;
     try {
-        write_all(handle_, file_, size_, &head, sizeof head);
-        write_all(handle_, file_, size_ + sizeof head, bytes.data(), bytes.size());
+        write_all(handle_.id(), file_, size_, &head, sizeof head);
+        write_all(handle_.id(), file_, size_ + sizeof head, bytes.data(), bytes.size());
         size_ += sizeof head + bytes.size();
         put_end();
     } catch (const Error&) {
         // The room of the end that stood here is kept.
         size_ = before;
-        if (::ftruncate(handle_, static_cast<off_t>(size_ + sizeof head)) == 0) put_end();
+        if (::ftruncate(handle_.id(), static_cast<off_t>(size_ + sizeof head)) == 0) put_end();
         throw;
     }
 }
@@ -192,31 +194,25 @@ void FrameStoreWriter::add_frame(const StoredFrame& frame) {
 }
 
 void FrameStoreWriter::finish() {
-    ::close(handle_);
-    handle_ = -1;
+    handle_.close();
     publish(temporary_, file_);
 }
 
 FrameStore::FrameStore(const fs::path& file) : file_(file) {
-    // What is no plain file might keep us waiting.
-    handle_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (handle_ < 0) {
-        fail(ExitCode::output, "{}: cannot be read: {}", file.string(), std::strerror(errno));
-    }
-    const auto give_up = [&](const char* why) {
-        ::close(handle_);
+    const auto give_up = [&](std::string_view why) {
         fail(ExitCode::output, "{}: {}", file_.string(), why);
     };
-    struct stat about = {};
-    if (::fstat(handle_, &about) != 0 || !S_ISREG(about.st_mode)) give_up("is no plain file");
+    std::string why;
+    handle_ = open_plain_file(file, why);
+    if (!handle_.is_open()) give_up(why);
     std::uint64_t magic = 0;
-    if (!read_all(handle_, 0, &magic, sizeof magic) || magic != kMagic) {
+    if (!read_all(handle_.id(), 0, &magic, sizeof magic) || magic != kMagic) {
         give_up("is no motion file of this version of swage");
     }
-    const auto file_size = static_cast<std::uint64_t>(::lseek(handle_, 0, SEEK_END));
+    const auto file_size = static_cast<std::uint64_t>(::lseek(handle_.id(), 0, SEEK_END));
     std::uint64_t at = sizeof magic;
     for (RecordHead head{};;) {
-        if (!read_all(handle_, at, &head, sizeof head)) give_up("ends early");
+        if (!read_all(handle_.id(), at, &head, sizeof head)) give_up("ends early");
         at += sizeof head;
         if (head.check != check_of(head)) give_up("is damaged");
         if (head.size > file_size - at) give_up("ends early");
@@ -237,11 +233,9 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
     }
 }
 
-FrameStore::~FrameStore() { ::close(handle_); }
-
 std::string FrameStore::bytes_at(const Place& place) const {
     std::string bytes(place.size, '\0');
-    if (!read_all(handle_, place.offset, bytes.data(), bytes.size()) ||
+    if (!read_all(handle_.id(), place.offset, bytes.data(), bytes.size()) ||
         hash_of(bytes) != place.hash) {
         fail(ExitCode::output, "{}: is damaged", file_.string());
     }

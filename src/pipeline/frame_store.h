@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_handle.h"
 #include "base/math.h"
 #include "geometry/trimesh.h"
 #include "matter/drive.h"
@@ -60,7 +61,7 @@ class FrameStoreWriter {
     void put_images(const TriMesh& mesh);
 
     std::filesystem::path file_, temporary_;
-    int handle_ = -1;
+    FileHandle handle_;
     std::uint64_t size_ = 0;  // of what is whole
     int skins_ = 0, machines_ = 0;
     std::set<std::uint64_t> image_;  // that the file holds, by hash
@@ -70,7 +71,6 @@ class FrameStore {
   public:
     // Throws Error(output) when the file is absent, damaged or of another version.
     explicit FrameStore(const std::filesystem::path& file);
-    ~FrameStore();
     FrameStore(const FrameStore&) = delete;
     FrameStore& operator=(const FrameStore&) = delete;
 
@@ -89,7 +89,7 @@ class FrameStore {
     TriMesh mesh_from(ByteReader& in) const;
 
     std::filesystem::path file_;
-    int handle_ = -1;
+    FileHandle handle_;
     std::vector<Place> skin_, machine_, frame_;
     std::map<std::uint64_t, Place> image_;  // by hash
 };

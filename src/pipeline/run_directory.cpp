@@ -205,7 +205,6 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
         if (!anew_) claim(identity);
     } catch (...) {
         ::unlink((root_ / kLockName).c_str());
-        ::close(lock_);
         throw;
     }
     set_unfinished_work(root_);
@@ -214,39 +213,36 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
 void RunDirectory::lock() {
     const fs::path file = root_ / kLockName;
     for (;;) {
-        lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-        if (lock_ < 0) {
+        lock_ = FileHandle(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+        if (!lock_.is_open()) {
             fail(ExitCode::output, "{}: cannot be written: {}", root_.string(),
                  std::strerror(errno));
         }
-        const bool ours = ::flock(lock_, LOCK_EX | LOCK_NB) == 0;
+        const bool ours = ::flock(lock_.id(), LOCK_EX | LOCK_NB) == 0;
         std::array<char, 300> text = {};
-        [[maybe_unused]] const ssize_t got = ::pread(lock_, text.data(), text.size() - 1, 0);
+        [[maybe_unused]] const ssize_t got = ::pread(lock_.id(), text.data(), text.size() - 1, 0);
         long pid = 0;
         std::string host;
         std::istringstream(text.data()) >> pid >> host;
         if (!ours || (pid != 0 && host != host_name())) {
-            ::close(lock_);
             fail(ExitCode::foreign, "{}: process {} on {} is writing there{}", root_.string(), pid,
                  host.empty() ? "this machine" : host,
                  ours ? fmt::format("; if it has died, remove {}", file.string()) : "");
         }
         // The holder before us may have removed the file between our open and our lock.
         struct stat by_name = {}, by_handle = {};
-        if (::stat(file.c_str(), &by_name) != 0 || ::fstat(lock_, &by_handle) != 0 ||
+        if (::stat(file.c_str(), &by_name) != 0 || ::fstat(lock_.id(), &by_handle) != 0 ||
             by_name.st_ino != by_handle.st_ino) {
-            ::close(lock_);
             continue;
         }
         if (pid != 0) log_info("{}: taking over from process {}, which died", root_.string(), pid);
         break;
     }
     const std::string mine = fmt::format("{} {}\n", ::getpid(), host_name());
-    if (::ftruncate(lock_, 0) != 0 ||
-        ::pwrite(lock_, mine.data(), mine.size(), 0) != static_cast<ssize_t>(mine.size())) {
+    if (::ftruncate(lock_.id(), 0) != 0 ||
+        ::pwrite(lock_.id(), mine.data(), mine.size(), 0) != static_cast<ssize_t>(mine.size())) {
         const int reason = errno;
         ::unlink(file.c_str());
-        ::close(lock_);
         fail(ExitCode::output, "{}: cannot be written: {}", file.string(), std::strerror(reason));
     }
 }
@@ -280,7 +276,6 @@ RunDirectory::~RunDirectory() {
     remove_temporaries(root_, 0);  // a film program may outlive a process that was killed
     if (!has_begun_) remove_unbegun();
     ::unlink((root_ / kLockName).c_str());
-    ::close(lock_);
 }
 
 void RunDirectory::remove_unbegun() {

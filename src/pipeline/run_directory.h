@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file_handle.h"
 #include "pipeline/build_name.h"
 #include "pipeline/made_folder.h"
 
@@ -61,7 +62,7 @@ class RunDirectory {
     MadeFolder folder_;
     std::string identity_text_;
     bool anew_, has_begun_ = false;
-    int lock_ = -1;
+    FileHandle lock_;
 };
 
 // Where the drawn files of a run stand; `root` may also be another folder.

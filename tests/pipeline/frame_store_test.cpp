@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <iterator>
 
 #include "base/error.h"
 #include "tests/catch.h"
@@ -223,4 +224,20 @@ TEST_CASE("a damaged motion file is refused") {
         CHECK_THROWS_AS(FrameStore(file), Error);
     }
     SECTION("absent") { CHECK_THROWS_AS(FrameStore(scratch.path() / "none.bin"), Error); }
+}
+
+TEST_CASE("a motion file that is refused is not held open, nor is one that could not begin") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin";
+    write_store(file, 1);
+    fs::resize_file(file, fs::file_size(file) - 4);
+    const auto open_files = [] {
+        const fs::directory_iterator all("/proc/self/fd");
+        return std::distance(begin(all), end(all));
+    };
+    const auto before = open_files();
+    CHECK_THROWS_AS(FrameStore(file), Error);
+    CHECK_THROWS_WITH(FrameStore(scratch.path()), Catch::EndsWith("is a folder, not a file"));
+    CHECK_THROWS_AS(FrameStoreWriter(scratch.path() / "none" / "motion.bin"), Error);
+    CHECK(open_files() == before);
 }
