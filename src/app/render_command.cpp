@@ -137,7 +137,10 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("--camera-zoom", given.zoom, "2 is twice as near, all through the film")
         ->check(kFinite & CLI::Range(0.01, 1000.0));
     command
-        ->add_option("--camera-turn", given.turn, "how far it goes round during the film, evenly")
+        ->add_option("--camera-turn", given.turn,
+                     "how far it goes round during the film; after whole turns (360) the last "
+                     "still is a step short of the first, so that the film can be shown round and "
+                     "round")
         ->check(kFinite)
         ->type_name("DEG");
     CLI::Option* eye = command->add_option(

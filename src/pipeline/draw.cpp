@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "pipeline/action_box.h"
 #include "pipeline/interrupt.h"
+#include "render/camera.h"
 #include "render/canvas.h"
 #include "render/contact_sheet.h"
 #include "render/film.h"
@@ -138,9 +139,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
         {
             const auto lap = watch.lap("draw");
             Picture picture = source.picture(frame);
-            picture.film_share = store.frame_count() > 1
-                                     ? static_cast<double>(frame - 1) / (store.frame_count() - 1)
-                                     : 0;
+            picture.film_share = still_share(settings.camera, frame - 1, store.frame_count());
             image = renderer.draw(picture);
         }
         const auto lap = watch.lap("wait for files");

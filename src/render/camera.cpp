@@ -4,6 +4,9 @@
 #include "render/camera.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "render/camera_change.h"
 
 namespace swage {
 
@@ -112,14 +115,27 @@ glm::dmat4 view_from_world(const View& view) {
     return glm::lookAt(eye, eye - to_glm(view.world_from_view.col(2)), up);
 }
 
+bool comes_round(const std::vector<CameraKey>& keys) {
+    if (keys.empty() || keys.front().at > 0 || keys.back().at < 1) return false;
+    if (stands_at_eye(keys)) return false;
+    const CameraKey &first = keys.front(), &last = keys.back();
+    const double turns = (last.azimuth - first.azimuth) / (2 * kPi), whole = std::round(turns);
+    return whole != 0 && std::abs(turns - whole) < 1e-9 && first.elevation == last.elevation &&
+           first.zoom == last.zoom;
+}
+
+double still_share(const std::vector<CameraKey>& keys, int still, int count) {
+    const int steps = comes_round(keys) ? count : count - 1;
+    return steps > 0 ? static_cast<double>(still) / steps : 0;
+}
+
 CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds,
                        std::vector<Vec3> outline)
     : bounds_(sensible(action_bounds)), outline_(std::move(outline)), lens_(lens_of(settings)) {
     if (outline_.empty()) outline_ = corners_of(bounds_);
     std::vector<CameraKey> keys = settings.camera;
     if (keys.empty()) keys.emplace_back();
-    by_eye_ = std::any_of(keys.begin(), keys.end(),
-                          [](const CameraKey& key) { return key.eye && key.target; });
+    by_eye_ = stands_at_eye(keys);
     for (const CameraKey& key : keys) {
         // Of keys at one moment the last counts.
         if (!share_.empty() && key.at <= share_.back()) {

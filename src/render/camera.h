@@ -53,6 +53,12 @@ DepthRange depth_range(const Box& box, const View& view);
 glm::dmat4 clip_from_view(const Lens& lens, const DepthRange& depth);
 glm::dmat4 view_from_world(const View& view);
 
+// Whether the flight ends as it began, after whole turns: its film can be shown round and round.
+bool comes_round(const std::vector<CameraKey>& keys);
+// The share of the film, 0 to 1, at which the camera takes still 0 ... count - 1. Of a flight that
+// comes round the last is a step short of 1, where it would be the first again.
+double still_share(const std::vector<CameraKey>& keys, int still, int count);
+
 // The keys of the settings as one smooth flight. The distance that frames the whole motion is
 // found once for the whole flight, so an orbit does not pump; zoom divides it. As soon as one key
 // gives eye and target, all keys are turned into eyes and targets and fly straight between them.

@@ -154,7 +154,9 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render.camera]", "zoom", "1 frames the bodies on all of their way"},
         {"[render.camera]", "eye", "with target, instead of azimuth, elevation and zoom"},
         {"[render.camera]", "target", "what the eye looks at"},
-        {"[render.camera]", "orbit", "by which azimuth turns over the film"},
+        {"[render.camera]", "orbit",
+         "by which azimuth turns over the film; after whole turns the last still is a step short "
+         "of the first"},
         {"[render.camera]", "keys", "instead of all that: the same keys at several times"},
         {"[[render.camera.keys]]", "at", "share of the film", {}, "-"},
 

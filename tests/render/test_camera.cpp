@@ -109,6 +109,32 @@ TEST_CASE("an orbit keeps its distance and keeps everything in sight", "[camera]
     }
 }
 
+TEST_CASE("of whole turns no still is like another, and other flights reach their end",
+          "[camera]") {
+    const int stills = 12;
+    const auto flown = [](double turn, double zoom) {
+        return std::vector<CameraKey>{{0, 0.6, 0.3, 1, {}, {}}, {1, 0.6 + turn, 0.3, zoom, {}, {}}};
+    };
+    RenderSettings settings;
+    for (double turn : {2 * kPi, -2 * kPi, 360 * (kPi / 180)}) {
+        settings.camera = flown(turn, 1);
+        CHECK(comes_round(settings.camera));
+        const CameraPath path(settings, kBoxes[1]);
+        std::vector<Vec3> eye;
+        for (int n = 0; n < stills; ++n) {
+            eye.push_back(path.at(still_share(settings.camera, n, stills)).eye);
+            for (int other = 0; other < n; ++other) CHECK((eye[n] - eye[other]).norm() > 1e-3);
+        }
+    }
+    CHECK(still_share(flown(4 * kPi, 1), 9, 10) == Approx(0.9));
+    for (const auto& keys : {flown(kPi, 1), flown(0, 1), flown(2 * kPi, 2)}) {
+        CHECK(!comes_round(keys));
+        CHECK(still_share(keys, 3, 4) == 1);
+        CHECK(still_share(keys, 0, 1) == 0);
+    }
+    CHECK(still_share(flown(2 * kPi, 1), 0, 1) == 0);
+}
+
 TEST_CASE("an eye and a target are taken as they are, even straight down", "[camera]") {
     RenderSettings settings;
     CameraKey key;
