@@ -138,9 +138,9 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(kFinite & CLI::Range(0.01, 1000.0));
     command
         ->add_option("--camera-turn", given.turn,
-                     "how far it goes round during the film; after whole turns (360) the last "
-                     "still is a step short of the first, so that the film can be shown round and "
-                     "round")
+                     "how far it goes round during the film; whole turns (360) go at one pace, and "
+                     "their last still is a step short of the first, so that the film can be shown "
+                     "round and round")
         ->check(kFinite)
         ->type_name("DEG");
     CLI::Option* eye = command->add_option(

@@ -13,24 +13,27 @@ namespace swage {
 namespace {
 
 // The slope at key k of a monotone curve through the keys; flat at both ends, so that the camera
-// starts and stops gently.
-double slope_at(const std::vector<double>& x, const std::vector<double>& y, std::size_t k) {
-    if (k == 0 || k + 1 >= x.size()) return 0;
-    const double before = (y[k] - y[k - 1]) / (x[k] - x[k - 1]);
-    const double after = (y[k + 1] - y[k]) / (x[k + 1] - x[k]);
+// starts and stops gently, unless the curve goes on from its end as from its start.
+double slope_at(const std::vector<double>& x, const std::vector<double>& y, std::size_t k,
+                bool goes_on) {
+    const std::size_t last = x.size() - 1;
+    if (!goes_on && (k == 0 || k == last)) return 0;
+    const auto slope = [&](std::size_t i) { return (y[i + 1] - y[i]) / (x[i + 1] - x[i]); };
+    const double before = slope(k == 0 ? last - 1 : k - 1), after = slope(k == last ? 0 : k);
     if (before * after <= 0) return 0;
     return 2 * before * after / (before + after);
 }
 
-double monotone_cubic(const std::vector<double>& x, const std::vector<double>& y, double at) {
+double monotone_cubic(const std::vector<double>& x, const std::vector<double>& y, double at,
+                      bool goes_on) {
     if (at <= x.front()) return y.front();
     if (at >= x.back()) return y.back();
     const std::size_t k =
         static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), at) - x.begin()) - 1;
     const double width = x[k + 1] - x[k], t = (at - x[k]) / width;
     const double t2 = t * t, t3 = t2 * t;
-    return (2 * t3 - 3 * t2 + 1) * y[k] + (t3 - 2 * t2 + t) * width * slope_at(x, y, k) +
-           (3 * t2 - 2 * t3) * y[k + 1] + (t3 - t2) * width * slope_at(x, y, k + 1);
+    return (2 * t3 - 3 * t2 + 1) * y[k] + (t3 - 2 * t2 + t) * width * slope_at(x, y, k, goes_on) +
+           (3 * t2 - 2 * t3) * y[k + 1] + (t3 - t2) * width * slope_at(x, y, k + 1, goes_on);
 }
 
 Box sensible(Box box) {
@@ -136,6 +139,7 @@ CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds,
     std::vector<CameraKey> keys = settings.camera;
     if (keys.empty()) keys.emplace_back();
     by_eye_ = stands_at_eye(keys);
+    comes_round_ = comes_round(keys);
     for (const CameraKey& key : keys) {
         // Of keys at one moment the last counts.
         if (!share_.empty() && key.at <= share_.back()) {
@@ -178,7 +182,7 @@ std::vector<double> CameraPath::interpolated(double film_share) const {
     std::vector<double> result, curve(share_.size());
     for (std::size_t i = 0; i < value_.front().size(); ++i) {
         for (std::size_t k = 0; k < share_.size(); ++k) curve[k] = value_[k][i];
-        result.push_back(monotone_cubic(share_, curve, film_share));
+        result.push_back(monotone_cubic(share_, curve, film_share, comes_round_));
     }
     return result;
 }

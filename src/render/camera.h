@@ -59,9 +59,10 @@ bool comes_round(const std::vector<CameraKey>& keys);
 // comes round the last is a step short of 1, where it would be the first again.
 double still_share(const std::vector<CameraKey>& keys, int still, int count);
 
-// The keys of the settings as one smooth flight. The distance that frames the whole motion is
-// found once for the whole flight, so an orbit does not pump; zoom divides it. As soon as one key
-// gives eye and target, all keys are turned into eyes and targets and fly straight between them.
+// The keys of the settings as one smooth flight, which starts and stops gently unless it comes
+// round. The distance that frames the whole motion is found once for the whole flight, so an orbit
+// does not pump; zoom divides it. As soon as one key gives eye and target, all keys are turned into
+// eyes and targets and fly straight between them.
 class CameraPath {
   public:
     // `outline`: points that together reach as far as the action does in every direction; none: the
@@ -78,6 +79,7 @@ class CameraPath {
     std::vector<Vec3> outline_;
     Lens lens_;
     bool by_eye_;  // a key's values are eye and target; else azimuth, elevation, log of zoom
+    bool comes_round_;
     double distance_ = 1;
     std::vector<double> share_;
     std::vector<std::vector<double>> value_;  // one a key

@@ -155,8 +155,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render.camera]", "eye", "with target, instead of azimuth, elevation and zoom"},
         {"[render.camera]", "target", "what the eye looks at"},
         {"[render.camera]", "orbit",
-         "by which azimuth turns over the film; after whole turns the last still is a step short "
-         "of the first"},
+         "by which azimuth turns over the film, at one pace if by whole turns, whose last still is "
+         "a step short of the first"},
         {"[render.camera]", "keys", "instead of all that: the same keys at several times"},
         {"[[render.camera.keys]]", "at", "share of the film", {}, "-"},
 
