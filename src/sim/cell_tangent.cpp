@@ -425,10 +425,7 @@ std::vector<CellMatrix> CellTangent::coarse_cells(const Aggregate& matter, Kind 
                         task.low[d][l] = double(at[d] % ratio[d]) / ratio[d];
                         task.high[d][l] = double(at[d] % ratio[d] + 1) / ratio[d];
                     }
-                    if (l < many) {
-                        cell[l] = coarse.cell_at(at.x() / ratio.x(), at.y() / ratio.y(),
-                                                 at.z() / ratio.z());
-                    }
+                    if (l < many) cell[l] = coarse.cell_at(at.cwiseQuotient(ratio));
                 }
                 do_task(law.kind, task);
                 for (int l = 0; l < many; ++l) {
