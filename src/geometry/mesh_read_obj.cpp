@@ -23,6 +23,14 @@ namespace {
     fail(ExitCode::mesh, "line {}: {}", line, what);
 }
 
+// Whether the next line belongs to this one; a comment ends with its own.
+bool goes_on(std::string_view line) {
+    if (!line.ends_with('\\')) return false;
+    for (std::string_view word; !(word = next_word(line)).empty();)
+        if (word.front() == '#') return false;
+    return true;
+}
+
 class ObjReader {
   public:
     explicit ObjReader(MeshSource& source) : source_(source) {}
@@ -38,12 +46,12 @@ class ObjReader {
         while (next_line(text, line)) {
             ++line_;
             std::string_view whole = trimmed(line);
-            if (whole.ends_with('\\')) {
+            if (goes_on(whole)) {
                 joined.assign(whole.substr(0, whole.size() - 1));
                 while (next_line(text, line)) {
                     ++line_;
                     whole = trimmed(line);
-                    const bool more = whole.ends_with('\\');
+                    const bool more = goes_on(whole);
                     joined += ' ';
                     joined += more ? whole.substr(0, whole.size() - 1) : whole;
                     if (!more) break;

@@ -121,6 +121,17 @@ TEST_CASE(
     CHECK(signed_volume(mesh) == Approx(1.0 / 6));
 }
 
+TEST_CASE("an OBJ file's comment ends at its line's end, whatever it ends with") {
+    const Folder folder;
+    const TriMesh mesh = read_quietly(folder.write(
+        "c.obj",
+        "# C:\\m\\\nv 0 0 0\nv 1 0 0 # D:\\\nv 0 1 \\\n0 # \\\nv 0 0 1\n# \\\r\nf 1 3 2\n#\\\n"
+        "f 1 2 4\nf 1 4 3 # \\\nf 2 3 4\n"));
+    CHECK(mesh.position.size() == 4);
+    CHECK(mesh.triangle.size() == 4);
+    CHECK(signed_volume(mesh) == Approx(1.0 / 6));
+}
+
 TEST_CASE("OBJ materials arrive with colours, shine and images, also from awkward names") {
     const Folder folder;
     folder.write(
