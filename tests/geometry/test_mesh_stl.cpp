@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cctype>
 
+#include "base/error.h"
 #include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
 #include "tests/catch.h"
@@ -42,6 +43,15 @@ std::string cube_stl_binary() {
     return bytes;
 }
 
+std::string refusal(const std::filesystem::path& file) {
+    try {
+        read_quietly(file);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
 }  // namespace
 
 TEST_CASE("STL, text or binary, is welded into a closed cube") {
@@ -77,4 +87,52 @@ TEST_CASE("an STL's words may be in capitals, a binary one may begin like text a
         folder.write("b.stl", replaced(replaced(capitals, "SOLID CUBE", "SOLID My Cube"),
                                        "ENDSOLID CUBE", "EndSolid My Cube")));
     CHECK(named.triangle.size() == 12);
+}
+
+TEST_CASE("a text STL may begin with blank lines, and is checked all the same") {
+    const Folder folder;
+    std::string text = cube_stl_ascii(), capitals = text;
+    for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    for (const std::string before : {"\n", " ", "\r\n\t", "\xef\xbb\xbf"}) {
+        CAPTURE(before);
+        for (const std::string& good :
+             {text, capitals, "solid none\nendsolid none\n" + text, text + std::string(9, '\0')})
+            CHECK(read_quietly(folder.write("a.stl", before + good)).triangle.size() == 12);
+        CHECK(refusal(folder.write("b.stl",
+                                   before + replaced(text, "endloop", "vertex 0 0 1\nendloop")))
+                  .find("facet 1 has 4 vertices") != std::string::npos);
+        CHECK(!refusal(folder.write("c.stl", before + replaced(text, "facet", "fazet"))).empty());
+    }
+    const std::string name = "solid the facet normal 1 endsolid";
+    CHECK(read_quietly(folder.write("d.stl", replaced(text, "solid cube", name))).triangle.size() ==
+          12);
+    std::string binary = cube_stl_binary();
+    binary.replace(0, 12, "\n solid cube");
+    CHECK(read_quietly(folder.write("e.stl", binary)).triangle.size() == 12);
+    std::string spaced = cube_stl_ascii();
+    for (std::size_t at = 0; (at = spaced.find('\n', at)) != std::string::npos; at += 2)
+        spaced.replace(at, 1, "\r\n");
+    CHECK(read_quietly(folder.write("f.stl", spaced)).triangle.size() == 12);
+}
+
+TEST_CASE("an STL file that breaks off anywhere is refused, as text and binary") {
+    const Folder folder;
+    const std::string text = cube_stl_ascii();
+    for (const char* last : {"solid", "facet", "normal", "outer", "loop", "vertex", "endloop",
+                             "endfacet", "endsolid"}) {
+        CAPTURE(last);
+        const std::size_t at = text.rfind(last);
+        CHECK(!refusal(folder.write("a.stl", text.substr(0, at))).empty());
+        if (last != std::string("endsolid"))
+            CHECK(!refusal(folder.write("b.stl", text.substr(0, at + 4))).empty());
+    }
+    std::string zero = text;
+    zero[text.rfind("facet normal") - 1] = '\0';
+    CHECK(!refusal(folder.write("c.stl", zero)).empty());
+    std::string binary = cube_stl_binary();
+    for (const char* head : {"anything", "solid me", " solid x"}) {
+        binary.replace(0, 8, head);
+        CHECK(refusal(folder.write("d.stl", binary.substr(0, binary.size() - 1)))
+                  .find("breaks off") != std::string::npos);
+    }
 }
