@@ -39,15 +39,22 @@ void Values::add(Value value) {
 }
 
 Value relative(std::string what, int across, double expected, double got, double bound) {
-    return {std::move(what), across, expected, got, std::abs(got / expected - 1), bound, 0};
+    return {std::move(what), across, expected, got, std::abs(got / expected - 1), bound};
 }
 
 Value absolute(std::string what, int across, double expected, double got, double bound) {
-    return {std::move(what), across, expected, got, std::abs(got - expected), bound, 0};
+    const std::size_t open = what.find('['), close = what.find(']');
+    Value value = as_share(std::move(what), across, expected, got, bound);
+    value.unit = close == std::string::npos ? "" : value.what.substr(open + 1, close - open - 1);
+    return value;
+}
+
+Value as_share(std::string what, int across, double expected, double got, double bound) {
+    return {std::move(what), across, expected, got, std::abs(got - expected), bound};
 }
 
 Value at_least(std::string what, int across, double least, double got) {
-    return {std::move(what), across, least, got, got >= least ? 0 : 1 - got / least, 0.01, 0};
+    return {std::move(what), across, least, got, got >= least ? 0 : 1 - got / least, 0.01};
 }
 
 Value told(std::string what, int across, double expected, double got) {

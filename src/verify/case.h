@@ -16,16 +16,21 @@ struct Value {
     std::string what;
     int across = 0;  // cells across; 0: does not depend on them
     double expected = 0, got = 0;
-    double error = 0;  // relative to what is expected, or absolute where that is said in `what`
+    double error = 0;  // relative to what is expected, or absolute
     double bound = std::numeric_limits<double>::infinity();  // infinite: only told
     double seconds = 0;
+    // Of the error and its bound where they are absolute; %: of what is expected, or of one.
+    std::string unit = "%";
 
     bool bounded() const { return bound < std::numeric_limits<double>::infinity(); }
     bool missed() const { return bounded() && !(error <= bound); }
 };
 
 Value relative(std::string what, int across, double expected, double got, double bound);
+// In the unit that `what` has in brackets, if it has one.
 Value absolute(std::string what, int across, double expected, double got, double bound);
+// Absolute as well, of what is itself a share of something: %.
+Value as_share(std::string what, int across, double expected, double got, double bound);
 // Only told: there is nothing that it must be, or nothing sure enough.
 Value told(std::string what, int across, double expected, double got);
 

@@ -153,9 +153,9 @@ void chosen_steps(bool brief, Values& values) {
         if (brief && stiffness > 1e4) break;
         const std::string at = fmt::format("{:.0e} N/m: ", stiffness);
         const Chosen chosen = by_energy(stiffness, kDamping);
-        values.add(absolute(at + "steps taken back, share", 0, 0,
+        values.add(as_share(at + "steps taken back, share", 0, 0,
                             double(chosen.tried.size()) / double(chosen.kept) - 1, 0.5));
-        values.add(absolute(at + "energy astray, share", 0, 0, chosen.astray, 2e-3));
+        values.add(as_share(at + "energy astray, share", 0, 0, chosen.astray, 2e-3));
         const long paper = safe_forces(stiffness, kDamping, Formula::paper, chosen.astray);
         values.add(
             at_least(at + "gain over a fixed step", 0, 1, double(paper) / double(chosen.forces)));

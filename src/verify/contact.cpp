@@ -92,7 +92,7 @@ void ball_drop(bool brief, Values& values) {
         values.add(relative("second return [m]", across, 0.0625 * kDrop, apex[1], 0.03));
         values.add(relative("rest [s]", across, 3 * first, rest, 0.01));
         if (across == 4) {
-            values.add(absolute("energy gained, share", across, 0, gained / given, 1e-3));
+            values.add(as_share("energy gained, share", across, 0, gained / given, 1e-3));
         }
     }
 }

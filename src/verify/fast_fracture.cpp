@@ -130,9 +130,9 @@ void fast_crack(bool brief, Values& values) {
         constexpr double kShare = 2, kWedge = 0.6;
         const Ran ran = run_crack(kShare, reach, kWedge);
         const double even = -0.5 * kLength + kLength * (1 - 1 / std::sqrt(kShare)) / kWedge;
-        values.add(absolute("energy taken / G_c" + at, 0, 1, ran.taken, 0.1));
+        values.add(relative("energy taken / G_c" + at, 0, 1, ran.taken, 0.1));
         values.add(absolute("arrest beyond balance / h" + at, 0, 0, (ran.tip - even) / kHalf, 1.5));
-        values.add(absolute("remainder / all energy" + at, 0, 0, ran.remainder, 0.01));
+        values.add(as_share("remainder / all energy" + at, 0, 0, ran.remainder, 0.01));
         if (brief) return;
     }
     const Ran slow = run_crack(1.3, 8, 0), fast = run_crack(3, 4, 0);
@@ -141,9 +141,8 @@ void fast_crack(bool brief, Values& values) {
     speed.error = std::max(0.0, fast.fastest - 1);
     speed.bound = 0.01;
     values.add(speed);
-    Value branches = told("rows broken at 3 G_c, at least", 0, 2, fast.most_rows);
+    Value branches = absolute("rows broken at 3 G_c, at least", 0, 2, fast.most_rows, 0.5);
     branches.error = std::max(0, 2 - fast.most_rows);
-    branches.bound = 0.5;
     values.add(branches);
 }
 

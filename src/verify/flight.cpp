@@ -165,7 +165,7 @@ void momentum(bool brief, Values& values) {
                         (after.linear - before.linear).norm() / before.size, 1e-9));
     values.add(absolute("angular, over the sum of sizes", 0, 0,
                         (after.angular - before.angular).norm() / before.turn, 1e-9));
-    values.add(absolute("energy gained, share", 0, 0,
+    values.add(as_share("energy gained, share", 0, 0,
                         std::max(0.0, (report.kinetic + report.elastic) / before.kinetic - 1),
                         1e-3));
     const double parting = apart.normalized().dot(b.mean_velocity() - a.mean_velocity());
@@ -212,8 +212,8 @@ void vibration(bool brief, Values& values) {
         }
         values.add(relative("period, mean [ms]", along, 1e3 * kPeriod,
                             1e3 * kPeriod * periods / turns, 0.64 / (along * along)));
-        values.add(absolute("most that the energy is off, share", 0, 0, drift, 1e-3));
-        values.add(absolute("energy that the books do not explain, share", 0, 0,
+        values.add(as_share("most that the energy is off, share", 0, 0, drift, 1e-3));
+        values.add(as_share("energy that the books do not explain, share", 0, 0,
                             std::abs(report.remainder) / energy, 1e-3));
     }
 }

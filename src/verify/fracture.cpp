@@ -64,14 +64,14 @@ void strip(bool brief, Values& values) {
             const double asked =
                 open_until(stand, along, across, end + 0.7 * half, opening, 0.8, tip);
             const std::string at = fmt::format(", {:g} deg, l / a = {:g}", degrees, reach);
-            Value toughness = absolute("G / G_c" + at, 0, 1, asked, degrees > 0 ? 0.15 : straight);
+            Value toughness = relative("G / G_c" + at, 0, 1, asked, degrees > 0 ? 0.15 : straight);
             // Across the axes a crack may ask less.
             if (degrees > 0) toughness.error = std::max(0.0, asked - 1);
             values.add(toughness);
             const double grown = tip_of(stand.matter, along, across, end + 0.7 * half).off;
-            values.add(absolute("off its line / a" + at, 0, 0, grown, 1));
+            values.add(absolute("off its line [cells]" + at, 0, 0, grown, 1));
             // Once it has grown so far it may run on to the strip's end.
-            values.add(absolute("off all along / a" + at, 0, 0, tip.off,
+            values.add(absolute("off all along [cells]" + at, 0, 0, tip.off,
                                 std::numeric_limits<double>::infinity()));
         }
     }
@@ -139,7 +139,7 @@ void weak_layer(bool brief, Values& values) {
             }
             const std::string at = fmt::format(", {:g} deg, l / a = {:g}", degrees, reach);
             values.add(
-                absolute("G / G_c" + at, 0, 1, share - 0.5 * kStep, degrees < 90 ? 0.25 : bound));
+                relative("G / G_c" + at, 0, 1, share - 0.5 * kStep, degrees < 90 ? 0.25 : bound));
         }
     }
 }
@@ -217,8 +217,8 @@ void closed_crack(bool, Values& values) {
         to.world_from_grip[1].translation.y() += kSlide;
         force[broken][1] = stand.move(to).load[1].force.y();
     }
-    values.add(absolute("pressed / whole", kAcross, 1, force[1][0] / force[0][0], 0.2));
-    values.add(absolute("slid / whole", kAcross, 0, force[1][1] / force[0][1], 0.01));
+    values.add(relative("pressed / whole", kAcross, 1, force[1][0] / force[0][0], 0.2));
+    values.add(as_share("slid / whole", kAcross, 0, force[1][1] / force[0][1], 0.01));
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ void ring(bool, Values& values) {
         if (!is_quarter) continue;
         const std::string at = ", " + std::to_string(360 * frame / kFrames) + " degrees";
         values.add(
-            absolute("end off the circle / L" + at, kAcross, 0, aside.norm() / kLength, 0.02));
+            as_share("end off the circle / L" + at, kAcross, 0, aside.norm() / kLength, 0.02));
         values.add(told("moment L / E I" + at, kAcross, t,
                         report.load[1].torque.y() * kLength / kInertia));
         values.add(absolute("force left L^2 / E I" + at, kAcross, 0,

@@ -135,7 +135,7 @@ void taylor_bar(bool brief, Values& values) {
         values.add(relative("length [mm]", across, 21.43, 1e3 * (high - low), 0.01));
         values.add(relative("radius of the foot [mm]", across, 7.225, 1e3 * radius, 0.02));
         values.add(
-            absolute("energy left over, share", across, 0, std::abs(r.remainder) / given, 2e-3));
+            as_share("energy left over, share", across, 0, std::abs(r.remainder) / given, 2e-3));
     }
 }
 

@@ -73,7 +73,7 @@ void isotropy(bool, Values& values) {
         low = std::min(low, modulus);
         high = std::max(high, modulus);
     }
-    values.add(absolute("spread of E over 26 directions", kAcross, 0, high / low - 1, 0.03));
+    values.add(as_share("spread of E over 26 directions", kAcross, 0, high / low - 1, 0.03));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void plastic_bending(bool, Values& values) {
                                 -about_middle.y() / (kYield / 6), moment));
             Stand free(stand.matter, 1e-5);
             free.settle();
-            values.add(absolute("share sprung back" + at, across,
+            values.add(as_share("share sprung back" + at, across,
                                 share * kYieldCurvature / curvature,
                                 1 - middle_curvature(free.matter) / curvature, springback));
         }
@@ -115,7 +115,7 @@ void half_turn(bool, Values& values) {
     }
     stand.settle();
     const double curvature = middle_curvature(stand.matter);
-    values.add(absolute("volume / at rest", kAcross, 1,
+    values.add(relative("volume / at rest", kAcross, 1,
                         volume_within(stand.matter, kMiddle) / volume, 6e-4));
     Stand free(stand.matter, 1e-4);
     free.settle();

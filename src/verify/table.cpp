@@ -22,8 +22,13 @@ const Row kHead = {{"CASE", "EXPECTED", "GOT", "ERROR", "BOUND", "ORDER", "SECON
                    false};
 
 std::string number_text(double x) { return fmt::format("{:.6g}", x); }
-std::string error_text(double x) {
-    return x >= 1e-5 || x == 0 ? fmt::format("{:.3g} %", 100 * x) : fmt::format("{:.1e}", x);
+// Of an error or a bound.
+std::string error_text(double x, const std::string& unit) {
+    const bool is_share = unit == "%", is_small = x < 1e-5 && x != 0;
+    if (is_small && is_share) return fmt::format("{:.1e}", x);
+    const std::string number =
+        is_small ? fmt::format("{:.1e}", x) : fmt::format("{:.3g}", is_share ? 100 * x : x);
+    return unit.empty() ? number : number + " " + unit;
 }
 
 std::vector<Row> rows_of(const Verified& one) {
@@ -41,10 +46,11 @@ std::vector<Row> rows_of(const Verified& one) {
             if (c.least_order > 0) order += fmt::format(" (>= {:.1f})", c.least_order);
         }
         const bool missed = v.missed() || low_order;
-        rows.push_back({{name, number_text(v.expected), number_text(v.got), error_text(v.error),
-                         v.bounded() ? error_text(v.bound) : "-", order,
-                         fmt::format("{:.2f}", v.seconds), c.source, missed ? "MISSED" : ""},
-                        missed});
+        rows.push_back(
+            {{name, number_text(v.expected), number_text(v.got), error_text(v.error, v.unit),
+              v.bounded() ? error_text(v.bound, v.unit) : "-", order,
+              fmt::format("{:.2f}", v.seconds), c.source, missed ? "MISSED" : ""},
+             missed});
     }
     if (!one.result.failure.empty()) {
         rows.push_back({{c.name + ": " + one.result.failure, "", "", "", "", "",
@@ -118,9 +124,9 @@ std::string verified_markdown(const std::vector<Verified>& all) {
         for (const Value* v : worst) {
             errors += errors.empty() ? "" : ", ";
             if (v->across > 0) errors += fmt::format("{}: ", v->across);
-            const std::string error = error_text(v->error);
+            const std::string error = error_text(v->error, v->unit);
             errors += fmt::format("{} ({})", v->missed() ? "**" + error + "**" : error,
-                                  error_text(v->bound));
+                                  error_text(v->bound, v->unit));
         }
         if (!one.result.failure.empty()) errors = "**" + one.result.failure + "**";
         text += fmt::format("| `{}` | {} | {} | {} |\n", one.verification.name,

@@ -194,7 +194,7 @@ void yield_in_series(int across, double fraction, const ShearedBlock::Yields& yi
     for (double strength : {0.5, 0.0}) go_to(strength);
     stand.settle();
     const double left = low * s.flow_at(kStress) + (1 - low) * h.flow_at(kStress);
-    values.add(absolute(at_fraction((what + ": share left of it").c_str(), fraction), across,
+    values.add(as_share(at_fraction((what + ": share left of it").c_str(), fraction), across,
                         left / g, block.shear() / g, 0.002));
 }
 
@@ -240,7 +240,7 @@ void yield_side_by_side(int across, double fraction, const ShearedBlock::Yields&
     for (double share : {0.75, 0.5}) go_to(share * kShear);
     report = stand.settle();
     const double back = g - block.shear();
-    values.add(absolute(at_fraction((what + ": share left half-way back").c_str(), fraction),
+    values.add(as_share(at_fraction((what + ": share left half-way back").c_str(), fraction),
                         across, 1 - mean(s.modulus, h.modulus) * back / stress,
                         mean_stress() / stress, 0.002));
 }
@@ -385,7 +385,7 @@ void layers_swing(bool brief, Values& values) {
             }
             values.add(relative(at_fraction("period", fraction), along, period,
                                 8 * periods * frame / turns, along == 16 ? 0.003 : 0.001));
-            values.add(absolute("most that the energy is off, share", along, 0, drift, 1e-3));
+            values.add(as_share("most that the energy is off, share", along, 0, drift, 1e-3));
         }
     }
 }

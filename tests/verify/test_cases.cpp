@@ -56,6 +56,23 @@ TEST_CASE("what falls short of a least value is missed, and the page has its plo
     CHECK(page.find("nan") == std::string::npos);
 }
 
+TEST_CASE("an absolute error has the unit of its value, a share of something is in per cent") {
+    Case c{"made-up", "", "", 0, true, {}};
+    c.run = [](bool, Values& values) {
+        values.add(absolute("creep in 10 s [m]", 3, 0, 2.67763e-5, 1e-4));
+        values.add(absolute("bounces", 4, 3, 5, 1));
+        values.add(as_share("energy gained, share", 5, 0.2, 0.23, 0.05));
+        values.add(absolute("force / E a^2", 6, 0, 3e-14, 1e-12));
+        values.add(relative("length [m]", 7, 2, 2.02, 0.02));
+    };
+    const std::vector<Verified> all = {{c, run_case(c, false)}};
+    CHECK(verified_markdown(all).find("| 3: 2.68e-05 m (0.0001 m), 4: **2** (1), 5: 3 % (5 %), "
+                                      "6: 3.0e-14 (1.0e-12), 7: 1 % (2 %) |") !=
+          std::string::npos);
+    CHECK(verified_text(all).find("2.68e-05 m  0.0001 m") != std::string::npos);
+    CHECK(verified_page(all).find("<td>2.68e-05 m</td><td>0.0001 m</td>") != std::string::npos);
+}
+
 TEST_CASE("the README's table has a row for every case, and the command writes such rows") {
     std::ifstream file(std::string(SWAGE_SOURCE_DIR) + "/README.md");
     std::stringstream text;
