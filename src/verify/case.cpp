@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -60,6 +62,10 @@ Value at_least(std::string what, int across, double least, double got) {
 Value told(std::string what, int across, double expected, double got) {
     return relative(std::move(what), across, expected, got,
                     std::numeric_limits<double>::infinity());
+}
+
+std::string order_text(const Series& series) {
+    return std::isfinite(series.order) ? fmt::format("{:.2f}", series.order) : "-";
 }
 
 bool order_missed(const Case& verification, const Series& series) {

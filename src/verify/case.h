@@ -93,6 +93,7 @@ struct Case {
 // In the order of importance.
 std::vector<Case> verification_cases();
 
+std::string order_text(const Series& series);  // -: of an error of nothing there is none
 bool order_missed(const Case& verification, const Series& series);
 Result run_case(const Case& verification, bool brief);
 

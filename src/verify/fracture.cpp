@@ -179,14 +179,17 @@ void cantilevers(bool, Values& values) {
             stand, Vec3::UnitX(), Vec3::UnitY(), end + 0.5 * arm,
             [&](double s) { return slender * s; }, 1.3, tip);
         opened.emplace_back(halves / 2, share);
-        values.add(absolute("off its line / a", halves / 2, 0, tip.off, 1));
+        values.add(absolute("off its line [cells]", halves / 2, 0, tip.off, 1));
     }
+    const auto [finest, finest_share] = opened.back();
+    opened.pop_back();
     for (const auto& [across, share] : opened) {
-        values.add(relative("opening / finest", across, 1, share / opened.back().second, 0.12));
+        values.add(relative("opening / finest run's", across, 1, share / finest_share, 0.12));
     }
-    // Two thirds of an arm is how much longer it seems for turning at its root.
-    values.add(told("opening / slender beams'", opened.back().first,
-                    std::pow((kCrack + 0.5 + 0.67) / kCrack, 2), opened.back().second));
+    // Two thirds of an arm is how much longer it seems for turning at its root; what grooves and
+    // softening ahead of the tip add is not in it.
+    values.add(told("opening / slender beams'", finest, std::pow((kCrack + 0.5 + 0.67) / kCrack, 2),
+                    finest_share));
 }
 
 // Breaks every connection across x = 0.
@@ -228,8 +231,8 @@ void add_fracture_cases(std::vector<Case>& cases) {
                      "energy balance (Rice 1968)", 0, false, strip});
     cases.push_back({"weak-layer", "a crack slides along a weak layer, or opens it as well",
                      "energy balance (Rice 1968)", 0, true, weak_layer});
-    cases.push_back({"double-cantilever", "a crack between two arms drawn apart", "beams", 0, false,
-                     cantilevers});
+    cases.push_back({"double-cantilever", "a crack between two arms drawn apart", "own finest run",
+                     0, false, cantilevers});
     cases.push_back(
         {"closed-crack", "a broken bar, pressed and slid", "contact", 0, true, closed_crack});
 }

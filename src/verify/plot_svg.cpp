@@ -70,7 +70,7 @@ std::string series_svg(const std::string& title, const Series& series) {
         return kLeft +
                (kWidth - kLeft - kRight) * std::log(across / first) / std::log(last / first);
     };
-    std::string svg = svg_head(title, fmt::format(", order {:.2f}", series.order)) + decades.svg();
+    std::string svg = svg_head(title, ", order " + order_text(series)) + decades.svg();
     std::string line, bound;
     for (const Value& v : series.value) {
         const char* act = line.empty() ? "M" : "L";

@@ -41,7 +41,7 @@ std::vector<Row> rows_of(const Verified& one) {
         bool low_order = false;
         for (const Series& series : one.result.series) {
             if (series.what != v.what || series.value.back().across != v.across) continue;
-            order = fmt::format("{:.2f}", series.order);
+            order = order_text(series);
             low_order = order_missed(c, series);
             if (c.least_order > 0) order += fmt::format(" (>= {:.1f})", c.least_order);
         }

@@ -67,10 +67,26 @@ TEST_CASE("an absolute error has the unit of its value, a share of something is 
     };
     const std::vector<Verified> all = {{c, run_case(c, false)}};
     CHECK(verified_markdown(all).find("| 3: 2.68e-05 m (0.0001 m), 4: **2** (1), 5: 3 % (5 %), "
-                                      "6: 3.0e-14 (1.0e-12), 7: 1 % (2 %) |") !=
-          std::string::npos);
+                                      "6: 3.0e-14 (1.0e-12), 7: 1 % (2 %) |") != std::string::npos);
     CHECK(verified_text(all).find("2.68e-05 m  0.0001 m") != std::string::npos);
     CHECK(verified_page(all).find("<td>2.68e-05 m</td><td>0.0001 m</td>") != std::string::npos);
+}
+
+TEST_CASE("where an error is nothing no order is shown") {
+    Case c{"made-up", "", "", 0, true, {}};
+    c.run = [](bool, Values& values) {
+        for (int across : {2, 4}) values.add(absolute("x", across, 0, 0, 1));
+        for (int across : {2, 4}) values.add(absolute("y", across, 0, 4 - across, 3));
+        for (int across : {2, 4}) values.add(absolute("z", across, 0, across - 2, 3));
+        for (int across : {2, 4}) values.add(relative("w", across, 1, 1 + 0.1 / across, 3));
+    };
+    const std::vector<Verified> all = {{c, run_case(c, false)}};
+    for (const std::string& text : {verified_text(all), verified_page(all)}) {
+        CHECK(text.find("nan") == std::string::npos);
+        CHECK(text.find("inf") == std::string::npos);
+    }
+    CHECK(verified_page(all).find(", order -<") != std::string::npos);
+    CHECK(verified_page(all).find(", order 1.00<") != std::string::npos);
 }
 
 TEST_CASE("the README's table has a row for every case, and the command writes such rows") {
@@ -90,7 +106,10 @@ TEST_CASE("the README's table has a row for every case, and the command writes s
     CHECK(rows == cases.size());
     for (const Case& c : cases) {
         INFO(c.name);
-        CHECK(readme.find("\n| `" + c.name + "` | " + c.help + " | ") != std::string::npos);
+        const std::size_t row = readme.find("\n| `" + c.name + "` | " + c.help + " | ");
+        REQUIRE(row != std::string::npos);
+        CHECK(readme.substr(row + 1, readme.find('\n', row + 1) - row - 1)
+                  .ends_with(" | " + c.source + " |"));
         Result result;
         result.value = {relative("x", 4, 1, 1.01, 0.02), relative("y", 4, 1, 1.05, 0.1),
                         relative("x", 8, 1, 1.03, 0.02)};
