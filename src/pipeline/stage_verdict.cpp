@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "sim/motion_guard.h"
 #include "sim/own_overlap.h"
+#include "sim/static_forces.h"
 #include "sim/surface_modulus.h"
 
 namespace swage {
@@ -39,7 +40,7 @@ double way_of(const StageEnd& end) {
     return way;
 }
 
-// What rounding alone leaves open in the books [J].
+// What rounding, and of equilibria what they leave of forces, may leave open in the books [J].
 //
 // Stored: strains of 1e-8, which are differences of numbers about 1.
 //
@@ -48,7 +49,9 @@ double way_of(const StageEnd& end) {
 // are V/a^3, and g E A/a by grips of stiffness g on patches A (sim/grip_set.h). At worst all of
 // these point one way; those within a body balance, so that tools and grips bear their sum
 // u |x| E (V/a^2 + g A/a), and on a way s do s times that of work that goes nowhere.
-double round_off(const StageEnd& end) {
+//
+// An equilibrium leaves a share of a push, which is this at least; tools and grips bear it on.
+double unresolved(const StageEnd& end) {
     const WorkFrame& frame = end.machine.frame;
     const double way = way_of(end);
     const double off = std::numeric_limits<double>::epsilon() *
@@ -68,6 +71,9 @@ double round_off(const StageEnd& end) {
         const double a = matter.lattice.spacing, volume = matter.volume();
         const double held = volume / (a * a) + end.stage.sim.grip_stiffness * gripped / a;
         sum += modulus * (1e-16 * volume + off * held * way);
+        if (end.stage.sim.solver == Solver::quasistatic) {
+            sum += end.totals.residual * least_push(matter) * way;
+        }
     }
     return sum;
 }
@@ -151,7 +157,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             end.totals.severed));
     }
     for (const std::string& sentence : pressed_at_start(end)) warn(sentence);
-    if (const double share = unaccounted(end.first, end.last, round_off(end));
+    if (const double share = unaccounted(end.first, end.last, unresolved(end));
         // At rest, what snaps or slips through is lost, and no mistake.
         sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {
         warn(fmt::format("the energy books do not close: {:.3g} % of the energy in play is {}; {}",

@@ -18,6 +18,10 @@ constexpr double kLeastPush = 1e-3;
 
 }  // namespace
 
+double least_push(const Aggregate& body) {
+    return kLeastPush * body.mean_modulus() * body.lattice.spacing * body.lattice.spacing;
+}
+
 StaticForces::StaticForces(Aggregate& body, const Apparatus& machine, const SimSettings& settings)
     : matter(body),
       apparatus(machine),
@@ -27,7 +31,7 @@ StaticForces::StaticForces(Aggregate& body, const Apparatus& machine, const SimS
       pushes(machine, settings, 0),
       self(body, settings),
       free(body, machine),
-      measure(kLeastPush * body.mean_modulus() * body.lattice.spacing * body.lattice.spacing) {
+      measure(least_push(body)) {
     matter.branch_memory.clear();
     find_bounds();
 }

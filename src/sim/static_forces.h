@@ -20,6 +20,9 @@
 
 namespace swage {
 
+// What the residual of a body's equilibria is measured by at least [N].
+double least_push(const Aggregate& body);
+
 struct StaticForces {
     // Both must outlive it.
     StaticForces(Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings);

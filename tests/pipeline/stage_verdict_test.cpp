@@ -2,6 +2,7 @@
 #include "pipeline/stage_verdict.h"
 
 #include "pipeline/stage_machine.h"
+#include "sim/static_forces.h"
 #include "tests/catch.h"
 #include "tests/scene/scratch.h"
 #include "tests/shared/block.h"
@@ -26,11 +27,12 @@ struct CutBar {
     double stiffness() const { return modulus() * bodies[0].matter.volume(); }  // E V [J]
 
     // What is said of a stage in which `work` was done and `remainder` of it is nowhere.
-    std::string told(double work, double remainder) {
+    std::string told(double work, double remainder, double residual = 0) {
         const StageSpec& stage = reading.scene->stage[0];
         const Machine machine = stage_machine(stage, bodies[0].matter, {});
         StageTotals totals;
         totals.severed = 1;
+        totals.residual = residual;
         FrameReport last;
         last.pieces = 2;
         last.work = work;
@@ -78,4 +80,13 @@ TEST_CASE("work that nobody did is told as soon as it is that of strains of a mi
     CHECK(is_open(bar.told(work, -0.1 * work)));
     CHECK(is_open(bar.told(1e3 * work, -1e2 * work)));
     CHECK_FALSE(is_open(bar.told(1e3 * work, -1e1 * work)));
+}
+
+TEST_CASE("the work of drawing away what an equilibrium left pushed a little is no open book") {
+    CutBar bar(GENERATE("copper", "structural_steel", "rubber"));
+    const double left = 0.01, way = 0.03;
+    const double pushed = left * least_push(bar.bodies[0].matter);
+    CHECK_FALSE(is_open(bar.told(-0.3 * pushed * way, -0.3 * pushed * way, left)));
+    CHECK(is_open(bar.told(-100 * pushed * way, -100 * pushed * way, left)));
+    CHECK(is_open(bar.told(-0.3 * pushed * way, -0.3 * pushed * way)));
 }
