@@ -214,4 +214,20 @@ SWAGE_INLINE ImpactForce impact_force(const ImpactLaw& law, const ImpactState& a
     return result;
 }
 
+// What has touched when last found, with its depth and reach as they are now. Found by dashpots
+// from other speeds it would differ a little, and friction with it, which takes what it lets go.
+SWAGE_INLINE ImpactForce impact_as_found(double stiffness, double depth, double hold,
+                                         const Vec3& normal, const Vec3& reach, const Vec3& dashpot,
+                                         const Vec3& bond) {
+    ImpactForce f;
+    const double k = stiffness, over = spring_push(k, depth, hold) - k * depth;
+    f.reach = reach - normal * normal.dot(reach);
+    f.elastic = k * (f.reach + depth * normal);
+    f.stored = 0.5 / k * (f.elastic.squaredNorm() - over * over);
+    f.elastic += over * normal;
+    f.force = f.elastic + dashpot;
+    f.bond = bond;
+    return f;
+}
+
 }  // namespace swage

@@ -259,24 +259,14 @@ struct ContactWay::Kernel {
                             last.history);
     }
 
-    // Of what has touched when last committed, and is still where it was then: found by dashpots
-    // from other speeds it would differ a little, and friction with it, which takes what it lets
-    // go.
+    // Of what has touched when last committed, and is still where it was then.
     SWAGE_INLINE ImpactForce same_as(const Contact& contact, const ContactMemory& last,
                                      const Meeting& at) const {
-        const double k = way.share_ * at.stiffness();
-        const double hold = way.share_ * way.hold_[contact.point];
-        const Vec3 normal = vec3(at.normal), reach = vec3(at.reach);
-        ImpactForce f;
-        f.reach = reach - normal * normal.dot(reach);
-        const double depth = at.depth(), over = spring_push(k, depth, hold) - k * depth;
-        f.elastic = k * (f.reach + depth * normal);
-        f.stored = 0.5 / k * (f.elastic.squaredNorm() - over * over);
-        f.elastic += over * normal;
-        f.force = f.elastic + contact.dashed;
-        f.bond = last.bond;  // `bound` is found with what is kept
+        ImpactForce f = impact_as_found(way.share_ * at.stiffness(), at.depth(),
+                                        way.share_ * way.hold_[contact.point], vec3(at.normal),
+                                        vec3(at.reach), contact.dashed, last.bond);
         f.history = last.history;
-        return f;
+        return f;  // `bound` is found with what is kept
     }
 
     SWAGE_INLINE void respond_chunk(std::size_t chunk, double step, bool again) const {

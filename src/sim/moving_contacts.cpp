@@ -84,10 +84,7 @@ double MovingContacts::commit_implicit_step(const Aggregate& matter, const Drive
 // A point that touches, or is still held.
 struct MovingContacts::Meeting {
     std::size_t pair;
-    // Speeds of explicit steps stand half a step before the forces. Where these are found anew, at
-    // the start of a frame, they have moved on; those of then give the same forces again.
-    bool has_speed;
-    Vec3 speed;
+    bool is_found;  // `result` is, as of the last time
     double depth;
     Vec3 place, normal;
     Vec3 reach;   // to where it sticks
@@ -126,8 +123,7 @@ std::vector<MovingContacts::Meeting> MovingContacts::find_meetings(const Aggrega
             if (d.value >= 0 && !(history.touches && hold > 0)) continue;
             Meeting m;
             m.pair = n;
-            m.has_speed = anew && found.history.touches;
-            m.speed = found.speed;
+            m.is_found = anew && found.history.touches;
             m.depth = -d.value;
             m.place = x;
             m.normal = pose.turn(d.normal);
@@ -139,6 +135,18 @@ std::vector<MovingContacts::Meeting> MovingContacts::find_meetings(const Aggrega
             m.law.hold = hold;
             const double k = m.law.stiffness;
             if (d.value >= 0 && !is_bound(k, m.depth, hold)) continue;  // torn off
+            // Speeds of explicit steps stand half a step before the forces; where these are found
+            // anew, at the start of a frame, they have moved on.
+            if (m.is_found) {
+                m.result = impact_as_found(k, m.depth, hold, m.normal, pose * found.anchor - x,
+                                           found.dashpot, found.bond);
+                m.result.bound = found.bound;
+                m.result.friction = found.friction;
+                m.result.history = found.history;
+                m.spring = m.result.elastic;
+                met.push_back(m);
+                continue;
+            }
             const double N = spring_push(k, m.depth, hold), bears = N + hold;
             const Vec3 way = history.touches ? Vec3(pose * pair.anchor - x) : Vec3::Zero();
             m.reach = way - m.normal * m.normal.dot(way);
@@ -193,6 +201,7 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
     }
     parallel_each(meeting.size(), kChunk, [&](std::size_t n) {
         Meeting& m = meeting[n];
+        if (m.is_found) return;
         const ToolPairs::Pair& pair = pairs[m.pair];
         const Memory& memory = memory_[m.pair];
         Vec3 v = Vec3::Zero(), push = gravity;
@@ -213,13 +222,12 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
             const ToolWay& way = tool_way_[pair.tool];
             v -= (way.to * memory.next.local - way.from * memory.next.local) / way_step_;
         }
-        if (!m.has_speed) m.speed = v;
         // The law takes its own spring off again.
         m.result = impact_force(m.law,
                                 {.depth = m.depth,
                                  .normal = m.normal,
-                                 .now = m.speed,
-                                 .velocity = m.speed + step * (push - give * m.spring),
+                                 .now = v,
+                                 .velocity = v + step * (push - give * m.spring),
                                  .reach = m.reach,
                                  .give = give,
                                  .step = step,
@@ -234,7 +242,6 @@ void MovingContacts::meet(const Aggregate& matter, const Drive& now, bool anew, 
         if (!f.history.touches) continue;
         const Pose& pose = now.world_from_tool[pair.tool];
         Touch& next = memory_[m.pair].next;
-        next.speed = m.speed;
         next.dashpot = f.force - f.elastic;
         next.bond = f.bond;
         next.bound = f.bound;

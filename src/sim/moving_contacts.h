@@ -59,7 +59,6 @@ class MovingContacts {
     // What a point did, at the end of a step.
     struct Touch {
         Vec3 local = Vec3::Zero();    // in the tool's frame
-        Vec3 speed = Vec3::Zero();    // against the tool, of those that touch [m/s]
         Vec3 dashpot = Vec3::Zero();  // its force [N]
         Vec3 bond = Vec3::Zero();     // ImpactForce::bond [N]
         double bound = 0;             // ImpactForce::bound [J]
