@@ -32,14 +32,13 @@ RenderDirectory::RenderDirectory(const fs::path& root, bool in_run) : root_(root
              "{}: is a run; its pictures are those of its scene. Choose another --out",
              root_.string());
     }
-    if (!in_run && !fs::exists(mark(), error) && !fs::is_empty(root_, error)) {
-        if (error) {
-            fail(ExitCode::output, "{}: cannot be read: {}", root_.string(), error.message());
-        }
+    if (FolderLock::may_hold(root_)) lock_.emplace(root_);
+    if (!in_run && !FolderLock::is_all_of(root_) && !fs::exists(mark(), error)) {
         fail(ExitCode::foreign,
              "{}: holds files that swage render did not draw; choose another --out",
              root_.string());
     }
+    if (!lock_) lock_.emplace(root_);
     remove_temporaries(root_, 0);
     write_file_whole(mark(), "swage render draws here, and removes what it drew here before\n");
     set_unfinished_work(root_);
@@ -51,7 +50,7 @@ RenderDirectory::~RenderDirectory() {
     std::error_code error;
     fs::remove(files().folder(), error);  // where it is empty
     for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
-        if (it->path() != mark()) return;
+        if (it->path() != mark() && !FolderLock::is_lock(it->path())) return;
     }
     if (!error) fs::remove(mark(), error);
 }

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
+#include "pipeline/folder_lock.h"
 #include "pipeline/made_folder.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/run_options.h"
@@ -15,8 +17,8 @@ class RenderDirectory {
   public:
     // Makes the folder, and those that it is to lie in, or enters it, and clears away what a
     // drawing that was killed left unfinished there. `in_run`: it is the run's own for this, which
-    // may hold anything. Throws Error(foreign) where it is a run or holds what no drawing left,
-    // Error(output) where it cannot be written.
+    // may hold anything. Throws Error(foreign) where it is a run, holds what no drawing left or
+    // another process draws there, Error(output) where it cannot be written.
     RenderDirectory(const std::filesystem::path& root, bool in_run);
     ~RenderDirectory();  // where nothing was drawn, nothing is left of it
     RenderDirectory(const RenderDirectory&) = delete;
@@ -32,6 +34,7 @@ class RenderDirectory {
 
     std::filesystem::path root_;
     MadeFolder folder_;
+    std::optional<FolderLock> lock_;
 };
 
 }  // namespace swage

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run_directory.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +14,7 @@
 #include "base/file_contents.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "pipeline/folder_lock.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/json.h"
 #include "scene/file_text.h"
@@ -28,13 +26,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kIdentityName = ".swage-run";
-constexpr const char* kLockName = ".swage-lock";
 constexpr std::uintmax_t kLongestRecord = 64 << 20;  // some kB a stage
-
-std::string host_name() {
-    std::array<char, 256> name = {};
-    return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 std::string identity_text(const RunIdentity& identity) {
     Json json;
@@ -137,7 +129,9 @@ bool holds_products(const fs::path& root) {
     for (fs::recursive_directory_iterator it(root, error), end; !error && it != end;
          it.increment(error)) {
         const fs::path name = it->path().filename();
-        if (it->is_directory(error) || name == kIdentityName || name == kLockName) continue;
+        if (it->is_directory(error) || name == kIdentityName || FolderLock::is_lock(name)) {
+            continue;
+        }
         return true;
     }
     return static_cast<bool>(error);
@@ -188,62 +182,16 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
       folder_(root_),
       identity_text_(identity_text(identity)),
       anew_(fresh) {
-    bool empty = true;
-    std::error_code error;
-    for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
-        if (it->path().filename() != kLockName) empty = false;
-    }
-    if (error) fail(ExitCode::output, "{}: cannot be read: {}", root_.string(), error.message());
-    if (!empty && !holds_run(root_)) {
+    // One that is being made holds files before it is a run.
+    if (FolderLock::may_hold(root_)) lock_.emplace(root_);
+    if (!FolderLock::is_all_of(root_) && !holds_run(root_)) {
         fail(ExitCode::foreign, "{}: holds files that are no run of swage; choose another --out",
              root_.string());
     }
-    lock();
-    try {
-        remove_temporaries(root_, 0);
-        if (!anew_) claim(identity);
-    } catch (...) {
-        ::unlink((root_ / kLockName).c_str());
-        throw;
-    }
+    if (!lock_) lock_.emplace(root_);
+    remove_temporaries(root_, 0);
+    if (!anew_) claim(identity);
     set_unfinished_work(root_);
-}
-
-void RunDirectory::lock() {
-    const fs::path file = root_ / kLockName;
-    for (;;) {
-        lock_ = FileHandle(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
-        if (!lock_.is_open()) {
-            fail(ExitCode::output, "{}: cannot be written: {}", root_.string(),
-                 std::strerror(errno));
-        }
-        const bool ours = ::flock(lock_.id(), LOCK_EX | LOCK_NB) == 0;
-        std::array<char, 300> text = {};
-        [[maybe_unused]] const ssize_t got = ::pread(lock_.id(), text.data(), text.size() - 1, 0);
-        long pid = 0;
-        std::string host;
-        std::istringstream(text.data()) >> pid >> host;
-        if (!ours || (pid != 0 && host != host_name())) {
-            fail(ExitCode::foreign, "{}: process {} on {} is writing there{}", root_.string(), pid,
-                 host.empty() ? "this machine" : host,
-                 ours ? fmt::format("; if it has died, remove {}", file.string()) : "");
-        }
-        // The holder before us may have removed the file between our open and our lock.
-        struct stat by_name = {}, by_handle = {};
-        if (::stat(file.c_str(), &by_name) != 0 || ::fstat(lock_.id(), &by_handle) != 0 ||
-            by_name.st_ino != by_handle.st_ino) {
-            continue;
-        }
-        if (pid != 0) log_info("{}: taking over from process {}, which died", root_.string(), pid);
-        break;
-    }
-    const std::string mine = fmt::format("{} {}\n", ::getpid(), host_name());
-    if (::ftruncate(lock_.id(), 0) != 0 ||
-        ::pwrite(lock_.id(), mine.data(), mine.size(), 0) != static_cast<ssize_t>(mine.size())) {
-        const int reason = errno;
-        ::unlink(file.c_str());
-        fail(ExitCode::output, "{}: cannot be written: {}", file.string(), std::strerror(reason));
-    }
 }
 
 void RunDirectory::claim(const RunIdentity& identity) {
@@ -274,14 +222,12 @@ RunDirectory::~RunDirectory() {
     set_unfinished_work({});
     remove_temporaries(root_, 0);  // a film program may outlive a process that was killed
     if (!has_begun_) remove_unbegun();
-    ::unlink((root_ / kLockName).c_str());
 }
 
 void RunDirectory::remove_unbegun() {
     std::error_code error;
     for (fs::directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
-        const fs::path name = it->path().filename();
-        if (name != kLockName && name != kIdentityName) return;
+        if (!FolderLock::is_lock(it->path()) && it->path().filename() != kIdentityName) return;
     }
     if (!error) fs::remove(root_ / kIdentityName, error);
 }

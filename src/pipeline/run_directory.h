@@ -4,12 +4,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
-#include "base/file_handle.h"
 #include "pipeline/build_name.h"
+#include "pipeline/folder_lock.h"
 #include "pipeline/made_folder.h"
 
 namespace swage {
@@ -54,7 +55,6 @@ class RunDirectory {
     std::filesystem::path store() const { return root_ / "motion.bin"; }
 
   private:
-    void lock();
     void claim(const RunIdentity& identity);
     void remove_unbegun();
 
@@ -62,7 +62,7 @@ class RunDirectory {
     MadeFolder folder_;
     std::string identity_text_;
     bool anew_, has_begun_ = false;
-    FileHandle lock_;
+    std::optional<FolderLock> lock_;
 };
 
 // Where the drawn files of a run stand; `root` may also be another folder.

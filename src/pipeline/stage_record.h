@@ -18,12 +18,14 @@ namespace swage {
 struct StageTotals : StepCounts {
     long severed = 0, broken = 0;
     double penetration = 0;  // [m]
+    double stored = 0;       // at the end of any frame, the most [J]
     bool touched = false;    // by a tool: quasi-static at the end of a leg, in motion of any step
 
     void add(const FrameReport& report, std::size_t tools) {
         count(report);
         severed += report.severed;
         broken += report.broken;
+        stored = std::max(stored, report.kinetic + report.elastic + report.contact);
         for (std::size_t n = 0; n < report.load.size(); ++n) {
             penetration = std::max(penetration, report.load[n].penetration);
             touched = touched || (n < tools && report.load[n].touched);

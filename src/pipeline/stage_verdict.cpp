@@ -78,34 +78,36 @@ double unresolved(const StageEnd& end) {
     return sum;
 }
 
-// Of what the bodies began with and were given, or of what the books hold by now, the share that is
-// missing or too much. Fracture takes energy: what it gives is from nowhere.
-double unaccounted(const Books& first, const Books& b, double least) {
+// Of what the bodies began with and were given, of what the books hold by now or of the most that
+// was stored on the way, the share that is missing or too much. Fracture takes energy: what it
+// gives is from nowhere.
+double unaccounted(const Books& first, const Books& b, double stored, double least) {
     const double in = first.kinetic + first.elastic + std::abs(b.work) + std::abs(b.load_work) +
                       std::abs(b.gravity_work);
     const double out = b.kinetic + b.elastic + b.contact + b.plastic + b.damped + b.friction +
                        b.drag + std::abs(b.severed_energy) + std::max(0.0, b.fracture) + b.set_free;
-    const double play = std::max(in, out), gap = b.remainder + std::min(0.0, b.fracture);
+    const double play = std::max({in, out, stored}), gap = b.remainder + std::min(0.0, b.fracture);
     return play > least && std::abs(gap) > least ? gap / play : 0;
 }
 
 // What contacts and grips hold as a stage in motion begins is let go of at once, and no mistake
-// where it lifts a body by less than a cell, moves it by less in all of the stage or is little
-// beside how it flies. A body that is pressed by right is strained, and holds more itself.
+// where it lifts a body by less than a cell, moves it by less in all of the stage, or a second, or
+// is little beside how it flies. A body that is pressed by right is strained, and holds more
+// itself.
 std::vector<std::string> pressed_at_start(const StageEnd& end) {
     std::vector<std::string> told;
     if (end.stage.sim.solver == Solver::quasistatic) return told;
     for (std::size_t b = 0; b < end.last.body.size(); ++b) {
         const Aggregate& matter = end.bodies[b].matter;
         const double energy = end.last.body[b].contact_at_start, mass = matter.mass();
-        const double a = matter.lattice.spacing, slowly = a / end.duration;
+        const double a = matter.lattice.spacing, slowly = a / std::max(1.0, end.duration);
         const double harmless =
             mass * std::max(end.stage.sim.gravity.norm() * a, 0.5 * slowly * slowly);
         const Books& first = end.first.body[b];
         if (energy > std::max({harmless, first.elastic, 0.01 * first.kinetic})) {
             told.push_back(fmt::format(
                 "{} starts a little deep in what it touches, which throws it off by {:.3g} J, "
-                "enough for {}: put it further off, with `at`",
+                "at most at {}: put it further off, with `at`",
                 end.bodies[b].name, energy,
                 quantity_text(std::sqrt(2 * energy / mass), Quantity::speed)));
         }
@@ -157,7 +159,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             end.totals.severed));
     }
     for (const std::string& sentence : pressed_at_start(end)) warn(sentence);
-    if (const double share = unaccounted(end.first, end.last, unresolved(end));
+    if (const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
         // At rest, what snaps or slips through is lost, and no mistake.
         sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {
         warn(fmt::format("the energy books do not close: {:.3g} % of the energy in play is {}; {}",

@@ -41,7 +41,7 @@ void check_only_whole_files(const fs::path& run) {
 }  // namespace
 
 TEST_CASE("a run that is asked to stop leaves only whole files within two seconds") {
-    const int signal = GENERATE(SIGTERM, SIGINT);
+    const int signal = GENERATE(SIGTERM, SIGINT, SIGHUP);
     const bool while_drawing = GENERATE(false, true);
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 200);

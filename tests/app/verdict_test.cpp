@@ -96,3 +96,11 @@ TEST_CASE("what starts a little deep in the floor, or in another body, is said t
     CHECK(!says(beside("[0.0, 0.02, 0]"), thrown));
     CHECK(!says(beside("[0.2, -0.00001, 0]"), thrown));
 }
+
+TEST_CASE("what was pressed and came back is not said to have made energy by what little is left") {
+    const swage::TriMesh cube = box_mesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05});
+    const std::string told =
+        told_of(cube, "[[stage]]\nmachine = \"press\"\ndepth = 0.3\nfriction = 0\nframes = 20\n");
+    INFO(told);
+    CHECK(!says(told, "books do not close"));
+}

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "pipeline/render_directory.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 
@@ -145,6 +146,27 @@ TEST_CASE("two runs at once in one directory: the second is refused and told who
         CHECK(std::string(error.what()).find(fmt::format("{}", ::getpid())) != std::string::npos);
     }
     CHECK(fs::exists(root / ".swage-lock"));
+}
+
+TEST_CASE("two drawings at once into one folder: the second is refused and told who is first") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "pictures";
+    {
+        const RenderDirectory first(root, false);
+        CHECK_THROWS_WITH(
+            RenderDirectory(root, false),
+            Catch::Contains(std::to_string(::getpid())) && Catch::Contains("is writing there"));
+    }
+    CHECK(!fs::exists(root));
+}
+
+TEST_CASE("a run that is only being made is not taken for files of somebody else") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    fs::create_directories(root / "meshes");
+    const FolderLock first(root);
+    CHECK_THROWS_WITH(RunDirectory(root, identity_of("1"), false),
+                      Catch::Contains("is writing there"));
 }
 
 TEST_CASE("the lock of a process that died here is taken over, that of another host is not") {
