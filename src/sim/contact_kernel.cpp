@@ -275,9 +275,8 @@ struct ContactWay::Kernel {
         const std::size_t end = way.begin_of(chunk + 1);
         for (std::size_t n = way.begin_of(chunk); n < end; ++n) {
             Contact& contact = way.list_.contact[n];
-            ContactMemory& last = way.list_.memory[n];
+            const ContactMemory& last = way.list_.memory[n];
             Meeting& at = way.meeting_[n];
-            if (again && !at.is_known()) last = {};  // a blade has cut it: counted as gone, once
             ContactMemory& next = way.next_[n];
             ImpactForce f;
             if (at.meets()) {

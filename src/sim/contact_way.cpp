@@ -260,13 +260,17 @@ void ContactWay::push(double share, double gone, double turned) {
     cell_push_.add_to(onto_->patch(), share);
 }
 
-void ContactWay::begin_response() {
+void ContactWay::begin_response(bool again) {
     next_.resize(list_.size());
+    // What a blade has cut is counted as gone once.
+    for (std::size_t n = 0; again && n < list_.size(); ++n) {
+        if (!meeting_[n].is_known()) list_.memory[n] = {};
+    }
     find_met();
 }
 
 void ContactWay::respond(double step, bool again) {
-    begin_response();
+    begin_response(again);
     parallel_for(chunk_.size(), [&](std::size_t chunk) { respond_chunk(chunk, step, again); });
 }
 
@@ -276,7 +280,7 @@ void ContactWay::answer() {
 }
 
 void ContactWay::respond_and_answer(double step, bool again) {
-    begin_response();
+    begin_response(again);
     for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
         respond_chunk(chunk, step, again);
         answer_chunk(chunk);

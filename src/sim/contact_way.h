@@ -183,7 +183,7 @@ class ContactWay {
     void find_chunk(std::size_t chunk, double step);
     void find_met();
     void push_chunk(std::size_t chunk);
-    void begin_response();
+    void begin_response(bool again);
     void respond_chunk(std::size_t chunk, double step, bool again);
     void answer_chunk(std::size_t chunk);
     void sum_response();
