@@ -74,7 +74,7 @@ int render(const RenderArguments& given) {
     if (!given.frames.empty()) frames = parse_frame_range(given.frames);
 
     // The run's own pictures stay what its scene says they are.
-    const fs::path out = given.out.empty() ? run / "again" : fs::path(given.out);
+    const fs::path out = given.out.empty() ? RunDirectory::drawn_again(run) : fs::path(given.out);
     const RenderDirectory directory(out, given.out.empty());
     Stopwatch watch;
     const DrawOutcome drawn =

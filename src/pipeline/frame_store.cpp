@@ -207,7 +207,7 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
     if (!handle_.is_open()) give_up(why);
     std::uint64_t magic = 0;
     if (!read_all(handle_.id(), 0, &magic, sizeof magic) || magic != kMagic) {
-        give_up("is no motion file of this version of swage");
+        give_up("is no motion file of the kind that this build of swage writes");
     }
     const auto file_size = static_cast<std::uint64_t>(::lseek(handle_.id(), 0, SEEK_END));
     std::uint64_t at = sizeof magic;

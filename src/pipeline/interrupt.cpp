@@ -35,6 +35,7 @@ std::atomic<bool> frames_at_stake = false;
 extern "C" void take_signal(int signal) {
     // A forked child has no watching thread.
     if (::getpid() != owner) ::_exit(128 + signal);
+    if (signal == SIGHUP && asked_to_stop() != 0) return;  // shell and kernel both send it
     ask_to_stop(signal);
     const char byte = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);

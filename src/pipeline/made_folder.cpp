@@ -25,11 +25,21 @@ MadeFolder::MadeFolder(const fs::path& folder) {
     for (fs::path at = folder_; !at.empty() && !fs::exists(at, error); at = at.parent_path()) {
         outermost_ = at;
     }
-    make_folder(folder);
+    try {
+        make_folder(folder);
+    } catch (...) {
+        leave();
+        throw;
+    }
 }
 
-MadeFolder::~MadeFolder() {
+MadeFolder::~MadeFolder() { leave(); }
+
+void MadeFolder::leave() {
     std::error_code error;  // a folder that is not empty stays
+    if (outermost_.empty()) return;
+    // Of those that it was to make some may have failed.
+    while (folder_ != outermost_ && !fs::exists(folder_, error)) folder_ = folder_.parent_path();
     for (fs::path at = folder_; !outermost_.empty(); at = at.parent_path()) {
         if (!fs::remove(at, error) || at == outermost_) break;
     }

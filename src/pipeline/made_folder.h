@@ -19,6 +19,8 @@ class MadeFolder {
     MadeFolder& operator=(const MadeFolder&) = delete;
 
   private:
+    void leave();
+
     std::filesystem::path folder_;     // absolute
     std::filesystem::path outermost_;  // of those that were not there; empty: all were
 };

@@ -2,6 +2,7 @@
 #include "pipeline/render_directory.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 #include <vector>
 
@@ -15,12 +16,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A name that DrawnFiles::still() gives.
-bool is_still(const fs::path& file) {
-    const std::string stem = file.stem().string(), begin = "frame_";
-    return file.extension() == ".png" && stem.starts_with(begin) && stem.size() > begin.size() &&
-           std::all_of(stem.begin() + std::ptrdiff_t(begin.size()), stem.end(),
-                       [](char c) { return c >= '0' && c <= '9'; });
+bool is_still(const DrawnFiles& files, const fs::path& file) {
+    int number = 0;
+    const bool numbered = std::sscanf(file.filename().c_str(), "frame_%9d.png", &number) == 1;
+    return numbered && number > 0 && file == files.still(number);
 }
 
 }  // namespace
@@ -62,7 +61,8 @@ int RenderDirectory::remove_others(const FrameRange& drawn, bool film) const {
     std::error_code error;
     for (fs::directory_iterator it(files().folder(), error), end; !error && it != end;
          it.increment(error)) {
-        if (is_still(it->path()) && !of_now.contains(it->path())) others.push_back(it->path());
+        if (is_still(files(), it->path()) && !of_now.contains(it->path()))
+            others.push_back(it->path());
     }
     if (!film) others.push_back(files().film());
     return static_cast<int>(std::count_if(others.begin(), others.end(), [&](const fs::path& file) {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run_directory.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <optional>
-#include <sstream>
 
 #include "base/atomic_file.h"
 #include "base/file_contents.h"
@@ -213,7 +207,11 @@ void RunDirectory::claim(const RunIdentity& identity) {
 void RunDirectory::begin() {
     has_begun_ = true;
     if (!anew_) return;
-    remove_products(root_);
+    {
+        std::optional<FolderLock> drawing;  // of the run, which `swage render` may be at
+        if (fs::is_directory(drawn_again(root_))) drawing.emplace(drawn_again(root_));
+        remove_products(root_);
+    }
     write_file_whole(root_ / kIdentityName, identity_text_);
     anew_ = false;
 }

@@ -53,6 +53,10 @@ class RunDirectory {
     void begin();
     std::filesystem::path record() const { return root_ / "run.json"; }
     std::filesystem::path store() const { return root_ / "motion.bin"; }
+    // Where `swage render` draws a run that is not told where.
+    static std::filesystem::path drawn_again(const std::filesystem::path& run) {
+        return run / "again";
+    }
 
   private:
     void claim(const RunIdentity& identity);

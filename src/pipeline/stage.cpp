@@ -158,7 +158,9 @@ class StageRun {
             keep([&] { record(last_frame + n); });
         }
         const auto lap = context_.watch.lap("write");
-        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        // Where memory ran out, matter may stand in the middle of a step.
+        const bool is_whole = !outcome_.stopped || outcome_.stopped->code() != ExitCode::resources;
+        for (std::size_t b = 0; is_whole && b < bodies_.size(); ++b) {
             keep([&] { write_meshes(bodies_[b].deformed(), meshes_[b]); });
         }
         keep([&] { write_curves(curves, context_); });

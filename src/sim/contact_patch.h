@@ -18,7 +18,7 @@ class ContactPatch {
         Vec4 place;  // [m], and 1 / mass [1/kg]
         Vec4 speed;  // [m/s], and 0
     };
-    struct alignas(32) Force {
+    struct alignas(64) Force {
         Vec4 all;      // [N], and what points that touch have of stiffness on it [N/m]
         Vec4 springs;  // the same over its mass, of all forces but those of dashpots
     };

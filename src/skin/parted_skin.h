@@ -87,7 +87,7 @@ class PartedSkin {
     std::vector<CellId> whole_cell_;  // before it parted
     std::vector<CornerMask> whole_side_;
     std::map<std::pair<int, Mask>, int> taken_;
-    EdgeAttributes halves_{mesh};
+    EdgeAttributes halves_{mesh};  // so that this cannot be moved
 };
 
 }  // namespace swage

@@ -60,16 +60,19 @@ TEST_CASE("a run that is asked to stop leaves only whole files within two second
 }
 
 TEST_CASE("frames that were finished before a run was asked to stop can be drawn") {
+    // Of a terminal that closes shell and kernel both tell.
+    const int signal = GENERATE(SIGINT, SIGHUP);
     const Scratch scratch;
     const fs::path scene =
         put_small_scene(scratch.path(), 5000, "[output]\nmeshes_per_frame = true\n");
     const fs::path run = scratch.path() / "run";
     RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path());
     REQUIRE(wait_for(run / "meshes/1-bend/frame_0004.obj", running));
-    running.signal(SIGINT);
+    running.signal(signal);
+    if (signal == SIGHUP) running.signal(signal);
     const Outcome outcome = running.wait();
     INFO(outcome.err);
-    CHECK(outcome.code == 128 + SIGINT);
+    CHECK(outcome.code == 128 + signal);
     CHECK(outcome.err.find("frames are finished") != std::string::npos);
     check_only_whole_files(run);
     const Json record = Json::parse(bytes_of(run / "run.json"));

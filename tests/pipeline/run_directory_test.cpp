@@ -160,6 +160,41 @@ TEST_CASE("two drawings at once into one folder: the second is refused and told 
     CHECK(!fs::exists(root));
 }
 
+TEST_CASE("a run is not made anew while it is drawn") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "run";
+    begin_run(root, "1");
+    put_text(root / "motion.bin", "frames");
+    const RenderDirectory drawing(RunDirectory::drawn_again(root), true);
+    RunDirectory anew(root, identity_of("2"), true);
+    CHECK_THROWS_WITH(anew.begin(), Catch::Contains("is writing there"));
+    CHECK(fs::exists(root / "motion.bin"));
+}
+
+TEST_CASE("of folders that could not all be made none stays") {
+    const Scratch scratch;
+    const fs::path outer = scratch.path() / "a";
+    CHECK(code_of([&] { RenderDirectory(outer / "b" / std::string(300, 'c'), false); }) ==
+          ExitCode::output);
+    CHECK(!fs::exists(outer));
+}
+
+TEST_CASE("stills of another naming are nobody's to remove") {
+    const Scratch scratch;
+    const fs::path root = scratch.path() / "pictures", frames = root / "frames";
+    fs::create_directories(frames);
+    for (const char* name :
+         {"frame_7.png", "frame_0007.png", "frame_0001.png", "frame_07000.png"}) {
+        put_text(frames / name, "");
+    }
+    const RenderDirectory drawing(root, true);
+    CHECK(drawing.remove_others({1, 1}, true) == 1);
+    CHECK(!fs::exists(frames / "frame_0007.png"));
+    for (const char* name : {"frame_7.png", "frame_0001.png", "frame_07000.png"}) {
+        CHECK(fs::exists(frames / name));
+    }
+}
+
 TEST_CASE("a run that is only being made is not taken for files of somebody else") {
     const Scratch scratch;
     const fs::path root = scratch.path() / "run";
