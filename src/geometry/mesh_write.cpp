@@ -83,11 +83,11 @@ std::vector<std::string> copy_textures(const fs::path& file,
             wanted = plain_name(m.name, "texture") + image_ending(bytes);
             std::replace(wanted.begin(), wanted.end(), '/', '_');
         } else if (!m.texture.empty()) {
-            const std::optional<std::string> image = file_contents(m.texture);
+            std::optional<std::string> image = file_contents(m.texture);
             if (!image)
                 fail(ExitCode::output, "{}: the texture {} cannot be read", file.string(),
                      m.texture.string());
-            bytes = *image;
+            bytes = std::move(*image);
             wanted = m.texture.filename().string();
         } else {
             names.emplace_back();

@@ -32,10 +32,7 @@ CellFrames BodyMap::frames(const std::array<ParticleId, 8>& corner) const {
 }
 
 Vec3 BodyMap::world(const BodyPlace& place) const {
-    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(place.cell);
-    const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);
-    const CornerMask followed =
-        followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
+    const auto [corner, carrier, followed] = carriage_of(matter_, place);
     const CellFrames cell = frames(corner);
     Vec3 world =
         place.reference + (followed == kAllCorners ? whole_displacement(half_frames(cell), carrier)

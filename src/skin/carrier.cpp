@@ -70,6 +70,12 @@ CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const V
     return heaviest < 0 ? kAllCorners : groups[heaviest] & side;
 }
 
+Carriage carriage_of(const Aggregate& matter, const BodyPlace& place) {
+    const std::array<ParticleId, 8> corner = matter.lattice.cell_corners(place.cell);
+    const Carrier at = carrier_in(cell_box(matter, place.cell), place.reference);
+    return {corner, at, followed_corners(corner_groups(matter, corner), place.side, at.local)};
+}
+
 CellFrames half_frames(const CellFrames& cell) {
     CellFrames half = cell;
     for (int c = 0; c < 8; ++c) {

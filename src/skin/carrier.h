@@ -65,6 +65,14 @@ CellSide nearest_side(const Aggregate& matter, CellId home, const Vec3& place,
 // together with the one of `side` that weighs most.
 CornerMask followed_corners(const CornerGroups& groups, CornerMask side, const Vec3& local);
 
+// What carries one place.
+struct Carriage {
+    std::array<ParticleId, 8> corner;
+    Carrier at;
+    CornerMask followed;
+};
+Carriage carriage_of(const Aggregate& matter, const BodyPlace& place);
+
 // Displacement [m] in a whole cell: sum N_c (u_c + 1/2 G_c (X - X_c)), exact for quadratic fields
 // when the frames are. `half` is made once a cell.
 CellFrames half_frames(const CellFrames& cell);

@@ -33,10 +33,7 @@ BodyPlace PieceMap::beside(const Vec3& reference, std::span<const BodyPlace> oth
 }
 
 int PieceMap::piece_of(const BodyPlace& place) const {
-    const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(place.cell);
-    const Carrier carrier = carrier_in(cell_box(matter_, place.cell), place.reference);
-    const CornerMask followed =
-        followed_corners(corner_groups(matter_, corner), place.side, carrier.local);
+    const auto [corner, carrier, followed] = carriage_of(matter_, place);
     const int heaviest = heaviest_corner(trilinear_weights(carrier.local), followed);
     return pieces_.particle_piece[corner[heaviest]];
 }

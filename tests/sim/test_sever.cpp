@@ -27,6 +27,25 @@ void cut_along(Aggregate& m, const Vec3& point, const Vec3& normal, double reach
     }
 }
 
+// A floor, and a blade that has come so far along x.
+Drive cut_at(double time, double x) {
+    Drive d = floor_at(time);
+    d.world_from_blade = {Pose{Quat::Identity(), Vec3(x, 0, 0)}};
+    return d;
+}
+
+// With weight, on soft contacts.
+SimSettings lying(Solver solver, double contact_stiffness) {
+    SimSettings settings = motion_settings(solver);
+    settings.gravity = Vec3(0, -9.81, 0);
+    settings.contact_stiffness = contact_stiffness;
+    settings.sleep = false;
+    return settings;
+}
+
+const Material kPad{
+    .young_modulus = 1e6, .density = 1000, .damping_ratio = 0.3, .friction = 0.5, .restitution = 0};
+
 }  // namespace
 
 TEST_CASE("any plane through a body leaves exactly two pieces, however it meets the lattice") {
@@ -238,26 +257,16 @@ TEST_CASE("crumbs of an earlier stage are not blamed on the first blade of the n
 TEST_CASE("what contacts held by matter that a blade cuts through stays on the books") {
     const Solver solver =
         GENERATE(Solver::explicit_steps, Solver::energy_stepped, Solver::quasistatic);
-    const bool is_still = solver == Solver::quasistatic;
-    Aggregate block = make_block(4, 4, 4, 0.02,
-                                 {.young_modulus = 1e6,
-                                  .density = 1000,
-                                  .damping_ratio = 0.3,
-                                  .friction = 0.5,
-                                  .restitution = 0});
+    Aggregate block = make_block(4, 4, 4, 0.02, kPad);
     place(block, {Quat::Identity(), Vec3(0, 0.04, 0)});
     Apparatus apparatus = floor_with(0.5);
     // Through the lowest layer, which bears the block.
     apparatus.blade.push_back({"blade", {Vec3(0, 0.01, -1), Vec3(0, 0.01, 1)}, {}});
-    SimSettings settings = motion_settings(solver);
-    settings.gravity = Vec3(0, -9.81, 0);
-    settings.contact_stiffness = 0.01;
-    settings.sleep = false;
+    SimSettings settings = lying(solver, 0.01);
     settings.tolerance = 1e-3;
     const auto drive = [&](double time, double x) {
-        Drive d = floor_at(time);
-        d.world_from_blade = {Pose{Quat::Identity(), Vec3(x, 0, 0)}};
-        if (is_still) d.gravity_strength = std::min(1.0, time / 0.2);
+        Drive d = cut_at(time, x);
+        if (solver == Solver::quasistatic) d.gravity_strength = std::min(1.0, time / 0.2);
         return d;
     };
     Simulation simulation(block, apparatus, settings);
@@ -276,35 +285,21 @@ TEST_CASE("what contacts held by matter that a blade cuts through stays on the b
 
 TEST_CASE("what a body held of one that a blade cuts under it stays on the books") {
     const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
-    const Material soft{.young_modulus = 1e6,
-                        .density = 1000,
-                        .damping_ratio = 0.3,
-                        .friction = 0.5,
-                        .restitution = 0};
-    Material heavy = soft;
+    Material heavy = kPad;
     heavy.density = 20000;
-    Aggregate bed = make_block(6, 4, 4, 0.02, soft), weight = make_block(3, 2, 2, 0.02, heavy);
+    Aggregate bed = make_block(6, 4, 4, 0.02, kPad), weight = make_block(3, 2, 2, 0.02, heavy);
     place(bed, {Quat::Identity(), Vec3(0, 0.04, 0)});
     place(weight, {Quat::Identity(), Vec3(0, 0.1, 0)});
     Apparatus apparatus = floor_with(0.5);
     apparatus.blade.push_back({"blade", {Vec3(0, 0.07, -1), Vec3(0, 0.07, 1)}, {}});
-    SimSettings settings = motion_settings(solver);
-    settings.gravity = Vec3(0, -9.81, 0);
-    settings.contact_stiffness = 0.02;
-    settings.sleep = false;
-    const auto drive = [&](double time, double x) {
-        Drive d = floor_at(time);
-        d.world_from_blade = {Pose{Quat::Identity(), Vec3(x, 0, 0)}};
-        return d;
-    };
-    Simulation simulation({&bed, &weight}, apparatus, settings);
+    Simulation simulation({&bed, &weight}, apparatus, lying(solver, 0.02));
     FrameReport r;
     for (int n = 0; n < 8; ++n) {
-        r = simulation.advance(drive(0.05 * n, -1), drive(0.05 * (n + 1), -1));
+        r = simulation.advance(cut_at(0.05 * n, -1), cut_at(0.05 * (n + 1), -1));
     }
     const double held = r.body[1].contact, open = r.remainder;
     REQUIRE(held > 1e-4);
-    r = simulation.advance(drive(0.4, -1), drive(0.401, 1));
+    r = simulation.advance(cut_at(0.4, -1), cut_at(0.401, 1));
     INFO("held " << held << ", remainder " << open << ", then " << r.remainder);
     CHECK(r.severed > 0);
     CHECK(std::abs(r.remainder - open) < 0.02 * held);
