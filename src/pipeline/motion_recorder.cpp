@@ -32,8 +32,6 @@ void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const WorkPiece& piece = bodies[b];
         Skin& stored = skin_[b];
-        // A skin that is made anew in every frame changes only where matter was severed or broke.
-        // Its smoothing, told from angles, changes as it bends, and is kept as it first was.
         const bool same = stored.id >= 0 && stored.mesh.triangle == piece.skin.triangle &&
                           stored.mesh.position.size() == piece.skin.position.size();
         if (!same) {

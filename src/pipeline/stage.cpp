@@ -82,11 +82,10 @@ int blade_steps(const std::vector<Leg>& legs) {
 }
 
 // The skin is cut along the whole path of the stage's blades when they reach the matter.
-void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, SkinKind kind,
-               int frame, WarningBook& warnings) {
-    if (kind == SkinKind::boundary) return;
+void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, int frame,
+               WarningBook& warnings) {
     const CutResult cut = cut_skins(piece, swept_triangles(machine.apparatus, way));
-    follow_matter(piece, kind);
+    follow_matter(piece);
     if (cut.open_parts > 0) {
         warnings.add(frame,
                      fmt::format("{} open part{} of the skin could not be closed where it is cut",
@@ -116,7 +115,6 @@ class StageRun {
         : stage_(stage),
           bodies_(bodies),
           context_(context),
-          skin_(context.scene.skin.kind),
           connections_before_(connection_count(bodies)),
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(bodies))),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
@@ -245,18 +243,17 @@ class StageRun {
             if (cuts_[b] || !simulation.blades_reach(b, ahead_.first(steps_ + 1))) continue;
             cuts_[b] = 1;
             simulation.plan_cuts(b, ahead_, steps_);
-            cut_ahead(machine_, ahead_, bodies_[b], skin_, number, warnings_);
+            cut_ahead(machine_, ahead_, bodies_[b], number, warnings_);
         }
     }
 
     // A skin is cut, and held where it is severed, where it is as a leg begins.
     void follow_on_the_way() {
-        if (!cuts_any() || skin_ == SkinKind::boundary) return;
+        if (!cuts_any()) return;
         const auto lap = context_.watch.lap("skin");
-        for (WorkPiece& body : bodies_) follow_matter(body, skin_);
+        for (WorkPiece& body : bodies_) follow_matter(body);
     }
     void hold_skins() {
-        if (skin_ == SkinKind::boundary) return;
         const auto lap = context_.watch.lap("skin");
         for (WorkPiece& body : bodies_) hold_skin(body);
     }
@@ -265,7 +262,7 @@ class StageRun {
         const auto lap = context_.watch.lap("skin");
         const bool has_parted = last_.broken + last_.severed > 0;
         for (WorkPiece& body : bodies_) {
-            if (show_matter(body, skin_, has_parted) > 0) warnings_.add(number, kOpenSkin);
+            if (show_matter(body, has_parted) > 0) warnings_.add(number, kOpenSkin);
         }
     }
 
@@ -314,7 +311,6 @@ class StageRun {
     const StageSpec& stage_;
     std::vector<WorkPiece>& bodies_;
     const StageContext& context_;
-    const SkinKind skin_;
     const std::size_t connections_before_;
     const Machine machine_;
     const int pieces_before_;

@@ -102,6 +102,17 @@ void paint(TriMesh& skin, const Vec3& color, bool metal) {
     skin.position_color.clear();
 }
 
+void lay_boundary(WorkPiece& piece) {
+    BoundarySkin anew = boundary_skin(piece.matter, piece.look.get());
+    piece.skin = std::move(anew.mesh);
+    piece.mount = std::move(anew.mount);
+}
+
+// A boundary that a blade could only cut where the next break would have it another way.
+bool is_made_anew(const WorkPiece& piece) {
+    return piece.look != nullptr && (piece.is_torn || is_broken(piece.matter));
+}
+
 // Where matter broke by load. Returns in how many places the skin could not be closed.
 int part_skin(WorkPiece& piece) {
     if (!is_broken(piece.matter)) return 0;
@@ -205,17 +216,18 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         if (body.color) paint(like, *body.color, body.metal);
         piece.look = std::make_shared<const NewLook>(like);
+        lay_boundary(piece);
     } else {
         piece.skin = skin.divide ? divided_skin(input.mesh, piece.matter) : input.mesh;
         if (body.color) paint(piece.skin, *body.color, body.metal);
-        piece.position = piece.skin.position;
-        piece.followed = piece.matter.particle_position;
-        piece.mount = mount_mesh(piece.position, piece.matter, skin.kind);
+        piece.mount = mount_mesh(piece.skin.position, piece.matter, skin.kind);
     }
+    piece.position = piece.skin.position;
+    piece.followed = piece.matter.particle_position;
     const StartSpec& start = body.start;
     const bool stands = !start.at && start.turn == Vec3::Zero();
     if (!stands || start.moves()) place_at_start(start, input.to_mold(), piece.matter);
-    if (!stands || skin.kind == SkinKind::boundary) follow_matter(piece, skin.kind);
+    if (!stands) follow_matter(piece);
     return piece;
 }
 
@@ -262,8 +274,14 @@ void hold_skin(WorkPiece& piece) {
 }
 
 CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep) {
-    const CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
+    if (is_made_anew(piece)) return {};
+    CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
     piece.is_torn = piece.is_torn || shown.has_curved;
+    if (piece.look) {
+        // What it cannot be cut along, or not so that it closes, is made anew once it is severed.
+        piece.is_torn = piece.is_torn || shown.open_parts > 0;
+        shown.open_parts = 0, shown.has_curved = false;
+    }
     if (!piece.whole_skin) return shown;
     CutResult whole =
         cut_skin(*piece.whole_skin, piece.whole_position, piece.whole_mount, piece.matter, sweep);
@@ -271,23 +289,20 @@ CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sw
     return whole;
 }
 
-void follow_matter(WorkPiece& piece, SkinKind kind) {
-    if (kind == SkinKind::boundary) {
-        piece.skin = boundary_skin(piece.matter, piece.look.get());
-        piece.position = piece.skin.position;
-    } else {
-        skin_positions(piece.mount, piece.matter, piece.position);
-        piece.followed = piece.matter.particle_position;
-        if (piece.whole_skin) {
-            skin_positions(piece.whole_mount, piece.matter, piece.whole_position);
-        }
-    }
+void follow_matter(WorkPiece& piece) {
+    skin_positions(piece.mount, piece.matter, piece.position);
+    piece.followed = piece.matter.particle_position;
+    if (piece.whole_skin) skin_positions(piece.whole_mount, piece.matter, piece.whole_position);
 }
 
-int show_matter(WorkPiece& piece, SkinKind kind, bool has_parted) {
-    const int open = has_parted && kind != SkinKind::boundary ? part_skin(piece) : 0;
-    follow_matter(piece, kind);
-    if (piece.is_torn) remove_torn_triangles(piece.skin, piece.mount, piece.matter);
+int show_matter(WorkPiece& piece, bool has_parted) {
+    int open = 0;
+    if (has_parted && is_made_anew(piece)) lay_boundary(piece);
+    if (has_parted && !piece.look) open = part_skin(piece);
+    follow_matter(piece);
+    if (piece.is_torn && !piece.look) {
+        remove_torn_triangles(piece.skin, piece.mount, piece.matter);
+    }
     return open;
 }
 

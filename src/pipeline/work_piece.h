@@ -50,16 +50,16 @@ Aggregate mold_body(const InputMesh& input, const BodySpec& body,
 struct WorkPiece {
     std::string name;
     Aggregate matter;
-    TriMesh skin;                         // its positions: as mounted
-    Mount mount;                          // unless the skin is a boundary
-    std::shared_ptr<const NewLook> look;  // where it is
+    TriMesh skin;  // its positions: as mounted
+    Mount mount;
+    std::shared_ptr<const NewLook> look;  // of a skin that is a boundary
     std::vector<Vec3> position;           // of the skin now [m]
     Vec3Array followed;                   // of the particles that this is from [m]
     std::vector<std::string> finding;     // what of its mesh its matter has not, when molded
     // Once a blade's path was curved: the skin is not cut along it, so triangles may be torn there,
-    // now and in every later stage.
+    // now and in every later stage. A boundary is made anew instead.
     bool is_torn = false;
-    // Once matter broke by load: what skin and mount were made from since.
+    // Once matter broke by load: what a mounted skin was made from since.
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;
     std::vector<Vec3> whole_position;
@@ -83,19 +83,20 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
 std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 
 // Brings the skin to where the matter is.
-void follow_matter(WorkPiece& piece, SkinKind kind);
+void follow_matter(WorkPiece& piece);
 
-// Lets a mounted skin go on from where it was: to be called when matter has been severed since it
+// Lets a skin go on from where it was: to be called when matter has been severed since it
 // followed, which it shall not be seen to do before it moves (hold_places).
 void hold_skin(WorkPiece& piece);
 
 // The skin as it is to be seen: where the matter is and, when it is mounted, without the triangles
 // that a blade has torn. `has_parted`: matter has broken or been severed since; then a mounted skin
-// is parted where it broke by load, and closed. Returns in how many places that was not possible.
-int show_matter(WorkPiece& piece, SkinKind kind, bool has_parted);
+// is parted where it broke by load, and closed; returns in how many places that was not possible. A
+// boundary is made anew where matter broke, or was severed as skins are not cut.
+int show_matter(WorkPiece& piece, bool has_parted);
 
-// Cuts a mounted skin along all that blades will sweep (skin/cut_mesh.h), that which is parted
-// where matter broke as well as the whole one that it is made from.
+// Cuts a skin along all that blades will sweep (skin/cut_mesh.h), that which is parted where matter
+// broke as well as the whole one that it is made from; not a boundary that is made anew.
 CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sweep);
 
 }  // namespace swage

@@ -68,7 +68,7 @@ const std::vector<KeyHelp>& scene_key_help() {
 
         {"[skin]", "kind",
          "mount: smooth, follows half frames; frame4: the paper's frames of four "
-         "particles; boundary: made anew from voxels"},
+         "particles; boundary: drawn round the matter's voxels, anew once it breaks"},
         {"[skin]", "divide",
          "halve the edges of the mesh that are longer than a cell and a half, so that its faces "
          "can bend; false: its own vertices and no others; not for kind = \"boundary\""},

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "skin/mount.h"
 #include "skin/voxel_place.h"
 #include "skin/voxel_surface.h"
 
@@ -195,14 +194,15 @@ void part_touching(const Aggregate& matter, const VoxelSurface& surface,
 
 }  // namespace
 
-TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
+BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look) {
     const SurfaceSamples samples(matter);
     VoxelSurface surface = voxel_surface(matter, samples);
     const std::vector<Vec3> place = place_points(matter, samples, surface);
     const Pieces pieces = find_pieces(matter);
     drop_crumbs(matter, pieces, place, surface);
 
-    Mount mount;
+    BoundarySkin skin;
+    Mount& mount = skin.mount;
     mount.reference.resize(surface.vertex_count);
     mount.cell.resize(surface.vertex_count);
     mount.side.resize(surface.vertex_count);
@@ -221,14 +221,13 @@ TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
     }
     finish_mount(mount, matter);
 
-    TriMesh mesh;
-    skin_positions(mount, matter, mesh.position);
+    TriMesh& mesh = skin.mesh;
+    mesh.position = mount.reference;
     mesh.material.resize(2);
     mesh.material[0].name = "boundary";
     mesh.material[1].name = kCutMaterial;
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
         const auto& v = surface.face[f].vertex;
-        // As at rest: what bends keeps its triangles.
         const auto length = [&](int a, int b) {
             return (mount.reference[v[a]] - mount.reference[v[b]]).squaredNorm();
         };
@@ -247,7 +246,7 @@ TriMesh boundary_skin(const Aggregate& matter, const NewLook* look) {
     if (look != nullptr) look->paint(mount.reference, mesh);
     constexpr double kCrease = 0.7;  // [rad]
     smooth_by_crease_angle(mesh, kCrease);
-    return mesh;
+    return skin;
 }
 
 }  // namespace swage

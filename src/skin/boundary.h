@@ -6,13 +6,20 @@
 
 #include "geometry/trimesh.h"
 #include "matter/aggregate.h"
+#include "skin/mount.h"
 #include "skin/new_look.h"
 
 namespace swage {
 
-// Closed and oriented, in the world of now. Looks as `look` has it; without that it has two
-// materials, "boundary" and kCutMaterial, which faces have where matter was severed. Its volume at
-// molding is the matter's. Pieces that hold next to no material are left out.
-TriMesh boundary_skin(const Aggregate& matter, const NewLook* look = nullptr);
+struct BoundarySkin {
+    TriMesh mesh;  // positions at molding
+    Mount mount;
+};
+
+// Closed and oriented. Looks as `look` has it; without that it has two materials, "boundary" and
+// kCutMaterial, which faces have where matter was severed. Its volume at molding is the matter's.
+// Pieces that hold next to no material are left out. Only what hangs together with what counts, not
+// where it is.
+BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look = nullptr);
 
 }  // namespace swage

@@ -6,7 +6,7 @@ namespace swage {
 enum class SkinKind {
     mount,     // trilinear weights with half frames: smooth, second order (the default)
     frame4,    // the paper's frame of four particles (S2.11)
-    boundary,  // made anew from voxels over the particles (S1.12, S1.13)
+    boundary,  // drawn round voxels over the particles, anew once they break (S1.12, S1.13)
 };
 
 // Of a mesh that is divided, over a cell's.

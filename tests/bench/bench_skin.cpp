@@ -72,7 +72,7 @@ int main() {
     const std::pair<const char*, const Aggregate*> bodies[] = {{"block", &matter}, {"ball", &ball}};
     for (const auto& [name, body] : bodies) {
         TriMesh mesh;
-        const double taken = best_milliseconds(5, [&] { mesh = boundary_skin(*body); });
+        const double taken = best_milliseconds(5, [&] { mesh = boundary_skin(*body).mesh; });
         std::printf("boundary of a %s, %zu cells: %zu triangles, %.0f ms, %d threads\n", name,
                     body->cell_fill.size(), mesh.triangle.size(), taken, thread_count());
     }

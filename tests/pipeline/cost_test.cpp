@@ -77,7 +77,7 @@ TEST_CASE("what a boundary's meshes take is told by its cells, not by the mesh t
         scene.output.meshes_per_frame = true;
         const double each = estimate_cost(scene, {input}, options).disk_bytes;
         const TriMesh skin =
-            boundary_skin(mold(input.mesh, scene.body[0].material, scene.body[0].mold));
+            boundary_skin(mold(input.mesh, scene.body[0].material, scene.body[0].mold)).mesh;
         const double vertices = (each - once) / (100 * 400);
         INFO(shape << ": " << vertices << " of " << skin.position.size());
         CHECK(vertices > 0.7 * static_cast<double>(skin.position.size()));

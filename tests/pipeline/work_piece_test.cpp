@@ -5,6 +5,7 @@
 
 #include "geometry/make_shape.h"
 #include "geometry/mesh_write.h"
+#include "geometry/triangle_tree.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 #include "tests/shared/lattice_fixture.h"
@@ -146,7 +147,7 @@ TEST_CASE("a body that is told no start is left as it was molded") {
 TEST_CASE("matter molded anew keeps the size of its cells, whatever its box has become") {
     WorkPiece piece = block({}, SkinKind::mount);
     bend_round(piece.matter);
-    follow_matter(piece, SkinKind::mount);
+    follow_matter(piece);
     BodySpec body;
     body.mold.across = 3;
     const WorkPiece anew = mold_anew(piece, body, {});
@@ -164,7 +165,7 @@ TEST_CASE("matter molded anew is as heavy as it was, pressed together or drawn")
         for (std::size_t p = 0; p < x.size(); ++p) {
             x.set(p, x.at(p).cwiseProduct(Vec3(1, high, 1)));
         }
-        follow_matter(piece, SkinKind::mount);
+        follow_matter(piece);
         piece = mold_anew(piece, body, {});
         CHECK(piece.matter.mass() == Approx(mass).epsilon(1e-6));
     }
@@ -179,7 +180,7 @@ TEST_CASE("a mesh of twelve triangles bends with its matter, and so does what is
         WorkPiece piece = make_work_piece(input, body, {kind});
         CHECK(signed_volume(piece.deformed()) == Approx(0.008));
         bend_round(piece.matter);
-        follow_matter(piece, kind);
+        follow_matter(piece);
         CHECK(signed_volume(piece.deformed()) == Approx(0.008).epsilon(0.02));
         CHECK(mold_anew(piece, body, {kind}).matter.volume() == Approx(0.008).epsilon(0.02));
     }
@@ -283,14 +284,14 @@ TEST_CASE("a painted body that is molded anew keeps its colour, and cut faces ke
     const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
     WorkPiece piece = block({}, kind);
     const Vec3 a(0.01, -1, -1), b(0.01, 1, -1), up(0, 0, 2);
-    if (kind == SkinKind::mount) cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}});
+    cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}});
     test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
     for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
         if (piece.matter.particle_reference.at(p).x() > 0.01) {
             piece.matter.particle_position.add(p, {0.3, 0, 0});
         }
     }
-    show_matter(piece, kind, true);
+    show_matter(piece, true);
     REQUIRE(piece.skin.material.size() == 2);
     BodySpec body;
     body.mold.across = 3;
@@ -326,7 +327,7 @@ TEST_CASE("triangles that a blade tore stay away when the body breaks on, in any
     WorkPiece piece = block({}, kind);
     Aggregate& m = piece.matter;
     break_at(m, -0.09);
-    show_matter(piece, kind, true);
+    show_matter(piece, true);
     REQUIRE(piece.whole_skin);
     // A path with a bend, and one half drawn away from the other.
     const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, 1, -1), up(0, 0, 2);
@@ -335,13 +336,90 @@ TEST_CASE("triangles that a blade tore stay away when the body breaks on, in any
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         if (m.particle_reference.at(p).x() > 0.01) m.particle_position.add(p, {1, 0, 0});
     }
-    show_matter(piece, kind, true);
+    show_matter(piece, true);
     CHECK(longer_than(0.5, piece.skin, piece.position) == 0);
     CHECK(surface_components(piece.skin).count == 3);
     // What the skin is drawn from anew when more breaks still has them.
     break_at(m, 0.09);
     CHECK(longer_than(0.5, *piece.whole_skin, piece.whole_position) > 0);
-    show_matter(piece, kind, true);
+    show_matter(piece, true);
     CHECK(longer_than(0.5, piece.skin, piece.position) == 0);
     CHECK(surface_components(piece.skin).count == 4);
+}
+
+namespace {
+
+// A plane that a blade sweeps, far beyond a block.
+std::vector<std::array<Vec3, 3>> swept(const Vec3& point, const Vec3& normal) {
+    const Vec3 across = normal.unitOrthogonal(), up = normal.cross(across);
+    const auto corner = [&](double u, double v) -> Vec3 { return point + u * across + v * up; };
+    return {{corner(-1, -1), corner(1, -1), corner(1, 1)},
+            {corner(-1, -1), corner(1, 1), corner(-1, 1)}};
+}
+
+}  // namespace
+
+TEST_CASE("a boundary is cut flat along a blade's plane, and goes on as it was beside it") {
+    const bool bent = GENERATE(false, true);
+    WorkPiece piece = block({}, SkinKind::boundary);
+    Aggregate& m = piece.matter;
+    if (bent) bend_round(m);
+    show_matter(piece, false);
+    const TriMesh before = piece.deformed();
+    const TriangleTree outside(before);
+    const Vec3 point = box_of(before.position).center() + Vec3(0.01, 0.02, 0);
+    for (double tilt : {0.2, 0.9}) {
+        INFO(bent << " " << tilt);
+        const Vec3 normal(std::cos(tilt), 0.3 * std::sin(tilt), std::sin(tilt));
+        WorkPiece cut = piece;
+        CHECK(cut_skins(cut, swept(point, normal)).open_parts == 0);
+        test::sever_plane(cut.matter, point, normal);
+        show_matter(cut, true);
+        const TriMesh after = cut.deformed();
+        CHECK(test::is_closed(after));
+        CHECK(surface_components(after).count > 1);
+        CHECK(signed_volume(after) == Approx(signed_volume(before)).epsilon(1e-3));
+        double off_plane = 0, off_surface = 0;
+        for (std::size_t t = 0; t < after.triangle.size(); ++t) {
+            const bool is_cut = after.triangle_material[t] == 1;
+            for (int v : after.triangle[t]) {
+                const Vec3& at = after.position[v];
+                double& off = is_cut ? off_plane : off_surface;
+                off = std::max(off, is_cut ? std::abs(normal.normalized().dot(at - point))
+                                           : outside.distance(at));
+            }
+        }
+        // What is left of a cell is bent otherwise than all of it was.
+        CHECK(off_plane < (bent ? 0.15 : 2e-3) * m.lattice.spacing);
+        CHECK(off_surface < (bent ? 0.15 : 1e-2) * m.lattice.spacing);
+    }
+}
+
+TEST_CASE("a boundary that a blade has cut is made anew once its matter breaks") {
+    WorkPiece piece = block({}, SkinKind::boundary);
+    cut_skins(piece, swept({0.01, 0, 0}, Vec3::UnitX()));
+    test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
+    show_matter(piece, true);
+    CHECK(surface_components(piece.skin).count == 2);
+    break_at(piece.matter, -0.09);
+    show_matter(piece, true);
+    CHECK(surface_components(piece.skin).count == 3);
+    CHECK(test::is_closed(piece.skin));
+    // And what is cut then is severed in it too.
+    cut_skins(piece, swept({0.11, 0, 0}, Vec3::UnitX()));
+    test::sever_plane(piece.matter, {0.11, 0, 0}, Vec3::UnitX());
+    show_matter(piece, true);
+    CHECK(surface_components(piece.skin).count == 4);
+    CHECK(test::is_closed(piece.skin));
+}
+
+TEST_CASE("a boundary is closed where a blade's path bends, and no warning says otherwise") {
+    WorkPiece piece = block({}, SkinKind::boundary);
+    const Vec3 a(0, -1, -1), b(0, 0, -1), c(0.2, 1, -1), up(0, 0, 2);
+    CHECK(!cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}, {b, c, c + up}}).has_curved);
+    test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
+    show_matter(piece, true);
+    CHECK(test::is_closed(piece.skin));
+    CHECK(surface_components(piece.skin).count == 2);
+    CHECK(signed_volume(piece.skin) == Approx(0.008).epsilon(0.01));
 }

@@ -8,6 +8,7 @@
 #include "geometry/edges.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/boundary.h"
 #include "tests/shared/lattice_fixture.h"
 #include "tests/shared/meshes.h"
 
@@ -66,7 +67,7 @@ double cut_area(const TriMesh& mesh) {
 
 TEST_CASE("the boundary of a block of whole cells is the block") {
     const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
-    const TriMesh mesh = boundary_skin(block);
+    const TriMesh mesh = test::boundary_now(block);
     CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(.7 * .4 * .3).epsilon(1e-12));
@@ -77,7 +78,7 @@ TEST_CASE("round shapes get round boundaries of their true volume") {
     const auto [across, volume_bar] =
         GENERATE(table<int, double>({{4, .01}, {8, .003}, {13, .003}}));
     const Aggregate matter = rod(across);
-    const TriMesh mesh = boundary_skin(matter);
+    const TriMesh mesh = test::boundary_now(matter);
     CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(matter.volume()).epsilon(volume_bar));
@@ -99,7 +100,7 @@ TEST_CASE("a box that lies askew in its lattice keeps its sides flat and its edg
             return q.maxCoeff() > 0 ? q.cwiseMax(0.).norm() : q.maxCoeff();
         },
         Vec3::Constant(-1.2), Vec3i::Constant(17), a);
-    const TriMesh mesh = boundary_skin(matter);
+    const TriMesh mesh = test::boundary_now(matter);
     CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     double square = 0;
@@ -128,7 +129,7 @@ TEST_CASE("a box that lies askew in its lattice keeps its sides flat and its edg
 }
 
 TEST_CASE("handles are kept") {
-    const TriMesh mesh = boundary_skin(torus());
+    const TriMesh mesh = test::boundary_now(torus());
     CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 0);
     CHECK(surface_components(mesh).count == 1);
@@ -144,7 +145,7 @@ TEST_CASE("thin sheets keep both sides") {
                 {std::abs(p.x()) - 5.1, std::abs(p.y()) - 4.2, std::abs(p.z()) - thickness / 2});
         },
         Vec3(-6, -5, -.93), Vec3i(12, 10, 2), 1.0);
-    const TriMesh mesh = boundary_skin(sheet);
+    const TriMesh mesh = test::boundary_now(sheet);
     CHECK(test::is_closed(mesh));
     CHECK(euler_number(mesh) == 2);
     CHECK(signed_volume(mesh) == Approx(sheet.volume()).epsilon(.02));
@@ -158,7 +159,7 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
     const Vec3 n = normal.normalized(), point(.0371, .011, -.0083);
     test::sever_plane(matter, point, n);
     REQUIRE(find_pieces(matter).count == 2);
-    TriMesh mesh = boundary_skin(matter);
+    TriMesh mesh = test::boundary_now(matter);
     CHECK(test::is_closed(mesh));
     const Components halves = surface_components(mesh);
     CHECK(halves.count == 2);
@@ -192,7 +193,7 @@ TEST_CASE("a severed body gets two closed surfaces with flat cut faces and all i
         test::deform(matter, [&](const Vec3& p) -> Vec3 {
             return n.dot(p - point) >= 0 ? Vec3(turn * p + Vec3(3, 0, 0)) : p;
         });
-        mesh = boundary_skin(matter);
+        mesh = test::boundary_now(matter);
         REQUIRE(mesh.position.size() == rest.position.size());
         double worst = 0;
         for (std::size_t v = 0; v < rest.position.size(); ++v) {
@@ -222,7 +223,7 @@ TEST_CASE(
     test::deform(matter, [&](const Vec3& p) -> Vec3 {
         return normal.dot(p - point) > 0 ? Vec3(p + Vec3(0, 0, 10)) : p;
     });
-    const TriMesh mesh = boundary_skin(matter);
+    const TriMesh mesh = test::boundary_now(matter);
     CHECK(test::is_closed(mesh));
     CHECK(surface_components(mesh).count == 2);
     double least = 9;
@@ -254,7 +255,7 @@ TEST_CASE("every vertex goes with its own piece, wherever a cut of any shape run
         for (std::size_t p = 0; p < beyond.size(); ++p) {
             if (beyond[p]) body.particle_position.x[p] += 100;
         }
-        const TriMesh mesh = boundary_skin(body);
+        const TriMesh mesh = test::boundary_now(body);
         double longest = 0;
         for (const Corners& t : mesh.triangle) {
             for (int k = 0; k < 3; ++k) {
@@ -271,7 +272,7 @@ TEST_CASE("a body half severed stays in one piece, with a slit") {
     Aggregate matter = test::make_block(16, 6, 6, .1, Material{});
     test::sever_plane(matter, {.03, 0, 0}, Vec3::UnitX(),
                       [](const Vec3& p) { return p.y() > .01; });
-    const TriMesh mesh = boundary_skin(matter);
+    const TriMesh mesh = test::boundary_now(matter);
     CHECK(surface_components(mesh).count == 1);
     CHECK(euler_number(mesh) == 2);
     CHECK(test::is_closed(mesh));
@@ -291,7 +292,7 @@ TEST_CASE("rubble keeps its volume, each piece about its own particles") {
             matter.connection[span.direction].weight.set(span.lower + n, 0);
         }
     }
-    const TriMesh rest = boundary_skin(matter);
+    const TriMesh rest = test::boundary_now(matter);
     int open = 0;  // slits may meet in an edge of four faces
     for_each_edge(edge_uses(rest.triangle, rest.position.size()), [&](auto uses) {
         int balance = 0;
@@ -307,7 +308,7 @@ TEST_CASE("rubble keeps its volume, each piece about its own particles") {
     for (std::size_t p = 0; p < matter.particle_count(); ++p) {
         matter.particle_position.add(p, way[pieces.particle_piece[p]]);
     }
-    const TriMesh scattered = boundary_skin(matter);
+    const TriMesh scattered = test::boundary_now(matter);
     CHECK(signed_volume(scattered) == Approx(signed_volume(rest)).epsilon(1e-9));
     double longest = 0;
     for (const Corners& c : scattered.triangle) {
@@ -326,7 +327,7 @@ TEST_CASE("cells that only touch at an edge or a corner get separate vertices") 
     });
     const Aggregate matter = test::make_matter(Vec3::Zero(), 1, Vec3i(4, 3, 3), cells,
                                                std::vector<float>(cells.size(), 1.f));
-    const TriMesh mesh = boundary_skin(matter);
+    const TriMesh mesh = test::boundary_now(matter);
     CHECK(test::is_closed(mesh));
     CHECK(surface_components(mesh).count == 6);
     CHECK(euler_number(mesh) == 12);
@@ -342,20 +343,20 @@ TEST_CASE("cells that only touch at an edge or a corner get separate vertices") 
 
 TEST_CASE("the boundary keeps its triangles while the body bends") {
     Aggregate matter = rod(4);
-    const TriMesh rest = boundary_skin(matter);
+    const TriMesh rest = test::boundary_now(matter);
     test::deform(matter, [](const Vec3& p) -> Vec3 {
         return {p.x() + p.y() * p.z(), 1.5 * p.y() + 0.3 * p.x() * p.x(), p.z() - 0.4 * p.x()};
     });
-    CHECK(boundary_skin(matter).triangle == rest.triangle);
+    CHECK(test::boundary_now(matter).triangle == rest.triangle);
 }
 
 TEST_CASE("the boundary turns with the body") {
     Aggregate matter = torus();
-    const TriMesh rest = boundary_skin(matter);
+    const TriMesh rest = test::boundary_now(matter);
     const Quat turn(Eigen::AngleAxisd(2.2, Vec3(1, -1, .3).normalized()));
     const auto map = [&](const Vec3& p) -> Vec3 { return turn * p + Vec3(-1, 4, 2); };
     test::deform(matter, map);
-    const TriMesh moved = boundary_skin(matter);
+    const TriMesh moved = test::boundary_now(matter);
     double worst = 0;
     for (std::size_t v = 0; v < rest.position.size(); ++v) {
         worst = std::max(worst, (moved.position[v] - map(rest.position[v])).norm());

@@ -6,11 +6,11 @@
 #include <random>
 
 #include "geometry/box_mesh.h"
-#include "skin/boundary.h"
 #include "skin/cut_mesh.h"
 #include "skin/diced_skin.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/boundary.h"
 #include "tests/shared/lattice_fixture.h"
 #include "tests/shared/meshes.h"
 
@@ -88,7 +88,7 @@ Fixture ball() {
     const double a = 1.0 / 9;
     Aggregate matter = test::make_shape([](const Vec3& p) { return p.norm() - .5; },
                                         Vec3::Constant(-.5 - .07 * a), Vec3i::Constant(10), a);
-    TriMesh mesh = boundary_skin(matter);
+    TriMesh mesh = test::boundary_now(matter);
     return {std::move(matter), std::move(mesh)};
 }
 

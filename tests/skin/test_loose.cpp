@@ -5,10 +5,10 @@
 #include <random>
 
 #include "geometry/mesh_check.h"
-#include "skin/boundary.h"
 #include "skin/mount.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/boundary.h"
 #include "tests/shared/lattice_fixture.h"
 
 using namespace swage;
@@ -51,7 +51,7 @@ TEST_CASE("the skin of a ball pressed flat keeps its volume, though slivers are 
     const int across = GENERATE(6, 12, 20);
     const double driven = GENERATE(0., .1, .5, 1.);
     Aggregate matter = ball(across);
-    TriMesh skin = boundary_skin(matter);
+    TriMesh skin = test::boundary_now(matter);
     const double volume = signed_volume(skin);
     const std::vector<Vec3> rest = skin.position;
     const Mount mount = mount_mesh(rest, matter, SkinKind::mount);
@@ -62,7 +62,7 @@ TEST_CASE("the skin of a ball pressed flat keeps its volume, though slivers are 
     const double most = std::min(driven, .15) / across;
     CHECK(largest_gap(skin.position, rest, press) < most + 1e-13);
     CHECK(signed_volume(skin) == Approx(volume).epsilon(driven == 0 ? 1e-12 : .003));
-    skin = boundary_skin(matter);
+    skin = test::boundary_now(matter);
     CHECK(largest_gap(skin.position, rest, press) < most + 1e-13);
     CHECK(signed_volume(skin) == Approx(volume).epsilon(.003));  // its squares are split anew
 }
@@ -78,7 +78,7 @@ TEST_CASE("a ball's skin follows what is quadratic exactly, what is not with the
     for (int across : {8, 16}) {
         for (const Map& map : {Map(quadratic), Map(wave)}) {
             Aggregate matter = ball(across);
-            const std::vector<Vec3> rest = boundary_skin(matter).position;
+            const std::vector<Vec3> rest = test::boundary_now(matter).position;
             const Mount mount = mount_mesh(rest, matter, SkinKind::mount);
             test::deform(matter, map);
             std::vector<Vec3> now;

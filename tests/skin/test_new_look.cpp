@@ -7,10 +7,10 @@
 #include <tuple>
 
 #include "geometry/box_mesh.h"
-#include "skin/boundary.h"
 #include "skin/cut_mesh.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/boundary.h"
 #include "tests/shared/lattice_fixture.h"
 
 using namespace swage;
@@ -61,7 +61,7 @@ TriMesh textured_box(const Aggregate& block) {
 TEST_CASE("a boundary made anew keeps the mesh's texture, materials and colours, seams too") {
     const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
     const NewLook look(textured_box(block));
-    const TriMesh mesh = boundary_skin(block, &look);
+    const TriMesh mesh = test::boundary_now(block, &look);
     REQUIRE(mesh.material.size() == 6);
     REQUIRE(mesh.part_name.size() == 2);
     double worst = 0, off = 0;
@@ -86,7 +86,7 @@ TEST_CASE("a boundary made anew keeps the mesh's texture, materials and colours,
 TEST_CASE("faces of a boundary share their places in the texture, all but across seams") {
     const Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
     const NewLook look(textured_box(block));
-    const TriMesh mesh = boundary_skin(block, &look);
+    const TriMesh mesh = test::boundary_now(block, &look);
     std::set<std::tuple<int, double, double>> different;
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         for (int c = 0; c < 3; ++c) {
@@ -135,7 +135,7 @@ TEST_CASE("faces across a seam take nothing of the picture that belongs to no si
     }
     halves.part_name.clear();
     const NewLook look(halves);
-    const TriMesh anew = boundary_skin(block, &look);
+    const TriMesh anew = test::boundary_now(block, &look);
     const auto is_pictured = [&](const Vec2& at) {
         for (const Corners& uv : halves.triangle_uv) {
             const Vec2 a = halves.uv[uv[0]], u = halves.uv[uv[1]] - a, v = halves.uv[uv[2]] - a;
@@ -156,9 +156,9 @@ TEST_CASE("faces across a seam take nothing of the picture that belongs to no si
 TEST_CASE("a texture stays where it was on matter that has moved") {
     Aggregate block = test::make_block(7, 4, 3, 0.1, Material{});
     const NewLook look(textured_box(block));
-    const TriMesh before = boundary_skin(block, &look);
+    const TriMesh before = test::boundary_now(block, &look);
     test::deform(block, [](const Vec3& x) { return Vec3(2 * x.y(), x.x() + x.z(), -x.z()); });
-    const TriMesh after = boundary_skin(block, &look);
+    const TriMesh after = test::boundary_now(block, &look);
     double worst = 0;
     for (std::size_t t = 0; t < after.triangle.size(); ++t) {
         for (int c = 0; c < 3; ++c) {
@@ -174,7 +174,7 @@ TEST_CASE("faces of a cut have a material of their own and no texture") {
     Aggregate block = test::make_block(8, 4, 4, 0.1, Material{});
     const NewLook look(textured_box(block));
     test::sever_plane(block, {0.03, 0, 0}, Vec3::UnitX());
-    const TriMesh mesh = boundary_skin(block, &look);
+    const TriMesh mesh = test::boundary_now(block, &look);
     double area = 0;
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         const auto& [a, b, c] = mesh.triangle[t];
@@ -211,7 +211,7 @@ TEST_CASE("a cut face looks as most of the mesh does, whichever material comes f
 
     test::sever_plane(block, {0.03, 0, 0}, Vec3::UnitX());
     const NewLook look(mesh);
-    TriMesh anew = boundary_skin(block, &look);
+    TriMesh anew = test::boundary_now(block, &look);
     std::stable_sort(anew.triangle_material.begin(), anew.triangle_material.end());
     CHECK(is_plastic(anew));
 
@@ -219,7 +219,7 @@ TEST_CASE("a cut face looks as most of the mesh does, whichever material comes f
     for (int materials : {1, 0}) {
         mesh.material.resize(materials);
         mesh.triangle_material.clear();
-        const TriMesh plain = boundary_skin(block, std::make_unique<NewLook>(mesh).get());
+        const TriMesh plain = test::boundary_now(block, std::make_unique<NewLook>(mesh).get());
         CHECK(plain.material.size() == 2);
         CHECK(plain.material[1].name == kCutMaterial);
     }
@@ -268,7 +268,7 @@ TEST_CASE("a mesh's own material that is called as that of cut faces stays its o
         CHECK(is_new == (mounted.triangle_material[t] == 6));
     }
     test::sever_plane(block, {0.03, 0, 0}, Vec3::UnitX());
-    const TriMesh anew = boundary_skin(block, std::make_unique<NewLook>(mesh).get());
+    const TriMesh anew = test::boundary_now(block, std::make_unique<NewLook>(mesh).get());
     CHECK(anew.material.size() == mesh.material.size() + 1);
     CHECK(anew.material[0].color == mesh.material[0].color);
     CHECK(anew.material[6].color != mesh.material[0].color);
