@@ -40,7 +40,8 @@ Distance distance_by_entry(const Shape& shape, const EntryReach& reach, const Ve
         const Vec3 way = now - from;
         goes_on = is_inside ? way.dot(nearest.normal) <= 0 : way.norm() < thin;
         if (!goes_on) entry = met_on_the_way(shape, from, now);
-        goes_on = goes_on || entry.normal.isZero(0);
+        // Out again on the side where it came in, as past a bend of the surface, it is not through.
+        goes_on = goes_on || nearest.normal.dot(entry.normal) >= 0;
     }
     if (!goes_on) {
         const double depth = entry.normal.dot(now) - entry.offset;

@@ -124,3 +124,20 @@ TEST_CASE("a point is held by the side of a tool that it came in by, until it ha
     // From the left it is the other side.
     CHECK(at({-0.01, 0, 0}, {0.003, 0, 0}).value == Approx(-0.008));
 }
+
+TEST_CASE(
+    "a point whose way cuts a bend of a tool, and ends outside on that side, does not touch it") {
+    const Shape wire = CylinderShape{0.01, 1};
+    const EntryReach reach{0.0125, 0.1};
+    const double high = 0.0095, wide = 0.0035;  // its ends lie outside, its middle inside
+    ToolEntry entry;
+    const Vec3 from(-wide, high, 0), now(wide, high, 0);
+    REQUIRE(distance_to(wire, now).value > 0);
+    REQUIRE(distance_to(wire, {0, high, 0}).value < 0);
+    const double far = 8;  // times as long, as of what went on along the tool
+    const Distance d = distance_by_entry(wire, reach, Vec3(-far * wide, high, 0), now, entry);
+    CHECK(d.value == Approx(distance_to(wire, now).value));
+    CHECK(entry.normal.isZero());
+    // All through it, it does.
+    CHECK(distance_by_entry(wire, reach, {0, 0.02, 0}, {0, -0.02, 0}, entry).value < 0);
+}
