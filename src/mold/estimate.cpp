@@ -125,7 +125,7 @@ MoldEstimate estimate_mold(const TriMesh& mesh, const MoldSettings& settings) {
 
 void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings) {
     const MoldEstimate e = estimate_mold(mesh, settings);
-    const Vec3 count = cells_over(surface_box(mesh), e.spacing);
+    const Vec3 count = cells_over(surface_box(mesh), spacing_for(mesh, settings));
     const double cells = count.prod();
     const double gib = 1024.0 * 1024.0 * 1024.0;
     // Ids have 31 bits.

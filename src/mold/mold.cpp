@@ -46,13 +46,15 @@ void fill_cells(const std::vector<CellLayer>& layers, const MoldFrame& frame, Ag
             matter.cell_fill.push_back(static_cast<float>(s.fill));
         }
     }
-    matter.lattice = make_lattice(frame.origin, frame.spacing, frame.cell_count, site);
+    matter.lattice = make_lattice(frame.lattice_origin(), frame.spacing, frame.cell_count, site);
 }
 
-void place_particles(const MoldFrame& frame, Aggregate& matter) {
+void place_particles(Aggregate& matter) {
     std::size_t count = 0;
     for (const ParticleRun& run : matter.lattice.particle_run) count += run.count;
-    matter.particle_reference = ReferencePlaces(frame.origin, frame.step, matter.lattice);
+    const Lattice& lattice = matter.lattice;
+    matter.particle_reference =
+        ReferencePlaces(lattice.origin, Vec3::Constant(lattice.spacing), lattice);
     matter.particle_position = matter.particle_reference.all();
     matter.particle_velocity.resize(count);
     matter.particle_mass.assign(count, 0.0);
@@ -184,10 +186,10 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     matter.material = material;
     fill_cells(layers, frame, matter);
     if (matter.cell_fill.empty()) refuse_thin(2 * volume / area, spacing);
-    place_particles(frame, matter);
+    place_particles(matter);
     place_insets(insets, layers, frame, matter, findings);
     share_out(layers, frame, matter);
-    match_moments(frame.step, matter);
+    match_moments(matter);
     matter.surface = carry_patches(layers, matter.lattice, matter.cell_fill);
     tell_findings(mesh, frame, volume, layers, lost, matter, findings);
     return matter;

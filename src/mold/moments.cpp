@@ -47,8 +47,8 @@ struct Part {
 };
 
 template <typename Act>
-void for_each_part(const Aggregate& matter, const Vec3& step, const Act& act) {
-    const double volume = step.prod();
+void for_each_part(const Aggregate& matter, const Act& act) {
+    const double volume = matter.lattice.cell_volume();
     for (const CellRun& run : matter.lattice.cell_run) {
         for (int n = 0; n < run.count; ++n) {
             const CellId cell = run.first + n;
@@ -71,10 +71,10 @@ void for_each_part(const Aggregate& matter, const Vec3& step, const Act& act) {
 
 // What lies off the cell's middle by d along an axis is taken
 // to fill what is left symmetrically about it, 1 - 2 |d|: so it is where cells are cut along it.
-Moments part_moments(const Vec3& cell_middle, const Vec3& step, const Vec3& offset,
+Moments part_moments(const Vec3& cell_middle, double spacing, const Vec3& offset,
                      const Scale& scale) {
-    Moments m = monomials(scale(cell_middle + offset.cwiseProduct(step)));
-    const Vec3 width = (Vec3::Ones() - 2 * offset.cwiseAbs()).cwiseProduct(step);
+    Moments m = monomials(scale(cell_middle + spacing * offset));
+    const Vec3 width = spacing * (Vec3::Ones() - 2 * offset.cwiseAbs());
     m.segment<3>(4) += width.cwiseQuotient(scale.half).cwiseAbs2() / 12;
     return m;
 }
@@ -110,10 +110,10 @@ void carry(const Lattice& lattice, const Fluxes& flux, const std::vector<double>
 }
 
 // What each cell holds goes to where it lies, its weights linear in the place.
-void carry_to_centroids(const Vec3& step, const std::vector<double>& least, Aggregate& matter) {
+void carry_to_centroids(const std::vector<double>& least, Aggregate& matter) {
     Fluxes flux;
     for (auto& along : flux) along.assign(matter.particle_count(), 0.0);
-    for_each_part(matter, step, [&](const CellRun& run, int n, const Part& part) {
+    for_each_part(matter, [&](const CellRun& run, int n, const Part& part) {
         for (int c = 0; c < 8; ++c) {
             const ParticleId p = run.row[c >> 1] + n + (c & 1);
             for (int axis = 0; axis < 3; ++axis) {
@@ -162,12 +162,14 @@ Moments correction(const MomentMatrix& slope, const Moments& missing) {
 
 }  // namespace
 
-void match_moments(const Vec3& step, Aggregate& matter) {
+void match_moments(Aggregate& matter) {
+    const double spacing = matter.lattice.spacing;
+
     std::vector<double> least, most;
     for (double m : matter.particle_mass) {
         least.push_back(kLeastMass * m), most.push_back(kMostMass * m);
     }
-    carry_to_centroids(step, least, matter);
+    carry_to_centroids(least, matter);
     sharpen(least, matter);
 
     const std::size_t count = matter.particle_count();
@@ -176,9 +178,9 @@ void match_moments(const Vec3& step, Aggregate& matter) {
     const Scale scale{box.center(), 0.5 * (box.high - box.low)};
     const auto at = [&](std::size_t p) { return monomials(scale(matter.particle_position.at(p))); };
     Moments wanted = Moments::Zero();
-    for_each_part(matter, step, [&](const CellRun& run, int n, const Part& part) {
-        const Vec3 low = matter.particle_position.at(run.row[0] + n);
-        wanted += part.mass * part_moments(low + 0.5 * step, step, part.centroid, scale);
+    for_each_part(matter, [&](const CellRun& run, int n, const Part& part) {
+        const Vec3 middle = matter.particle_position.at(run.row[0] + n).array() + 0.5 * spacing;
+        wanted += part.mass * part_moments(middle, spacing, part.centroid, scale);
     });
     const double mass = wanted[0];
     Moments q = Moments::Zero();

@@ -12,7 +12,7 @@ namespace swage {
 // its second moments (so all moments of inertia) are the material's. Each particle keeps between
 // kLeastMass and kMostMass (moments.cpp) of what it had, so that steps stay long: what would need
 // more, mostly bodies of one or two cells, comes as near as that lets it. Call once after molding,
-// with all particles where they were molded. `step`: a cell's width along x, y, z [m].
-void match_moments(const Vec3& step, Aggregate& matter);
+// with all particles where they were molded.
+void match_moments(Aggregate& matter);
 
 }  // namespace swage

@@ -86,6 +86,29 @@ TEST_CASE("sides known only to single precision still hold whole cells") {
     for (float fill : matter.cell_fill) CHECK(fill == 1.0f);
 }
 
+TEST_CASE(
+    "what a file rounds off makes no other cells, does not strain them and weighs what it does") {
+    const Aggregate exact = mold_across(box_mesh({0, 0, 0}, {1, 1. / 3, 1. / 3}), 4);
+    for (const Vec3& side :
+         {Vec3(1, 0.333333, 0.333333), Vec3(1, 0.333334, 0.33333), Vec3(1.0001, 1. / 3, 0.33335)}) {
+        const Aggregate matter = mold_across(box_mesh({0, 0, 0}, side), 4);
+        const double a = matter.lattice.spacing;
+        REQUIRE(matter.lattice.cell_count == exact.lattice.cell_count);
+        for (float fill : matter.cell_fill) CHECK(fill == 1.0f);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 all = matter.lattice.cell_count.cast<double>() * a;
+            const Vec3 span = matter.particle_position.at(matter.particle_count() - 1) -
+                              matter.particle_position.at(0);
+            CHECK(span[axis] == Approx(all[axis]).epsilon(1e-14));
+        }
+        CHECK(matter.mass() == Approx(1000 * side.prod()).epsilon(1e-12));
+        CHECK((matter.centre() - 0.5 * side).norm() < 1e-12);
+    }
+    // What is meant is not taken for that.
+    CHECK(mold_across(box_mesh({0, 0, 0}, {1.001, 1. / 3, 1. / 3}), 4).lattice.cell_count.x() ==
+          13);
+}
+
 TEST_CASE("the mold is the same at any number of threads") {
     const TriMesh mesh = moved(knot_mesh(200, 20), some_turn());
     set_thread_count(1);
