@@ -1,37 +1,43 @@
 #version 330 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Takes out the 4 by 4 pattern of the pass before: the mean over 4 by 4 pixels. Where some of these
-// are on another surface, which would leave teeth of the pattern along its edge: the value here of
-// the plane that fits those of 8 by 8 which are on the same, the near ones best.
+// are on another surface, as depth or slant tells, which would leave teeth of the pattern along its
+// edge: the value here of the plane that fits those of 8 by 8 which are on the same, the near ones
+// best.
 #include "frame.glsl"
 #include "packing.glsl"
 uniform sampler2D visibility;
 layout(location = 0) out vec4 blurred;
 
-vec3 at(ivec2 texel) {
+Seen at(ivec2 texel) {
     ivec2 last = ivec2(half_size.xy) - 1;
-    return unpacked_visibility(texelFetch(visibility, clamp(texel, ivec2(0), last), 0));
+    return unpacked_seen(texelFetch(visibility, clamp(texel, ivec2(0), last), 0));
 }
 
-// The surface's slope in depth: of the two sides the flatter.
-float flatter(float before, float center, float after) {
-    float down_to = center - before, up_to = after - center;
-    return abs(up_to) < abs(down_to) ? up_to : down_to;
+// The surface's slope in depth: of the two sides that on the same face, or the flatter.
+float slope(Seen before, Seen center, Seen after) {
+    float down_to = center.depth - before.depth, up_to = after.depth - center.depth;
+    float up_differs = 1.0 - same_side(after.slant, center.slant);
+    float down_differs = 1.0 - same_side(before.slant, center.slant);
+    bool up = abs(up_to) + lens.w * up_differs < abs(down_to) + lens.w * down_differs;
+    return up ? up_to : down_to;
 }
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    vec3 center = at(here);
+    Seen center = at(here);
     vec2 rise =
-        vec2(flatter(at(here - ivec2(1, 0)).z, center.z, at(here + ivec2(1, 0)).z),
-             flatter(at(here - ivec2(0, 1)).z, center.z, at(here + ivec2(0, 1)).z));
-    float narrow = 1.0 / (0.008 * center.z);
+        vec2(slope(at(here - ivec2(1, 0)), center, at(here + ivec2(1, 0))),
+             slope(at(here - ivec2(0, 1)), center, at(here + ivec2(0, 1))));
+    // On a steep surface depth tells little.
+    float narrow = 1.0 / (0.008 * center.depth + abs(rise.x) + abs(rise.y));
     vec3 sum = vec3(0.0);
     for (int n = 0; n < 16; ++n) {
         ivec2 off = ivec2(n & 3, n >> 2) - 1;
-        vec3 v = at(here + off);
-        float same = max(0.0, 1.0 - narrow * abs(v.z - center.z - dot(rise, vec2(off))));
-        sum += same * vec3(v.xy, 1.0);
+        Seen v = at(here + off);
+        float same = max(0.0, 1.0 - narrow * abs(v.depth - center.depth - dot(rise, vec2(off)))) *
+                     same_side(v.slant, center.slant);
+        sum += same * vec3(v.visible, 1.0);
     }
     vec2 value = sum.xy / sum.z;
 
@@ -42,16 +48,17 @@ void main() {
     int count = sum.z < 14.0 ? 64 : 0;  // a loop of no turns costs less than a branch
     for (int n = 0; n < count; ++n) {
         ivec2 off = ivec2(n & 7, n >> 3) - 3;
-        vec3 v = at(here + off);
+        Seen v = at(here + off);
         vec2 p = vec2(off);
-        float same = max(0.0, 1.0 - narrow * abs(v.z - center.z - dot(rise, p)));
+        float same = max(0.0, 1.0 - narrow * abs(v.depth - center.depth - dot(rise, p))) *
+                     same_side(v.slant, center.slant);
         float weight = same * exp(-0.12 * dot(p, p));
         one += weight;
         place += weight * p;
         square += weight * vec3(p.x * p.x, p.x * p.y, p.y * p.y);
-        all += weight * v.xy;
-        with_x += weight * p.x * v.xy;
-        with_y += weight * p.y * v.xy;
+        all += weight * v.visible;
+        with_x += weight * p.x * v.visible;
+        with_y += weight * p.y * v.visible;
     }
     if (count > 0) {
         // About the mean place; slopes are drawn to none where hardly anything tells them.
@@ -64,5 +71,5 @@ void main() {
         vec2 slope_y = (spread.x * on_y - spread.y * on_x) / determinant;
         value = clamp(mean_value - slope_x * mean.x - slope_y * mean.y, 0.0, 1.0);
     }
-    blurred = packed_visibility(value, center.z);
+    blurred = packed_seen(Seen(value, center.depth, center.slant));
 }

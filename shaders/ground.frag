@@ -10,9 +10,9 @@ in vec3 position;
 layout(location = 0) out vec4 pixel_color;
 
 void main() {
-    float depth = -(view_from_stage * vec4(position, 1.0)).z;
-    vec2 seen = visibility_at(gl_FragCoord.xy, depth);
     vec3 up = vec3(0.0, 1.0, 0.0);
+    float depth = -(view_from_stage * vec4(position, 1.0)).z;
+    vec2 seen = visibility_at(gl_FragCoord.xy, depth, up);
     vec3 from_key = KEY * max(key.y, 0.0), from_rest = ambient(up);
     vec3 share = (from_key * seen.y + from_rest * seen.x) / (from_key + from_rest);
     float distance2 = dot(position.xz, position.xz);

@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Occlusion, shadow and depth in four bytes, which a software sampler reads several times as fast
-// as four floats: depth takes two of them, as a share of the far end.
-vec4 packed_visibility(vec2 visible, float depth) {
-    float steps = clamp(depth / lens.w, 0.0, 1.0) * 65535.0;
-    float high = floor(steps / 256.0);
-    return vec4(visible, high / 255.0, floor(steps - 256.0 * high) / 255.0);
+// What is known of a half-size pixel, in four numbers of 16 bits, which a software sampler reads
+// faster than four floats: occlusion, shadow, depth as a share of the far end, and slant. Of a
+// normal on the side that is looked at, what it leans across the view tells it from others.
+struct Seen {
+    vec2 visible;
+    float depth;
+    vec2 slant;
+};
+
+vec4 packed_seen(Seen seen) {
+    vec2 byte = floor(255.0 * clamp(0.5 + 0.5 * seen.slant, 0.0, 1.0) + 0.5);
+    return vec4(seen.visible, seen.depth / lens.w, (256.0 * byte.x + byte.y) / 65535.0);
 }
 
-// Occlusion, shadow, depth.
-vec3 unpacked_visibility(vec4 bytes) {
-    return vec3(bytes.xy, (bytes.z * 65280.0 + bytes.w * 255.0) * (lens.w / 65535.0));
+Seen unpacked_seen(vec4 v) {
+    float both = v.w * (65535.0 / 256.0), high = floor(both + 0.5 / 256.0);
+    vec2 byte = vec2(high, 256.0 * (both - high));
+    return Seen(v.xy, v.z * lens.w, byte * (2.0 / 255.0) - 1.0);
+}
+
+// 1 on one face, also where it curves by 20 degrees; 0 beyond a hard edge, of 40 or more.
+float same_side(vec2 a, vec2 b) {
+    vec2 d = a - b;
+    return clamp(1.5 - 3.5 * dot(d, d), 0.0, 1.0);
 }

@@ -37,7 +37,7 @@ void main() {
     vec3 v = normalize(eye.xyz - position);
     float nv = max(dot(n, v), 0.02);
     float depth = -(view_from_stage * vec4(position, 1.0)).z;
-    vec2 seen = visibility_at(gl_FragCoord.xy, depth);
+    vec2 seen = visibility_at(gl_FragCoord.xy, depth, n);
 
     vec3 f0 = mix(vec3(0.04), base, metallic);
     vec3 matt = base * (1.0 - metallic);

@@ -105,6 +105,7 @@ void main() {
     vec3 p = view_position(gl_FragCoord.xy, here.w);
     float turn = pattern();
     vec3 at = (stage_from_view * vec4(p, 1.0)).xyz;
-    visibility = packed_visibility(vec2(occlusion(p, here.xyz, turn),
-                                        lit(at, mat3(stage_from_view) * here.xyz, turn)), here.w);
+    vec2 visible = vec2(occlusion(p, here.xyz, turn),
+                        lit(at, mat3(stage_from_view) * here.xyz, turn));
+    visibility = packed_seen(Seen(visible, here.w, here.xy));
 }

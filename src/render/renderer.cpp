@@ -102,8 +102,8 @@ struct Renderer::Parts {
           shadow(make_target(gl, kShadowMapSide, kShadowMapSide, {.depth_texture = true})),
           half(make_target(gl, (settings.width + 1) / 2, (settings.height + 1) / 2,
                            {.color = GL_RGBA32F, .depth_buffer = true})) {
-        visibility = make_target(gl, half.width, half.height, {.color = GL_RGBA8});
-        blurred = make_target(gl, half.width, half.height, {.color = GL_RGBA8});
+        visibility = make_target(gl, half.width, half.height, {.color = GL_RGBA16});
+        blurred = make_target(gl, half.width, half.height, {.color = GL_RGBA16});
         plain = make_target(gl, settings.width, settings.height,
                             {.color = GL_RGBA8, .depth_buffer = true});
         const Vec3 back = camera.at(0).world_from_view.col(2);

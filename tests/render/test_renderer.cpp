@@ -6,36 +6,15 @@
 #include <fstream>
 #include <thread>
 
-#include "base/error.h"
 #include "base/srgb.h"
-#include "geometry/shape.h"
 #include "render/draw_mesh.h"
 #include "render/png.h"
-#include "render/renderer.h"
-#include "tests/catch.h"
+#include "tests/render/drawn.h"
 
 using namespace swage;
 namespace fs = std::filesystem;
 
 namespace {
-
-RenderSettings small_picture() {
-    RenderSettings settings;
-    settings.width = 160;
-    settings.height = 120;
-    settings.camera[0].elevation = 0.6;
-    return settings;
-}
-
-const Box kAction = {{-1, 0, -1}, {1, 1, 1}};
-
-SurfaceMaterial colored(const Vec3& color) {
-    SurfaceMaterial material;
-    material.color = color;
-    return material;
-}
-
-TriMesh box_mesh(double side) { return surface_of(BoxShape{Vec3::Constant(side), 0.02 * side}); }
 
 // A square in the plane z = 0 that faces +z, with texture coordinates 0 to 1.
 TriMesh square(double side) {
@@ -48,33 +27,10 @@ TriMesh square(double side) {
     return mesh;
 }
 
-double brightness(const Image& image, int x, int y) {
-    const std::uint8_t* p = image.pixel(x, y);
-    return (p[0] + p[1] + p[2]) / 3.0;
-}
-
 double mean_difference(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i) sum += std::abs(a.rgb[i] - b.rgb[i]);
     return sum / static_cast<double>(a.rgb.size());
-}
-
-Image drawn(const RenderSettings& settings, const std::vector<DrawItem>& items, double ground = 0,
-            const Box& action = kAction) {
-    Renderer renderer(settings, action, ground);
-    return renderer.draw({items, 0});
-}
-
-bool can_draw(GlProviderKind kind) {
-    RenderSettings settings = small_picture();
-    settings.gl = kind;
-    try {
-        Renderer renderer(settings, kAction, 0);
-        return true;
-    } catch (const Error& error) {
-        WARN("skipped: " << error.what());
-        return false;
-    }
 }
 
 }  // namespace
@@ -93,7 +49,7 @@ TEST_CASE("OSMesa and EGL draw the same picture", "[renderer]") {
 }
 
 TEST_CASE("the same picture twice has the same bytes, in any thread", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const TriMesh box = box_mesh(0.8);
     const std::vector<DrawItem> items = {{&box, nullptr, {Quat::Identity(), {0, 0.5, 0}}, {}}};
     const Image here = drawn(small_picture(), items);
@@ -103,7 +59,7 @@ TEST_CASE("the same picture twice has the same bytes, in any thread", "[renderer
 }
 
 TEST_CASE("a picture of nothing is a smooth backdrop", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     for (const bool ground : {false, true}) {
         RenderSettings settings = small_picture();
         settings.ground = ground;
@@ -119,66 +75,8 @@ TEST_CASE("a picture of nothing is a smooth backdrop", "[renderer]") {
     CHECK(nowhere.draw({}).rgb.size() == 160u * 120u * 3u);
 }
 
-TEST_CASE("a body throws a shadow on the ground", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
-    const TriMesh box = box_mesh(0.4);
-    RenderSettings settings = small_picture();
-    settings.camera[0].elevation = 1.2;
-    const Image without = drawn(settings, {});
-    const Image with =
-        drawn(settings, {{&box, nullptr, {Quat::Identity(), {0, 0.2, 0}}, colored({1, 1, 1})}});
-    int darker = 0, brighter_ground = 0;
-    for (int y = 0; y < with.height; ++y) {
-        for (int x = 0; x < with.width; ++x) {
-            const double change = brightness(with, x, y) - brightness(without, x, y);
-            if (change < -25) ++darker;
-            if (change > 1 && (x < 30 || x > 130)) ++brighter_ground;
-        }
-    }
-    CHECK(darker > 100);
-    CHECK(brighter_ground == 0);  // and nothing else changes the ground
-}
-
-TEST_CASE("a shadow has no teeth along the edge of what throws it", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
-    // A red board, aslant in the picture, a little above the ground.
-    const TriMesh board = surface_of(BoxShape{Vec3(2, 0.1, 0.4), 0});
-    RenderSettings settings = small_picture();
-    settings.width = 640, settings.height = 480;
-    settings.camera[0].azimuth = GENERATE(0.2, 0.4, 0.7);
-    settings.camera[0].elevation = 0.3;
-    const Image image =
-        drawn(settings, {{&board, nullptr, {Quat::Identity(), {0, 0.06, 0}}, colored({1, 0, 0})}});
-    const auto is_ground = [&](int x, int y) {
-        const std::uint8_t* p = image.pixel(x, y);
-        return p[0] < p[2] + 20;
-    };
-    // The front edge, a straight line through where the ground begins in each column.
-    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (int x = 200; x < 440; ++x) {
-        int y = image.height - 1;
-        while (y > 0 && is_ground(x, y)) --y;
-        n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
-    }
-    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx), start = (sy - slope * sx) / n;
-    const auto below_edge = [&](int x) {
-        const double y = start + slope * x + 4;
-        const int row = static_cast<int>(y);
-        REQUIRE(is_ground(x, row));
-        return brightness(image, x, row) * (row + 1 - y) +
-               brightness(image, x, row + 1) * (y - row);
-    };
-    // What neighbours along the edge do not share.
-    double rough = 0;
-    for (int x = 203; x < 437; ++x) {
-        rough += std::abs(below_edge(x) - 0.5 * (below_edge(x - 3) + below_edge(x + 3))) / 234;
-    }
-    INFO("rough by " << rough << " of 255");
-    CHECK(rough < 0.9);
-}
-
 TEST_CASE("an endless floor has no edge, and takes shadows as the ground does", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const TriMesh box = box_mesh(0.4), slab = surface_of(BoxShape{Vec3(60, 0.2, 60), 0});
     RenderSettings settings = small_picture();
     settings.camera[0].elevation = 0.2;
@@ -214,7 +112,7 @@ TEST_CASE("an endless floor has no edge, and takes shadows as the ground does", 
 }
 
 TEST_CASE("a texture's colours come through as if the surface had them", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const fs::path file = fs::temp_directory_path() / fmt::format("swage_{}.png", ::getpid());
     RenderSettings settings = small_picture();
     settings.camera[0] = {};
@@ -252,7 +150,7 @@ TEST_CASE("a texture's colours come through as if the surface had them", "[rende
 }
 
 TEST_CASE("a texture stands upright", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const fs::path file = fs::temp_directory_path() / fmt::format("swage_up_{}.png", ::getpid());
     Image texture{64, 64, {}};  // red over blue
     for (int i = 0; i < 64 * 64; ++i) {
@@ -274,7 +172,7 @@ TEST_CASE("a texture stands upright", "[renderer]") {
 }
 
 TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const TriMesh mesh = square(1);
     SurfaceMaterial broken = colored({0.8, 0.3, 0.1});
     broken.texture = "/no/such/picture.png";
@@ -287,7 +185,7 @@ TEST_CASE("a missing texture leaves the plain colour", "[renderer]") {
 }
 
 TEST_CASE("faces without texture coordinates have the plain colour", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     RenderSettings settings = small_picture();
     settings.camera[0].azimuth = settings.camera[0].elevation = 0;
     const Box action = {{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.1}};
@@ -310,7 +208,7 @@ TEST_CASE("faces without texture coordinates have the plain colour", "[renderer]
 }
 
 TEST_CASE("both sides of a surface are lit", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     TriMesh front = square(1), back = front;
     for (Corners& t : back.triangle) std::swap(t[0], t[1]);
     back.uv.clear();
@@ -327,7 +225,7 @@ TEST_CASE("both sides of a surface are lit", "[renderer]") {
 }
 
 TEST_CASE("a body inside out beside a larger one is not drawn hollow", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const auto boxes = [](bool inside_out) {
         TriMesh mesh = box_mesh(0.8);
         const TriMesh beside = box_mesh(0.4);
@@ -349,7 +247,7 @@ TEST_CASE("a body inside out beside a larger one is not drawn hollow", "[rendere
 }
 
 TEST_CASE("colours of positions are shown", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     TriMesh mesh = square(1);
     mesh.position_color.assign(4, Eigen::Vector3f(0.1f, 0.6f, 0.2f));
     const Image a = drawn(small_picture(), {{&mesh, nullptr, {}, colored({1, 1, 1})}});
@@ -365,7 +263,7 @@ TEST_CASE("colours of positions are shown", "[renderer]") {
 
 TEST_CASE("given positions are drawn instead of the mesh's own, picture after picture",
           "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const TriMesh mesh = box_mesh(0.5);
     Renderer renderer(small_picture(), kAction, 0);
     const auto picture_at = [&](double x) {
@@ -389,7 +287,7 @@ TEST_CASE("given positions are drawn instead of the mesh's own, picture after pi
 }
 
 TEST_CASE("size and place in the world do not change the picture", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const auto picture = [](double scale, const Vec3& at) {
         TriMesh mesh = box_mesh(0.8 * scale);
         for (Vec3& p : mesh.position) p += at + Vec3(0, 0.45 * scale, 0);
@@ -411,7 +309,7 @@ TEST_CASE("size and place in the world do not change the picture", "[renderer]")
 }
 
 TEST_CASE("the camera's keys move the picture", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const TriMesh mesh = box_mesh(0.6);
     RenderSettings settings = small_picture();
     settings.camera = {{0, 0.0, 0.4, 1, {}, {}}, {1, 0.7, 0.4, 1, {}, {}}};
@@ -423,7 +321,7 @@ TEST_CASE("the camera's keys move the picture", "[renderer]") {
 }
 
 TEST_CASE("many triangles are smoothed afterwards and look the same from afar", "[renderer]") {
-    if (!can_draw(GlProviderKind::automatic)) return;
+    if (!can_draw()) return;
     const auto sheet = [](int n) {
         TriMesh mesh;
         for (int i = 0; i <= n; ++i) {

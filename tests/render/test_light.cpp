@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shadow and occlusion, as the pictures show them.
+#include "tests/render/drawn.h"
+
+using namespace swage;
+
+TEST_CASE("a body throws a shadow on the ground", "[renderer]") {
+    if (!can_draw()) return;
+    const TriMesh box = box_mesh(0.4);
+    RenderSettings settings = small_picture();
+    settings.camera[0].elevation = 1.2;
+    const Image without = drawn(settings, {});
+    const Image with =
+        drawn(settings, {{&box, nullptr, {Quat::Identity(), {0, 0.2, 0}}, colored({1, 1, 1})}});
+    int darker = 0, brighter_ground = 0;
+    for (int y = 0; y < with.height; ++y) {
+        for (int x = 0; x < with.width; ++x) {
+            const double change = brightness(with, x, y) - brightness(without, x, y);
+            if (change < -25) ++darker;
+            if (change > 1 && (x < 30 || x > 130)) ++brighter_ground;
+        }
+    }
+    CHECK(darker > 100);
+    CHECK(brighter_ground == 0);  // and nothing else changes the ground
+}
+
+TEST_CASE("a shadow has no teeth along the edge of what throws it", "[renderer]") {
+    if (!can_draw()) return;
+    // A red board, aslant in the picture, a little above the ground.
+    const TriMesh board = surface_of(BoxShape{Vec3(2, 0.1, 0.4), 0});
+    RenderSettings settings = small_picture();
+    settings.width = 640, settings.height = 480;
+    settings.camera[0].azimuth = GENERATE(0.2, 0.4, 0.7);
+    settings.camera[0].elevation = 0.3;
+    const Image image =
+        drawn(settings, {{&board, nullptr, {Quat::Identity(), {0, 0.06, 0}}, colored({1, 0, 0})}});
+    const auto is_ground = [&](int x, int y) {
+        const std::uint8_t* p = image.pixel(x, y);
+        return p[0] < p[2] + 20;
+    };
+    // The front edge, a straight line through where the ground begins in each column.
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (int x = 200; x < 440; ++x) {
+        int y = image.height - 1;
+        while (y > 0 && is_ground(x, y)) --y;
+        n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+    }
+    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx), start = (sy - slope * sx) / n;
+    const auto below_edge = [&](int x) {
+        const double y = start + slope * x + 4;
+        const int row = static_cast<int>(y);
+        REQUIRE(is_ground(x, row));
+        return brightness(image, x, row) * (row + 1 - y) +
+               brightness(image, x, row + 1) * (y - row);
+    };
+    // What neighbours along the edge do not share.
+    double rough = 0;
+    for (int x = 203; x < 437; ++x) {
+        rough += std::abs(below_edge(x) - 0.5 * (below_edge(x - 3) + below_edge(x + 3))) / 234;
+    }
+    INFO("rough by " << rough << " of 255");
+    CHECK(rough < 0.9);
+}
+
+TEST_CASE("a face in shadow casts no teeth over a hard edge on a lit one", "[renderer]") {
+    if (!can_draw()) return;
+    // The side's shade begins a column beside the lit front; the edge runs aslant through pixels.
+    const TriMesh cube = surface_of(BoxShape{Vec3(1, 1, 1), 0});
+    RenderSettings settings = small_picture();
+    settings.width = 640, settings.height = 480;
+    settings.camera[0].azimuth = GENERATE(0.3, 0.45, 0.6);
+    settings.camera[0].elevation = 0.5;
+    const Image image = drawn(
+        settings, {{&cube, nullptr, {Quat::Identity(), {-0.3, 0.5, 0}}, colored({0.8, 0.8, 0.8})}});
+    double most = 0;
+    int rows = 0;
+    for (int y = 210; y < 310; ++y) {
+        const auto drop = [&](int x) {
+            return brightness(image, x, y) - brightness(image, x + 2, y);
+        };
+        int edge = 150;
+        for (int x = 150; x < 490; ++x) {
+            if (drop(x) > drop(edge)) edge = x;
+        }
+        if (drop(edge) < 20) continue;
+        ++rows;
+        for (int off = 2; off < 6; ++off) {
+            most =
+                std::max(most, brightness(image, edge - 12, y) - brightness(image, edge - off, y));
+        }
+    }
+    INFO("darker by up to " << most << " of 255 in " << rows << " rows");
+    CHECK(rows > 60);
+    CHECK(most < 3);
+}
