@@ -31,9 +31,10 @@ void main() {
              slope(at(here - ivec2(0, 1)), center, at(here + ivec2(0, 1))));
     // On a steep surface depth tells little.
     float narrow = 1.0 / (0.008 * center.depth + abs(rise.x) + abs(rise.y));
+    int pace = pattern_step();
     vec3 sum = vec3(0.0);
     for (int n = 0; n < 16; ++n) {
-        ivec2 off = ivec2(n & 3, n >> 2) - 1;
+        ivec2 off = (ivec2(n & 3, n >> 2) - 1) * pace;
         Seen v = at(here + off);
         float same = max(0.0, 1.0 - narrow * abs(v.depth - center.depth - dot(rise, vec2(off)))) *
                      same_side(v.slant, center.slant);
@@ -47,10 +48,10 @@ void main() {
     vec3 square = vec3(0.0);  // xx, xy, yy
     int count = sum.z < 14.0 ? 64 : 0;  // a loop of no turns costs less than a branch
     for (int n = 0; n < count; ++n) {
-        ivec2 off = ivec2(n & 7, n >> 3) - 3;
+        ivec2 place_in_pattern = ivec2(n & 7, n >> 3) - 3, off = place_in_pattern * pace;
         Seen v = at(here + off);
-        vec2 p = vec2(off);
-        float same = max(0.0, 1.0 - narrow * abs(v.depth - center.depth - dot(rise, p))) *
+        vec2 p = vec2(place_in_pattern);
+        float same = max(0.0, 1.0 - narrow * abs(v.depth - center.depth - dot(rise, vec2(off)))) *
                      same_side(v.slant, center.slant);
         float weight = same * exp(-0.12 * dot(p, p));
         one += weight;

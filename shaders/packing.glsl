@@ -19,6 +19,10 @@ Seen unpacked_seen(vec4 v) {
     return Seen(v.xy, v.z * lens.w, byte * (2.0 / 255.0) - 1.0);
 }
 
+// How far apart the pixels of one pattern stand. A large picture is looked at as a whole: there the
+// mean over them is taken as wide as in a small one, or single samples show as streaks.
+int pattern_step() { return half_size.y < 720.0 ? 1 : half_size.y < 1440.0 ? 2 : 4; }
+
 // 1 on one face, also where it curves by 20 degrees; 0 beyond a hard edge, of 40 or more.
 float same_side(vec2 a, vec2 b) {
     vec2 d = a - b;

@@ -23,7 +23,7 @@ vec3 view_position(vec2 pixel, float depth) {
 }
 
 float pattern() {
-    ivec2 p = ivec2(gl_FragCoord.xy) & 3;
+    ivec2 p = ivec2(gl_FragCoord.xy) / pattern_step() & 3;
     int x = p.x ^ p.y;
     return (float((x & 1) << 3 | (p.y & 1) << 2 | (x & 2) | (p.y & 2) >> 1) + 0.5) / 16.0;
 }
@@ -36,7 +36,7 @@ vec2 first_direction(float turn) { return vec2(cos(2.0 * PI * turn), sin(2.0 * P
 
 float occlusion(vec3 p, vec3 n, float turn) {
     // Reach in pixels; bounded, so that a near view stays fast.
-    float pixels = min(REACH / (p.z * -lens.y) * 0.5 * half_size.y, 90.0);
+    float pixels = min(REACH / (p.z * -lens.y) * 0.5, 0.25) * half_size.y;
     float sum = 0.0;
     vec2 direction = first_direction(turn);
     ivec2 last = ivec2(half_size.xy) - 1;

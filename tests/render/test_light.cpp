@@ -93,3 +93,32 @@ TEST_CASE("a face in shadow casts no teeth over a hard edge on a lit one", "[ren
     CHECK(rows > 60);
     CHECK(most < 3);
 }
+
+TEST_CASE("a large picture is shaded as a small one", "[renderer]") {
+    if (!can_draw()) return;
+    const TriMesh board = surface_of(BoxShape{Vec3(1, 0.05, 1), 0});
+    const auto picture = [&](int scale) {
+        RenderSettings settings = small_picture();
+        settings.width = 200 * scale, settings.height = 150 * scale;
+        settings.camera[0].zoom = 2;
+        const SurfaceMaterial white = colored({0.8, 0.8, 0.8});
+        const Quat on_edge(Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitX()));
+        return drawn(settings, {{&board, nullptr, {Quat::Identity(), {0, 0.3, 0}}, white},
+                                {&board, nullptr, {on_edge, {0, 0.5, -0.3}}, white}});
+    };
+    const int scale = 12;
+    const Image small = picture(1), large = picture(scale);
+    double apart = 0;
+    for (int y = 2; y < small.height - 2; ++y) {
+        for (int x = 2; x < small.width - 2; ++x) {
+            double sum = 0;
+            for (int i = 0; i < scale * scale; ++i) {
+                sum += brightness(large, scale * x + i % scale, scale * y + i / scale);
+            }
+            apart += std::abs(sum / (scale * scale) - brightness(small, x, y));
+        }
+    }
+    apart /= (small.width - 4.0) * (small.height - 4.0);
+    INFO("apart by " << apart << " of 255");
+    CHECK(apart < 1);
+}
