@@ -138,6 +138,16 @@ bool paint_by_faces(RawMesh& raw) {
     return true;
 }
 
+// Of each material, whether any of its corners has a colour: where a file gives them to some of its
+// surfaces alone, the corners of the others are white.
+std::vector<char> takes_colors(const RawMesh& raw) {
+    std::vector<char> takes(raw.material.size(), 0);
+    for (std::size_t t = 0; t < raw.triangle_material.size(); ++t)
+        for (const int i : raw.triangle[t])
+            takes[raw.triangle_material[t]] |= raw.color[i] != Eigen::Vector3f::Ones();
+    return takes;
+}
+
 // Polygons numbered from 0 without gaps, in order.
 std::vector<int> renumbered(std::vector<int> polygon) {
     int next = -1, last = -1;
@@ -172,25 +182,38 @@ TriMesh weld(RawMesh& raw) {
     const std::vector<int> number = number_equal(key, count);
     std::vector<int> place(used.size(), -1);
     mesh.position.resize(count);
+    std::vector<char> takes;
     if (!raw.color.empty()) {
+        // Where a surface without colours meets one that has them, the latter's count.
+        takes = takes_colors(raw);
+        std::vector<char> counts(used.size(), raw.triangle_material.empty());
+        for (std::size_t t = 0; t < raw.triangle_material.size(); ++t)
+            if (takes[raw.triangle_material[t]])
+                for (const int i : raw.triangle[t]) counts[i] = 1;
         std::vector<int> first(count, -1);
-        std::vector<char> jumps(count, 0);
-        for (std::size_t i = 0; i < kept.size(); ++i) {
-            int& known = first[number[i]];
-            if (known < 0) known = kept[i];
-            jumps[number[i]] |= raw.color[known] != raw.color[kept[i]];
-        }
+        std::vector<char> differs(count, 0), jumps(count, 0);
+        for (const bool counting : {true, false})
+            for (std::size_t i = 0; i < kept.size(); ++i) {
+                if (counts[kept[i]] != counting) continue;
+                int& known = first[number[i]];
+                if (known < 0) known = kept[i];
+                differs[number[i]] |= raw.color[known] != raw.color[kept[i]];
+                if (counting) jumps[number[i]] = differs[number[i]];
+            }
         const auto places = std::count(jumps.begin(), jumps.end(), 1);
-        if (places > 0 && !paint_by_faces(raw))
+        const bool painted =
+            std::count(differs.begin(), differs.end(), 1) > 0 && paint_by_faces(raw);
+        if (painted) takes.clear();
+        if (places > 0 && !painted)
             raw.finding.push_back(fmt::format(
                 "at {} of {} vertices its colours jump from face to face: one of them was taken",
                 places, count));
+        if (!painted)
+            for (const int i : first) mesh.position_color.push_back(raw.color[i]);
     }
-    if (!raw.color.empty()) mesh.position_color.resize(count);
-    for (std::size_t i = kept.size(); i-- > 0;) {  // backwards: the first of equals wins
+    for (std::size_t i = 0; i < kept.size(); ++i) {
         place[kept[i]] = number[i];
         mesh.position[number[i]] = {key[i][0], key[i][1], key[i][2]};
-        if (!raw.color.empty()) mesh.position_color[number[i]] = raw.color[kept[i]];
     }
     mesh.triangle = std::move(raw.triangle);
     for (Corners& t : mesh.triangle)
@@ -205,8 +228,10 @@ TriMesh weld(RawMesh& raw) {
     mesh.triangle_material = std::move(raw.triangle_material);
     mesh.triangle_part = std::move(raw.triangle_part);
     mesh.part_name = std::move(raw.part_name);
-    for (RawMaterial& m : raw.material) {
+    for (std::size_t i = 0; i < raw.material.size(); ++i) {
+        RawMaterial& m = raw.material[i];
         SurfaceMaterial material;
+        material.takes_colors = takes.empty() || takes[i];
         material.name = std::move(m.name);
         material.color = m.color;
         material.roughness = m.roughness;

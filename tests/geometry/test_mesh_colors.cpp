@@ -298,3 +298,26 @@ TEST_CASE("an OFF's values stand in the order that Geomview gives them") {
     CHECK_THROWS_WITH(read("OFF BINARY\n"), Catch::Contains("binary OFF is not read"));
     CHECK_THROWS_WITH(read("NOFF\n3 1 0\n0 0 0 1\n"), Catch::Contains("vertex 0 has 4 values"));
 }
+
+TEST_CASE("a surface without colours leaves no white on the seam with one that has them") {
+    const Folder folder;
+    const std::string plain = "v 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n",
+                      colored = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 0\n";
+    for (const bool first : {false, true}) {
+        std::vector<std::string> finding;
+        const TriMesh mesh = read_mesh(
+            folder.write("a.obj", (first ? colored : plain) + "usemtl " + (first ? "c" : "p") +
+                                      "\nf 1 2 3 4\n" + (first ? plain : colored) + "usemtl " +
+                                      (first ? "p" : "c") + "\nf 5 6 7 8\n"),
+            {}, &finding);
+        REQUIRE(mesh.position.size() == 6);
+        REQUIRE(mesh.position_color.size() == 6);
+        for (std::size_t i = 0; i < 6; ++i) {
+            const Vec3& p = mesh.position[i];
+            if (p.x() == 1) CHECK(mesh.position_color[i].x() == 0);
+            if (p.x() == 2) CHECK(mesh.position_color[i] == Eigen::Vector3f::Ones());
+        }
+        REQUIRE(mesh.material.size() == 2);
+        for (const SurfaceMaterial& m : mesh.material) CHECK(m.takes_colors == (m.name == "c"));
+    }
+}
