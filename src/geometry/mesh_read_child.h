@@ -65,7 +65,7 @@ struct RawMesh {
     std::vector<Corners> triangle, triangle_uv, triangle_normal;
     std::vector<int> polygon, triangle_material, triangle_part;
     // Faces of one number are smooth with each other, those of 0 with none. Empty: nobody said.
-    // Normals, where all corners have them, say more.
+    // Normals, where a triangle's corners all have them, say more.
     std::vector<int> triangle_smooth;
     std::vector<RawMaterial> material;
     std::vector<std::string> part_name;

@@ -245,7 +245,7 @@ void check_raw(const RawMesh& mesh) {
         fail(ExitCode::mesh, "a coordinate of {:g} m is beyond all sense", largest);
     if (box.size().norm() < kSmallest)
         fail(ExitCode::mesh, "the whole mesh is only {:g} m large", box.size().norm());
-    // Normals only sort corners into groups: any value will do there.
+    // Of normals only those that are numbers count.
     for (const Vec2& t : mesh.uv)
         if (!t.allFinite()) fail(ExitCode::mesh, "a texture coordinate is not finite");
     for (const auto& c : mesh.color)

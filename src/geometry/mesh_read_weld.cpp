@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 #include "base/srgb.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
 #include "geometry/mesh_read_child.h"
 
 namespace swage {
@@ -45,26 +47,112 @@ std::vector<int> number_equal(const std::vector<Key>& key, int& count) {
     return number;
 }
 
-// Corners at one place whose normals agree share a group. False when a corner has no normal.
-bool smooth_by_normals(const RawMesh& raw, TriMesh& mesh) {
-    if (raw.triangle_normal.empty()) return false;
+constexpr double kSameNormal = 2e-4;  // apart at most: files round to four places
+constexpr double kOwnNormal = 1e-3;   // apart at least, from what the faces tell: about 0.06 deg
+constexpr double kMostTurnedAway = 0.25;  // of the corners of a surface, or its normals are junk
+
+// Of the corners of a triangle; false where one has none, or zero, or no number.
+bool take_normals(const RawMesh& raw, std::size_t t, std::array<Vec3, 3>& normal) {
+    for (int k = 0; k < 3; ++k) {
+        const int n = raw.triangle_normal[t][k];
+        if (n < 0) return false;
+        normal[k] = raw.normal[n].cast<double>().stableNormalized();
+        if (!(normal[k].squaredNorm() > 0.5)) return false;
+    }
+    return true;
+}
+
+// Across an edge normals may differ by rounding, and have fallen to either side of a step of it.
+void unite_by_normals(TriMesh& mesh, const std::vector<Vec3>& normal) {
+    DisjointSets sets(normal.size());
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        for (std::size_t i = 1; i < uses.size(); ++i)
+            for (const bool low : {true, false}) {
+                const auto group_of = [&](const EdgeUse& use) {
+                    const int k = use.forward == low ? use.side : (use.side + 1) % 3;
+                    return mesh.triangle_smooth[use.triangle][k];
+                };
+                const int a = group_of(uses[i - 1]), b = group_of(uses[i]);
+                if (a != b && !normal[a].isZero() && (normal[a] - normal[b]).norm() < kSameNormal)
+                    sets.unite(a, b);
+            }
+    });
+    std::vector<int> group;
+    mesh.smooth_group_count = sets.number_sets(group);
+    for (Corners& c : mesh.triangle_smooth)
+        for (int& g : c) g = group[g];
+}
+
+// What a file's normals are (one a group, zero for none) stays, unless it is what the faces tell
+// anyhow. None that looks into its faces, and none of a surface of which many do.
+void keep_own_normals(TriMesh& mesh, const std::vector<Vec3>& given) {
+    const std::vector<Vec3> made = smooth_normals(mesh, mesh.position);
+    const Components surface = surface_components(mesh);
+    std::vector<std::size_t> corners(surface.count, 0), away(surface.count, 0);
+    const auto each_corner = [&](const auto& act) {
+        for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+            for (const int g : mesh.triangle_smooth[t])
+                if (given[g] != Vec3::Zero()) act(g, surface.triangle_component[t]);
+    };
+    each_corner([&](int g, int s) {
+        ++corners[s];
+        away[s] += given[g].dot(made[g]) <= 0;
+    });
+    std::vector<Vec3> own(given.size(), Vec3::Zero());
+    bool any = false;
+    each_corner([&](int g, int s) {
+        if (given[g].dot(made[g]) <= 0 ||
+            static_cast<double>(away[s]) > kMostTurnedAway * static_cast<double>(corners[s]))
+            return;
+        own[g] = given[g];
+        any = any || (given[g] - made[g]).norm() > kOwnNormal;
+    });
+    if (any) mesh.smooth_normal = std::move(own);
+}
+
+// Corners at one place whose normals agree share a group. Triangles without normals have it as they
+// would in a file that gives none.
+void smooth(const RawMesh& raw, TriMesh& mesh) {
+    const std::size_t count = raw.triangle_normal.size();
+    std::vector<std::array<Vec3, 3>> normal(count);
+    std::vector<char> has_normals(mesh.triangle.size(), 0);
+    for (std::size_t t = 0; t < count; ++t) has_normals[t] = take_normals(raw, t, normal[t]);
+    const auto with = std::count(has_normals.begin(), has_normals.end(), 1);
+    if (with < static_cast<std::ptrdiff_t>(mesh.triangle.size())) {
+        if (raw.triangle_smooth.empty()) {
+            smooth_by_crease_angle(mesh);
+        } else {
+            smooth_by_face_groups(mesh, raw.triangle_smooth);
+        }
+    }
+    if (with == 0) return;
     std::vector<std::array<int, 4>> key;
     key.reserve(3 * mesh.triangle.size());
-    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
-        for (int k = 0; k < 3; ++k) {
-            const int n = raw.triangle_normal[t][k];
-            if (n < 0) return false;
-            const Vec3 normal = raw.normal[n].cast<double>().stableNormalized();
-            if (!(normal.squaredNorm() > 0.5)) return false;  // zero, or not a number
-            key.push_back({mesh.triangle[t][k], static_cast<int>(std::lround(normal.x() * 1000)),
-                           static_cast<int>(std::lround(normal.y() * 1000)),
-                           static_cast<int>(std::lround(normal.z() * 1000))});
-        }
-    const std::vector<int> group = number_equal(key, mesh.smooth_group_count);
     mesh.triangle_smooth.resize(mesh.triangle.size());
     for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            if (!has_normals[t]) {
+                key.push_back({-1, mesh.triangle_smooth[t][k], 0, 0});
+                continue;
+            }
+            const auto step = [&](int axis) {
+                return static_cast<int>(std::lround(normal[t][k][axis] * 1000));
+            };
+            key.push_back({mesh.triangle[t][k], step(0), step(1), step(2)});
+        }
+    const std::vector<int> group = number_equal(key, mesh.smooth_group_count);
+    std::vector<Vec3> given(mesh.smooth_group_count, Vec3::Zero());
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         mesh.triangle_smooth[t] = {group[3 * t], group[3 * t + 1], group[3 * t + 2]};
-    return true;
+        for (int k = 0; k < 3 && has_normals[t]; ++k) given[group[3 * t + k]] = normal[t][k];
+    }
+    unite_by_normals(mesh, given);
+    given.assign(mesh.smooth_group_count, Vec3::Zero());
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3 && has_normals[t]; ++k)
+            given[mesh.triangle_smooth[t][k]] += normal[t][k];
+    for (Vec3& n : given) n = n.stableNormalized();
+    keep_own_normals(mesh, given);
 }
 
 // Texture coordinates of split vertices: corners at one place with equal values share an entry.
@@ -242,12 +330,7 @@ TriMesh weld(RawMesh& raw) {
                 std::make_shared<const std::string>(std::move(m.texture_bytes));
         mesh.material.push_back(std::move(material));
     }
-    if (smooth_by_normals(raw, mesh)) return mesh;
-    if (raw.triangle_smooth.empty()) {
-        smooth_by_crease_angle(mesh);
-    } else {
-        smooth_by_face_groups(mesh, raw.triangle_smooth);
-    }
+    smooth(raw, mesh);
     return mesh;
 }
 

@@ -43,13 +43,30 @@ EdgeCount count_edges(const TriMesh& mesh) {
     return count;
 }
 
+// Normals that groups were given look out of triangles that were turned over, too.
+void turn_normals(TriMesh& mesh) {
+    std::vector<Vec3>& normal = mesh.smooth_normal;
+    if (normal.empty()) return;
+    std::vector<Vec3> out(mesh.smooth_group_count, Vec3::Zero());
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (const int g : mesh.triangle_smooth[t])
+            out[g] += area_vector(mesh.position, mesh.triangle[t]);
+    for (std::size_t g = 0; g < normal.size(); ++g)
+        if (normal[g].dot(out[g]) < 0) normal[g] = -normal[g];
+}
+
 class Repairer {
   public:
-    explicit Repairer(const TriMesh& input) : mesh_(input) {
-        mesh_.smooth_normal.clear();  // triangles may be turned over
-    }
+    explicit Repairer(const TriMesh& input) : mesh_(input) {}
 
     Repair run() {
+        Repair repair = repaired();
+        turn_normals(repair.mesh);
+        return repair;
+    }
+
+  private:
+    Repair repaired() {
         if (mesh_.triangle.empty()) fail(ExitCode::mesh, "the mesh has no triangles");
         const double size = box_of(mesh_.position).size().norm();
         const double volume = signed_volume(mesh_);
@@ -79,7 +96,6 @@ class Repairer {
         return {std::move(mesh_), std::move(account_)};
     }
 
-  private:
     void say(std::string sentence) { account_.push_back(std::move(sentence)); }
 
     // Of a mesh that bounds a volume: only where its bodies make that another one than it should be

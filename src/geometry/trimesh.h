@@ -49,7 +49,8 @@ struct TriMesh {
     int smooth_group_count = 0;                   // corners of one group share a shading normal
     std::vector<Corners> triangle_smooth;         // one a triangle: ids of smooth groups
     // Of the first groups: their normal at `position`, where it is not the one that the faces tell
-    // now, as on triangles that were divided or lost a neighbour; of any length, zero for none.
+    // now, as on triangles that were divided or lost a neighbour, or in a file that gives its own;
+    // of any length, zero for none.
     std::vector<Vec3> smooth_normal;
     std::vector<int> triangle_polygon;   // one a triangle: triangles of one polygon (a quad, say)
                                          // are consecutive and share the number
