@@ -155,7 +155,9 @@ class SceneReader {
         say(has_bones_ || scene_.mNumAnimations > 0,
             "bones and animations are not followed: the mesh stands as it was modelled");
         say(has_shapes_, "morph targets were left out");
-        say(more_uv_, "only the first set of texture coordinates was read");
+        say(more_uv_,
+            "of several sets of texture coordinates only the one that the colour's image lies by "
+            "was read");
         say(more_color_, "only the first set of vertex colours was read");
         add_polygons(polygons_, mesh_);
         return std::move(mesh_);
@@ -243,6 +245,19 @@ class SceneReader {
         return from_above * on_image * from_above;
     }
 
+    // The set of texture coordinates that its material's image lies by.
+    unsigned uv_set_of(const aiMesh& mesh) const {
+        int set = 0;
+        if (mesh.mMaterialIndex < scene_.mNumMaterials)
+            for (const aiTextureType type : kColorImages)
+                if (scene_.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_UVWSRC(type, 0), set) ==
+                    AI_SUCCESS)
+                    break;
+        return set > 0 && mesh.HasTextureCoords(static_cast<unsigned>(set))
+                   ? static_cast<unsigned>(set)
+                   : 0;
+    }
+
     void add_mesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& m) {
         if (mesh.mNumFaces == 0 || mesh.mVertices == nullptr) return;
         // Points and lines alone are no part.
@@ -269,7 +284,8 @@ class SceneReader {
             fail(ExitCode::mesh, "more vertices than can be handled");
         // An STL file's normals belong to facets and say nothing about shading.
         const bool has_normal = mesh.HasNormals() && source_.format != MeshFormat::stl;
-        const bool has_uv = mesh.HasTextureCoords(0);
+        const unsigned uv_set = uv_set_of(mesh);
+        const bool has_uv = mesh.HasTextureCoords(uv_set);
         const Eigen::Affine2d on_image = image_from_uv(mesh.mMaterialIndex);
         if (mesh.HasVertexColors(0) && mesh_.color.empty())
             mesh_.color.resize(base, Eigen::Vector3f::Ones());
@@ -285,8 +301,8 @@ class SceneReader {
                     (cofactor * Vec3(n.x, n.y, n.z)).stableNormalized().cast<float>());
             }
             if (has_uv)
-                mesh_.uv.push_back(on_image *
-                                   Vec2(mesh.mTextureCoords[0][v].x, mesh.mTextureCoords[0][v].y));
+                mesh_.uv.push_back(on_image * Vec2(mesh.mTextureCoords[uv_set][v].x,
+                                                   mesh.mTextureCoords[uv_set][v].y));
             if (mesh.HasVertexColors(0)) {
                 const aiColor4D& c = mesh.mColors[0][v];
                 mesh_.color.push_back(light_of(c.r, c.g, c.b).cast<float>());
@@ -362,7 +378,7 @@ class SceneReader {
         if (from.GetTextureCount(aiTextureType_NORMALS) > 0)
             source_.finding.push_back(
                 fmt::format("material '{}': its normal map was left out", to.name));
-        for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+        for (const aiTextureType type : kColorImages) {
             if (from.GetTextureCount(type) == 0) continue;
             if (from.GetTexture(type, 0, &path_) != AI_SUCCESS) continue;
             aiUVTransform transform;
@@ -390,6 +406,9 @@ class SceneReader {
                 fmt::format("material '{}': an uncompressed image was left out", to.name));
         }
     }
+
+    static constexpr aiTextureType kColorImages[] = {aiTextureType_BASE_COLOR,
+                                                     aiTextureType_DIFFUSE};
 
     MeshSource& source_;
     const aiScene& scene_;

@@ -44,6 +44,7 @@ class GltfPatch {
         tell_unlike(Unlike::clamped, "wrapS, wrapT",
                     [&](const Json& material) { return clamps(material); });
         bool changed = decode_names();
+        changed = name_uv_sets() || changed;
         for (const Json& mesh : list_of(document_, "meshes"))
             for (const Json& primitive : list_of(mesh, "primitives")) {
                 const bool packed = has_extension(primitive, kDraco);
@@ -153,6 +154,21 @@ class GltfPatch {
                 std::filesystem::is_regular_file(folder / uri, ignored))
                 continue;
             buffer["uri"] = url_decoded(uri);
+            changed = true;
+        }
+        return changed;
+    }
+
+    // A transform of an image may name another set of texture coordinates than the image does,
+    // which alone assimp looks at.
+    bool name_uv_sets() {
+        const Json::json_pointer image("/pbrMetallicRoughness/baseColorTexture");
+        const auto own = image / "extensions" / "KHR_texture_transform" / "texCoord";
+        bool changed = false;
+        for (std::size_t n = 0; n < list_of(document_, "materials").size(); ++n) {
+            Json& material = document_["materials"][n];
+            if (!material.contains(own)) continue;
+            material[image]["texCoord"] = Json(material[own]);
             changed = true;
         }
         return changed;

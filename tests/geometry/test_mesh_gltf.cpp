@@ -243,3 +243,45 @@ TEST_CASE("instances of a glTF's mesh stand at all their places") {
     CHECK((box.high - Vec3(4, 11, 3)).norm() < 1e-4);  // the last is turned to the left
     CHECK(row.finding.empty());
 }
+
+TEST_CASE("texture coordinates are of the set that a material's image lies by") {
+    const Folder folder;
+    const auto set = [](const char* name, double scale) {
+        return Values{name, 5126, 2, {0, 0, scale, 0, scale, scale, 0, scale}};
+    };
+    const std::string image = R"("index":0)";
+    std::string json, materials;
+    for (const std::string& by :
+         {image, image + R"(,"texCoord":1)",
+          image + R"(,"extensions":{"KHR_texture_transform":{"texCoord":2}})",
+          image + R"(,"texCoord":7)"})
+        materials +=
+            fmt::format(R"({}{{"name":"m","pbrMetallicRoughness":{{"baseColorTexture":{{{}}}}}}})",
+                        materials.empty() ? "" : ",", by);
+    const Document document = document_of(
+        {kSquare, set("TEXCOORD_0", 1), set("TEXCOORD_1", 0.5), set("TEXCOORD_2", 0.25)},
+        R"(,"uri":"data.bin")",
+        R"("textures":[{"source":0}],"images":[{"uri":"a.png"}],"extensionsUsed":
+["KHR_texture_transform"],"materials":[)" +
+            materials + "],");
+    const std::string before = R"("primitives":[)";
+    json = document.json;
+    const std::size_t at = json.find(before) + before.size();
+    const std::string one = json.substr(at, json.find("]}]", at) - at);
+    std::string all;
+    for (int m = 0; m < 4; ++m)
+        all += fmt::format(R"({}{{"material":{},{})", m > 0 ? "," : "", m, one.substr(1));
+    json.replace(at, one.size(), all);
+    folder.write("data.bin", document.bin);
+    folder.write("a.png", "png");
+    const TriMesh mesh = test::read_quietly(folder.write("a.gltf", json));
+    REQUIRE(mesh.triangle.size() == 8);
+    const double scale[] = {1, 0.5, 0.25, 1};
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3& p = mesh.position[mesh.triangle[t][k]];
+            const Vec2& uv = mesh.uv[mesh.triangle_uv[t][k]];
+            const double s = scale[mesh.triangle_material[t]];
+            CHECK((Vec2(uv.x(), 1 - uv.y()) - s * Vec2(p.x(), p.y())).norm() < 1e-6);
+        }
+}
