@@ -118,12 +118,19 @@ class ModelMerge {
         });
         if (!named.empty()) merge(model, named);
         check_places(model);
-        if (!named.empty()) {
-            TextWriter merged;
-            model.print(merged, "", pugi::format_raw);
-            document_.reset();
-            replace_in_zip(source_.bytes, root_, merged.text);
+        std::string merged;
+        if (named.empty()) {
+            merged = contents(root_);
+        } else {
+            TextWriter writer;
+            model.print(writer, "", pugi::format_raw);
+            merged = std::move(writer.text);
         }
+        document_.reset();
+        text_.clear();
+        // Also where nothing was merged: assimp does not read every kind of ZIP file (ZIP64, as
+        // lib3mf writes), and this makes a plain one.
+        replace_in_zip(source_.bytes, root_, merged);
         if (has_beams_) source_.finding.emplace_back("beam lattices were left out");
         return unit_;
     }

@@ -69,6 +69,15 @@ TEST_CASE("a 3MF is scaled by the unit it states, millimetres where it states no
         Catch::Contains("'ell' is no unit of 3MF"));
 }
 
+TEST_CASE("a 3MF is read whatever sizes its archive has room for") {
+    const Folder folder;
+    const auto files = files_of(model("", box_object(1, {1, 2, 3}), kOneItem));
+    const TriMesh plain = test::read_quietly(folder.write("a.3mf", test::zip_of(files)));
+    const TriMesh wide = test::read_quietly(folder.write("b.3mf", test::zip64_of(files)));
+    CHECK(wide.position == plain.position);
+    CHECK(wide.triangle == plain.triangle);
+}
+
 TEST_CASE("parts of a 3MF's model that stand in other files are read from there") {
     const Folder folder;
     // Both files call an object 1; the build names one of them by its file.

@@ -40,4 +40,32 @@ inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>
            raw(static_cast<std::uint32_t>(bytes.size())) + raw<std::uint16_t>(0);
 }
 
+// The same as lib3mf writes it: every size and place is given in 64 bits, in an extra field.
+inline std::string zip64_of(const std::vector<std::pair<std::string, std::string>>& files) {
+    constexpr std::uint32_t kElsewhere = 0xffffffff;
+    std::string bytes, directory;
+    for (const auto& [name, content] : files) {
+        const std::uint64_t size = content.size(), at = bytes.size();
+        const std::string common = raw<std::uint16_t>(45) + raw<std::uint16_t>(0) +
+                                   raw<std::uint16_t>(0) + raw<std::uint32_t>(0x21) +
+                                   raw(crc32(content)) + raw(kElsewhere) + raw(kElsewhere) +
+                                   raw(static_cast<std::uint16_t>(name.size()));
+        const auto extra = [](std::uint16_t length) { return raw<std::uint16_t>(1) + raw(length); };
+        directory += raw<std::uint32_t>(0x02014b50) + raw<std::uint16_t>(45) + common +
+                     raw<std::uint16_t>(28) + std::string(10, '\0') + raw(kElsewhere) + name +
+                     extra(24) + raw(size) + raw(size) + raw(at);
+        bytes += raw<std::uint32_t>(0x04034b50) + common + raw<std::uint16_t>(20) + name +
+                 extra(16) + raw(size) + raw(size) + content;
+    }
+    const std::uint64_t count = files.size(), size = directory.size(), at = bytes.size();
+    const auto short_count = static_cast<std::uint16_t>(count);
+    return bytes + directory + raw<std::uint32_t>(0x06064b50) + raw<std::uint64_t>(44) +
+           raw<std::uint16_t>(45) + raw<std::uint16_t>(45) + raw<std::uint64_t>(0) + raw(count) +
+           raw(count) + raw(size) + raw(at) + raw<std::uint32_t>(0x07064b50) +
+           raw<std::uint32_t>(0) + raw(at + size) + raw<std::uint32_t>(1) +
+           raw<std::uint32_t>(0x06054b50) + raw<std::uint32_t>(0) + raw(short_count) +
+           raw(short_count) + raw(static_cast<std::uint32_t>(size)) + raw(kElsewhere) +
+           raw<std::uint16_t>(0);
+}
+
 }  // namespace swage::test
