@@ -160,6 +160,25 @@ std::vector<Vec2> uv_of_positions(const TriMesh& mesh) {
     return uv;
 }
 
+// Where all corners at a place shade by one normal: that of each place. Empty otherwise, for one of
+// several would round a sharp edge off.
+std::vector<Vec3> normal_of_positions(const TriMesh& mesh) {
+    constexpr double kOneNormal = 0.02;  // [rad]
+    if (mesh.triangle_smooth.empty()) return {};
+    const std::vector<Vec3> of_group = smooth_normals(mesh, mesh.position);
+    std::vector<Vec3> normal(mesh.position.size(), Vec3::Zero());
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            Vec3& known = normal[mesh.triangle[t][k]];
+            const Vec3& here = of_group[mesh.triangle_smooth[t][k]];
+            if (known.isZero()) known = here;
+            if ((known - here).norm() > kOneNormal) return {};
+        }
+    for (Vec3& n : normal)
+        if (n.isZero()) n = Vec3::UnitZ();  // no triangle there
+    return normal;
+}
+
 template <typename T>
 void pack(std::string& bytes, T value) {
     char raw[sizeof(T)];
@@ -276,6 +295,7 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     const bool wide = 2 * most_corners > 255;  // lists count in a byte when they can
     const std::vector<Vec2> uv = uv_of_positions(mesh);
     const bool corner_uv = uv.empty() && !mesh.triangle_uv.empty();
+    const std::vector<Vec3> normal = normal_of_positions(mesh);
 
     std::string bytes = "ply\nformat binary_little_endian 1.0\n";
     std::vector<int> image_of;  // of each material, -1: none
@@ -305,24 +325,29 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     bytes +=
         fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
                     mesh.position.size());
-    if (!uv.empty()) bytes += "property double s\nproperty double t\n";
+    if (!normal.empty()) bytes += "property float nx\nproperty float ny\nproperty float nz\n";
+    // Not `double`, which MeshLab passes over.
+    if (!uv.empty()) bytes += "property float s\nproperty float t\n";
     if (!mesh.position_color.empty())
         bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     const char* count_type = wide ? "uint" : "uchar";
     bytes += fmt::format("element face {}\nproperty list {} int vertex_indices\n", polygons.count(),
                          count_type);
-    if (corner_uv) bytes += fmt::format("property list {} double texcoord\n", count_type);
+    // A whole file of polygons with `float` there MeshLab refuses.
+    const bool single = most_corners <= 3;
+    if (corner_uv)
+        bytes +=
+            fmt::format("property list {} {} texcoord\n", count_type, single ? "float" : "double");
     if (chosen) bytes += "property int texnumber\n";
     bytes += "end_header\n";
 
-    bytes.reserve(bytes.size() + 43 * mesh.position.size() + 8 * polygons.count() +
+    bytes.reserve(bytes.size() + 47 * mesh.position.size() + 8 * polygons.count() +
                   (corner_uv ? 20 : 4) * polygons.corner.size());
     for (std::size_t i = 0; i < mesh.position.size(); ++i) {
         for (int k = 0; k < 3; ++k) pack(bytes, mesh.position[i][k]);
-        if (!uv.empty()) {
-            pack(bytes, uv[i].x());
-            pack(bytes, uv[i].y());
-        }
+        for (int k = 0; k < 3 && !normal.empty(); ++k)
+            pack(bytes, static_cast<float>(normal[i][k]));
+        for (int k = 0; k < 2 && !uv.empty(); ++k) pack(bytes, static_cast<float>(uv[i][k]));
         if (!mesh.position_color.empty())
             for (int k = 0; k < 3; ++k)
                 pack(bytes,
@@ -346,8 +371,12 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
             for (std::size_t i = begin; i < end && given; ++i) {
                 const Vec2& at =
                     mesh.uv[mesh.triangle_uv[polygons.corner[i] / 3][polygons.corner[i] % 3]];
-                pack(bytes, at.x());
-                pack(bytes, at.y());
+                for (int k = 0; k < 2; ++k) {
+                    if (single)
+                        pack(bytes, static_cast<float>(at[k]));
+                    else
+                        pack(bytes, at[k]);
+                }
             }
         }
         if (chosen) pack(bytes, std::int32_t{face_image[p]});

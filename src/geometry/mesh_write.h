@@ -17,10 +17,11 @@ namespace swage {
 // the textures beside it, so that the folder can be moved.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 
-// Binary little-endian PLY in double precision: polygons, colours (8 bit sRGB), texture
-// coordinates at vertices (s, t) when no seam forbids it, else at face corners (texcoord, an empty
-// list where a face has none), names of textures and, where not all faces have the one there is,
-// texnumber (-1: none).
+// Binary little-endian PLY, places in double precision: polygons, normals where the whole surface
+// is smooth (PLY has one a vertex), colours (8 bit sRGB), texture coordinates at vertices (s, t)
+// when no seam forbids it, else at face corners (texcoord, an empty list where a face has none; in
+// double precision beside polygons of more than three), names of textures and, where not all faces
+// have the one there is, texnumber (-1: none).
 void write_ply(const std::filesystem::path& file, const TriMesh& mesh);
 
 // Files that go with a mesh. Those that were not there before go away with it, unless they are to

@@ -133,12 +133,59 @@ TEST_CASE("PLY keeps double precision, polygons, colours and texture seams") {
     TriMesh bare = cube;
     bare.uv.clear(), bare.triangle_uv.clear();
     write_ply(folder / "bare.ply", bare);
-    CHECK(test::bytes_of(folder / "bare.ply").find("property double s") == std::string::npos);
+    CHECK(test::bytes_of(folder / "bare.ply").find("property float s") == std::string::npos);
 
     TriMesh ball = test::ball_mesh(4, 1);  // no seam: coordinates at the vertices
     write_ply(folder / "ball.ply", ball);
-    CHECK(test::bytes_of(folder / "ball.ply").find("property double s") != std::string::npos);
+    CHECK(test::bytes_of(folder / "ball.ply").find("property float s") != std::string::npos);
     CHECK(read_quietly(folder / "ball.ply").triangle == ball.triangle);
+}
+
+TEST_CASE("a PLY has normals where a place shades by one, and none that would round an edge off") {
+    const Folder folder;
+    TriMesh ball = test::ball_mesh(6, 1);
+    smooth_by_crease_angle(ball, 3);
+    // Not what the faces tell.
+    for (const Vec3& n : smooth_normals(ball, ball.position))
+        ball.smooth_normal.push_back((n + Vec3(0, 0, 0.2)).normalized());
+    write_ply(folder / "ball.ply", ball);
+    CHECK(test::bytes_of(folder / "ball.ply").find("property float nz") != std::string::npos);
+    const TriMesh again = read_quietly(folder / "ball.ply");
+    CHECK(check_mesh(again).bounds_a_volume());
+    REQUIRE(again.triangle == ball.triangle);
+    const std::vector<Vec3> was = smooth_normals(ball, ball.position);
+    const std::vector<Vec3> is = smooth_normals(again, again.position);
+    for (std::size_t t = 0; t < ball.triangle.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            CHECK((is[again.triangle_smooth[t][k]] - was[ball.triangle_smooth[t][k]]).norm() <
+                  1e-6);
+
+    TriMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+    smooth_by_crease_angle(box);
+    write_ply(folder / "box.ply", box);
+    CHECK(test::bytes_of(folder / "box.ply").find("nx") == std::string::npos);
+    CHECK(read_quietly(folder / "box.ply").smooth_group_count == box.smooth_group_count);
+}
+
+TEST_CASE("texture coordinates of a PLY are of the precision that MeshLab reads") {
+    const Folder folder;
+    TriMesh cube = read_quietly(folder.write("in.obj", test::cube_obj()));
+    for (Vec2& uv : cube.uv) uv /= 3;
+    TriMesh triangles = cube;
+    triangles.triangle_polygon.clear();
+    const TriMesh ball = test::ball_mesh(4, 1.0 / 3);
+    for (const auto& [mesh, property] :
+         {std::pair(triangles, "float texcoord"), std::pair(ball, "float s"),
+          std::pair(cube, "double texcoord")}) {  // with polygons it refuses the other
+        write_ply(folder / "uv.ply", mesh);
+        CHECK(test::bytes_of(folder / "uv.ply").find(property) != std::string::npos);
+        const TriMesh again = read_quietly(folder / "uv.ply");
+        REQUIRE(again.triangle_uv.size() == mesh.triangle.size());
+        for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+            for (int k = 0; k < 3; ++k)
+                CHECK((again.uv[again.triangle_uv[t][k]] - mesh.uv[mesh.triangle_uv[t][k]]).norm() <
+                      1e-7);
+    }
 }
 
 TEST_CASE("each face of a PLY keeps its texture, and those without have none") {
