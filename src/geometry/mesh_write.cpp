@@ -7,12 +7,15 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <numeric>
 #include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_contents.h"
 #include "base/srgb.h"
+#include "geometry/edges.h"
 #include "geometry/polygon.h"
 
 namespace swage {
@@ -160,6 +163,42 @@ std::vector<Vec2> uv_of_positions(const TriMesh& mesh) {
     return uv;
 }
 
+// Of each part, whether it makes a surface only with others, along edges that it shares with them.
+std::vector<char> parts_of_one_surface(const TriMesh& mesh) {
+    std::vector<char> joined(mesh.part_name.size(), 0);
+    if (mesh.triangle_part.empty() || joined.size() < 2) return joined;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
+        const auto part_of = [&](const EdgeUse& use) { return mesh.triangle_part[use.triangle]; };
+        const int first = part_of(uses[0]);
+        const auto is_other = [&](const EdgeUse& use) { return part_of(use) != first; };
+        if (std::none_of(uses.begin(), uses.end(), is_other)) return;
+        std::map<int, int> open;
+        for (const EdgeUse& use : uses) open[part_of(use)] += use.forward ? 1 : -1;
+        for (const auto& [part, sum] : open) joined.at(part) |= sum != 0;
+    });
+    return joined;
+}
+
+// Each part's polygons together, the parts of one surface before all others: a reader that knows no
+// objects yet (`o`) takes their groups (`g`) for one.
+std::vector<std::size_t> in_order_of_parts(const TriMesh& mesh, const PolygonCorners& polygons,
+                                           const std::vector<char>& joined) {
+    std::vector<std::size_t> order(polygons.count());
+    std::iota(order.begin(), order.end(), 0);
+    if (mesh.triangle_part.empty()) return order;
+    const auto part_of = [&](std::size_t p) {
+        return mesh.triangle_part[polygons.corner[polygons.first[p]] / 3];
+    };
+    std::vector<int> place(mesh.part_name.size(), -1);
+    int next = 1;
+    for (const std::size_t p : order)
+        if (int& at = place.at(part_of(p)); at < 0) at = joined[part_of(p)] ? 0 : next++;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
+        return place[part_of(p)] < place[part_of(q)];
+    });
+    return order;
+}
+
 // Where all corners at a place shade by one normal: that of each place. Empty otherwise, for one of
 // several would round a sharp edge off.
 std::vector<Vec3> normal_of_positions(const TriMesh& mesh) {
@@ -258,12 +297,13 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
     }
 
     const std::vector<std::string> part_name = unique_names(mesh.part_name, "part");
+    const std::vector<char> joined = parts_of_one_surface(mesh);
     int part = -1, material = -1;
-    for (std::size_t p = 0; p < polygons.count(); ++p) {
+    for (const std::size_t p : in_order_of_parts(mesh, polygons, joined)) {
         const int t = polygons.corner[polygons.first[p]] / 3;
         if (!mesh.triangle_part.empty() && mesh.triangle_part[t] != part) {
             part = mesh.triangle_part[t];
-            text.put("o " + part_name.at(part) + "\n");
+            text.put((joined[part] ? "g " : "o ") + part_name.at(part) + "\n");
         }
         if (!mesh.triangle_material.empty() && mesh.triangle_material[t] != material) {
             material = mesh.triangle_material[t];

@@ -13,8 +13,10 @@ namespace swage {
 
 // Wavefront OBJ with everything the mesh holds: polygons, parts, materials, texture coordinates,
 // normals by smooth group, colours as "v x y z r g b" (sRGB). Numbers are the shortest that read
-// back to the same double. With materials, writes the .mtl of the same name and copies of
-// the textures beside it, so that the folder can be moved.
+// back to the same double. A part that is closed by itself is an object (o); those that bound
+// something only together are groups (g) of one, which come first. With materials, writes the .mtl
+// of the same name, and copies of the textures beside it, so that the folder can be
+// moved.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 
 // Binary little-endian PLY, places in double precision: polygons, normals where the whole surface

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts and names in an OBJ, as other programs take them.
+#include <sstream>
+
+#include "geometry/mesh_read.h"
+#include "geometry/mesh_write.h"
+#include "tests/catch.h"
+#include "tests/geometry/mesh_fixtures.h"
+
+namespace swage::test {
+
+namespace {
+
+// A box of each part, from x = `at` on, three long.
+TriMesh boxes_at(const std::vector<double>& at) {
+    TriMesh mesh;
+    for (std::size_t n = 0; n < at.size(); ++n) {
+        append(mesh, box_mesh(Vec3(at[n], 0, 0), Vec3(at[n] + 3, 1 + 0.2 * n, 1 + 0.2 * n)));
+        mesh.part_name.push_back(fmt::format("part {}", n));
+        mesh.triangle_part.resize(mesh.triangle.size(), static_cast<int>(n));
+    }
+    return mesh;
+}
+
+// The words after `o` and `g`, in order, each with its letter.
+std::string statements(const std::string& obj) {
+    std::string all;
+    std::istringstream lines(obj);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("o ") || line.starts_with("g ")) all += line + ";";
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("parts that bound something only together are groups, not objects of their own") {
+    const Folder folder;
+    // The second two cross each other.
+    const Repair repair = repair_mesh(boxes_at({-9, 0, 2}));
+    REQUIRE(told(repair, "united"));
+    write_obj(folder / "a.obj", repair.mesh);
+    CHECK(statements(bytes_of(folder / "a.obj")) == "g part_1;g part_2;o part_0;");
+    const TriMesh read = read_quietly(folder / "a.obj");
+    CHECK(read.part_name == std::vector<std::string>{"part_1", "part_2", "part_0"});
+    CHECK(read.triangle.size() == repair.mesh.triangle.size());
+    CHECK(signed_volume(read) == Approx(signed_volume(repair.mesh)));
+
+    // Closed by themselves they stay objects, also where they touch.
+    write_obj(folder / "b.obj", boxes_at({-9, 0, 3}));
+    CHECK(statements(bytes_of(folder / "b.obj")) == "o part_0;o part_1;o part_2;");
+}
+
+TEST_CASE("an object of an OBJ stands in one place, wherever its triangles are in the mesh") {
+    const Folder folder;
+    TriMesh mesh = boxes_at({0, 9});
+    std::swap(mesh.triangle[3], mesh.triangle[17]);
+    std::swap(mesh.triangle_part[3], mesh.triangle_part[17]);
+    write_obj(folder / "a.obj", mesh);
+    CHECK(statements(bytes_of(folder / "a.obj")) == "o part_0;o part_1;");
+}
+
+}  // namespace swage::test
