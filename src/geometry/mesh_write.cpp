@@ -43,7 +43,7 @@ class Text {
     std::string bytes_;
 };
 
-// One word, for readers that end a name at a blank.
+// One word, for readers that end a name at a blank, of a file (MeshLab) as of a material.
 std::string plain_name(const std::string& name, const char* otherwise) {
     std::string plain = name.empty() ? otherwise : name;
     for (char& c : plain)
@@ -91,7 +91,7 @@ std::vector<std::string> copy_textures(const fs::path& file,
                 fail(ExitCode::output, "{}: the texture {} cannot be read", file.string(),
                      m.texture.string());
             bytes = std::move(*image);
-            wanted = m.texture.filename().string();
+            wanted = plain_name(m.texture.filename().string(), "texture");
         } else {
             names.emplace_back();
             continue;
@@ -101,8 +101,9 @@ std::vector<std::string> copy_textures(const fs::path& file,
     return names;
 }
 
-void write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& material,
-               const std::vector<std::string>& name, FilesBeside& beside) {
+// Returns the name of the library beside `file`: the file's own, but one word.
+std::string write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& material,
+                      const std::vector<std::string>& name, FilesBeside& beside) {
     const std::vector<std::string> image = copy_textures(file, material, beside);
     std::string text;
     for (std::size_t i = 0; i < material.size(); ++i) {
@@ -115,7 +116,12 @@ void write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& materia
         if (!image[i].empty()) text += "map_Kd " + image[i] + "\n";
         text += "\n";
     }
-    beside.write(file, text);
+    const fs::path library = fs::path(file).replace_extension(".mtl");
+    const std::string own = library.filename().string(), plain = plain_name(own, "material");
+    // Another mesh may be called by that word.
+    if (plain != own) return beside.add(file.parent_path(), plain, text);
+    beside.write(library, text);
+    return own;
 }
 
 void check_indices(const fs::path& file, const TriMesh& mesh) {
@@ -264,9 +270,7 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
     if (!mesh.material.empty()) {
         for (const SurfaceMaterial& m : mesh.material) material_name.push_back(m.name);
         material_name = unique_names(material_name, "material");
-        const fs::path library = fs::path(file).replace_extension(".mtl");
-        write_mtl(library, mesh.material, material_name, beside);
-        text.put("mtllib " + library.filename().string() + "\n");
+        text.put("mtllib " + write_mtl(file, mesh.material, material_name, beside) + "\n");
     }
     for (std::size_t i = 0; i < mesh.position.size(); ++i) {
         text.put("v");

@@ -15,7 +15,7 @@ namespace swage {
 // normals by smooth group, colours as "v x y z r g b" (sRGB). Numbers are the shortest that read
 // back to the same double. A part that is closed by itself is an object (o); those that bound
 // something only together are groups (g) of one, which come first. With materials, writes the .mtl
-// of the same name, and copies of the textures beside it, so that the folder can be
+// of the same name, without blanks, and copies of the textures beside it, so that the folder can be
 // moved.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 

@@ -59,4 +59,28 @@ TEST_CASE("an object of an OBJ stands in one place, wherever its triangles are i
     CHECK(statements(bytes_of(folder / "a.obj")) == "o part_0;o part_1;");
 }
 
+TEST_CASE("files that an OBJ names have no blanks in their names") {
+    const Folder folder;
+    std::filesystem::create_directory(folder / "out");
+    TriMesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+    box.material.resize(1);
+    box.material[0].name = "ash wood";
+    box.material[0].texture = folder.write("my image.png", "image");
+    box.triangle_material.assign(box.triangle.size(), 0);
+    write_obj(folder / "out/hammer head.obj", box);
+    CHECK(bytes_of(folder / "out/hammer head.obj").starts_with("mtllib hammer_head.mtl\n"));
+    CHECK(bytes_of(folder / "out/hammer_head.mtl").find("map_Kd my_image.png\n") !=
+          std::string::npos);
+    // It does not take the place of another's.
+    TriMesh red = box;
+    red.material[0].color = {1, 0, 0};
+    red.material[0].texture.clear();
+    write_obj(folder / "out/hammer_head.obj", red);
+    write_obj(folder / "out/hammer head.obj", box);
+    CHECK(read_quietly(folder / "out/hammer_head.obj").material[0].color == Vec3(1, 0, 0));
+    const TriMesh read = read_quietly(folder / "out/hammer head.obj");
+    CHECK(read.material[0].color == box.material[0].color);
+    CHECK(read.material[0].texture.filename() == "my_image.png");
+}
+
 }  // namespace swage::test
