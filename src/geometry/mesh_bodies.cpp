@@ -79,6 +79,7 @@ class Settler {
             }
             return std::nullopt;
         }
+        if (!mesh_.smooth_normal.empty()) keep_smooth_normals(mesh_);
         shells_ = split_shells(mesh_, shell, count);
         drop_flat();
         if (auto reason = find_pairs()) return reason;
@@ -93,7 +94,7 @@ class Settler {
         mesh_ = join_shells(mesh_, parts);
         if (united_) {
             mesh_.triangle_polygon.clear();
-            smooth_by_crease_angle(mesh_);
+            if (mesh_.smooth_normal.empty()) smooth_by_crease_angle(mesh_);
         }
         return std::nullopt;
     }
@@ -377,7 +378,7 @@ class Settler {
         if (!is_united || volume < least) return !enters(a, b) && !enters(b, a);
         // Nothing in common: they only touch, and stay as they are.
         if (std::abs(volume - sum) <= 1e-9 * std::abs(sum)) return true;
-        a.mesh = dress_pieces(std::move(united), origin, a.mesh, b.mesh, mesh_.uv);
+        a.mesh = dress_pieces(std::move(united), origin, a.mesh, b.mesh, mesh_);
         a.volume = volume;
         a.box.grow(b.box.low);
         a.box.grow(b.box.high);

@@ -236,7 +236,10 @@ TriMesh join_shells(const TriMesh& whole, const std::vector<const TriMesh*>& par
 }
 
 TriMesh dress_pieces(TriMesh pieces, const std::vector<int>& origin, const TriMesh& a,
-                     const TriMesh& b, std::vector<Vec2>& uv) {
+                     const TriMesh& b, TriMesh& whole_mesh) {
+    std::vector<Vec2>& uv = whole_mesh.uv;
+    const bool has_normals = !whole_mesh.smooth_normal.empty();
+    std::map<std::array<int, 4>, int> group;  // of new corners, by place and rounded normal
     const int in_a = static_cast<int>(a.triangle.size());
     if (!a.position_color.empty())
         pieces.position_color.assign(pieces.position.size(), Eigen::Vector3f::Ones());
@@ -250,7 +253,7 @@ TriMesh dress_pieces(TriMesh pieces, const std::vector<int>& origin, const TriMe
         const Vec3 &p0 = from.position[c[0]], &p1 = from.position[c[1]], &p2 = from.position[c[2]];
         const Vec3 normal = area_vector(from.position, c);
         const double whole = normal.squaredNorm();
-        Corners corner_uv = {-1, -1, -1};
+        Corners corner_uv = {-1, -1, -1}, smooth = {-1, -1, -1};
         for (int k = 0; k < 3; ++k) {
             const int place = pieces.triangle[t][k];
             const Vec3& p = pieces.position[place];
@@ -267,6 +270,26 @@ TriMesh dress_pieces(TriMesh pieces, const std::vector<int>& origin, const TriMe
                     static_cast<float>(share[0]) * from.position_color[c[0]] +
                     static_cast<float>(share[1]) * from.position_color[c[1]] +
                     static_cast<float>(share[2]) * from.position_color[c[2]];
+            if (has_normals) {
+                const Corners& old = from.triangle_smooth[o];
+                for (int j = 0; j < 3; ++j)
+                    if (share[j] == 1) smooth[k] = old[j];
+                if (smooth[k] < 0) {
+                    Vec3 n = Vec3::Zero();
+                    for (int j = 0; j < 3; ++j) n += share[j] * whole_mesh.smooth_normal[old[j]];
+                    const auto step = [&](int axis) {
+                        return static_cast<int>(std::lround(n[axis] * 1000));
+                    };
+                    const auto [at, is_new] =
+                        group.emplace(std::array{place, step(0), step(1), step(2)},
+                                      whole_mesh.smooth_group_count);
+                    if (is_new) {
+                        ++whole_mesh.smooth_group_count;
+                        whole_mesh.smooth_normal.push_back(n);
+                    }
+                    smooth[k] = at->second;
+                }
+            }
             if (from.triangle_uv.empty()) continue;
             const Corners& old = from.triangle_uv[o];
             for (int j = 0; j < 3; ++j)
@@ -277,6 +300,7 @@ TriMesh dress_pieces(TriMesh pieces, const std::vector<int>& origin, const TriMe
             }
         }
         if (!from.triangle_uv.empty()) pieces.triangle_uv.push_back(corner_uv);
+        if (has_normals) pieces.triangle_smooth.push_back(smooth);
     }
     return pieces;
 }

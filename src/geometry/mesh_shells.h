@@ -40,10 +40,10 @@ std::vector<Shell> split_shells(const TriMesh& mesh, const std::vector<int>& she
 // Puts shells together again. Their attributes still count in the whole mesh's lists.
 TriMesh join_shells(const TriMesh& whole, const std::vector<const TriMesh*>& parts);
 
-// Gives the pieces of a union what the triangles they come from had: `origin` as of unite(). `uv`
-// is the list of the whole mesh; new entries go there.
+// Gives the pieces of a union what the triangles they come from had: `origin` as of unite(). New
+// entries go to the lists of the whole mesh. Smooth groups only where each has its smooth_normal.
 TriMesh dress_pieces(TriMesh pieces, const std::vector<int>& origin, const TriMesh& a,
-                     const TriMesh& b, std::vector<Vec2>& uv);
+                     const TriMesh& b, TriMesh& whole_mesh);
 
 void turn_over(Shell& shell);
 

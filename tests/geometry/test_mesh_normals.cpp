@@ -100,7 +100,8 @@ TEST_CASE("normals of a file that differ by rounding alone are one") {
     const TriMesh ball = ball_mesh(8, 0.3);
     int n = 0;
     const TriMesh mesh = read_obj_of(folder, ball, [&](const Vec3& at, const Vec3& face) {
-        return Vec3(of_egg(at, face) + 4e-5 * Vec3(n % 2, n % 3, ++n % 5 - 2));
+        ++n;
+        return Vec3(of_egg(at, face) + 4e-5 * Vec3(n % 2, n % 3, n % 5 - 2));
     });
     CHECK(mesh.smooth_group_count == static_cast<int>(ball.position.size()));
     CHECK(worst(mesh, mesh.position, of_egg) < kTenthDegree);
@@ -162,6 +163,24 @@ TEST_CASE("a file's own normals outlast a repair, also of what it turns over") {
         kept.triangle_smooth.resize(given.triangle.size());
         CHECK(worst(kept, kept.position, of_egg) < kTenthDegree);
     }
+}
+
+TEST_CASE("a file's own normals outlast a union of crossing bodies") {
+    const Folder folder;
+    TriMesh bars = box_mesh({-3, -0.5, -0.5}, {3, 0.5, 0.5});
+    append(bars, box_mesh({-0.4, -3, -0.4}, {0.4, 3, 0.4}, true));  // inside out
+    const auto aslant = [](const Vec3&, const Vec3& face) -> Vec3 {
+        return (face.normalized() + 0.2 * face.normalized().cwiseAbs().cross(Vec3(1, 2, 3)))
+            .normalized();
+    };
+    const TriMesh read = read_obj_of(folder, bars, [&](const Vec3& at, const Vec3& face) -> Vec3 {
+        const bool turned = std::abs(at.y()) > 1;
+        return turned ? Vec3(-aslant(at, -face)) : aslant(at, face);
+    });
+    REQUIRE_FALSE(read.smooth_normal.empty());
+    const Repair repair = repair_mesh(read);
+    REQUIRE(told(repair, "united 2 crossing bodies"));
+    CHECK(worst(repair.mesh, repair.mesh.position, aslant) < kTenthDegree);
 }
 
 }  // namespace swage::test
