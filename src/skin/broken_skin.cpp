@@ -18,6 +18,7 @@
 #include "skin/new_look.h"
 #include "skin/parted_skin.h"
 #include "skin/section.h"
+#include "skin/thick_triangles.h"
 
 namespace swage {
 
@@ -100,12 +101,16 @@ class Breaker {
         }
     }
 
+    // 0 at a cube's low plane, 1 at its high one.
+    double along_side(int axis, int site, double place) const {
+        const MiddlePlanes& planes = skin_.diced().planes;
+        const double low = planes.at(axis, site - 1);
+        return (place - low) / (planes.at(axis, site) - low);
+    }
     Vec2 on_square(const Face& face, int v) const {
         const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
-        const Lattice& lattice = matter_.lattice;
         const Vec3& p = skin_.mesh.position[v];
-        return {(p[a] - middle_plane(lattice, a, face.site[a] - 1)) / lattice.spacing,
-                (p[b] - middle_plane(lattice, b, face.site[b] - 1)) / lattice.spacing};
+        return {along_side(a, face.site[a], p[a]), along_side(b, face.site[b], p[b])};
     }
 
     // How far a vertex lies along the square's rim, counter-clockwise; nothing if it is inside.
@@ -124,7 +129,7 @@ class Breaker {
         const auto known = corner_.find(plane);
         if (known != corner_.end()) return known->second;
         Vec3 place;
-        for (int d = 0; d < 3; ++d) place[d] = middle_plane(matter_.lattice, d, plane[d]);
+        for (int d = 0; d < 3; ++d) place[d] = skin_.diced().planes.at(d, plane[d]);
         return corner_[plane] = skin_.add_vertex(place, plane, Eigen::Vector3f::Ones(), beside);
     }
     // Counter-clockwise from the low one. `beside`: a vertex next to it along the rim, or -1.
@@ -192,10 +197,11 @@ class Breaker {
         }
         if (events.empty()) {
             const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
+            const MiddlePlanes& planes = skin_.diced().planes;
             Vec3 low;
-            low[face.axis] = middle_plane(matter_.lattice, face.axis, face.site[face.axis]);
-            low[a] = middle_plane(matter_.lattice, a, face.site[a] - 1);
-            low[b] = middle_plane(matter_.lattice, b, face.site[b] - 1);
+            low[face.axis] = planes.at(face.axis, face.site[face.axis]);
+            low[a] = planes.at(a, face.site[a] - 1);
+            low[b] = planes.at(b, face.site[b] - 1);
             Vec3i site;
             site[face.axis] = face.site[face.axis];
             site[a] = face.site[a] - 1, site[b] = face.site[b] - 1;
@@ -222,7 +228,22 @@ class Breaker {
         return true;
     }
 
-    // Triangles within closed loops; where the plane's own fill does not serve, a fan of each.
+    // Of one loop by itself.
+    void add_thick(const Face& face, const std::vector<int>& loop,
+                   std::vector<Corners>& triangles) const {
+        std::vector<Vec2> place;
+        for (int v : loop) place.push_back(on_square(face, v));
+        const auto at = [&](int k) { return Vec3(place[k][0], place[k][1], 0); };
+        const auto upwards = [&](int a, int b, int c) {
+            const bool is_up = (at(b) - at(a)).cross(at(c) - at(a)).z() > 0;
+            return (is_up ? 1 : -1) * thickness(at(a), at(b), at(c));
+        };
+        for (const auto& [a, b, c] : thick_triangles(static_cast<int>(loop.size()), upwards)) {
+            triangles.push_back({loop[a], loop[b], loop[c]});
+        }
+    }
+
+    // Triangles within closed loops; where the plane's own fill does not serve, each by itself.
     std::vector<Corners> fill(const Face& face, const std::vector<Segment>& segments) const {
         Section section;
         section.spacing = 4;  // no points inside
@@ -248,15 +269,16 @@ class Breaker {
         for (const Segment& s : segments) next.emplace(s[0], s[1]);
         while (!next.empty()) {
             const int start = next.begin()->first;
-            int at = next.begin()->second;
+            std::vector<int> loop = {start, next.begin()->second};
             next.erase(next.begin());
-            while (at != start) {
-                const auto on = next.find(at);
+            while (loop.back() != start) {
+                const auto on = next.find(loop.back());
                 if (on == next.end()) break;
-                if (on->second != start) triangles.push_back({start, at, on->second});
-                at = on->second;
+                loop.push_back(on->second);
                 next.erase(on);
             }
+            if (loop.back() == start) loop.pop_back();
+            add_thick(face, loop, triangles);
         }
         return triangles;
     }

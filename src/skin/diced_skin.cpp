@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plane by plane and triangle by triangle, each edge once for all who share it: so the parts fit
-// whatever is rounded.
+// Plane by plane and part by part, each edge once for all who share it: so the parts fit whatever
+// is rounded.
 #include "skin/diced_skin.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <span>
 #include <unordered_map>
 
 #include "geometry/edge_attributes.h"
+#include "skin/thick_triangles.h"
 
 namespace swage {
 
@@ -17,11 +19,18 @@ namespace {
 
 using Segment = std::array<int, 2>;
 
-// As a triangle of the mesh, with ids into its attributes.
+// Of what is made triangles of at once.
+constexpr std::size_t kMostCorners = 40;
+
+// A convex part of a triangle of the mesh, without vertices but at its corners: lines that only a
+// triangulation needs would be split too, and where they run close together so are slivers made.
+struct Corner {
+    int vertex, uv, smooth;  // ids into the mesh and its attributes
+};
 struct Piece {
-    Corners vertex, uv, smooth;
+    std::vector<Corner> corner;
     int parent;
-    Vec3i site;
+    Vec3i site = Vec3i::Zero();
 };
 
 class Dicer {
@@ -29,6 +38,7 @@ class Dicer {
     Dicer(const TriMesh& mesh, const Lattice& lattice) : old_(mesh), lattice_(lattice) {
         edge_.assign(mesh.position.size(), {-1, -1});
         skin_.mesh = mesh;
+        skin_.planes = MiddlePlanes(lattice);
         keep_smooth_normals(skin_.mesh);
         skin_.plane.assign(mesh.position.size(), {kNoPlane, kNoPlane, kNoPlane});
     }
@@ -36,14 +46,16 @@ class Dicer {
     DicedSkin run(const std::function<bool(const Vec3i&)>& wanted) {
         std::vector<Piece> pieces;
         for (std::size_t t = 0; t < old_.triangle.size(); ++t) {
-            const Corners none = {-1, -1, -1};
-            pieces.push_back({old_.triangle[t],
-                              old_.triangle_uv.empty() ? none : old_.triangle_uv[t],
-                              old_.triangle_smooth.empty() ? none : old_.triangle_smooth[t],
-                              static_cast<int>(t), Vec3i::Zero()});
+            Piece& piece = pieces.emplace_back(Piece{{}, static_cast<int>(t)});
+            for (int k = 0; k < 3; ++k) {
+                piece.corner.push_back(
+                    {old_.triangle[t][k], old_.triangle_uv.empty() ? -1 : old_.triangle_uv[t][k],
+                     old_.triangle_smooth.empty() ? -1 : old_.triangle_smooth[t][k]});
+            }
         }
         for (int axis = 0; axis < 3; ++axis) {
             on_edge_.clear();
+            skin_.planes.choose(axis, skin_.mesh.position, old_.triangle);
             std::vector<Piece> split;
             for (const Piece& piece : pieces) split_along(axis, piece, split);
             pieces = std::move(split);
@@ -57,59 +69,50 @@ class Dicer {
   private:
     int lowest_plane(int axis, const Piece& piece) const {
         double low = std::numeric_limits<double>::infinity();
-        for (int v : piece.vertex) low = std::min(low, skin_.mesh.position[v][axis]);
+        for (const Corner& c : piece.corner) {
+            low = std::min(low, skin_.mesh.position[c.vertex][axis]);
+        }
         int number =
             static_cast<int>(std::floor((low - lattice_.origin[axis]) / lattice_.spacing - 0.5)) -
             1;
-        while (middle_plane(lattice_, axis, number) <= low) ++number;
+        while (skin_.planes.at(axis, number) <= low) ++number;
         return number;
     }
 
-    void split_along(int axis, const Piece& piece, std::vector<Piece>& out) {
-        std::vector<Piece> upper = {piece};
-        for (int number = lowest_plane(axis, piece); !upper.empty(); ++number) {
-            const std::vector<Piece> all = std::move(upper);
-            upper.clear();
-            for (const Piece& one : all) split_at(axis, number, one, out, upper);
+    void split_along(int axis, Piece piece, std::vector<Piece>& out) {
+        for (int number = lowest_plane(axis, piece); !piece.corner.empty(); ++number) {
+            Piece lower = split_at(axis, number, piece);
+            lower.site[axis] = number;
+            if (!lower.corner.empty()) out.push_back(std::move(lower));
         }
     }
 
-    // Parts below the plane to `lower`, with their site; those above to `upper`.
-    void split_at(int axis, int number, Piece piece, std::vector<Piece>& lower,
-                  std::vector<Piece>& upper) {
-        const double height = middle_plane(lattice_, axis, number);
-        std::array<int, 3> side;
-        for (int k = 0; k < 3; ++k) {
-            const int v = piece.vertex[k];
-            side[k] = skin_.plane[v][axis] == number          ? 0
-                      : skin_.mesh.position[v][axis] < height ? -1
-                                                              : 1;
+    // What lies below the plane; the rest stays.
+    Piece split_at(int axis, int number, Piece& piece) {
+        const double height = skin_.planes.at(axis, number);
+        const auto is_upper = [&](const Corner& c) {
+            return !(skin_.mesh.position[c.vertex][axis] < height);
+        };
+        Piece lower{{}, piece.parent, piece.site}, upper = lower;
+        for (std::size_t k = 0; k < piece.corner.size(); ++k) {
+            const Corner &here = piece.corner[k],
+                         &next = piece.corner[(k + 1) % piece.corner.size()];
+            (is_upper(here) ? upper : lower).corner.push_back(here);
+            if (is_upper(here) == is_upper(next)) continue;
+            const Corner at = here.vertex < next.vertex
+                                  ? cross(axis, number, height, piece.parent, here, next)
+                                  : cross(axis, number, height, piece.parent, next, here);
+            lower.corner.push_back(at);
+            upper.corner.push_back(at);
         }
-        for (int k = 0; k < 3; ++k) {
-            const int next = (k + 1) % 3;
-            if (side[k] * side[next] >= 0) continue;
-            // From the corner opposite to the crossed edge: two parts, each to be looked at again.
-            Piece first = piece, second = piece;
-            const int v = cross(axis, number, height, piece, k, next, first);
-            first.vertex[next] = second.vertex[k] = v;
-            second.uv[k] = first.uv[next];
-            second.smooth[k] = first.smooth[next];
-            split_at(axis, number, first, lower, upper);
-            split_at(axis, number, second, lower, upper);
-            return;
-        }
-        const bool is_upper = std::any_of(side.begin(), side.end(), [](int s) { return s > 0; });
-        piece.site[axis] = number;
-        (is_upper ? upper : lower).push_back(piece);
+        piece = std::move(upper);
+        return lower;
     }
 
-    // The vertex where an edge meets the plane; its attributes go to corner `next` of `made`.
-    int cross(int axis, int number, double height, const Piece& piece, int k, int next,
-              Piece& made) {
-        // From the lower number to the higher, whoever asks.
-        const bool turned = piece.vertex[k] > piece.vertex[next];
-        const int a = turned ? next : k, b = turned ? k : next;
-        const int from = piece.vertex[a], to = piece.vertex[b];
+    // Where an edge meets the plane; from the lower number to the higher, whoever asks.
+    Corner cross(int axis, int number, double height, int parent, const Corner& a,
+                 const Corner& b) {
+        const int from = a.vertex, to = b.vertex;
         TriMesh& mesh = skin_.mesh;
         const double h0 = mesh.position[from][axis], h1 = mesh.position[to][axis];
         const double share = (height - h0) / (h1 - h0);
@@ -130,15 +133,13 @@ class Dicer {
             plane[axis] = number;
             skin_.plane.push_back(plane);
             edge_.push_back(old_edge(from, to));
-            skin_.on_triangle.push_back(piece.parent);
+            skin_.on_triangle.push_back(parent);
             const Eigen::Vector3f color = attributes_.color(from, to, share);
             if (!mesh.position_color.empty()) mesh.position_color.push_back(color);
         }
-        made.uv[next] = attributes_.uv(v, piece.uv[a], piece.uv[b], share);
-        if (!old_.triangle_smooth.empty()) {
-            made.smooth[next] = attributes_.smooth(v, piece.smooth[a], piece.smooth[b], share);
-        }
-        return v;
+        const bool is_smooth = !old_.triangle_smooth.empty();
+        return {v, attributes_.uv(v, a.uv, b.uv, share),
+                is_smooth ? attributes_.smooth(v, a.smooth, b.smooth, share) : -1};
     }
 
     // The edge of the old mesh, low number first, on which both ends of an edge of a part lie.
@@ -203,8 +204,9 @@ class Dicer {
     // Over a triangle with what lies on its sides, `side[k]` from corner k to the next.
     static void fill(std::span<const Piece> parts, const Corners& corner,
                      const std::array<std::vector<int>, 3>& side, std::vector<Piece>& out) {
-        for (int k = 0; k < 3; ++k) {
-            if (side[k].empty()) continue;
+        const std::size_t count = side[0].size() + side[1].size() + side[2].size();
+        for (int k = 0; k < 3 && count > kMostCorners; ++k) {
+            if (3 * side[k].size() < count) continue;
             const int next = (k + 1) % 3, last = (k + 2) % 3;
             const auto middle = side[k].begin() + static_cast<std::ptrdiff_t>(side[k].size() / 2);
             Corners first = corner, second = corner;
@@ -218,21 +220,24 @@ class Dicer {
             fill(parts, second, by_second, out);
             return;
         }
-        out.push_back(piece_of(parts, corner));
+        std::vector<int> loop;
+        for (int k = 0; k < 3; ++k) {
+            loop.push_back(corner[k]);
+            loop.insert(loop.end(), side[k].begin(), side[k].end());
+        }
+        out.push_back(piece_of(parts, loop));
     }
 
-    static Piece piece_of(std::span<const Piece> parts, const Corners& vertex) {
-        Piece piece = parts.front();
-        piece.vertex = vertex;
-        piece.site = kNoSite;
-        for (int k = 0; k < 3; ++k) {
+    static Piece piece_of(std::span<const Piece> parts, const std::vector<int>& vertex) {
+        Piece piece{{}, parts.front().parent, kNoSite};
+        for (int v : vertex) {
+            Corner own{v, -1, -1};
             for (const Piece& part : parts) {
-                for (int m = 0; m < 3; ++m) {
-                    if (part.vertex[m] != vertex[k]) continue;
-                    piece.uv[k] = part.uv[m];
-                    piece.smooth[k] = part.smooth[m];
+                for (const Corner& c : part.corner) {
+                    if (c.vertex == v) own = c;
                 }
             }
+            piece.corner.push_back(own);
         }
         return piece;
     }
@@ -242,7 +247,7 @@ class Dicer {
         const std::size_t old = old_.position.size();
         std::vector<int> number(skin_.mesh.position.size(), -1);
         for (const Piece& piece : pieces) {
-            for (int v : piece.vertex) number[v] = 0;
+            for (const Corner& c : piece.corner) number[c.vertex] = 0;
         }
         std::size_t count = 0;
         for (std::size_t v = 0; v < number.size(); ++v) {
@@ -261,7 +266,7 @@ class Dicer {
         skin_.on_triangle.resize(count - old);
         if (!skin_.mesh.position_color.empty()) skin_.mesh.position_color.resize(count);
         for (Piece& piece : pieces) {
-            for (int& v : piece.vertex) v = number[v];
+            for (Corner& c : piece.corner) c.vertex = number[c.vertex];
         }
     }
 
@@ -269,27 +274,50 @@ class Dicer {
         TriMesh& mesh = skin_.mesh;
         for_each_triangle_array([](auto& values) { values.clear(); }, mesh);
         int polygon = -1, last = -1;
-        for (std::size_t n = 0; n < pieces.size(); ++n) {
-            const Piece& piece = pieces[n];
-            mesh.triangle.push_back(piece.vertex);
-            skin_.site.push_back(piece.site);
-            if (!old_.triangle_uv.empty()) mesh.triangle_uv.push_back(piece.uv);
-            if (!old_.triangle_smooth.empty()) mesh.triangle_smooth.push_back(piece.smooth);
-            if (!old_.triangle_material.empty()) {
-                mesh.triangle_material.push_back(old_.triangle_material[piece.parent]);
-            }
-            if (!old_.triangle_part.empty()) {
-                mesh.triangle_part.push_back(old_.triangle_part[piece.parent]);
-            }
-            if (!old_.triangle_polygon.empty()) {
-                // Polygons stay together where none of their triangles was split.
-                const bool whole = piece.vertex == old_.triangle[piece.parent];
-                const int own = whole ? old_.triangle_polygon[piece.parent] : -1;
-                if (own < 0 || own != last) ++polygon;
-                last = own;
-                mesh.triangle_polygon.push_back(polygon);
+        for (const Piece& piece : pieces) {
+            for (const Corners& corner : triangles_of(piece)) {
+                add_triangle(piece, corner, polygon, last);
             }
         }
+    }
+
+    // `corner`: of the piece's. `polygon`: the number of the last, `last` that which it had.
+    void add_triangle(const Piece& piece, const Corners& corner, int& polygon, int& last) {
+        TriMesh& mesh = skin_.mesh;
+        const auto three = [&](int Corner::*id) {
+            return Corners{piece.corner[corner[0]].*id, piece.corner[corner[1]].*id,
+                           piece.corner[corner[2]].*id};
+        };
+        const Corners vertex = three(&Corner::vertex);
+        mesh.triangle.push_back(vertex);
+        skin_.site.push_back(piece.site);
+        if (!old_.triangle_uv.empty()) mesh.triangle_uv.push_back(three(&Corner::uv));
+        if (!old_.triangle_smooth.empty()) mesh.triangle_smooth.push_back(three(&Corner::smooth));
+        if (!old_.triangle_material.empty()) {
+            mesh.triangle_material.push_back(old_.triangle_material[piece.parent]);
+        }
+        if (!old_.triangle_part.empty()) {
+            mesh.triangle_part.push_back(old_.triangle_part[piece.parent]);
+        }
+        if (!old_.triangle_polygon.empty()) {
+            // Polygons stay together where none of their triangles was split.
+            const bool whole = vertex == old_.triangle[piece.parent];
+            const int own = whole ? old_.triangle_polygon[piece.parent] : -1;
+            if (own < 0 || own != last) ++polygon;
+            last = own;
+            mesh.triangle_polygon.push_back(polygon);
+        }
+    }
+
+    // Corners of the piece, the thinnest triangle as thick as can be.
+    std::vector<Corners> triangles_of(const Piece& piece) const {
+        const int count = static_cast<int>(piece.corner.size());
+        if (count == 3) return {{0, 1, 2}};
+        const auto at = [&](int k) -> const Vec3& {
+            return skin_.mesh.position[piece.corner[k].vertex];
+        };
+        return thick_triangles(count,
+                               [&](int a, int b, int c) { return thickness(at(a), at(b), at(c)); });
     }
 
     const TriMesh& old_;
@@ -301,11 +329,6 @@ class Dicer {
 };
 
 }  // namespace
-
-double middle_plane(const Lattice& lattice, int axis, int number) {
-    constexpr std::array<double, 3> kOff = {-3.1e-5, -2.3e-5, -4.7e-5};
-    return lattice.origin[axis] + lattice.spacing * (number + 0.5 + kOff[axis]);
-}
 
 DicedSkin dice_skin(const TriMesh& mesh, const Lattice& lattice,
                     const std::function<bool(const Vec3i&)>& wanted) {

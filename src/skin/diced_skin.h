@@ -4,26 +4,20 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "geometry/trimesh.h"
 #include "matter/aggregate.h"
+#include "skin/middle_planes.h"
 
 namespace swage {
-
-inline constexpr int kNoPlane = std::numeric_limits<int>::min();
-
-// The middle plane number k of an axis lies between the sites k and k + 1, off the middle by a few
-// hundred-thousandths of a spacing: so it runs through no vertex and along no face, not even that
-// of a blade's cut through the middle (cut_mesh.cpp).
-double middle_plane(const Lattice& lattice, int axis, int number);
 
 // The site of triangles that were left whole: far from all others.
 inline const Vec3i kNoSite = Vec3i::Constant(1 << 18);
 
 struct DicedSkin {
-    TriMesh mesh;                           // positions at molding; the old vertices first
+    TriMesh mesh;  // positions at molding; the old vertices first
+    MiddlePlanes planes;
     std::vector<std::array<int, 3>> plane;  // a vertex each: middle plane that it was made on, by
                                             // axis, or kNoPlane
     std::vector<int> on_triangle;           // a vertex each beyond the old: of the old mesh

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "geometry/box_mesh.h"
 #include "skin/cut_mesh.h"
 #include "skin/diced_skin.h"
+#include "skin/divided_mesh.h"
 #include "tests/catch.h"
 #include "tests/shared/block.h"
 #include "tests/shared/boundary.h"
@@ -68,6 +70,29 @@ struct Fixture {
 // Of a cut: through the body, made in the skin alone so far, or up to a line inside.
 enum class Extent { whole, ahead, inside };
 
+// The least height of a triangle [m].
+double thinnest(const TriMesh& mesh) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Corners& c : mesh.triangle) {
+        const Vec3 &p = mesh.position[c[0]], &q = mesh.position[c[1]], &r = mesh.position[c[2]];
+        const double longest = std::max({(q - p).norm(), (r - q).norm(), (p - r).norm()});
+        least = std::min(least, (q - p).cross(r - p).norm() / longest);
+    }
+    return least;
+}
+
+// Of the parts of a surface that hang together the least volume [m3].
+double least_volume(const TriMesh& mesh) {
+    const Components parts = surface_components(mesh);
+    std::vector<double> volume(parts.count, 0.0);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const Corners& c = mesh.triangle[t];
+        const Vec3 &p = mesh.position[c[0]], &q = mesh.position[c[1]], &r = mesh.position[c[2]];
+        volume[parts.triangle_component[t]] += p.dot(q.cross(r)) / 6;
+    }
+    return *std::min_element(volume.begin(), volume.end());
+}
+
 // Textured by place, four big triangles... a box of twelve triangles and a bar of its cells.
 Fixture bar() {
     TriMesh mesh = box_mesh(Vec3(-.5, -.15, -.15), Vec3(.5, .15, .15));
@@ -104,14 +129,13 @@ TEST_CASE("a diced skin is the skin, each triangle around one particle") {
     CHECK(test::is_closed(diced.mesh));
     CHECK(signed_volume(diced.mesh) == Approx(signed_volume(f.mesh)).epsilon(1e-12));
     CHECK(surface_area(diced.mesh) == Approx(surface_area(f.mesh)).epsilon(1e-12));
-    const Lattice& lattice = f.matter.lattice;
     double outside = 0, off = 0;
     for (std::size_t t = 0; t < diced.mesh.triangle.size(); ++t) {
         for (int k = 0; k < 3; ++k) {
             const Vec3 p = diced.mesh.position[diced.mesh.triangle[t][k]];
             for (int d = 0; d < 3 && diced.site[t] != kNoSite; ++d) {
-                outside = std::max(outside, p[d] - middle_plane(lattice, d, diced.site[t][d]));
-                outside = std::max(outside, middle_plane(lattice, d, diced.site[t][d] - 1) - p[d]);
+                outside = std::max(outside, p[d] - diced.planes.at(d, diced.site[t][d]));
+                outside = std::max(outside, diced.planes.at(d, diced.site[t][d] - 1) - p[d]);
             }
             if (diced.mesh.triangle_uv.empty()) continue;
             const Vec2 uv = diced.mesh.uv[diced.mesh.triangle_uv[t][k]];
@@ -162,6 +186,34 @@ TEST_CASE("what broke in two shows two closed surfaces that move on their own, a
     }
     CHECK(worst < 1e-12);
     CHECK((rides[0] > 0) != (rides[1] > 0));
+}
+
+TEST_CASE("a box whose edges and faces lie half-way between sites breaks without slivers") {
+    const double a = .05, out = a * GENERATE(0., .5, -.5);
+    Fixture f = bar();
+    if (out < 0) std::fill(f.matter.cell_fill.begin(), f.matter.cell_fill.end(), .5f);
+    const Vec3 half = Vec3(.5 + out, .15 + out, .15 + out);
+    // Halved edges come to lie in middle planes, their diagonals run through corners of cubes.
+    f.mesh = divide_edges(box_mesh(-half, half), GENERATE(3., .2, .1, .04));
+    f.mount = mount_mesh(f.mesh.position, f.matter, SkinKind::mount);
+    const double whole = signed_volume(f.mesh);
+    const bool is_cut = GENERATE(false, true);
+    if (is_cut) {
+        f.cut({.025, .025, -.025}, Vec3::UnitY(), Vec3::UnitZ(), true);
+        test::sever_plane(f.matter, {.025, .025, -.025}, Vec3::UnitX());
+    }
+    const double share = GENERATE(.05, 1.);
+    std::mt19937 random(5);
+    break_where(f.matter,
+                [&](const Vec3&, const Vec3&) { return random() < share * std::mt19937::max(); });
+    f.break_it();
+    CHECK(f.broken.open_faces == 0);
+    CHECK(test::is_closed(f.broken.mesh));
+    CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
+    // NOTE: between a cut and the plane beside it what edges the cut has are all that there is.
+    CHECK(thinnest(f.broken.mesh) > (is_cut ? 5e-5 : 1e-3) * a);
+    // Else cracks inside that reach no surface are sheets of no volume.
+    if (share == 1) CHECK(least_volume(f.broken.mesh) > 1e-3 * a * a * a);
 }
 
 TEST_CASE("a crack that ends inside is a slit, and opens like a mouth") {
