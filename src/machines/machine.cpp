@@ -12,6 +12,7 @@
 #include "machines/bodies.h"
 #include "machines/parameters.h"
 #include "machines/region.h"
+#include "machines/start_notes.h"
 #include "machines/touch.h"
 #include "matter/touch_points.h"
 
@@ -21,8 +22,6 @@ namespace {
 
 // A motion that begins nearer than this to rest begins at rest: share of the body's size, radians.
 constexpr double kAtRest = 1e-9;
-// Tools that start deeper than this in the work-piece are noted: share of the spacing.
-constexpr double kDeepStart = 0.05;
 constexpr double kGripSlack = 1e-9;  // for points on the border of a grip's box: share of the size
 constexpr double kClampClearance = 0.1;  // between a grip's drawn plates and the points; the same
 const std::string kMaterialFriction = "material_friction";
@@ -169,13 +168,6 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
                                spec.name));
         }
         work_from_tool.translation += *shift * direction;
-    } else {
-        const double nearest = nearest_distance(tool.shape, work_from_tool, setting.touch);
-        if (nearest < -kDeepStart * setting.spacing) {
-            machine.notes.push_back(fmt::format("tool {} starts {} deep in the work-piece",
-                                                spec.name,
-                                                quantity_text(-nearest, Quantity::length)));
-        }
     }
     for (int c = 0; c < 3; ++c) {
         setting.known[spec.name + "_" + "xyz"[c]] = work_from_tool.translation[c];
@@ -393,6 +385,7 @@ Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& giv
     if (!spec.gravity_strength.empty()) {
         machine.gravity_strength.emplace(spec.gravity_strength, setting.known, Quantity::number);
     }
+    machine.notes = start_notes(machine, matter, setting.touch);
     for (const CheckSpec& check : spec.check) {
         if (evaluate(check.holds, setting.known) == 0) machine.notes.push_back(check.otherwise);
     }

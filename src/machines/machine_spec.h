@@ -55,8 +55,9 @@ struct MotionSpec {
     Expression3 move = {"0", "0", "0"};  // [m]
     Expression turn = "0";               // [rad]
     Vec3 axis = Vec3::UnitZ();
-    Expression3 pivot = {"0", "0", "0"};  // [m]; in the work frame
+    Expression3 pivot;  // [m]; in the work frame; empty: its origin
 
+    bool says_pivot() const { return !pivot[0].empty(); }
     bool stands() const { return turn == "0" && move == Expression3{"0", "0", "0"}; }
 };
 

@@ -218,7 +218,12 @@ const std::vector<KeyHelp>& machine_key_help() {
         {"[tool.motion]", "move", "from where it stood; may use t, 0 to 1 over the stage"},
         {"[tool.motion]", "turn", "an angle; may use t"},
         {"[tool.motion]", "axis", "of the turn", "[x, y, z]", "[0, 0, 1]"},
-        {"[tool.motion]", "pivot", "that the turn leaves where it is; may use t"},
+        {"[tool.motion]",
+         "pivot",
+         "that the turn leaves where it is; may use t; left out, the middle of the work-piece's "
+         "box, not the tool's",
+         {},
+         "[0, 0, 0]"},
 
         {"[[grip]]", "name", "letters, digits and _"},
         {"[[grip]]", "from", "a corner of a box; surface in it is held", {}, "-"},

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What may go wrong by where a machine's parts start and how they go, in sentences for its user.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "machines/machine.h"
+
+namespace swage {
+
+// `touch`: what of the work-piece meets tools, in the work frame [m].
+std::vector<std::string> start_notes(const Machine& machine, const Aggregate& matter,
+                                     const std::vector<Vec3>& touch);
+
+}  // namespace swage

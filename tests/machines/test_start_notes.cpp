@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/machine.h"
+
+#include "tests/catch.h"
+#include "tests/machines/bodies.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+
+namespace {
+
+// 1 m long, 0.2 m high and wide, of cells of 2.5 cm.
+Aggregate beam() { return test::make_block(40, 8, 8, 0.025, Material{}); }
+
+std::vector<std::string> notes_of(const MachineSpec& spec, const Aggregate& body = beam()) {
+    return build_machine(spec, {}, place_work_frame(body), body).notes;
+}
+
+MachineSpec with(const ToolSpec& tool) {
+    MachineSpec spec;
+    spec.name = "bench";
+    spec.tool = {tool};
+    return spec;
+}
+
+// Lies under the work-piece.
+ToolSpec roll() {
+    ToolSpec tool;
+    tool.name = "roll";
+    tool.shape = ToolShape::cylinder;
+    tool.radius = "height";
+    tool.length = "2*width";
+    tool.at = {"0", "-2*height", "0"};
+    tool.touch = {"0", "1", "0"};
+    return tool;
+}
+
+bool tells(const std::vector<std::string>& notes, const std::string& words) {
+    return notes.size() == 1 && notes[0].find(words) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a tool that turns about the work-piece's middle unasked is noted, with its own") {
+    ToolSpec tool = roll();
+    tool.motion.turn = "3*t";
+    const std::vector<std::string> notes = notes_of(with(tool));
+    CHECK(tells(notes, "tool roll turns about the middle of the work-piece, "));
+    CHECK(tells(notes, "pivot = [\"roll_x\", \"roll_y\", \"roll_z\"]"));
+
+    ToolSpec asked = tool;
+    asked.motion.pivot = {"0", "0", "0"};
+    CHECK(notes_of(with(asked)).empty());
+    ToolSpec about_its_middle = tool;
+    about_its_middle.motion.axis = Vec3::UnitY();
+    CHECK(notes_of(with(about_its_middle)).empty());
+    ToolSpec by_nothing = tool;
+    by_nothing.motion.turn = "0*t";
+    CHECK(notes_of(with(by_nothing)).empty());
+}
+
+TEST_CASE("a motion without a pivot turns about the middle of the work-piece's box") {
+    ToolSpec tool = roll();
+    tool.motion.turn = "pi*t";
+    const Aggregate body = beam();
+    const Machine machine = build_machine(with(tool), {}, place_work_frame(body), body);
+    const Vec3 start = drive_at(machine, 0, 1).world_from_tool[0].translation;
+    CHECK((drive_at(machine, 1, 1).world_from_tool[0].translation + start).norm() < 1e-9);
+}
