@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "machines/touch.h"
+#include "matter/cell_middle.h"
 
 namespace swage {
 
@@ -15,6 +16,7 @@ namespace {
 constexpr double kOff = 0.05;
 constexpr int kLooks = 256;      // at a motion
 constexpr double kTurns = 1e-8;  // [rad]
+constexpr float kWhole = 0.99f;  // share of a cell
 
 std::string length_of(double value) { return quantity_text(value, Quantity::length); }
 
@@ -49,16 +51,36 @@ std::string pivot_note(const Machine& machine, std::size_t n, double slack) {
         name, length_of(off));
 }
 
+// Of cells that no surface passes through, in the work frame [m].
+std::vector<Vec3> whole_middles(const Machine& machine, const Aggregate& matter) {
+    const Pose work_from_world = machine.frame.world_from_work.inverse();
+    std::vector<Vec3> middle;
+    for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
+        if (matter.cell_fill[c] < kWhole) continue;
+        middle.push_back(work_from_world * cell_middle(matter, static_cast<CellId>(c)));
+    }
+    return middle;
+}
+
 // Of one that is not meant to be there.
 std::string depth_note(const Machine& machine, std::size_t n, const std::vector<Vec3>& touch,
-                       double slack) {
+                       const std::vector<Vec3>& inner, double slack) {
     const ToolSpec& spec = machine.spec.tool[n];
     const bool is_slid = spec.touch != ToolSpec().touch;
     if (is_slid) return "";
     const Tool& tool = machine.apparatus.tool[n];
-    const double deep = -nearest_distance(tool.shape, machine.work_from_tool[n], touch);
-    if (deep <= slack) return "";
-    return fmt::format("tool {} starts {} deep in the work-piece", tool.name, length_of(deep));
+    const Pose& pose = machine.work_from_tool[n];
+    const double deep = -nearest_distance(tool.shape, pose, touch);
+    if (deep > slack) {
+        return fmt::format("tool {} starts {} deep in the work-piece", tool.name, length_of(deep));
+    }
+    if (deep < 0 && nearest_distance(tool.shape, pose, inner) < 0) {
+        return fmt::format(
+            "tool {} starts wholly inside the work-piece, where it meets no surface and pushes "
+            "nothing",
+            tool.name);
+    }
+    return "";
 }
 
 }  // namespace
@@ -70,8 +92,10 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
         if (!sentence.empty()) notes.push_back(std::move(sentence));
     };
     const double slack = kOff * matter.lattice.spacing;
+    std::vector<Vec3> inner;
+    if (!machine.apparatus.tool.empty()) inner = whole_middles(machine, matter);
     for (std::size_t n = 0; n < machine.apparatus.tool.size(); ++n) {
-        note(depth_note(machine, n, touch, slack));
+        note(depth_note(machine, n, touch, inner, slack));
         note(pivot_note(machine, n, slack));
     }
     return notes;

@@ -67,3 +67,18 @@ TEST_CASE("a motion without a pivot turns about the middle of the work-piece's b
     const Vec3 start = drive_at(machine, 0, 1).world_from_tool[0].translation;
     CHECK((drive_at(machine, 1, 1).world_from_tool[0].translation + start).norm() < 1e-9);
 }
+
+TEST_CASE("a tool wholly inside the work-piece is noted, one that only touches is not") {
+    ToolSpec core = roll();
+    core.shape = ToolShape::box;
+    core.size = {"0.2*length", "0.5*height", "0.5*width"};
+    core.at = {"0", "0", "0"};
+    core.touch = {"0", "0", "0"};
+    CHECK(tells(notes_of(with(core)), "tool roll starts wholly inside the work-piece"));
+    core.at = {"0", "0.4*height", "0"};
+    CHECK(tells(notes_of(with(core)), "deep in the work-piece"));
+    core.at = {"0", "0.76*height", "0"};
+    CHECK(notes_of(with(core)).empty());
+    core.touch = {"0", "-1", "0"};
+    CHECK(notes_of(with(core)).empty());
+}
