@@ -14,7 +14,9 @@ namespace {
 // Tools that start deeper than this in the work-piece, or turn about what lies farther than this
 // from their middle, are noted: share of the spacing.
 constexpr double kOff = 0.05;
-constexpr int kLooks = 256;      // at a motion
+constexpr int kLooks = 256;     // at a motion
+constexpr double kJump = 0.25;  // spacings, in no time
+constexpr double kNoTime = 1e-12;
 constexpr double kTurns = 1e-8;  // [rad]
 constexpr float kWhole = 0.99f;  // share of a cell
 
@@ -31,14 +33,14 @@ std::vector<Pose> way_of(const Motion& motion) {
     return way;
 }
 
-std::string pivot_note(const Machine& machine, std::size_t n, double slack) {
+std::string pivot_note(const Machine& machine, std::size_t n, const std::vector<Pose>& way,
+                       double slack) {
     const MotionSpec& motion = machine.spec.tool[n].motion;
     if (motion.says_pivot()) return "";
     const Vec3 middle = machine.work_from_tool[n].translation;
     const Vec3 axis = motion.axis.normalized();
     const double off = (middle - middle.dot(axis) * axis).norm();
     if (off <= slack) return "";
-    const std::vector<Pose> way = way_of(machine.tool_motion[n]);
     const bool turns = std::any_of(way.begin(), way.end(), [](const Pose& pose) {
         return rotation_of(pose.rotation).norm() > kTurns;
     });
@@ -62,17 +64,51 @@ std::vector<Vec3> whole_middles(const Machine& machine, const Aggregate& matter)
     return middle;
 }
 
-// Of one that is not meant to be there.
+// How far two poses are apart for what they move, at the most [m].
+double apart(const Pose& a, const Pose& b, const Vec3& middle, double reach) {
+    return (a * middle - b * middle).norm() + reach * turn_between(a, b).norm();
+}
+
+// `way`: of the motion; `middle`: of what it moves, in the work frame.
+std::string jump_note(const std::string& whose, const Motion& motion, const std::vector<Pose>& way,
+                      const Vec3& middle, double reach, double least) {
+    for (std::size_t n = 1; n < way.size(); ++n) {
+        if (apart(way[n - 1], way[n], middle, reach) < least) continue;
+        double begin = double(n - 1) / kLooks, end = double(n) / kLooks;
+        Pose from = way[n - 1], to = way[n];
+        while (end - begin > kNoTime && apart(from, to, middle, reach) >= least) {
+            const double half = 0.5 * (begin + end);
+            const Pose between = motion.at(half);
+            const bool is_later =
+                apart(from, between, middle, reach) < apart(between, to, middle, reach);
+            (is_later ? begin : end) = half;
+            (is_later ? from : to) = between;
+        }
+        const double jump = apart(from, to, middle, reach);
+        if (jump < least) continue;
+        return fmt::format(
+            "{} jumps by up to {} at t = {:.3g}, in no time: ramp(t, a, b) or line(t, a, b) "
+            "instead of a step give it a way",
+            whose, length_of(jump), end);
+    }
+    return "";
+}
+
+// Of one that is not meant to be there: what `touch` has slid up to the work-piece is as deep as
+// its gap says, until its motion begins.
 std::string depth_note(const Machine& machine, std::size_t n, const std::vector<Vec3>& touch,
-                       const std::vector<Vec3>& inner, double slack) {
-    const ToolSpec& spec = machine.spec.tool[n];
-    const bool is_slid = spec.touch != ToolSpec().touch;
-    if (is_slid) return "";
+                       const std::vector<Vec3>& inner, const Pose& start, double slack) {
     const Tool& tool = machine.apparatus.tool[n];
-    const Pose& pose = machine.work_from_tool[n];
+    const Pose& placed = machine.work_from_tool[n];
+    const Pose pose = start * placed;
+    const bool is_slid = machine.spec.tool[n].touch != ToolSpec().touch;
+    const double meant = is_slid ? -nearest_distance(tool.shape, placed, touch) : 0;
     const double deep = -nearest_distance(tool.shape, pose, touch);
-    if (deep > slack) {
-        return fmt::format("tool {} starts {} deep in the work-piece", tool.name, length_of(deep));
+    if (deep > std::max(meant, 0.0) + slack) {
+        const bool is_moved =
+            apart(start, Pose{}, placed.translation, machine.frame.size.norm()) > slack;
+        return fmt::format("tool {} starts {} deep in the work-piece{}", tool.name, length_of(deep),
+                           is_moved ? ": its motion is not 0 at t = 0" : "");
     }
     if (deep < 0 && nearest_distance(tool.shape, pose, inner) < 0) {
         return fmt::format(
@@ -95,9 +131,27 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
     std::vector<Vec3> inner;
     if (!machine.apparatus.tool.empty()) inner = whole_middles(machine, matter);
     for (std::size_t n = 0; n < machine.apparatus.tool.size(); ++n) {
-        note(depth_note(machine, n, touch, inner, slack));
-        note(pivot_note(machine, n, slack));
+        const std::vector<Pose> way = way_of(machine.tool_motion[n]);
+        note(depth_note(machine, n, touch, inner, way.empty() ? Pose{} : way.front(), slack));
+        note(pivot_note(machine, n, way, slack));
     }
+    const double reach = 0.5 * machine.frame.size.norm();
+    const double jump = kJump * matter.lattice.spacing;
+    const auto of_jumps = [&](const std::string& kind, const auto& part,
+                              const std::vector<Motion>& motion,
+                              const std::vector<Pose>& work_from_part) {
+        for (std::size_t n = 0; n < part.size(); ++n) {
+            try {
+                note(jump_note(kind + part[n].name, motion[n], way_of(motion[n]),
+                               work_from_part[n].translation, reach, jump));
+            } catch (const PlacedError&) {  // no value where it is looked at closely
+            }
+        }
+    };
+    const Apparatus& apparatus = machine.apparatus;
+    of_jumps("tool ", apparatus.tool, machine.tool_motion, machine.work_from_tool);
+    of_jumps("grip ", apparatus.grip, machine.grip_motion, machine.work_from_grip);
+    of_jumps("blade ", apparatus.blade, machine.blade_motion, machine.work_from_blade);
     return notes;
 }
 

@@ -42,8 +42,9 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
     }
     if (outcome.left_over > 0) {
         warning.emplace_back(
-            fmt::format("what was cut, broken or let go of does not come to rest as exactly as the "
-                        "loads ask: from here on {:.2g} N of forces may be out of balance",
+            fmt::format("what was out of balance as the stage began, or was cut, broken or let go "
+                        "of since, does not come to rest as exactly as the loads ask: from here on "
+                        "{:.2g} N of forces may be out of balance",
                         outcome.left_over));
     }
     if (outcome.drag_bounded) {

@@ -82,3 +82,36 @@ TEST_CASE("a tool wholly inside the work-piece is noted, one that only touches i
     core.touch = {"0", "-1", "0"};
     CHECK(notes_of(with(core)).empty());
 }
+
+TEST_CASE(
+    "a tool that its motion starts deep in the work-piece is noted, one that starts off it "
+    "or squeezes as its gap says is not") {
+    ToolSpec tool = roll();
+    tool.motion.move = {"0", "0.3*height + 0.1*height*t", "0"};
+    CHECK(tells(notes_of(with(tool)), "deep in the work-piece: its motion is not 0 at t = 0"));
+    tool.motion.move = {"0", "-0.3*height + 0.1*height*t", "0"};
+    CHECK(notes_of(with(tool)).empty());
+    tool.gap = "-0.3*spacing";
+    tool.motion.move = {"0", "0.1*height*t", "0"};
+    CHECK(notes_of(with(tool)).empty());
+}
+
+TEST_CASE("what jumps is noted with the time, what goes fast is not") {
+    ToolSpec tool = roll();
+    tool.motion.move = {"0", "height*step(t, 0.37)", "0"};
+    CHECK(tells(notes_of(with(tool)), "tool roll jumps by up to 20 cm at t = 0.37"));
+    tool.motion.move = {"0", "-height*line(t, 0.5, 0.5)", "0"};
+    CHECK(tells(notes_of(with(tool)), "at t = 0.5"));
+    tool.motion.move = {"0", "height*ramp(t, 0.5, 0.501)", "0"};
+    CHECK(notes_of(with(tool)).empty());
+    tool.motion.move = {"0", "0", "0"};
+    tool.motion.pivot = {"roll_x", "roll_y", "0"};
+    tool.motion.turn = "step(t, 0.25)";
+    CHECK(tells(notes_of(with(tool)), "at t = 0.25"));
+
+    MachineSpec vice;
+    vice.name = "vice";
+    vice.grip = vice_grips();
+    vice.grip[1].motion.move[0] = "0.1*length*step(t, 0.75)";
+    CHECK(tells(notes_of(vice), "grip turn jumps by up to 10 cm at t = 0.75"));
+}
