@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/expressions.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace swage {
@@ -29,6 +31,17 @@ void ExpressionReader::add_names(const std::vector<std::string>& names) {
     known_.insert(known_.end(), names.begin(), names.end());
 }
 
+namespace {
+
+std::string word_at(const std::string& text, std::size_t at) {
+    const auto begin = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
+    return {begin, std::find_if_not(begin, text.end(), [](unsigned char c) {
+                return std::isalnum(c) != 0 || c == '_';
+            })};
+}
+
+}  // namespace
+
 void ExpressionReader::read_one(TableReader& table, const std::string& key, const Node& node,
                                 Expression& into) {
     MistakeList& mistakes = table.reading().mistakes;
@@ -53,7 +66,13 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
         }
         into = {node.text, text_place(node.place)};
     } catch (const TextError& error) {
-        mistakes.add(place_inside(node, error.at()), key + ": " + error.what());
+        std::string what = error.what();
+        const std::string word = word_at(node.text, error.at());
+        if (later_.contains(word) && !is_reserved_name(word)) {
+            what =
+                fmt::format("unknown name \"{}\": a parameter may use only those above it", word);
+        }
+        mistakes.add(place_inside(node, error.at()), key + ": " + what);
     }
 }
 

@@ -27,6 +27,8 @@ class ExpressionReader {
     void add_name(const std::string& name) { known_.push_back(name); }
     void add_names(const std::vector<std::string>& names);
     const std::vector<std::string>& names() const { return known_; }
+    // Parameters of the file that it does not see yet.
+    void expect_later(std::set<std::string> names) { later_ = std::move(names); }
 
     // Look up a number or an expression; `into` keeps its text. Return whether the key is there.
     bool read(TableReader& table, const std::string& key, Expression& into);
@@ -61,6 +63,7 @@ class ExpressionReader {
                      Quantity quantity);
 
     std::vector<std::string> known_;
+    std::set<std::string> later_;
     std::set<std::string> used_;
 };
 

@@ -68,8 +68,12 @@ class MachineReader {
 
   private:
     void read_parameters(const Node& all, MachineSpec& machine) {
+        std::set<std::string> names;  // of this and those below
+        for (const Entry& entry : all.entry) names.insert(entry.key);
         for (const Entry& entry : all.entry) {
             const std::string section = "[parameter." + entry.key + "]";
+            expression_.expect_later(names);
+            names.erase(entry.key);
             if (!check_parameter_name(entry)) continue;
             if (entry.value.kind != Node::Kind::table) {
                 mistakes_.add(entry.place, fmt::format("write {} and below it quantity, default, "
@@ -106,6 +110,7 @@ class MachineReader {
             expression_.add_name(parameter.name);
             machine.parameter.push_back(std::move(parameter));
         }
+        expression_.expect_later({});
     }
 
     bool check_parameter_name(const Entry& entry) {

@@ -149,6 +149,16 @@ TEST_CASE("mistakes in machine files are named at their letter") {
          "\"length\"\ndefault = 1\n" +
              kGrip,
          {"3:12: default: unknown name \"b\"", "unknown name \"reach\"", "unknown name \"reach\""}},
+        {"parameter of a later one",
+         "[parameter.a]\nquantity = \"length\"\ndefault = \"2*b\"\n[parameter.b]\nquantity = "
+         "\"length\"\ndefault = \"a\"\n" +
+             kGrip,
+         {"3:14: default: unknown name \"b\": a parameter may use only those above it",
+          "unknown name \"reach\"", "unknown name \"reach\""}},
+        {"parameter of itself",
+         "[parameter.a]\nquantity = \"length\"\ndefault = 1\nhigh = \"2*a\"\n" + kGrip,
+         {"4:11: high: unknown name \"a\": a parameter may use only those above it",
+          "unknown name \"reach\"", "unknown name \"reach\""}},
         {"time outside a motion",
          kHead + "[[grip]]\nname = \"a\"\nfrom = [0, 0, \"t\"]\nto = [1, 1, \"reach\"]\n",
          {"7:16: from: unknown name \"t\""}},
