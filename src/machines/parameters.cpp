@@ -22,7 +22,8 @@ ParameterMistake out_of_range(const std::string& machine, const ParameterSpec& p
     return {parameter.name,
             fmt::format("machine {}: {}{} = {} is out of range: it may be {}", machine,
                         is_given ? "" : "the default of ", parameter.name,
-                        quantity_text(value, parameter.quantity), range.text(parameter.quantity))};
+                        quantity_text(value, parameter.quantity), range.text(parameter.quantity)),
+            is_given ? TextPlace() : parameter.default_value.place};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace swage {
 
 struct ParameterMistake {
     std::string parameter, sentence;
+    TextPlace place = {};  // of a default that cannot be
 };
 
 // Values of parameters that cannot be, so that a caller can say where each was given.

@@ -10,9 +10,18 @@ namespace {
 
 constexpr double kLegSlack = 0.05;  // spacings
 
+// A machine file does not say which stage it is that asks for it.
+std::string in_stage(const std::string& sentence, const StageSpec& stage) {
+    return fmt::format("{} (stage \"{}\")", sentence, stage.name);
+}
+
 std::vector<Mistake> placed(const StageSpec& stage, const ParameterError& error) {
     std::vector<Mistake> mistakes;
-    for (const auto& [parameter, sentence] : error.mistakes()) {
+    for (const auto& [parameter, sentence, place] : error.mistakes()) {
+        if (!place.file.empty()) {
+            mistakes.push_back(mistake_at(place, in_stage(sentence, stage), ExitCode::scene));
+            continue;
+        }
         const auto given = stage.parameter_place.find(parameter);
         mistakes.push_back(mistake_at(
             given != stage.parameter_place.end() ? given->second : stage.place, sentence));
@@ -31,10 +40,7 @@ auto at_stage(const StageSpec& stage, const Act& act) {
         if (error.place().file.empty()) {
             throw SceneError({mistake_at(stage.place, error.what(), error.code())});
         }
-        // The machine file does not say which stage it is that asks for it.
-        throw SceneError(
-            {mistake_at(error.place(), fmt::format("{} (stage \"{}\")", error.what(), stage.name),
-                        error.code())});
+        throw SceneError({mistake_at(error.place(), in_stage(error.what(), stage), error.code())});
     } catch (const Error& error) {
         if (error.code() != ExitCode::scene) throw;
         throw SceneError({mistake_at(stage.place, error.what())});

@@ -109,3 +109,16 @@ TEST_CASE("what a part of a machine cannot do at the work-piece is told where it
     CHECK(told(ball + "radius = \"length - 1.6\"\nat = [0, 0, 0]\n")
               .find("machines/odd.toml:4:10: machine odd: the radius of tool ball") == 0);
 }
+
+TEST_CASE("a default out of its range is told where it stands, a given value where it is given") {
+    const test::Scratch scratch;
+    scratch.write("machines/ball.toml",
+                  "[parameter.size]\nquantity = \"length\"\ndefault = \"2 m\"\nlow = 0\n"
+                  "high = \"height\"\n[[tool]]\nname = \"ball\"\nshape = \"sphere\"\n"
+                  "radius = \"size\"\nat = [0, 9, 0]\n");
+    CHECK(told_of_stage(scratch, "machine = \"ball\"\n")
+              .find("machines/ball.toml:3:11: machine ball: the default of size = 2 m is out of "
+                    "range: it may be 0 m to 40 cm (stage \"1-ball\")") == 0);
+    CHECK(told_of_stage(scratch, "machine = \"ball\"\nsize = \"3 m\"\n")
+              .find("s.toml:7:8: machine ball: size = 3 m is out of range") == 0);
+}
