@@ -176,6 +176,12 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
         table.warn("machine",
                    "nothing moves: there is no gravity (gravity = \"9.81 m/s2\"), no load, and no "
                    "body starts with a velocity or a spin");
+    } else if (!machine->blade.empty()) {
+        table.warn("machine",
+                   fmt::format("nothing happens: the blade {} never moves (it has no motion), and "
+                               "there is no gravity (gravity = \"9.81 m/s2\") and no load "
+                               "([[stage.load]])",
+                               machine->blade.front().name));
     } else if (machine->tool.empty() || machine->upright) {
         table.warn("machine",
                    "nothing happens: there is no gravity (gravity = \"9.81 m/s2\") and no load "

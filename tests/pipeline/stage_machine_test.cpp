@@ -122,3 +122,21 @@ TEST_CASE("a default out of its range is told where it stands, a given value whe
     CHECK(told_of_stage(scratch, "machine = \"ball\"\nsize = \"3 m\"\n")
               .find("s.toml:7:8: machine ball: size = 3 m is out of range") == 0);
 }
+
+TEST_CASE("a blade that never moves is warned of by name, one that goes or falls is not") {
+    const test::Scratch scratch;
+    const auto told = [&](const std::string& motion, const std::string& keys) {
+        scratch.write("machines/saw.toml",
+                      "[[blade]]\nname = \"tooth\"\nedge = [[0, 1, -1], [0, 1, 1]]\n" + motion);
+        const SceneReading reading =
+            read_scene(scratch.write("s.toml",
+                                     "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
+                                     "[[stage]]\nmachine = \"saw\"\n" +
+                                         keys),
+                       {}, test::shipped());
+        return test::told(reading.mistakes, scratch.folder());
+    };
+    CHECK(told("", "").find("nothing happens: the blade tooth never moves") != std::string::npos);
+    CHECK(told("[blade.motion]\nmove = [0, \"-t\", 0]\n", "").empty());
+    CHECK(told("", "gravity = 9.81\n").find("never moves") == std::string::npos);
+}
