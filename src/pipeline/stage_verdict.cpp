@@ -90,6 +90,24 @@ double unaccounted(const Books& first, const Books& b, double stored, double lea
     return play > least && std::abs(gap) > least ? gap / play : 0;
 }
 
+// What a body starts deep in, which throws it so, and what can be done about it.
+std::string how_deep(const Books& last, const StageEnd& end, const std::string& thrown) {
+    const bool later = end.first_frame > 1;
+    if (end.bodies.size() == 1 && last.among_at_start > 0.5 * last.contact_at_start) {
+        return fmt::format(
+            "starts a little deep in itself, or its pieces in each other, which "
+            "throws them apart by {}: {}",
+            thrown,
+            later ? "self_contact = true in the stages before keeps it from that"
+                  : "its mesh runs into itself there");
+    }
+    return fmt::format("starts a little deep in what it touches, which throws it off by {}: {}",
+                       thrown,
+                       later ? "leave a gap to the machine's tools, or let the stage before leave "
+                               "it further off"
+                             : "put it further off, with `at`");
+}
+
 // What contacts and grips hold as a stage in motion begins is let go of at once, and no mistake
 // where it lifts a body by less than a cell, moves it by less in all of the stage, or a second, or
 // is little beside how it flies. A body that is pressed by right is strained, and holds more
@@ -105,11 +123,11 @@ std::vector<std::string> pressed_at_start(const StageEnd& end) {
             mass * std::max(end.stage.sim.gravity.norm() * a, 0.5 * slowly * slowly);
         const Books& first = end.first.body[b];
         if (energy > std::max({harmless, first.elastic, 0.01 * first.kinetic})) {
-            told.push_back(fmt::format(
-                "{} starts a little deep in what it touches, which throws it off by {:.3g} J, "
-                "at most at {}: put it further off, with `at`",
-                end.bodies[b].name, energy,
-                quantity_text(std::sqrt(2 * energy / mass), Quantity::speed)));
+            const std::string thrown =
+                fmt::format("{:.3g} J, at most at {}", energy,
+                            quantity_text(std::sqrt(2 * energy / mass), Quantity::speed));
+            told.push_back(
+                fmt::format("{} {}", end.bodies[b].name, how_deep(end.last.body[b], end, thrown)));
         }
     }
     return told;

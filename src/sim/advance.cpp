@@ -63,6 +63,7 @@ void Books::add(const Books& other) {
     gravity_work += other.gravity_work;
     contact += other.contact;
     contact_at_start += other.contact_at_start;
+    among_at_start += other.among_at_start;
     passed += other.passed;
     plastic += other.plastic;
     friction += other.friction;
@@ -203,6 +204,7 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
             // What the blades took before the first move was in it too.
             body[b].stored_at_start = part.before.sum() + books.severed_energy;
             books.contact_at_start = part.before.contact;
+            books.among_at_start = part.by_contact.stored_at_start;
             body[b].begun = true;
         }
         books.remainder = books.work + books.load_work + books.gravity_work + books.passed -

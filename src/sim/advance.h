@@ -29,9 +29,10 @@ struct ToolLoad {
 
 // The energy books of one body, or of all.
 struct Books {
-    double kinetic = 0, elastic = 0;                   // now [J]
-    double contact = 0, contact_at_start = 0;          // in contacts and grips: now, and when the
-                                                       // stage began [J]
+    double kinetic = 0, elastic = 0;           // now [J]
+    double contact = 0, contact_at_start = 0;  // in contacts and grips: now, and when the
+                                               // stage began [J]
+    double among_at_start = 0;  // of that, in contacts with other bodies and itself [J]
     double work = 0, load_work = 0, gravity_work = 0;  // done on it since the stage began [J], by
                                                        // tools and grips, loads, gravity
     double passed = 0;  // to it by bodies that it touches, likewise; nothing in the sum of all

@@ -28,22 +28,28 @@ struct CutBar {
 
     // What is said of a stage in which `work` was done and `remainder` of it is nowhere.
     std::string told(double work, double remainder, double residual = 0) {
-        const StageSpec& stage = reading.scene->stage[0];
-        const Machine machine = stage_machine(stage, bodies[0].matter, {});
-        StageTotals totals;
-        totals.severed = 1;
-        totals.residual = residual;
         FrameReport last;
         last.pieces = 2;
         last.work = work;
         last.remainder = remainder;
+        return told_of(reading.scene->stage[0], last, 1, residual);
+    }
+
+    std::string told_of(const StageSpec& stage, const FrameReport& last, int first_frame,
+                        double residual = 0) {
+        const Machine machine = stage_machine(stage, bodies[0].matter, {});
+        StageTotals totals;
+        totals.severed = 1;
+        totals.residual = residual;
+        FrameReport first;
+        first.body.resize(last.body.size());
         const StageEnd end{.stage = stage,
                            .machine = machine,
                            .bodies = bodies,
                            .totals = totals,
-                           .first = {},
+                           .first = first,
                            .last = last,
-                           .first_frame = 1,
+                           .first_frame = first_frame,
                            .last_frame = 9,
                            .legs = 8,
                            .duration = 1,
@@ -89,4 +95,28 @@ TEST_CASE("the work of drawing away what an equilibrium left pushed a little is 
     CHECK_FALSE(is_open(bar.told(-0.3 * pushed * way, -0.3 * pushed * way, left)));
     CHECK(is_open(bar.told(-100 * pushed * way, -100 * pushed * way, left)));
     CHECK(is_open(bar.told(-0.3 * pushed * way, -0.3 * pushed * way)));
+}
+
+TEST_CASE("what is thrown off as a stage begins is told from what, with what can be done then") {
+    CutBar bar("rubber");
+    bar.bodies[0].name = "bar";
+    StageSpec stage = bar.reading.scene->stage[0];
+    stage.sim.solver = Solver::explicit_steps;
+    const auto told = [&](double among, int first_frame) {
+        FrameReport last;
+        last.pieces = 2;
+        last.body.resize(1);
+        last.body[0].contact_at_start = 5;
+        last.body[0].among_at_start = among;
+        return bar.told_of(stage, last, first_frame);
+    };
+    const auto says = [](const std::string& text, const char* words) {
+        return text.find(words) != std::string::npos;
+    };
+    CHECK(says(told(0, 1), "bar starts a little deep in what it touches"));
+    CHECK(says(told(0, 1), "with `at`"));
+    CHECK(says(told(0, 9), "leave a gap"));
+    CHECK(says(told(5, 9), "bar starts a little deep in itself, or its pieces in each other"));
+    CHECK(says(told(5, 9), "self_contact = true in the stages before"));
+    for (const double among : {0.0, 5.0}) CHECK_FALSE(says(told(among, 9), "with `at`"));
 }
