@@ -2,6 +2,7 @@
 #include "machines/start_notes.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/units.h"
 #include "machines/touch.h"
@@ -94,6 +95,37 @@ std::string jump_note(const std::string& whose, const Motion& motion, const std:
     return "";
 }
 
+// Where nothing else of the machine moves, and so brings the work-piece to it.
+bool only_blades_move(const MachineSpec& spec) {
+    MachineSpec rest = spec;
+    rest.blade.clear();
+    return rest.stands() && rest.load.empty();
+}
+
+// Of a blade whose edge stays beside the work-piece's box all its way.
+std::string miss_note(const Machine& machine, std::size_t n, const std::vector<Pose>& way,
+                      double slack) {
+    if (way.empty() || machine.spec.blade[n].motion.stands()) return "";
+    const Blade& blade = machine.apparatus.blade[n];
+    const Vec3 half = (0.5 * machine.frame.size).array() + slack;
+    double nearest = std::numeric_limits<double>::infinity();
+    const auto grow = [&](Box& box, const Pose& moved) {
+        for (const Vec3& point : blade.edge) box.grow(moved * machine.work_from_blade[n] * point);
+    };
+    for (std::size_t leg = 1; leg < way.size(); ++leg) {
+        Box swept;
+        grow(swept, way[leg - 1]);
+        grow(swept, way[leg]);
+        const Vec3 beside = (swept.low - half).cwiseMax(-half - swept.high).cwiseMax(0);
+        nearest = std::min(nearest, beside.norm());
+    }
+    if (nearest == 0) return "";
+    return fmt::format(
+        "blade {} passes by the work-piece where that is now, by {} at the nearest: it will cut "
+        "nothing",
+        blade.name, length_of(nearest + slack));
+}
+
 // Of one that is not meant to be there: what `touch` has slid up to the work-piece is as deep as
 // its gap says, until its motion begins.
 std::string depth_note(const Machine& machine, std::size_t n, const std::vector<Vec3>& touch,
@@ -149,6 +181,9 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
         }
     };
     const Apparatus& apparatus = machine.apparatus;
+    for (std::size_t n = 0; only_blades_move(machine.spec) && n < apparatus.blade.size(); ++n) {
+        note(miss_note(machine, n, way_of(machine.blade_motion[n]), matter.lattice.spacing));
+    }
     of_jumps("tool ", apparatus.tool, machine.tool_motion, machine.work_from_tool);
     of_jumps("grip ", apparatus.grip, machine.grip_motion, machine.work_from_grip);
     of_jumps("blade ", apparatus.blade, machine.blade_motion, machine.work_from_blade);

@@ -115,3 +115,26 @@ TEST_CASE("what jumps is noted with the time, what goes fast is not") {
     vice.grip[1].motion.move[0] = "0.1*length*step(t, 0.75)";
     CHECK(tells(notes_of(vice), "grip turn jumps by up to 10 cm at t = 0.75"));
 }
+
+TEST_CASE("a blade that passes beside the work-piece all its way is noted, one that meets it not") {
+    BladeSpec blade;
+    blade.name = "knife";
+    blade.edge = {{"0", "3*height", "-width"}, {"0", "3*height", "width"}};
+    MachineSpec spec;
+    spec.name = "cutter";
+    const auto notes = [&](const Expression3& move) {
+        blade.motion.move = move;
+        spec.blade = {blade};
+        return notes_of(spec);
+    };
+    CHECK(tells(notes({"0", "-1.5*height*t", "0"}), "blade knife passes by the work-piece"));
+    CHECK(tells(notes({"0", "-1.5*height*t", "0"}), "by 20 cm at the nearest"));
+    CHECK(tells(notes({"2*length*t", "0", "0"}), "blade knife passes by"));
+    CHECK(notes({"0", "-4*height*t", "0"}).empty());
+    CHECK(notes({"0", "-10*height*sin(pi*t)", "0"}).empty());
+    CHECK(notes({"0", "-2.5*height*t", "0"}).empty());
+    ToolSpec lift = roll();
+    lift.motion.move = {"0", "height*t", "0"};
+    spec.tool = {lift};
+    CHECK(notes({"0", "-1.5*height*t", "0"}).empty());
+}
