@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -70,6 +71,39 @@ void check_edges(const TriMesh& mesh, MeshReport& report) {
     report.manifold = report.crowded_edges == 0 && report.crowded_vertices == 0;
 }
 
+// Places are welded, so that closed surfaces which touch share vertices, as the parts of what was
+// cut do. They are told apart where none of their edges has an odd number of triangles of its own.
+int count_components(const TriMesh& mesh, const Components& touching) {
+    const std::vector<EdgeUse> uses = edge_uses(mesh.triangle, mesh.position.size());
+    DisjointSets sets(mesh.triangle.size());
+    for_each_edge(uses, [&](auto edge) {
+        if (edge.size() == 2) sets.unite(edge[0].triangle, edge[1].triangle);
+    });
+    std::vector<int> shell;
+    std::vector<int> first(static_cast<std::size_t>(sets.number_sets(shell)), -1);
+    std::vector<int> shells(static_cast<std::size_t>(touching.count), 0);
+    std::vector<char> is_closed(shells.size(), 1);
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const int component = touching.triangle_component[t];
+        if (has_repeated_corner(mesh.triangle[t])) is_closed[component] = 0;
+        if (std::exchange(first[shell[t]], 0) < 0) ++shells[component];
+    }
+    for_each_edge(uses, [&](auto edge) {
+        std::vector<int> beside;
+        for (const EdgeUse& use : edge) beside.push_back(shell[use.triangle]);
+        std::sort(beside.begin(), beside.end());
+        for (auto one = beside.begin(), next = one; one != beside.end(); one = next) {
+            next = std::upper_bound(one, beside.end(), *one);
+            if ((next - one) % 2 == 1) {
+                is_closed[touching.triangle_component[edge[0].triangle]] = 0;
+            }
+        }
+    });
+    int count = 0;
+    for (std::size_t c = 0; c < shells.size(); ++c) count += is_closed[c] ? shells[c] : 1;
+    return count;
+}
+
 void add_findings(MeshReport& report) {
     const auto say = [&](std::size_t count, const char* one, const char* many, const char* what) {
         if (count > 0) report.finding.push_back(counted(count, one, many) + what);
@@ -128,7 +162,7 @@ MeshReport check_mesh(const TriMesh& mesh) {
     report.duplicate_triangles = count_duplicates(mesh.triangle);
     check_edges(mesh, report);
     const Components components = surface_components(mesh);
-    report.components = components.count;
+    report.components = report.manifold ? components.count : count_components(mesh, components);
     report.volume = signed_volume(mesh);
     report.area = surface_area(mesh);
     if (report.watertight && report.oriented)

@@ -12,7 +12,9 @@ namespace swage {
 
 struct MeshReport {
     std::size_t vertices = 0, triangles = 0, polygons = 0;
-    int components = 0;  // connected through shared vertices
+    // Connected through shared vertices; closed surfaces that only touch, at edges or vertices,
+    // count each.
+    int components = 0;
     std::size_t materials = 0;
     bool has_uv = false;
 
