@@ -98,7 +98,8 @@ std::string how_deep(const Books& last, const StageEnd& end, const std::string& 
             "starts a little deep in itself, or its pieces in each other, which "
             "throws them apart by {}: {}",
             thrown,
-            later ? "self_contact = true in the stages before keeps it from that"
+            later ? "smaller cells make it less; without self_contact = true they pass through "
+                    "each other"
                   : "its mesh runs into itself there");
     }
     return fmt::format("starts a little deep in what it touches, which throws it off by {}: {}",
