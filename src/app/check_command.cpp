@@ -41,36 +41,51 @@ std::vector<Mistake> mistakes_of(const Error& error, const std::string& scene) {
     return {{.file = scene, .text = error.what()}};
 }
 
-// With which the body's thinnest parts come within 1 %.
-int across_for_percent(const BodyCost& body) {
-    return to_int(
-        std::ceil(accuracy_at(body.thickness).cells_for_percent * body.across / body.thickness));
+// Of the mold, with which what is `cells` thick now comes within 1 %.
+int across_for_percent(const BodyCost& body, double cells) {
+    return to_int(std::ceil(accuracy_at(cells).cells_for_percent * body.across / cells));
 }
 
-std::string accuracy_text(const BodySpec& spec, const BodyCost& body) {
+std::string stiffness_text(const BodyCost& body, double cells) {
+    const std::string enough = fmt::format("1 % at across = {}", across_for_percent(body, cells));
+    if (cells < kLeastCells) return "too few; " + enough;
+    const Accuracy accuracy = accuracy_at(cells);
+    return fmt::format("bending about {:.2g} %, torsion {:.2g} %; {}", 100 * accuracy.bending,
+                       100 * accuracy.torsion, enough);
+}
+
+std::vector<std::string> accuracy_texts(const BodySpec& spec, const BodyCost& body) {
     if (spec.material.mechanics != Mechanics::cells) {
-        return "springs: stretch alone is right; bending and torsion are too stiff";
+        return {"springs: stretch alone is right; bending and torsion are too stiff"};
     }
-    const Accuracy accuracy = accuracy_at(body.thickness);
-    const int enough = across_for_percent(body);
-    const std::string part =
-        body.has_thin_parts()
-            ? fmt::format("its thin parts, about {:.2g} cells thick", body.thickness)
-            : fmt::format("a part {:g} cells thick", body.thickness);
-    if (body.thickness < kLeastCells) {
-        return fmt::format("{}: too few for its bending and torsion; 1 % at across = {}", part,
-                           enough);
+    std::vector<std::string> texts;
+    if (body.has_thin_parts()) {
+        texts = {fmt::format("elastic stiffness of the whole, {} cells across, where thin parts "
+                             "stretch and shear (a tube bent, twisted): {}",
+                             body.across, stiffness_text(body, body.across)),
+                 fmt::format("elastic stiffness where thin parts, about {:.2g} cells thick, bend "
+                             "by themselves (a ring squeezed flat, a bracket): {}",
+                             body.thickness, stiffness_text(body, body.thickness))};
+    } else {
+        texts = {fmt::format("elastic stiffness of a part {:g} cells thick: {}", body.thickness,
+                             stiffness_text(body, body.thickness))};
     }
-    return fmt::format(
-        "stiffness of {}: bending about {:.2g} %, torsion {:.2g} %; 1 % at across = {}", part,
-        100 * accuracy.bending, 100 * accuracy.torsion, enough);
+    for (const Material* material : spec.materials()) {
+        if (!std::isfinite(material->yield_stress)) continue;
+        texts.push_back(
+            "what stays after yield is less exact than that, near a limit load far less");
+        break;
+    }
+    return texts;
 }
 
-Json accuracy_json(const BodyCost& body) {
-    const Accuracy accuracy = accuracy_at(body.thickness);
-    return {{"bending", accuracy.bending},
+Json accuracy_json(const BodyCost& body, double cells) {
+    const Accuracy accuracy = accuracy_at(cells);
+    return {{"of", "elastic stiffness"},
+            {"cells", cells},
+            {"bending", accuracy.bending},
             {"torsion", accuracy.torsion},
-            {"across_for_percent", across_for_percent(body)}};
+            {"across_for_percent", across_for_percent(body, cells)}};
 }
 
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
@@ -92,7 +107,12 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     });
     line("particles", about + count_text(cost.mold.particles));
     line("connections", about + count_text(cost.mold.connections));
-    each("accuracy", [&](std::size_t b) { return accuracy_text(scene.body[b], cost.body[b]); });
+    for (std::size_t b = 0; b < scene.body.size(); ++b) {
+        const std::string whose = b == 0 ? "" : scene.body[b].name + ": ";
+        for (const std::string& text : accuracy_texts(scene.body[b], cost.body[b])) {
+            line("accuracy", whose + text);
+        }
+    }
     if (cost.tool_give > 0) {
         const double thickness = cost.work_piece().thickness;
         line("tools",
@@ -102,6 +122,13 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     }
     for (const std::string& strength : cost.warning.strength) line("strength", strength);
     line("stages", std::to_string(scene.stage.size()));
+    for (const MachinePlace& place : cost.place) {
+        const bool is_later = &place != &cost.place.front();
+        const std::string whose = cost.place.size() == 1 ? "" : place.stage + ": ";
+        const std::string when = is_later ? " (as the work-piece is at first)" : "";
+        if (!place.axes.empty()) line("axes", whose + place.axes + when);
+        for (const std::string& load : place.load) line("load", whose + load + when);
+    }
     line("frames", count_text(cost.frames));
     line("steps", "about " + count_text(cost.steps));
     line("memory", fmt::format("about {}, the matter itself {}", bytes_text(cost.memory_bytes),
@@ -120,7 +147,10 @@ void add_accuracy(const SceneSpec& scene, const RunCost& cost, Json& json) {
         const BodyCost& body = cost.body[b];
         if (spec.material.mechanics == Mechanics::cells) {
             Json& whole = b == 0 ? json : json["bodies"][spec.name];
-            whole["accuracy"] = accuracy_json(body);
+            whole["accuracy"] = accuracy_json(body, body.thickness);
+            if (body.has_thin_parts()) {
+                whole["accuracy_of_whole"] = accuracy_json(body, body.across);
+            }
         }
         for (const Material* of : spec.materials()) {
             const Resolved strength = resolved_strength(*of, body.spacing, body.across);
@@ -151,6 +181,7 @@ int check(const CheckArguments& given) {
         const RunCost cost = count_cost(*reading.scene, input, options);
         for (const InputMesh& one : input) json["meshes"].push_back(mesh_json(one));
         json["cost"] = cost_json(cost);
+        json["stages"] = places_json(cost.place);
         add_accuracy(*reading.scene, cost, json);
         if (!given.json) {
             for (const auto* untold : {&cost.warning.mold, &cost.warning.bodies}) {

@@ -116,8 +116,8 @@ int machines(const MachinesArguments& given) {
     }
     if (catalogue.machine.empty()) {
         fail(ExitCode::command_line,
-             "no machine was found in {}; --assets names a folder that holds machines/",
-             names_text(machine_folders(assets, folder)));
+             "no machine was found in {}; --assets names a folder that holds machines/{}",
+             names_text(machine_folders(assets, folder)), wrong_root_text(assets.root));
     }
     if (given.name.empty()) {
         Json list = Json::array();

@@ -11,7 +11,6 @@
 #include "geometry/mesh_read.h"
 #include "machines/bodies.h"
 #include "machines/parameters.h"
-#include "machines/region.h"
 #include "machines/start_notes.h"
 #include "machines/touch.h"
 #include "matter/touch_points.h"
@@ -306,6 +305,7 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
     } else {
         load.pressure = evaluate(spec.pressure, setting.known, Quantity::stress);
     }
+    machine.load_on.push_back(components_of(matter, load));
     machine.apparatus.load.push_back(std::move(load));
     machine.load_strength.emplace_back(spec.strength, setting.known, Quantity::number);
 }

@@ -3,6 +3,7 @@
 // to the surface, its grips holding points of it, its motions ready to be asked for any time.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "base/math.h"
 #include "machines/machine_spec.h"
 #include "machines/motion.h"
+#include "machines/region.h"
 #include "matter/aggregate.h"
 #include "matter/drive.h"
 
@@ -33,6 +35,9 @@ std::vector<Vec3> surface_positions(const Aggregate& matter);
 WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis = WorldAxis::automatic,
                            WorldAxis up = WorldAxis::automatic, bool upright = false);
 
+// Which of the world's axes its x, y and z are.
+std::array<WorldAxis, 3> world_axes(const WorkFrame& frame);
+
 struct Machine {
     MachineSpec spec;
     std::map<std::string, double> parameter;  // every one, SI
@@ -44,7 +49,8 @@ struct Machine {
     std::vector<Pose> work_from_tool, work_from_grip, work_from_blade;  // before they move
     std::vector<Motion> tool_motion, grip_motion, blade_motion;
     std::vector<Timed> load_strength;
-    std::optional<Timed> gravity_strength;  // none: full from the start
+    std::vector<std::vector<SurfaceComponent>> load_on;  // as the work-piece lies
+    std::optional<Timed> gravity_strength;               // none: full from the start
 };
 
 // What expressions know of the work-piece: length, height, width, spacing, lattice_reach and

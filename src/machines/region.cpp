@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "geometry/disjoint_sets.h"
 #include "laws/pressure.h"
 
 namespace swage {
@@ -23,6 +24,54 @@ Side side_of(const Vec3& normal) {
     normal.cwiseAbs().maxCoeff(&axis);
     return kSides[2 * axis + (normal[axis] > 0)];
 }
+
+// Points chosen from a surface, to be looked up by those near them, as it was molded.
+class NearPoints {
+  public:
+    NearPoints(const Aggregate& matter, const std::vector<int>& points)
+        : matter_(matter), points_(points) {
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            const Vec3 place = matter.surface_reference(std::size_t(points[n]));
+            there_[key_of(site_of(place))].push_back({static_cast<int>(n), place});
+        }
+    }
+
+    // Whether `meets` holds of any neighbour of a point of the surface, by its number among those
+    // chosen; none after that is asked.
+    template <typename Meets>
+    bool any(std::size_t point, const Meets& meets) const {
+        const Vec3 place = matter_.surface_reference(point);
+        const Vec3i home = site_of(place);
+        for (int n = 0; n < 27; ++n) {
+            const auto at = there_.find(key_of(home + neighbor_step(n)));
+            if (at == there_.end()) continue;
+            for (const auto& [number, where] : at->second) {
+                const std::size_t other = std::size_t(points_[std::size_t(number)]);
+                if ((place - where).norm() < kNeighbour * matter_.lattice.spacing &&
+                    matter_.surface.normal(point).dot(matter_.surface.normal(other)) >
+                        kLooksApart &&
+                    meets(number)) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
+  private:
+    struct At {
+        int number;
+        Vec3 place;
+    };
+    Vec3i site_of(const Vec3& place) const {
+        const Lattice& lattice = matter_.lattice;
+        return ((place - lattice.origin) / lattice.spacing).array().floor().cast<int>();
+    }
+
+    const Aggregate& matter_;
+    const std::vector<int>& points_;
+    std::unordered_map<std::uint64_t, std::vector<At>> there_;  // looked up only
+};
 
 }  // namespace
 
@@ -77,35 +126,41 @@ SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
     return part;
 }
 
-bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
-    const SurfacePoints& surface = matter.surface;
-    if (points.size() == surface.size()) return true;
-    const double a = matter.lattice.spacing;
-    std::vector<Vec3> place;
-    for (std::size_t p = 0; p < surface.size(); ++p) place.push_back(matter.surface_reference(p));
-    const auto site_of = [&](std::size_t p) -> Vec3i {
-        return ((place[p] - matter.lattice.origin) / a).array().floor().cast<int>();
-    };
-    std::unordered_map<std::uint64_t, std::vector<int>> chosen;  // looked up only
-    std::vector<char> is_chosen(surface.size(), 0);
-    for (int p : points) {
-        chosen[key_of(site_of(p))].push_back(p);
-        is_chosen[p] = 1;
+std::vector<SurfaceComponent> components_of(const Aggregate& matter, const SurfacePart& part) {
+    const NearPoints near(matter, part.point);
+    DisjointSets sets(part.point.size());
+    for (std::size_t n = 0; n < part.point.size(); ++n) {
+        near.any(std::size_t(part.point[n]), [&](int m) {
+            sets.unite(static_cast<int>(n), m);
+            return false;
+        });
     }
-    for (std::size_t p = 0; p < surface.size(); ++p) {
-        if (is_chosen[p]) continue;
-        const Vec3i home = site_of(p);
-        for (int n = 0; n < 27; ++n) {
-            const auto at = chosen.find(key_of(home + neighbor_step(n)));
-            if (at == chosen.end()) continue;
-            for (int q : at->second) {
-                const double way = (place[p] - place[q]).norm();
-                if (way < kNeighbour * a &&
-                    surface.normal(p).dot(surface.normal(q)) > kLooksApart) {
-                    return false;
-                }
-            }
-        }
+    std::vector<int> set_of;
+    std::vector<SurfaceComponent> components(std::size_t(sets.number_sets(set_of)),
+                                             {0, Vec3::Zero()});
+    for (std::size_t n = 0; n < part.point.size(); ++n) {
+        const std::size_t p = std::size_t(part.point[n]);
+        const Vec3 now = present_area<double>(matter.surface_gradient(p), matter.surface.normal(p));
+        const double area = part.share_of(n) * matter.surface.area(p) * now.norm();
+        SurfaceComponent& component = components[std::size_t(set_of[n])];
+        component.area += area;
+        component.middle += area * matter.surface_position(p);
+    }
+    for (SurfaceComponent& one : components) {
+        if (one.area > 0) one.middle /= one.area;
+    }
+    std::stable_sort(components.begin(), components.end(),
+                     [](const auto& a, const auto& b) { return a.area > b.area; });
+    return components;
+}
+
+bool is_closed(const Aggregate& matter, const std::vector<int>& points) {
+    if (points.size() == matter.surface.size()) return true;
+    const NearPoints near(matter, points);
+    std::vector<char> is_chosen(matter.surface.size(), 0);
+    for (int p : points) is_chosen[std::size_t(p)] = 1;
+    for (std::size_t p = 0; p < is_chosen.size(); ++p) {
+        if (!is_chosen[p] && near.any(p, [](int) { return true; })) return false;
     }
     return true;
 }

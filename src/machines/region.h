@@ -25,6 +25,15 @@ double share_within(const Box& patch, const Box& region);
 SurfacePart find_region(const Aggregate& matter, const Pose& world_from_work,
                         const std::vector<Vec3>& in_work, Side side, const Box* box);
 
+// A part of a surface that hangs together.
+struct SurfaceComponent {
+    double area;  // now [m2]
+    Vec3 middle;  // of it, in the world [m]
+};
+
+// The largest first.
+std::vector<SurfaceComponent> components_of(const Aggregate& matter, const SurfacePart& part);
+
 // Whether the points make up whole closed surfaces: none of them has a neighbour that is left out.
 bool is_closed(const Aggregate& matter, const std::vector<int>& points);
 

@@ -43,4 +43,15 @@ WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis, WorldAxis up
     return {{Quat(axes).normalized(), box.center()}, (axes.transpose() * box.size()).cwiseAbs()};
 }
 
+std::array<WorldAxis, 3> world_axes(const WorkFrame& frame) {
+    std::array<WorldAxis, 3> axes;
+    for (int n = 0; n < 3; ++n) {
+        const Vec3 way = frame.world_from_work.turn(Vec3::Unit(n));
+        int along;
+        way.cwiseAbs().maxCoeff(&along);
+        axes[n] = static_cast<WorldAxis>(1 + 2 * along + (way[along] < 0));
+    }
+    return axes;
+}
+
 }  // namespace swage

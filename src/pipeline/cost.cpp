@@ -253,6 +253,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     std::vector<Material> beside;
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
     const Machine machine = stage_machine(first, matter[0], beside);
+    cost.place = machine_places(scene, machine, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     for (std::string& amiss : tool_overlaps(machine, named)) {
         cost.warning.bodies.push_back(std::move(amiss));

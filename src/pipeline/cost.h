@@ -7,6 +7,7 @@
 
 #include "mold/mold.h"
 #include "pipeline/json.h"
+#include "pipeline/machine_place.h"
 #include "pipeline/run_options.h"
 #include "pipeline/start_warnings.h"
 #include "pipeline/work_piece.h"
@@ -27,15 +28,16 @@ struct BodyCost {
 struct RunCost {
     MoldEstimate mold;  // sums over all bodies; spacing and cell_count are the work-piece's
     std::vector<BodyCost> body;
-    bool counted = false;           // the mold was made, so its numbers are no estimate
-    double tool_give = 0;           // what the softest tool gives way by, in cells; 0: no tools
-    int frames = 0;                 // stills, the start included
-    double steps = 0;               // relaxation iterations and steps of motion, about
-    double seconds = 0;             // of simulation and drawing on this machine, about
-    std::string slow;               // what may take ten times that; empty: nothing
-    double memory_bytes = 0;        // at the peak, about
-    double disk_bytes = 0;          // of the run directory, about
-    std::vector<std::string> note;  // of the first machine at the work-piece; of steps
+    bool counted = false;             // the mold was made, so its numbers are no estimate
+    double tool_give = 0;             // what the softest tool gives way by, in cells; 0: no tools
+    int frames = 0;                   // stills, the start included
+    double steps = 0;                 // relaxation iterations and steps of motion, about
+    double seconds = 0;               // of simulation and drawing on this machine, about
+    std::string slow;                 // what may take ten times that; empty: nothing
+    double memory_bytes = 0;          // at the peak, about
+    double disk_bytes = 0;            // of the run directory, about
+    std::vector<std::string> note;    // of the first machine at the work-piece; of steps
+    std::vector<MachinePlace> place;  // of each stage; none where the mold was not made
     // `mold` and `bodies` only where the mold was made; `bodies` tells of what the first machine's
     // tools are in, too.
     StartWarnings warning;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "base/text.h"
@@ -12,7 +13,10 @@ namespace swage {
 
 namespace {
 
-std::string number(double value) { return fmt::format("{:.9g}", value); }
+// What is not known stays empty: every reader of tables takes that for a gap.
+std::string number(double value) {
+    return std::isnan(value) ? std::string() : fmt::format("{:.9g}", value);
+}
 
 // A name inside a comma separated line: quoted when it holds a comma or a quote.
 std::string cell(const std::string& text) {
@@ -68,6 +72,7 @@ void StageCurves::pass(const std::vector<ToolLoad>& loads) {
 
 void StageCurves::add(int frame, const FrameReport& report) {
     pass(report.load);
+    if (std::isnan(report_.front().contact)) report_.front().contact = report.contact_at_start;
     frame_.push_back(frame);
     report_.push_back(report);
     report_.back().load.clear();

@@ -28,8 +28,8 @@ struct LoadCurve {
 class StageCurves {
   public:
     // The first row is the start of the stage, where nothing is felt yet: names and poses, and what
-    // is known of the bodies (Simulation::start). The first `parts` of the loads, if not all, are
-    // of the machine, and go where they are driven.
+    // is known of the bodies (Simulation::start); what contacts hold there the first add() tells.
+    // The first `parts` of the loads, if not all, are of the machine, and go where they are driven.
     StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
                 FrameReport bodies = {}, std::size_t parts = static_cast<std::size_t>(-1));
     void add(int frame, const FrameReport& report);

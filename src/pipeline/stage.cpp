@@ -12,6 +12,7 @@
 #include "geometry/mesh_write.h"
 #include "machines/legs.h"
 #include "pipeline/curves.h"
+#include "pipeline/machine_place.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_machine.h"
@@ -123,6 +124,9 @@ class StageRun {
           way_(stage_drives(stage, machine_, legs_.leg, steps_, context.scene.duration_of(stage))),
           ahead_(way_),
           cuts_(bodies.size(), 0) {
+        const std::string axes = axes_text(machine_.frame);
+        if (!axes.empty()) log_info("{}: {}", stage.name, axes);
+        for (const std::string& load : load_texts(machine_)) log_info("{}: {}", stage.name, load);
         for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
         for (const std::string& warning : tool_overlaps(machine_, named(bodies))) {
             outcome_.warning.push_back(fmt::format("{}: {}", stage.name, warning));

@@ -47,16 +47,16 @@ auto at_stage(const StageSpec& stage, const Act& act) {
     }
 }
 
-WorkFrame work_frame(const StageSpec& stage, const Aggregate& work_piece) {
+}  // namespace
+
+WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece) {
     return place_work_frame(work_piece, stage.axis, stage.up, stage.machine.upright);
 }
-
-}  // namespace
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
                       const std::vector<Material>& beside) {
     return at_stage(stage, [&] {
-        return build_machine(stage.machine, stage.parameter, work_frame(stage, work_piece),
+        return build_machine(stage.machine, stage.parameter, stage_frame(stage, work_piece),
                              work_piece, beside);
     });
 }
@@ -66,7 +66,7 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
         const StageSpec& stage = scene.stage[n];
         try {
-            const WorkFrame frame = work_frame(stage, work_piece);
+            const WorkFrame frame = stage_frame(stage, work_piece);
             resolve_parameters(stage.machine, stage.parameter,
                                work_piece_variables(work_piece, frame));
         } catch (const ParameterError& error) {

@@ -9,6 +9,9 @@
 
 namespace swage {
 
+// Throws as place_work_frame().
+WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece);
+
 // A stage's machine, set up at the work-piece as it is now. `beside`: the materials of the other
 // bodies. Throws SceneError where build_machine throws.
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,

@@ -2,6 +2,7 @@
 #include "pipeline/stage_record.h"
 
 #include "base/hash.h"
+#include "pipeline/machine_place.h"
 
 namespace swage {
 
@@ -64,6 +65,8 @@ Json stage_record(const StageEnd& end, double overlap, const std::vector<std::st
         {"name", end.stage.name},
         {"machine", end.stage.machine.name},
         {"parameters", parameters_json(end.machine)},
+        {"axes", axes_json(end.machine.frame)},
+        {"loads", loads_json(end.machine)},
         {"frames", {end.first_frame, end.last_frame}},
         {"legs", end.legs},
         {"duration_s", end.duration},

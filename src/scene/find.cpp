@@ -96,8 +96,26 @@ std::string names_text(const std::vector<fs::path>& folders) {
 std::string no_machine_text(const std::string& wanted, const std::vector<MachineFile>& known,
                             const std::vector<fs::path>& folders) {
     const std::string hint = did_you_mean(wanted, names_of(known));
-    return fmt::format("no machine \"{}\"{}{} are {}; looked in {}", wanted, hint,
-                       hint.empty() ? "; known" : " Known", names_text(known), names_text(folders));
+    std::vector<fs::path> roots;
+    for (const fs::path& folder : folders) roots.push_back(folder.parent_path());
+    return fmt::format("no machine \"{}\"{}{} are {}; looked in {}{}", wanted, hint,
+                       hint.empty() ? "; known" : " Known", names_text(known), names_text(folders),
+                       wrong_root_text(roots));
+}
+
+std::string wrong_root_text(const std::vector<fs::path>& roots) {
+    for (const fs::path& root : roots) {
+        const fs::path above = root.parent_path();
+        if (root.filename() != "assets" || is_folder(root / "machines") ||
+            !is_folder(above / "machines")) {
+            continue;
+        }
+        return fmt::format(
+            "; SWAGE_ASSETS (or --assets) has to be {}, which holds machines and "
+            "assets, not {}",
+            above.empty() ? "." : above.string(), root.string());
+    }
+    return {};
 }
 
 std::vector<fs::path> material_files(const AssetPaths& assets, const fs::path& scene_folder) {

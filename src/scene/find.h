@@ -38,6 +38,10 @@ std::string names_text(const std::vector<std::filesystem::path>& folders);
 std::string no_machine_text(const std::string& wanted, const std::vector<MachineFile>& known,
                             const std::vector<std::filesystem::path>& folders);
 
+// To a user who gave as a root the folder `assets` of one: "; SWAGE_ASSETS (or --assets) has to be
+// ..."; empty: none of these is one.
+std::string wrong_root_text(const std::vector<std::filesystem::path>& roots);
+
 // Material files in the order in which a name is looked up: materials.toml beside the scene, then
 // assets/materials.toml of every root.
 std::vector<std::filesystem::path> material_files(const AssetPaths& assets,

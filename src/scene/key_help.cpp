@@ -112,23 +112,28 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[[stage]]", "directional_drag_along",
          "against the motion, or along the surface's normal"},
         {"[[stage]]", "gravity",
-         "a single number points down: against y, or up with machines that are upright",
+         "a single number points down: against y, or up with machines that are upright; three are "
+         "along the world's axes",
          "acceleration, or [x, y, z] of them", "0"},
         {"[[stage]]", "load", "forces and pressures on the surface"},
         {"[[stage]]", "gravity_strength", "gravity's share over the stage, 0 < t < 1",
          "expression of t", "1"},
 
         {"[[stage.load]]", "name", "of the load in curves", "text", "load_1, load_2, ..."},
-        {"[[stage.load]]", "force", "in all, spread by area; keeps its direction (machine's axes)"},
+        {"[[stage.load]]", "force",
+         "in all, spread by area; keeps its direction; along the machine's x, y, z, which `swage "
+         "check` tells in the world's, by which curves are"},
         {"[[stage.load]]",
          "pressure",
          "instead of force: along the inward normal as it deforms; all round a piece, also on what "
          "cuts and breaks lay open",
          {},
          "-"},
-        {"[[stage.load]]", "on", "the part of the surface that looks to this side"},
+        {"[[stage.load]]", "on",
+         "all of the surface that looks to this side (right, top, front: the machine's x, y, z), "
+         "walls of holes too; `swage check` tells where that is"},
         {"[[stage.load]]", "from",
-         "a corner of a box, from the middle of the work-piece's, that "
+         "a corner of a box, from the middle of the work-piece's along the machine's axes, that "
          "the surface has to lie in"},
         {"[[stage.load]]", "to", "the opposite corner"},
         {"[[stage.load]]", "strength", "share of the load over the stage, 0 < t < 1",

@@ -151,9 +151,10 @@ void read_material(TableReader& table, const AssetPaths& assets,
         }
         if (!is_known) {
             const std::string hint = did_you_mean(name, known);
-            const std::string all = known.empty()  ? "; no file of materials was found"
-                                    : hint.empty() ? "; known are " + joined(known, ", ")
-                                                   : " Known are " + joined(known, ", ");
+            const std::string all =
+                known.empty()  ? "; no file of materials was found" + wrong_root_text(assets.root)
+                : hint.empty() ? "; known are " + joined(known, ", ")
+                               : " Known are " + joined(known, ", ");
             table.mistake("name", fmt::format("no material \"{}\"{}{}", name, hint, all));
         }
     } else if (is_named && node->kind == Node::Kind::text) {

@@ -451,7 +451,7 @@ TEST_CASE("check tells of every body how fine it is, and what it would need") {
     INFO(text.out << text.err);
     REQUIRE(text.code == 0);
     CHECK(text.out.find("  cells        pane: ") != std::string::npos);
-    CHECK(text.out.find("  accuracy     pane: stiffness of a part 2 cells thick") !=
+    CHECK(text.out.find("  accuracy     pane: elastic stiffness of a part 2 cells thick") !=
           std::string::npos);
     CHECK(text.out.find("[[body]] \"pane\" across = ") != std::string::npos);
     CHECK(text.out.find("[mold] across = ") == std::string::npos);

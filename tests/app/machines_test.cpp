@@ -78,3 +78,27 @@ TEST_CASE(
     CHECK(other.err.find("known are mine; looked in " + (scratch.path() / "machines").string()) !=
           std::string::npos);
 }
+
+TEST_CASE("who names the folder assets itself is told to name the one above") {
+    const Scratch scratch;
+    const fs::path alone = scratch.path() / "bin/swage", shelf = scratch.path() / "shelf";
+    fs::create_directories(alone.parent_path());
+    fs::copy_file(SWAGE_BINARY, alone);
+    fs::create_directories(shelf / "assets");
+    fs::copy(fs::path(SWAGE_SOURCE_DIR) / "machines", shelf / "machines");
+    fs::copy_file(fs::path(SWAGE_SOURCE_DIR) / "assets/materials.toml",
+                  shelf / "assets/materials.toml");
+    const fs::path scene = put_small_scene(alone.parent_path());
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"machines"}, {"machines", "bend"}, {"check", scene.string()}}) {
+        const auto told = [&](const fs::path& assets) {
+            return run_swage(words, scratch.path(), {{"SWAGE_ASSETS", assets.string()}}, alone);
+        };
+        const Outcome wrong = told(shelf / "assets");
+        INFO(wrong.err);
+        CHECK(wrong.code != 0);
+        CHECK(wrong.err.find("SWAGE_ASSETS (or --assets) has to be " +
+                             fs::canonical(shelf).string() + ", which") != std::string::npos);
+        CHECK(told(shelf).code == 0);
+    }
+}

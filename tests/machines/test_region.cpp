@@ -115,3 +115,29 @@ TEST_CASE("a cavity is a closed surface, a part of one is not") {
     CHECK(is_closed(hollow, outer));
     CHECK_FALSE(is_closed(hollow, half));
 }
+
+TEST_CASE("what of a surface looks to a side is told part by part, with how much and where it is") {
+    // A U that is open upward, 1.6 long and 0.8 deep: the ends of its arms, and its floor.
+    const Aggregate u = make_shape(
+        [](const Vec3& x) {
+            const double block = (x.cwiseAbs() - Vec3(0.8, 0.6, 0.4)).maxCoeff();
+            return std::max(block, std::min(0.3 - std::abs(x.x()), x.y()));
+        },
+        Vec3(-1, -1, -1), Vec3i(20, 20, 20), 0.1);
+    const Machine machine = with(u, push(Side::top));
+    const std::vector<SurfaceComponent>& parts = machine.load_on.at(0);
+    REQUIRE(parts.size() == 3);
+    // What lies in its corners looks up or aside.
+    CHECK(parts[0].area == Approx(0.6 * 0.8).epsilon(0.1));
+    CHECK((parts[0].middle - Vec3(0, 0, 0)).norm() < 0.03);
+    for (int arm : {1, 2}) {
+        CHECK(parts[arm].area == Approx(0.5 * 0.8).epsilon(1e-4));
+        CHECK((parts[arm].middle.cwiseAbs() - Vec3(0.55, 0.6, 0)).norm() < 1e-4);
+    }
+    CHECK(parts[1].middle.x() * parts[2].middle.x() < 0);
+    LoadSpec arm = push(Side::top);
+    arm.box = {{{"0.3*length", "-height", "-width"}, {"length", "height", "width"}}};
+    const Machine boxed = with(u, arm);
+    REQUIRE(boxed.load_on.at(0).size() == 1);
+    CHECK(boxed.load_on[0][0].area == Approx((0.8 - 0.48) * 0.8).epsilon(1e-4));
+}

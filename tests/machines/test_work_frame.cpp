@@ -49,6 +49,9 @@ TEST_CASE("the work frame follows the words of the scene, signs too, and stays r
             }
             const WorkFrame frame = place_work_frame(body, axis, up);
             const Pose& pose = frame.world_from_work;
+            CHECK(world_axes(frame)[0] == axis);
+            CHECK(world_axes(frame)[1] == up);
+            CHECK(direction_of(world_axes(frame)[2]) == x.cross(y));
             CHECK((pose.turn(Vec3::UnitX()) - x).norm() < 1e-12);
             CHECK((pose.turn(Vec3::UnitY()) - y).norm() < 1e-12);
             CHECK((pose.turn(Vec3::UnitZ()) - x.cross(y)).norm() < 1e-12);

@@ -2,6 +2,7 @@
 #include "pipeline/curves.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 #include "tests/catch.h"
@@ -114,4 +115,20 @@ TEST_CASE("a frame of several legs keeps the deepest that a tool went in") {
         frame.go_on(leg);
     }
     CHECK(frame.load.at(0).penetration == 3e-4);
+}
+
+TEST_CASE("the first row has what contacts held at the start, and never a word for a number") {
+    FrameReport start;
+    start.contact = std::numeric_limits<double>::quiet_NaN();
+    StageCurves curves("s", 1, {{"ram", Pose{}}}, start);
+    CHECK(csv_text(curves).find("nan") == std::string::npos);  // before anything was found
+    FrameReport report;
+    report.load.resize(1);
+    report.contact = 0.5, report.contact_at_start = 0.125;
+    curves.add(2, report);
+    report.contact = 0.75;
+    curves.add(3, report);
+    CHECK(curves.report()[0].contact == 0.125);
+    CHECK(curves.report()[1].contact == 0.5);
+    CHECK(lines_of(csv_text(curves))[1].find(",0.125,") != std::string::npos);
 }

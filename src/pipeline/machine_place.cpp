@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/machine_place.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/portable_math.h"
+#include "geometry/mesh_check.h"
+#include "pipeline/stage_machine.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kMostTold = 4;  // of a load's parts
+
+Vec3 in_machine(const WorkFrame& frame, const Vec3& in_world) {
+    return frame.world_from_work.inverse() * in_world;
+}
+
+SurfaceComponent whole_of(const std::vector<SurfaceComponent>& parts) {
+    SurfaceComponent whole{0, Vec3::Zero()};
+    for (const SurfaceComponent& part : parts) {
+        whole.area += part.area;
+        whole.middle += part.area * part.middle;
+    }
+    if (whole.area > 0) whole.middle /= whole.area;
+    return whole;
+}
+
+// To a thousandth of the box or so.
+std::string place_text(const WorkFrame& frame, const Vec3& in_world) {
+    const double unit = portable::pow(10, std::floor(portable::log10(frame.size.maxCoeff())) - 3);
+    const Vec3 at = in_machine(frame, in_world);
+    const auto text = [&](double x) { return length_text(unit * std::round(x / unit) + 0.0); };
+    return fmt::format("[{}, {}, {}]", text(at[0]), text(at[1]), text(at[2]));
+}
+
+std::string part_text(const WorkFrame& frame, const SurfaceComponent& part) {
+    return fmt::format("{} about {}", area_text(part.area), place_text(frame, part.middle));
+}
+
+Json part_json(const WorkFrame& frame, const SurfaceComponent& part) {
+    const Vec3 at = in_machine(frame, part.middle);
+    return {{"area_m2", part.area},
+            {"middle_m", {part.middle[0], part.middle[1], part.middle[2]}},
+            {"middle_by_machine_m", {at[0], at[1], at[2]}}};
+}
+
+}  // namespace
+
+std::string axes_text(const WorkFrame& frame) {
+    const auto [x, y, z] = world_axes(frame);
+    if (x == WorldAxis::x && y == WorldAxis::y) return {};
+    return fmt::format("the machine's x, y, z are the world's {}, {}, {}", name_of(x), name_of(y),
+                       name_of(z));
+}
+
+Json axes_json(const WorkFrame& frame) {
+    Json json = Json::array();
+    for (const WorldAxis axis : world_axes(frame)) json.push_back(name_of(axis));
+    return json;
+}
+
+std::vector<std::string> load_texts(const Machine& machine) {
+    std::vector<std::string> texts;
+    for (std::size_t n = 0; n < machine.load_on.size(); ++n) {
+        const std::vector<SurfaceComponent>& parts = machine.load_on[n];
+        std::string text = fmt::format("{} acts on {}", machine.apparatus.load[n].name,
+                                       part_text(machine.frame, whole_of(parts)));
+        if (parts.size() > 1) {
+            text += fmt::format(", in {} separate parts:", parts.size());
+            for (std::size_t p = 0; p < std::min(parts.size(), kMostTold); ++p) {
+                text += (p == 0 ? " " : "; ") + part_text(machine.frame, parts[p]);
+            }
+            if (parts.size() > kMostTold) text += "; ...";
+        }
+        texts.push_back(text);
+    }
+    return texts;
+}
+
+Json loads_json(const Machine& machine) {
+    Json json = Json::array();
+    for (std::size_t n = 0; n < machine.load_on.size(); ++n) {
+        Json load = {{"name", machine.apparatus.load[n].name}};
+        load.update(part_json(machine.frame, whole_of(machine.load_on[n])));
+        load["parts"] = Json::array();
+        for (const SurfaceComponent& part : machine.load_on[n]) {
+            load["parts"].push_back(part_json(machine.frame, part));
+        }
+        json.push_back(load);
+    }
+    return json;
+}
+
+std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
+                                         const Aggregate& work_piece,
+                                         const std::vector<Material>& beside) {
+    std::vector<MachinePlace> places;
+    for (const StageSpec& stage : scene.stage) {
+        try {
+            const bool is_first = places.empty();
+            Machine later;
+            if (!is_first && stage.machine.load.empty()) {
+                later.frame = stage_frame(stage, work_piece);
+            } else if (!is_first) {
+                later = stage_machine(stage, work_piece, beside);
+            }
+            const Machine& machine = is_first ? first : later;
+            places.push_back({stage.name, axes_text(machine.frame), load_texts(machine),
+                              axes_json(machine.frame), loads_json(machine)});
+        } catch (const Error&) {
+            // It may stand at the work-piece of then.
+            places.push_back({.stage = stage.name});
+        }
+    }
+    return places;
+}
+
+Json places_json(const std::vector<MachinePlace>& places) {
+    Json json = Json::array();
+    for (const MachinePlace& place : places) {
+        json.push_back(
+            {{"name", place.stage}, {"axes", place.axes_json}, {"loads", place.loads_json}});
+    }
+    return json;
+}
+
+}  // namespace swage

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How stages' machines stand at the work-piece, and what of its surface their loads act on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "machines/machine.h"
+#include "pipeline/json.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+// "the machine's x, y, z are the world's y, z, x"; empty where they are the same.
+std::string axes_text(const WorkFrame& frame);
+Json axes_json(const WorkFrame& frame);  // ["y", "z", "x"]
+
+// For each load: how much it acts on, in which parts, and where their middles are, by the machine's
+// axes from the middle of the work-piece's box, as the load's own `from` and `to`; in JSON by the
+// world's too.
+std::vector<std::string> load_texts(const Machine& machine);
+Json loads_json(const Machine& machine);
+
+// Of a stage before the run; of any but the first, as if the work-piece came to it as it is now.
+// Empty and null where the machine cannot be set up so.
+struct MachinePlace {
+    std::string stage;
+    std::string axes{};               // as axes_text()
+    std::vector<std::string> load{};  // as load_texts()
+    Json axes_json{}, loads_json{};
+};
+
+// Of all stages. `first`: the machine of the first.
+std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
+                                         const Aggregate& work_piece,
+                                         const std::vector<Material>& beside);
+Json places_json(const std::vector<MachinePlace>& places);
+
+}  // namespace swage

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `swage check` foretells, and the run then holds.
+#include <fstream>
+
+#include "geometry/box_mesh.h"
+#include "geometry/mesh_write.h"
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+TEST_CASE("check, the log and the record tell how a machine stands and what its loads act on") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "upright.toml", out = scratch.path() / "run";
+    swage::write_obj(scratch.path() / "bar.obj", swage::box_mesh({0, 0, 0}, {0.02, 0.2, 0.02}));
+    put_text(scene,
+             "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n[mold]\nacross = 2\n"
+             "[[stage]]\nmachine = \"hold\"\nframes = 1\n[[stage.load]]\n"
+             "force = [0, \"-0.1 N\", 0]\non = \"right\"\n");
+    const std::string axes = "the machine's x, y, z are the world's y, z, x";
+    const std::string load = "load_1 acts on 4 cm2 about [10 cm, 0 m, 0 m]";
+    const Outcome text = run_swage({"check", scene.string()});
+    INFO(text.out << text.err);
+    CHECK(text.out.find("  axes         " + axes + "\n") != std::string::npos);
+    CHECK(text.out.find("  load         " + load + "\n") != std::string::npos);
+    const Outcome run = run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+    CHECK(run.err.find("1-hold: " + axes) != std::string::npos);
+    CHECK(run.err.find("1-hold: " + load) != std::string::npos);
+    const Json told = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    const Json record = Json::parse(bytes_of(out / "run.json"));
+    for (const char* key : {"name", "axes", "loads"}) {
+        CHECK(told.at("stages").at(0).at(key) == record.at("stages").at(0).at(key));
+    }
+    // The force in the table is along the world's axes, and its first row has every number.
+    const std::string table = bytes_of(out / "curves/1-hold.csv");
+    CHECK(table.find("nan") == std::string::npos);
+    CHECK(table.find(",,") == std::string::npos);
+    CHECK(table.find(",0,0,-0.1,") != std::string::npos);
+}
+
+TEST_CASE("a tube's accuracy is told of the whole and of its wall, and as elastic") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "tube.toml";
+    run_swage({"make", "tube", "--length", "20 cm", "--diameter", "3 cm", "--wall", "3.5 mm",
+               "--out", "tube.obj"},
+              scratch.path());
+    const std::string rest = "\"\n[mold]\nacross = 6\n[[stage]]\nmachine = \"hold\"\nframes = 1\n";
+    put_text(scene, "[mesh]\nfile = \"tube.obj\"\n[material]\nname = \"glass" + rest);
+    const std::string text = run_swage({"check", scene.string()}).out;
+    INFO(text);
+    CHECK(text.find("elastic stiffness of the whole, 6 cells across, ") != std::string::npos);
+    CHECK(text.find("bending about 2.5 %, torsion 3.4 %; 1 % at across = 12") != std::string::npos);
+    CHECK(text.find("bend by themselves (a ring squeezed flat, a bracket): too few; 1 % at") !=
+          std::string::npos);
+    CHECK(text.find("after yield") == std::string::npos);
+    const Json json = Json::parse(run_swage({"check", scene.string(), "--json"}).out);
+    CHECK(json.at("accuracy_of_whole").at("across_for_percent") == 12);
+    CHECK(json.at("accuracy").at("across_for_percent").get<int>() > 90);
+    put_text(scene, "[mesh]\nfile = \"tube.obj\"\n[material]\nname = \"copper" + rest);
+    CHECK(run_swage({"check", scene.string()}).out.find("after yield") != std::string::npos);
+}

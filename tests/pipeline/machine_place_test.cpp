@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/machine_place.h"
+
+#include "pipeline/stage_machine.h"
+#include "tests/catch.h"
+#include "tests/scene/scratch.h"
+#include "tests/shared/block.h"
+
+using namespace swage;
+
+TEST_CASE(
+    "it is told which axes of the world a machine's are, and nothing where they are the same") {
+    const test::Scratch scratch;
+    const SceneReading reading =
+        read_scene(scratch.write("s.toml",
+                                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
+                                 "[[stage]]\nmachine = \"hold\"\n[[stage.load]]\n"
+                                 "force = [0, \"-10 N\", 0]\non = \"right\"\n"
+                                 "[[stage]]\nmachine = \"hold\"\nup = \"-x\"\n"),
+                   {}, test::shipped());
+    REQUIRE(reading.scene);
+    const SceneSpec& scene = *reading.scene;
+    const Aggregate bar = test::make_block(4, 16, 4, 0.1, scene.work_piece().material);
+    const Machine machine = stage_machine(scene.stage[0], bar, {});
+    const std::vector<MachinePlace> places = machine_places(scene, machine, bar, {});
+    REQUIRE(places.size() == 2);
+    CHECK(places[0].axes == "the machine's x, y, z are the world's y, z, x");
+    CHECK(places[1].axes == "the machine's x, y, z are the world's y, -x, z");
+    // What is told is how forces go.
+    const Json json = places_json(places);
+    CHECK(json[0].at("axes") == Json({"y", "z", "x"}));
+    Vec3 force = Vec3::Zero();
+    for (const Vec3& one : machine.apparatus.load.at(0).force) force += one;
+    CHECK((force - Vec3(0, 0, -10)).norm() < 1e-9);
+
+    const Json load = json[0].at("loads").at(0);
+    CHECK(load.at("name") == "load_1");
+    CHECK(load.at("area_m2").get<double>() == Approx(0.16));
+    CHECK(load.at("middle_by_machine_m").at(0).get<double>() == Approx(0.8));
+    CHECK(load.at("middle_m").at(1).get<double>() ==
+          Approx(machine.frame.world_from_work.translation.y() + 0.8));
+    CHECK(load.at("parts").size() == 1);
+    CHECK(places[0].load ==
+          std::vector<std::string>{"load_1 acts on 0.16 m2 about [80 cm, 0 m, 0 m]"});
+    CHECK(json[1].at("loads").empty());
+
+    const Aggregate along_x = test::make_block(16, 4, 4, 0.1, scene.work_piece().material);
+    CHECK(axes_text(stage_frame(scene.stage[0], along_x)) == "");
+}
