@@ -16,6 +16,7 @@ namespace {
 constexpr double kLatticePoisson = 0.25;  // of central springs, whatever is asked
 constexpr double kPoissonSlack = 0.005;
 constexpr double kMuchFriction = 2;
+constexpr double kRubberPoisson = 0.4;
 constexpr double kMostStrength = 0.1;  // of young_modulus
 // Beyond all matter, and far from where numbers end.
 constexpr Range kStiffness = {.low = 1e-3, .high = 1e15};  // [Pa]
@@ -102,6 +103,14 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     table.choice<Elasticity>(
         "elasticity", {{"hencky", Elasticity::hencky}, {"neo-hookean", Elasticity::neo_hookean}},
         material.elasticity);
+    if (material.mechanics == Mechanics::cells && material.elasticity == Elasticity::neo_hookean &&
+        material.poisson_ratio < kRubberPoisson) {
+        table.warn("elasticity",
+                   fmt::format("neo-hookean with poisson_ratio = {:g} is too soft where it is "
+                               "pressed together far, and grows thin: it is for rubber, from {:g} "
+                               "on; \"hencky\" is right for foam",
+                               material.poisson_ratio, kRubberPoisson));
+    }
     const bool has_density =
         table.quantity("density", Quantity::density, kDensity, material.density);
     if (is_infinite(table.find("yield_stress"))) {
