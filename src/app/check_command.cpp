@@ -109,8 +109,8 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     line("connections", about + count_text(cost.mold.connections));
     for (std::size_t b = 0; b < scene.body.size(); ++b) {
         const std::string whose = b == 0 ? "" : scene.body[b].name + ": ";
-        for (const std::string& text : accuracy_texts(scene.body[b], cost.body[b])) {
-            line("accuracy", whose + text);
+        for (const std::string& one : accuracy_texts(scene.body[b], cost.body[b])) {
+            line("accuracy", whose + one);
         }
     }
     if (cost.tool_give > 0) {
