@@ -34,6 +34,13 @@ void break_where(Aggregate& m, const std::function<bool(const Vec3&, const Vec3&
     }
 }
 
+// A share of all connections.
+void break_at_random(Aggregate& m, double share) {
+    std::mt19937 random(5);
+    break_where(m,
+                [&](const Vec3&, const Vec3&) { return random() < share * std::mt19937::max(); });
+}
+
 void break_along(Aggregate& m, const Vec3& point, const Vec3& normal) {
     break_where(m, [&](const Vec3& p, const Vec3& q) {
         return (normal.dot(p - point) >= 0) != (normal.dot(q - point) >= 0);
@@ -203,9 +210,7 @@ TEST_CASE("a box whose edges and faces lie half-way between sites breaks without
         test::sever_plane(f.matter, {.025, .025, -.025}, Vec3::UnitX());
     }
     const double share = GENERATE(.05, 1.);
-    std::mt19937 random(5);
-    break_where(f.matter,
-                [&](const Vec3&, const Vec3&) { return random() < share * std::mt19937::max(); });
+    break_at_random(f.matter, share);
     f.break_it();
     CHECK(f.broken.open_faces == 0);
     CHECK(test::is_closed(f.broken.mesh));
@@ -239,9 +244,7 @@ TEST_CASE(
     "matter broken anywhere, down to single particles, shows closed surfaces of all its volume") {
     Fixture f = body(GENERATE(0, 1));
     const double share = GENERATE(.02, .2, .5, .9, 1.);
-    std::mt19937 random(5);
-    break_where(f.matter,
-                [&](const Vec3&, const Vec3&) { return random() < share * std::mt19937::max(); });
+    break_at_random(f.matter, share);
     f.break_it();
     CHECK(f.broken.open_faces == 0);
     CHECK(test::is_closed(f.broken.mesh));
