@@ -92,6 +92,13 @@ TriMesh divided_skin(const TriMesh& mesh, const Aggregate& matter) {
     return skin;
 }
 
+// Makes it as heavy as that [kg].
+void weigh(double mass, Aggregate& matter) {
+    const double share = mass / matter.mass();
+    matter.material.density *= share;
+    for (double& m : matter.particle_mass) m *= share;
+}
+
 // One colour all over.
 void paint(TriMesh& skin, const Vec3& color, bool metal) {
     SurfaceMaterial look;
@@ -245,9 +252,9 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     // Bent, its box says nothing of how thick it is.
     as_it_stands.mold.across.reset();
     as_it_stands.mold.spacing = piece.matter.lattice.spacing;
-    // Pressed or drawn, matter takes up another volume; it is as heavy as it was.
-    as_it_stands.material.density = piece.matter.mass() / signed_volume(input.to_mold());
     WorkPiece anew = make_work_piece(input, as_it_stands, skin);
+    // Pressed, drawn or where its pieces lie in each other, matter takes up another volume.
+    weigh(piece.matter.mass(), anew.matter);
     carry_hardening(piece.matter, anew.matter);
     carry_motion(piece.matter, anew.matter);
     return anew;

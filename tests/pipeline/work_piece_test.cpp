@@ -171,6 +171,26 @@ TEST_CASE("matter molded anew is as heavy as it was, pressed together or drawn")
     }
 }
 
+TEST_CASE("matter molded anew is as heavy as it was where its pieces lie in each other") {
+    const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
+    WorkPiece piece = block({}, kind);
+    const Vec3 a(0.01, -1, -1), b(0.01, 1, -1), up(0, 0, 2);
+    cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}});
+    test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
+    const double mass = piece.matter.mass();
+    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
+        if (piece.matter.particle_reference.at(p).x() > 0.01) {
+            piece.matter.particle_position.add(p, {-0.08, 0.01, 0});
+        }
+    }
+    show_matter(piece, true);
+    BodySpec body;
+    body.mold.across = 3;
+    const WorkPiece anew = mold_anew(piece, body, {kind});
+    CHECK(anew.matter.volume() < 0.9 * piece.matter.volume());
+    CHECK(anew.matter.mass() == Approx(mass).epsilon(1e-9));
+}
+
 TEST_CASE("a mesh of twelve triangles bends with its matter, and so does what is molded of it") {
     InputMesh input;
     input.mesh = box_mesh({-0.2, -0.05, -0.1}, {0.2, 0.05, 0.1});
