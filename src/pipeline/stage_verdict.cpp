@@ -80,12 +80,14 @@ double unresolved(const StageEnd& end) {
 
 // Of what the bodies began with and were given, of what the books hold by now or of the most that
 // was stored on the way, the share that is missing or too much. Fracture takes energy: what it
-// gives is from nowhere.
+// gives is from nowhere. What contacts held at the start and were let go of has no part in it:
+// it is booked as what is gone, and may be far more than all that the stage does.
 double unaccounted(const Books& first, const Books& b, double stored, double least) {
     const double in = first.kinetic + first.elastic + std::abs(b.work) + std::abs(b.load_work) +
                       std::abs(b.gravity_work);
     const double out = b.kinetic + b.elastic + b.contact + b.plastic + b.damped + b.friction +
-                       b.drag + std::abs(b.severed_energy) + std::max(0.0, b.fracture) + b.set_free;
+                       b.drag + std::abs(b.severed_energy) + std::max(0.0, b.fracture) +
+                       std::max(0.0, b.set_free - b.contact_at_start);
     const double play = std::max({in, out, stored}), gap = b.remainder + std::min(0.0, b.fracture);
     return play > least && std::abs(gap) > least ? gap / play : 0;
 }

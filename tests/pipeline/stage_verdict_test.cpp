@@ -88,6 +88,21 @@ TEST_CASE("work that nobody did is told as soon as it is that of strains of a mi
     CHECK_FALSE(is_open(bar.told(1e3 * work, -1e1 * work)));
 }
 
+TEST_CASE("a gap in the books is told however much the start has thrown off") {
+    CutBar bar("copper");
+    const double work = 1e-12 * bar.stiffness();
+    const auto told = [&](double thrown) {
+        FrameReport last;
+        last.pieces = 2;
+        last.work = work;
+        last.remainder = -0.2 * work;
+        last.contact_at_start = last.set_free = thrown;
+        return bar.told_of(bar.reading.scene->stage[0], last, 1);
+    };
+    CHECK(is_open(told(0)));
+    CHECK(told(1e3 * work) == told(0));
+}
+
 TEST_CASE("the work of drawing away what an equilibrium left pushed a little is no open book") {
     CutBar bar(GENERATE("copper", "structural_steel", "rubber"));
     const double left = 0.01, way = 0.03;
