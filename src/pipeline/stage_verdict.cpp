@@ -136,6 +136,12 @@ std::vector<std::string> pressed_at_start(const StageEnd& end) {
     return told;
 }
 
+// What to look for at the end: folds of what is at rest, and in motion pieces that do not meet.
+bool may_lie_in_itself(const StageEnd& end) {
+    const bool in_pieces = end.last.pieces > 1, meets = end.stage.sim.self_contact;
+    return end.stage.sim.solver == Solver::quasistatic ? meets || !in_pieces : in_pieces && !meets;
+}
+
 std::string how_to_close(Solver solver) {
     if (solver == Solver::quasistatic) {
         return "between frames that lie far apart the work of tools is misjudged: try more frames";
@@ -187,15 +193,16 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
                          how_to_close(sim.solver)));
     }
-    if (sim.solver == Solver::quasistatic && (end.last.pieces == 1 || sim.self_contact) &&
-        ended != StageEnded::interrupted) {
+    if (may_lie_in_itself(end) && ended != StageEnded::interrupted) {
         Aggregate& body = end.bodies.front().matter;
         verdict.overlap = own_overlap(body);
         if (verdict.overlap > kOverlap * body.lattice.spacing) {
-            warn(fmt::format("the work-piece has gone into itself, by {} at the end: {}",
-                             length_text(verdict.overlap),
-                             sim.self_contact
-                                 ? "it is pressed together harder than its contact_stiffness holds"
+            warn(fmt::format(
+                "{}, by {} at the end: {}",
+                sim.solver == Solver::quasistatic ? "the work-piece has gone into itself"
+                                                  : "pieces of the work-piece lie in each other",
+                length_text(verdict.overlap),
+                sim.self_contact ? "it is pressed together harder than its contact_stiffness holds"
                                  : "self_contact = true in this stage keeps it from that"));
         }
     }

@@ -56,6 +56,18 @@ TEST_CASE("no more energy is said to be lost than a body began with and was give
     CHECK(std::stod(told.substr(share + 14)) <= 100);
 }
 
+TEST_CASE("pieces that have fallen into each other are told of, and those that met are not") {
+    const swage::TriMesh pile = together(box_mesh({-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}),
+                                         box_mesh({-0.01, 0.04, -0.01}, {0.01, 0.06, 0.01}));
+    const std::string fall =
+        "[[stage]]\nmachine = \"floor\"\ngravity = \"9.81 m/s2\"\nframes = 2\n"
+        "drop = \"2 mm\"\nduration = \"90 ms\"\n";
+    const std::string told = told_of(pile, fall);
+    CHECK(says(told, "pieces of the work-piece lie in each other, by "));
+    CHECK(says(told, "self_contact = true in this stage keeps it from that"));
+    CHECK(!says(told_of(pile, fall + "self_contact = true\n"), "lie in each other"));
+}
+
 TEST_CASE("tools are said to have touched nothing only where that is known") {
     const std::string apart =
         "[[stage]]\nmachine = \"floor\"\ndrop = \"20 cm\"\nframes = 2\nduration = \"1 ms\"\n"
