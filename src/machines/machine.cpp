@@ -153,7 +153,9 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
     if (!(axis.norm() > 0)) {
         refuse(spec.axis[0], fmt::format("the axis of tool {} has no length", spec.name));
     }
-    Pose work_from_tool{turn_onto(Vec3::UnitZ(), axis).normalized(), length3(setting, spec.at)};
+    const double turn = evaluate(spec.turn, setting.known, Quantity::angle);
+    const Quat rotation = turn_onto(Vec3::UnitZ(), axis) * turn_about(Vec3::UnitZ(), turn);
+    Pose work_from_tool{rotation.normalized(), length3(setting, spec.at)};
     const Vec3 touch = evaluate(spec.touch, setting.known, Quantity::number);
     if (touch.norm() > 0) {
         const Vec3 direction = touch.normalized();

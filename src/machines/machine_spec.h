@@ -54,8 +54,8 @@ struct ParameterSpec {
 struct MotionSpec {
     Expression3 move = {"0", "0", "0"};  // [m]
     Expression turn = "0";               // [rad]
-    Vec3 axis = Vec3::UnitZ();
-    Expression3 pivot;  // [m]; in the work frame; empty: its origin
+    Expression3 axis = {"0", "0", "1"};  // without t
+    Expression3 pivot;                   // [m]; in the work frame; empty: its origin
 
     bool says_pivot() const { return !pivot[0].empty(); }
     bool stands() const { return turn == "0" && move == Expression3{"0", "0", "0"}; }
@@ -73,6 +73,7 @@ struct ToolSpec {
     std::filesystem::path mesh;  // mesh: absolute; scaled so that its longest side is `length`
     TextPlace mesh_place;        // where it is named
     Expression3 axis = {"0", "0", "1"};  // the shape's z axis, in the work frame
+    Expression turn = "0";               // about that axis [rad]
     Expression3 at = {"0", "0", "0"};    // centre before `touch`, in the work frame
     // Slides the tool along this direction (from far outside) until it just touches; zero: stays.
     Expression3 touch = {"0", "0", "0"};

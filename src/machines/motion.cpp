@@ -70,13 +70,14 @@ double Timed::at(double t) const {
     return meant(quoting(text_, [&] { return formula_.evaluate(value); }), text_, quantity_);
 }
 
-Motion::Motion(const MotionSpec& spec, const Variables& known) : axis_(spec.axis) {
+Motion::Motion(const MotionSpec& spec, const Variables& known) {
     for (const Expression& text : spec.move) move_.emplace_back(text, known, Quantity::length);
     for (const Expression& text : spec.pivot) {
         pivot_.emplace_back(text.empty() ? "0" : text, known, Quantity::length);
     }
     turn_.emplace_back(spec.turn, known, Quantity::angle);
-    if (!(axis_.norm() > 0)) fail(ExitCode::scene, "the axis of a motion has no length");
+    axis_ = evaluate(spec.axis, known, Quantity::number);
+    if (!(axis_.norm() > 0)) refuse(spec.axis[0], "the axis of a motion has no length");
     axis_.normalize();
 }
 

@@ -48,6 +48,8 @@ class Motion {
     // any thread. Throws as evaluate().
     Pose at(double t) const;
 
+    const Vec3& axis() const { return axis_; }  // of the turn; unit
+
   private:
     std::vector<Timed> move_, pivot_, turn_;  // 3, 3, 1
     Vec3 axis_;

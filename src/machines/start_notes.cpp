@@ -34,12 +34,10 @@ std::vector<Pose> way_of(const Motion& motion) {
     return way;
 }
 
-std::string pivot_note(const Machine& machine, std::size_t n, const std::vector<Pose>& way,
-                       double slack) {
-    const MotionSpec& motion = machine.spec.tool[n].motion;
-    if (motion.says_pivot()) return "";
+std::string pivot_note(const Machine& machine, std::size_t n, const Vec3& axis,
+                       const std::vector<Pose>& way, double slack) {
+    if (machine.spec.tool[n].motion.says_pivot()) return "";
     const Vec3 middle = machine.work_from_tool[n].translation;
-    const Vec3 axis = motion.axis.normalized();
     const double off = (middle - middle.dot(axis) * axis).norm();
     if (off <= slack) return "";
     const bool turns = std::any_of(way.begin(), way.end(), [](const Pose& pose) {
@@ -165,7 +163,7 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
     for (std::size_t n = 0; n < machine.apparatus.tool.size(); ++n) {
         const std::vector<Pose> way = way_of(machine.tool_motion[n]);
         note(depth_note(machine, n, touch, inner, way.empty() ? Pose{} : way.front(), slack));
-        note(pivot_note(machine, n, way, slack));
+        note(pivot_note(machine, n, machine.tool_motion[n].axis(), way, slack));
     }
     const double reach = 0.5 * machine.frame.size.norm();
     const double jump = kJump * matter.lattice.spacing;

@@ -194,7 +194,7 @@ void ExpressionReader::expect_direction(TableReader& table) {
     for (const Node& one : given->item) {
         if (certain(one) != 0.0) return;
     }
-    table.mistake("axis", kNoDirection);
+    table.mistake("axis", "axis = [0, 0, 0] has no direction");
 }
 
 }  // namespace swage

@@ -19,8 +19,6 @@ const std::vector<std::string>& work_piece_names();
 const std::vector<std::pair<std::string, std::string>>&
 work_piece_names_told();  // and what each is
 
-inline constexpr const char* kNoDirection = "axis = [0, 0, 0] has no direction";
-
 class ExpressionReader {
   public:
     // The names that expressions see from now on, beside those of before.

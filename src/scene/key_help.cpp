@@ -207,6 +207,7 @@ const std::vector<KeyHelp>& machine_key_help() {
         {"[[tool]]", "rounding", "radius of a box's edges"},
         {"[[tool]]", "file", "of a mesh, relative to the machine file"},
         {"[[tool]]", "axis", "where the shape's z axis points"},
+        {"[[tool]]", "turn", "about that axis"},
         {"[[tool]]", "at", "its middle, from the middle of the work-piece's box", {}, "-"},
         {"[[tool]]", "touch", "the way it is slid, from far outside, until it touches", {}, "-"},
         {"[[tool]]", "gap", "that touch leaves"},
@@ -222,7 +223,7 @@ const std::vector<KeyHelp>& machine_key_help() {
 
         {"[tool.motion]", "move", "from where it stood; may use t, 0 to 1 over the stage"},
         {"[tool.motion]", "turn", "an angle; may use t"},
-        {"[tool.motion]", "axis", "of the turn", "[x, y, z]", "[0, 0, 1]"},
+        {"[tool.motion]", "axis", "of the turn", {}, "[0, 0, 1]"},
         {"[tool.motion]",
          "pivot",
          "that the turn leaves where it is; may use t; left out, the middle of the work-piece's "

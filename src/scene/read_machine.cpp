@@ -190,6 +190,7 @@ class MachineReader {
         if (is(ToolShape::mesh)) read_tool_mesh(table, tool.mesh, tool.mesh_place);
         expression_.read(table, "axis", Quantity::number, tool.axis);
         expression_.expect_direction(table);
+        expression_.read(table, "turn", Quantity::angle, tool.turn);
         if (!expression_.read(table, "at", Quantity::length, tool.at)) {
             table.missing("at", "where its centre is, such as [0, \"-height\", 0]");
         }
@@ -243,8 +244,8 @@ class MachineReader {
         timed.add_name("t");
         timed.read(table, "move", Quantity::length, motion.move);
         const bool turns = timed.read(table, "turn", Quantity::angle, motion.turn);
-        const bool has_axis = table.vector("axis", Quantity::number, motion.axis);
-        if (has_axis && !(motion.axis.norm() > 0)) table.mistake("axis", kNoDirection);
+        const bool has_axis = expression_.read(table, "axis", Quantity::number, motion.axis);
+        expression_.expect_direction(table);
         const bool has_pivot = timed.read(table, "pivot", Quantity::length, motion.pivot);
         if (!turns && (has_axis || has_pivot)) {
             table.warn(has_axis ? "axis" : "pivot", "axis and pivot have no effect without turn");

@@ -75,7 +75,7 @@ inline std::vector<GripSpec> vice_grips() {
     turn.name = "turn";
     turn.from[0] = "0.4*length";
     turn.to[0] = "length";
-    turn.motion.axis = Vec3::UnitX();
+    turn.motion.axis = {"1", "0", "0"};
     return {hold, turn};
 }
 

@@ -141,6 +141,39 @@ TEST_CASE("a tool that turns about another's axis keeps its distance and turns b
     CHECK((lifted.translation - end.translation - Vec3(0, 0.1, 0)).norm() < 1e-12);
 }
 
+TEST_CASE("a tool is turned about its own axis before that points anywhere") {
+    MachineSpec spec;
+    ToolSpec tool;
+    tool.name = "plate";
+    tool.shape = ToolShape::box;
+    tool.size = {"0.1", "0.2", "0.3"};
+    tool.axis = {"1", "0", "0"};
+    spec.parameter = {parameter("angle", Quantity::angle, "0", "", "")};
+    tool.turn = "angle";
+    spec.tool = {tool};
+    const Quat rest = set_up(spec).work_from_tool[0].rotation;
+    for (const double angle : {0.0, 0.3, kPi / 2}) {
+        const Quat turned = set_up(spec, bar(), {{"angle", angle}}).work_from_tool[0].rotation;
+        CHECK((turned * Vec3::UnitZ() - Vec3::UnitX()).norm() < 1e-15);
+        const Vec3 wanted =
+            std::cos(angle) * (rest * Vec3::UnitX()) + std::sin(angle) * (rest * Vec3::UnitY());
+        CHECK((turned * Vec3::UnitX() - wanted).norm() < 1e-15);
+    }
+}
+
+TEST_CASE("a motion's axis goes by parameters, and has to have a length") {
+    MachineSpec spec = roller();
+    spec.parameter.push_back(parameter("tilt", Quantity::angle, "0", "", ""));
+    spec.tool[1].motion.axis = {"0", "sin(tilt)", "cos(tilt)"};
+    const Machine machine = set_up(spec, bar(), {{"tilt", 0.25}});
+    const Pose start = machine.tool_motion[1].at(0), end = machine.tool_motion[1].at(0.5);
+    const Vec3 turn = turn_between(start, end);
+    CHECK((turn.normalized() + Vec3(0, std::sin(0.25), std::cos(0.25))).norm() < 1e-12);
+    spec.tool[1].motion.axis = {"0", "0", "tilt"};
+    CHECK(refusal(spec, {{"tilt", 0.0}}).find("the axis of a motion has no length") !=
+          std::string::npos);
+}
+
 TEST_CASE("tools rub as their machine says, or else as the material") {
     Aggregate body = bar();
     body.material.friction = 0.45;

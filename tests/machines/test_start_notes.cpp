@@ -52,7 +52,7 @@ TEST_CASE("a tool that turns about the work-piece's middle unasked is noted, wit
     asked.motion.pivot = {"0", "0", "0"};
     CHECK(notes_of(with(asked)).empty());
     ToolSpec about_its_middle = tool;
-    about_its_middle.motion.axis = Vec3::UnitY();
+    about_its_middle.motion.axis = {"0", "1", "0"};
     CHECK(notes_of(with(about_its_middle)).empty());
     ToolSpec by_nothing = tool;
     by_nothing.motion.turn = "0*t";

@@ -50,11 +50,12 @@ friction = 0.2
 color = [1, 0.5, 0]
 finish = "matt"
 contact_stiffness = 5
-motion = { move = [0, "-radius*ramp(t, 0, 1)", 0], turn = "turned*t", axis = [1, 0, 0], pivot = ["roll_x", "roll_y", 0] }
+motion = { move = [0, "-radius*ramp(t, 0, 1)", 0], turn = "turned*t", axis = [1, 0, "radius"], pivot = ["roll_x", "roll_y", 0] }
 [[tool]]
 name = "block"
 shape = "box"
 size = ["length", 1, 1]
+turn = "turned/2"
 rounding = 0.1
 at = ["roll_x", 0, 0]
 [[tool]]
@@ -114,10 +115,11 @@ otherwise = "choose a smaller radius"
     CHECK(machine.tool[1].contact_stiffness == 0);
     CHECK(machine.tool[1].finish == Finish::metal);
     CHECK(roll.motion.turn == "turned*t");
-    CHECK(roll.motion.axis == Vec3(1, 0, 0));
+    CHECK(roll.motion.axis == Expression3{"1", "0", "radius"});
     CHECK(roll.motion.pivot[1] == "roll_y");
     CHECK(machine.tool[1].size == Expression3{"length", "1", "1"});
     CHECK(machine.tool[1].rounding == "0.1");
+    CHECK(machine.tool[1].turn == "turned/2");
     CHECK(machine.tool[1].friction.empty());
     CHECK(machine.tool[2].radius == "0.5");
     CHECK(machine.tool[3].mesh == scratch.folder() / "tool.obj");
@@ -240,6 +242,12 @@ TEST_CASE("mistakes in machine files are named at their letter") {
         {"no direction",
          kHead + kGrip + tool + "axis = [0, 0, 0]\n",
          {"15:8: axis = [0, 0, 0] has no direction"}},
+        {"motion about what changes",
+         kHead + kGrip + "[grip.motion]\nturn = \"t\"\naxis = [0, \"t\", 1]\n",
+         {"11:13: axis: unknown name \"t\""}},
+        {"motion about nothing",
+         kHead + kGrip + "[grip.motion]\nturn = \"t\"\naxis = [0, 0, \"1 - 1\"]\n",
+         {"11:8: axis = [0, 0, 0] has no direction"}},
         {"gap without touch",
          kHead + kGrip + tool + "gap = 1\n",
          {"15:7: warning: gap has no effect without touch"}},
