@@ -12,6 +12,7 @@
 #include "pipeline/accuracy.h"
 #include "pipeline/disk_cost.h"
 #include "pipeline/free_room.h"
+#include "pipeline/probes.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
 #include "sim/advance.h"
@@ -235,6 +236,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         for (const std::string& warning : warnings_of_mold(body.name, input.size() > 1, findings)) {
             cost.warning.mold.push_back(warning);
         }
+        mount_probes(body, input[b].to_mold(), matter[b]);  // refuses those beside it
         place_at_start(body.start, input[b].to_mold(), matter[b]);
         cost.body[b].cells = static_cast<double>(matter[b].cell_fill.size());
         cost.mold.active_cells += cost.body[b].cells;

@@ -39,10 +39,12 @@ void begin_row(LoadCurve& load, const Pose& pose) {
 }  // namespace
 
 StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
-                         FrameReport bodies, std::size_t parts)
+                         FrameReport bodies, std::size_t parts,
+                         const std::vector<ProbePlace>& probes)
     : stage_(std::move(stage)),
       frame_{first_frame},
       report_{std::move(bodies)},
+      probes_{probes},
       parts_(std::min(parts, start.size())) {
     for (std::size_t n = 0; n < start.size(); ++n) {
         load_.emplace_back();
@@ -70,12 +72,13 @@ void StageCurves::pass(const std::vector<ToolLoad>& loads) {
     }
 }
 
-void StageCurves::add(int frame, const FrameReport& report) {
+void StageCurves::add(int frame, const FrameReport& report, const std::vector<ProbePlace>& probes) {
     pass(report.load);
     if (std::isnan(report_.front().contact)) report_.front().contact = report.contact_at_start;
     frame_.push_back(frame);
     report_.push_back(report);
     report_.back().load.clear();
+    probes_.push_back(probes);
     for (std::size_t n = 0; n < load_.size() && n < report.load.size(); ++n) {
         const ToolLoad& felt = report.load[n];
         LoadCurve& load = load_[n];
@@ -101,6 +104,11 @@ std::string csv_text(const StageCurves& curves) {
             text += cell(load.name + " " + column);
         }
     }
+    for (const ProbePlace& probe : curves.probes().front()) {
+        for (const char* column : {"x [m]", "y [m]", "z [m]"}) {
+            text += ',' + cell(probe.name + " " + column);
+        }
+    }
     text +=
         ",kinetic energy [J],elastic energy [J],contact energy [J],plastic work [J],"
         "damped work [J],friction work [J],drag work [J],"
@@ -119,6 +127,9 @@ std::string csv_text(const StageCurves& curves) {
             cells.push_back(number(load.work[row]));
             cells.push_back(number(load.penetration[row]));
             cells.push_back(std::to_string(load.contacts[row]));
+        }
+        for (const ProbePlace& probe : curves.probes()[row]) {
+            for (int c = 0; c < 3; ++c) cells.push_back(number(probe.place[c]));
         }
         for (double energy :
              {report.kinetic, report.elastic, report.contact, report.plastic, report.damped,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "pipeline/probes.h"
 #include "sim/advance.h"
 
 namespace swage {
@@ -30,9 +31,11 @@ class StageCurves {
     // The first row is the start of the stage, where nothing is felt yet: names and poses, and what
     // is known of the bodies (Simulation::start); what contacts hold there the first add() tells.
     // The first `parts` of the loads, if not all, are of the machine, and go where they are driven.
+    // `probes`: the same ones every time.
     StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
-                FrameReport bodies = {}, std::size_t parts = static_cast<std::size_t>(-1));
-    void add(int frame, const FrameReport& report);
+                FrameReport bodies = {}, std::size_t parts = static_cast<std::size_t>(-1),
+                const std::vector<ProbePlace>& probes = {});
+    void add(int frame, const FrameReport& report, const std::vector<ProbePlace>& probes = {});
     // Where the loads are within a frame, so that no turn between its ends is missed.
     void pass(const std::vector<ToolLoad>& loads);
 
@@ -42,12 +45,14 @@ class StageCurves {
     const std::vector<FrameReport>& report() const { return report_; }  // `load` is left out
     const std::vector<LoadCurve>& load() const { return load_; }
     std::size_t parts() const { return parts_; }
+    const std::vector<std::vector<ProbePlace>>& probes() const { return probes_; }  // by row
 
   private:
     std::string stage_;
     std::vector<int> frame_;
     std::vector<FrameReport> report_;
     std::vector<LoadCurve> load_;
+    std::vector<std::vector<ProbePlace>> probes_;
     std::size_t parts_;
     struct Way {
         Pose pose;

@@ -154,7 +154,8 @@ class StageRun {
         const Apparatus& apparatus = machine_.apparatus;
         first_ = simulation.start();
         StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()), first_,
-                           apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size());
+                           apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
+                           probes());
         for (int n = 1; n <= stage_.frames && !outcome_.stopped; ++n) {
             if (!work(simulation, n, last_frame + n, curves)) break;
             keep([&] { record(last_frame + n); });
@@ -176,6 +177,7 @@ class StageRun {
         for (std::size_t b = 1; b < bodies.size(); ++b) beside.push_back(bodies[b].matter.material);
         return beside;
     }
+    std::vector<ProbePlace> probes() const { return probe_places(context_.scene.body, bodies_); }
     bool each_frame() const { return context_.scene.output.meshes_per_frame; }
     void write_meshes_of(int frame) const {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -235,7 +237,7 @@ class StageRun {
     void book(int number, FrameReport frame, StageCurves& curves) {
         last_ = std::move(frame);
         dress(number);
-        curves.add(number, last_);
+        curves.add(number, last_, probes());
         totals_.add(last_, machine_.apparatus.tool.size());
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
     }
@@ -288,7 +290,8 @@ class StageRun {
                            .last_frame = last_frame,
                            .legs = legs_.leg.size(),
                            .duration = context_.scene.duration_of(stage_),
-                           .connections_before = connections_before_};
+                           .connections_before = connections_before_,
+                           .probes = probes()};
         StageVerdict verdict = judge_stage(end, pieces_before_,
                                            outcome_.interrupted ? StageEnded::interrupted
                                            : outcome_.stopped   ? StageEnded::stopped

@@ -59,6 +59,10 @@ int piece_count(const std::vector<WorkPiece>& bodies) {
 Json stage_record(const StageEnd& end, double overlap, const std::vector<std::string>& warnings) {
     const StageTotals& totals = end.totals;
     const FrameReport& last = end.last;
+    Json probes = Json::object();
+    for (const ProbePlace& probe : end.probes) {
+        probes[probe.name] = {probe.place.x(), probe.place.y(), probe.place.z()};
+    }
     Json by_body = Json::array();
     for (const Books& books : last.body) by_body.push_back(energies_json(books));
     return {
@@ -89,6 +93,7 @@ Json stage_record(const StageEnd& end, double overlap, const std::vector<std::st
         {"largest_residual", totals.residual},
         {"deepest_penetration_m", totals.penetration},
         {"own_overlap_m", overlap},
+        {"probes_m", probes},
         {"energies_J", energies_json(last)},
         {"energies_by_body_J", by_body},
         {"notes", end.machine.notes},

@@ -8,6 +8,7 @@
 
 #include "machines/machine.h"
 #include "pipeline/json.h"
+#include "pipeline/probes.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
 #include "sim/advance.h"
@@ -45,6 +46,7 @@ struct StageEnd {
     std::size_t legs;
     double duration;  // [s]
     std::size_t connections_before;
+    std::vector<ProbePlace> probes;
 };
 
 std::size_t particle_count(const std::vector<WorkPiece>& bodies);

@@ -14,6 +14,7 @@
 #include "mold/carry_hardening.h"
 #include "mold/carry_motion.h"
 #include "mold/mold.h"
+#include "pipeline/probes.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
 #include "skin/divided_mesh.h"
@@ -229,6 +230,7 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
         if (body.color) paint(piece.skin, *body.color, body.metal);
         piece.mount = mount_mesh(piece.skin.position, piece.matter, skin.kind);
     }
+    piece.probe = mount_probes(body, input.to_mold(), piece.matter);
     piece.position = piece.skin.position;
     piece.followed = piece.matter.particle_position;
     const StartSpec& start = body.start;
@@ -246,6 +248,7 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     if (!input.report.bounds_a_volume()) make_solid(input, body.mold.kind);
     BodySpec as_it_stands = body;
     as_it_stands.start = {};
+    as_it_stands.probe.clear();
     // It is painted already, but where it was cut; what is made for a block's box is not.
     const bool is_blank = skin.kind == SkinKind::boundary && body.mold.kind == MoldKind::block;
     if (!is_blank) as_it_stands.color.reset();
@@ -255,6 +258,9 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     WorkPiece anew = make_work_piece(input, as_it_stands, skin);
     // Pressed, drawn or where its pieces lie in each other, matter takes up another volume.
     weigh(piece.matter.mass(), anew.matter);
+    std::vector<Vec3> probed;
+    skin_positions(piece.probe, piece.matter, probed);
+    anew.probe = mount_mesh(probed, anew.matter, SkinKind::mount);
     carry_hardening(piece.matter, anew.matter);
     carry_motion(piece.matter, anew.matter);
     return anew;

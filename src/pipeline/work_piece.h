@@ -56,6 +56,7 @@ struct WorkPiece {
     std::vector<Vec3> position;           // of the skin now [m]
     Vec3Array followed;                   // of the particles that this is from [m]
     std::vector<std::string> finding;     // what of its mesh its matter has not, when molded
+    Mount probe;                          // places that are followed, as the scene asks
     // Once a blade's path was curved: the skin is not cut along it, so triangles may be torn there,
     // now and in every later stage. A boundary is made anew instead.
     bool is_torn = false;

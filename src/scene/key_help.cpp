@@ -66,6 +66,13 @@ const std::vector<KeyHelp>& scene_key_help() {
          "name, or a section [body.material]"},
         {"[[body]]", "across", "left out, like spacing: as the work-piece has it", {}, "-"},
 
+        {"[[probe]]", "name", "letters, digits and _; of its columns in curves/*.csv"},
+        {"[[probe]]", "at",
+         "a place of the matter that is followed, in shares of its body's box; along the axes of "
+         "the mesh's file",
+         "[x, y, z], each 0 to 1", "-"},
+        {"[[probe]]", "body", "the name of a [[body]]", {}, "work-piece"},
+
         {"[skin]", "kind",
          "mount: smooth, follows half frames; frame4: the paper's frames of four "
          "particles; boundary: drawn round the matter's voxels, anew once it breaks"},

@@ -91,9 +91,10 @@ std::vector<SectionReference> scene_key_reference() {
     Reading reading(mistakes);
     reading.describes = true;
     SceneSpec scene;
-    read_scene_document(document_of("{ inset = [{}], body = [{}], stage = [{ load = [{}] }], "
-                                    "render = { camera = { keys = [{}] } } }"),
-                        {}, reading, scene);
+    read_scene_document(
+        document_of("{ inset = [{}], body = [{}], probe = [{}], stage = [{ load = [{}] }], "
+                    "render = { camera = { keys = [{}] } } }"),
+        {}, reading, scene);
     return reference(reading, scene_key_help());
 }
 

@@ -11,6 +11,7 @@
 #include "scene/read_body.h"
 #include "scene/read_inset.h"
 #include "scene/read_material.h"
+#include "scene/read_probe.h"
 #include "scene/read_render.h"
 #include "scene/read_stage.h"
 
@@ -49,8 +50,8 @@ void read_skin(TableReader& table, SkinSettings& skin) {
 
 // Sections and keys at the top that nothing is known of.
 void report_unknown_sections(const Document& document, Reading& reading) {
-    const std::vector<std::string> sections = {"mesh", "material", "inset",  "mold",  "body",
-                                               "skin", "stage",    "render", "output"};
+    const std::vector<std::string> sections = {"mesh", "material", "inset", "mold",   "body",
+                                               "skin", "probe",    "stage", "render", "output"};
     for (const Entry& entry : document.root.entry) {
         if (std::find(sections.begin(), sections.end(), entry.key) != sections.end()) continue;
         const Node::Kind kind = entry.value.kind;
@@ -131,6 +132,11 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     read_mold(mold, work_piece.mold);
     BodyReader bodies(reading, assets, folder);
     for (const Node* node : root.tables("body", "[[body]]")) bodies.read(*node, scene);
+    std::set<std::string> probes;
+    for (const Node* node : root.tables("probe", "[[probe]]")) {
+        TableReader probe(*node, "[[probe]]", reading);
+        read_probe(probe, probes, scene);
+    }
     read_skin(skin, scene.skin);
     StageReader stages(reading, assets, folder, scene);
     for (const Node* node : root.tables("stage", "[[stage]]")) {
@@ -141,6 +147,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
         if (!inset.file.empty()) scene.inputs.push_back(inset.file);
     }
     refuse_with_insets(root, scene);
+    refuse_probes_named_as_parts(root, scene);
     refuse_remolded_blocks(root, scene);
     if (root.find("stage") == nullptr && reading.is_complete) {
         reading.mistakes.add(absent.place,

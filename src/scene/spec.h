@@ -32,6 +32,13 @@ struct InsetSpec {
     Place place;  // where the scene says which
 };
 
+// A place of a body to be followed.
+struct ProbeSpec {
+    std::string name;
+    Vec3 at = Vec3::Zero();  // in shares of the body's own box
+    Place place;             // where the scene says that
+};
+
 // Where a body stands and how it moves before the first stage.
 struct StartSpec {
     std::optional<Vec3> at;        // [m], of the middle of its box; none: where its file has it
@@ -50,6 +57,7 @@ struct BodySpec {
     Material material;
     bool gives_damping = false;  // its own, not what a known material has
     std::vector<InsetSpec> inset;
+    std::vector<ProbeSpec> probe;
     MoldSettings mold;
 
     std::vector<const Material*> materials() const {  // its own first

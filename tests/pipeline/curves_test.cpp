@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
+#include "base/text.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -25,13 +25,6 @@ StageCurves turning_grip(int frames, double total) {
         curves.add(1 + f, report);
     }
     return curves;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream in(text);
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ struct CutBar {
                            .last_frame = 9,
                            .legs = 8,
                            .duration = 1,
-                           .connections_before = 0};
+                           .connections_before = 0,
+                           .probes = {}};
         std::string text;
         for (const std::string& line : judge_stage(end, 1, StageEnded::wholly).warning) {
             text += line + "\n";

@@ -38,6 +38,30 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
     });
 }
 
+TEST_CASE("mistakes in probes are found") {
+    const auto probe = [](const std::string& lines) {
+        return with(&Parts::rest, "[render]\nfps = 30\n[[probe]]\n" + lines);
+    };
+    const std::string at = "at = [1, 0.5, 0.5]\n";
+    CHECK(mistakes_in(probe("name = \"tip\"\n" + at).text()) == "");
+    check_all({
+        {"nameless", probe(at), {"[[probe]] needs \"name\""}},
+        {"nowhere", probe("name = \"tip\"\n"), {"a place in shares of the body's box"}},
+        {"outside",
+         probe("name = \"tip\"\nat = [1, 0.5, -1]\n"),
+         {"14:6: at = [1, 0.5, -1]: each is a share of the body's box, 0 to 1"}},
+        {"of no body",
+         probe("name = \"tip\"\nbody = \"ball\"\n" + at),
+         {"14:8: no body is called \"ball\"; there is work-piece"}},
+        {"twice",
+         probe("name = \"tip\"\n" + at + "[[probe]]\nname = \"tip\"\n" + at),
+         {"16:8: two parts are called \"tip\""}},
+        {"as a tool",
+         probe("name = \"support\"\n" + at),
+         {"\"support\" is a part of a machine, whose places stand in the same table"}},
+    });
+}
+
 TEST_CASE("a block is not molded anew, and no two meshes have one name") {
     Parts block = stage("remold = true");
     block.mold = "[mold]\nacross = 6\nkind = \"block\"\n";
