@@ -75,20 +75,41 @@ Vec3 turn_between(const Pose& from, const Pose& to) {
     return rotation_of((to.rotation * from.rotation.conjugate()).normalized());
 }
 
-Pose between(const Pose& from, const Pose& to, double s) {
+namespace {
+
+Vec3 axis_of(const Vec3& turn, double angle) {
+    return angle > 0 ? Vec3(turn / angle) : Vec3::UnitX();
+}
+
+// Left Jacobian of the rotation group, which maps the twist's shift to the translation.
+Mat3 shift_jacobian(const Vec3& axis, double theta) {
+    const Mat3 k = cross_matrix(axis);
+    if (std::abs(theta) < 1e-6) return Mat3::Identity() + 0.5 * theta * k;
+    return Mat3::Identity() + (1 - portable::cos(theta)) / theta * k +
+           (theta - portable::sin(theta)) / theta * k * k;
+}
+
+}  // namespace
+
+Twist twist_between(const Pose& from, const Pose& to) {
     const Pose change = to * from.inverse();
     const Vec3 turn = turn_between(from, to);
     const double angle = turn.norm();
-    const Vec3 axis = angle > 0 ? Vec3(turn / angle) : Vec3::UnitX();
-    // Left Jacobian of the rotation group, which maps the twist's velocity to the translation.
-    const auto jacobian = [&](double theta) -> Mat3 {
-        const Mat3 k = cross_matrix(axis);
-        if (std::abs(theta) < 1e-6) return Mat3::Identity() + 0.5 * theta * k;
-        return Mat3::Identity() + (1 - portable::cos(theta)) / theta * k +
-               (theta - portable::sin(theta)) / theta * k * k;
-    };
-    const Vec3 velocity = jacobian(angle).inverse() * change.translation;
-    const Pose part{turn_about(axis, s * angle), jacobian(s * angle) * (s * velocity)};
+    return {turn, shift_jacobian(axis_of(turn, angle), angle).inverse() * change.translation};
+}
+
+Pose twisted(const Pose& from, const Twist& twist) {
+    const double angle = twist.turn.norm();
+    const Vec3 axis = axis_of(twist.turn, angle);
+    const Pose part{turn_about(axis, angle), shift_jacobian(axis, angle) * twist.shift};
+    return part * from;
+}
+
+Pose between(const Pose& from, const Pose& to, double s) {
+    const Twist all = twist_between(from, to);
+    const double angle = all.turn.norm();
+    const Vec3 axis = axis_of(all.turn, angle);
+    const Pose part{turn_about(axis, s * angle), shift_jacobian(axis, s * angle) * (s * all.shift)};
     return part * from;
 }
 

@@ -55,6 +55,21 @@ Vec3 rotation_of(const Quat& turn);
 // Rotation vector [rad] in the world that turns one pose's axes into another's, the shorter way.
 Vec3 turn_between(const Pose& from, const Pose& to);
 
+// A turn [rad] and a shift [m] of the world that act together, as a screw's do.
+struct Twist {
+    Vec3 turn = Vec3::Zero(), shift = Vec3::Zero();
+
+    Twist operator+(const Twist& other) const { return {turn + other.turn, shift + other.shift}; }
+    Twist operator-(const Twist& other) const { return {turn - other.turn, shift - other.shift}; }
+    friend Twist operator*(double s, const Twist& twist) {
+        return {s * twist.turn, s * twist.shift};
+    }
+};
+
+// The twist that carries one pose to another, the shorter way round, and where it carries one.
+Twist twist_between(const Pose& from, const Pose& to);
+Pose twisted(const Pose& from, const Twist& twist);
+
 // The pose a share `s` (0 to 1) of the way along the screw motion from one pose to another, so
 // that a turn about a distant pivot stays on its arc. The turn is the shorter way round.
 Pose between(const Pose& from, const Pose& to, double s);

@@ -2,8 +2,10 @@
 #include "machines/legs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 namespace swage {
 
@@ -19,6 +21,40 @@ constexpr double kAsked[] = {0.2113, 0.5, 0.8090};
 constexpr int kLooks = 256;          // at loads, in a frame
 constexpr int kMostLooks = 1 << 20;  // in all
 constexpr double kHeapShare = 24;    // [byte] that a short array takes beside what it holds
+
+constexpr double kLook = 1e-3;      // of a leg: between the poses that its ends' pace is told from
+constexpr double kEven = 1e-9;      // of the work-piece, that what goes evenly may be off
+constexpr double kSmooth = 0.0025;  // how far off a bent way may be, of what a straight one is
+
+std::optional<WayEnds> ends_of(const std::array<Pose, 6>& pose, double reach) {
+    const auto to = [&](int n) { return twist_between(pose[0], pose[n]); };
+    const Twist all = to(5);
+    const double per = 0.5 / kLook;
+    const WayEnds ends{per * (4 * to(1) - to(2)), per * (3 * all - 4 * to(4) + to(3))};
+    double off = 0;
+    for (const Twist& uneven : {ends.leaving - all, ends.coming - all}) {
+        off += uneven.shift.norm() + reach * uneven.turn.norm();
+    }
+    return off > kEven * reach ? std::optional(ends) : std::nullopt;
+}
+
+// Gives the last of the drives of a leg its ways from the first.
+void find_ways(const Machine& machine, double begin, double end, Drive& last) {
+    const double reach = 0.5 * machine.frame.size.norm(), look = kLook * (end - begin);
+    std::array<Drive, 6> drive;
+    const double at[] = {begin, begin + look, begin + 2 * look, end - 2 * look, end - look, end};
+    for (std::size_t n = 0; n < drive.size(); ++n) drive[n] = drive_at(machine, at[n], 1);
+    const auto find = [&](std::vector<Pose> Drive::*poses,
+                          std::vector<std::optional<WayEnds>>& ways) {
+        for (std::size_t p = 0; p < (last.*poses).size(); ++p) {
+            std::array<Pose, 6> pose;
+            for (std::size_t n = 0; n < drive.size(); ++n) pose[n] = (drive[n].*poses)[p];
+            ways.push_back(ends_of(pose, reach));
+        }
+    };
+    find(&Drive::world_from_tool, last.tool_way);
+    find(&Drive::world_from_grip, last.grip_way);
+}
 
 long looks_in(int frames) {
     return static_cast<long>(frames) * std::clamp(kMostLooks / frames, 4, kLooks);
@@ -62,6 +98,19 @@ class Straightness {
         });
     }
 
+    // Whether the way with its ends' pace has the machine's accelerations too.
+    bool is_smooth(double begin, double end) const {
+        const Drive from = drive_at(machine_, begin, 1);
+        Drive to = drive_at(machine_, end, 1), straight = to;
+        find_ways(machine_, begin, end, to);
+        return std::all_of(std::begin(kAsked), std::end(kAsked), [&](double s) {
+            const Drive is = drive_at(machine_, begin + s * (end - begin), 1);
+            const double off = off_by(drive_between(from, to, s), is);
+            return off <= kEven * reach_ ||
+                   off <= kSmooth * off_by(drive_between(from, straight, s), is);
+        });
+    }
+
   private:
     bool of_strengths(double begin, double end) const {
         const std::vector<double> from = strengths_at(machine_, begin),
@@ -90,11 +139,23 @@ class Straightness {
         }
         return false;
     }
+    double off_by(const Pose& a, const Pose& b) const {
+        return (a.translation - b.translation).norm() + reach_ * turn_between(a, b).norm();
+    }
+    // The tool or grip that is farthest off [m].
+    double off_by(const Drive& a, const Drive& b) const {
+        double most = 0;
+        for (std::size_t n = 0; n < a.world_from_tool.size(); ++n) {
+            most = std::max(most, off_by(a.world_from_tool[n], b.world_from_tool[n]));
+        }
+        for (std::size_t n = 0; n < a.world_from_grip.size(); ++n) {
+            most = std::max(most, off_by(a.world_from_grip[n], b.world_from_grip[n]));
+        }
+        return most;
+    }
     bool are_near(const std::vector<Pose>& a, const std::vector<Pose>& b) const {
         for (std::size_t n = 0; n < a.size(); ++n) {
-            const double off = (a[n].translation - b[n].translation).norm() +
-                               reach_ * turn_between(a[n], b[n]).norm();
-            if (off > slack_) return false;
+            if (off_by(a[n], b[n]) > slack_) return false;
         }
         return true;
     }
@@ -114,7 +175,8 @@ Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
     std::vector<std::size_t> bent;
     const auto divide = [&](const auto& again, const Leg& leg, int halvings) -> void {
         const bool is_straight = straight.of(leg.begin, leg.end);
-        if (is_straight || halvings == 0) {
+        const bool is_smooth = !in_motion || straight.is_smooth(leg.begin, leg.end);
+        if ((is_straight && is_smooth) || halvings == 0) {
             if (!is_straight) bent.push_back(legs.leg.size());
             legs.leg.push_back(leg);
             return;
@@ -146,7 +208,7 @@ Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
 }
 
 std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& legs, int steps,
-                             double duration) {
+                             double duration, bool in_motion) {
     std::vector<Drive> drives;
     drives.reserve(legs.size() * static_cast<std::size_t>(steps) + 1);
     drives.push_back(drive_at(machine, legs.front().begin, duration));
@@ -156,6 +218,7 @@ std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& leg
             drives.push_back(drive_at(machine, (1 - s) * leg.begin + s * leg.end, duration));
         }
         drives.push_back(drive_at(machine, leg.end, duration));
+        if (in_motion) find_ways(machine, leg.begin, leg.end, drives.back());
     }
     return drives;
 }
@@ -166,7 +229,8 @@ double bytes_of_way(const MachineSpec& spec, int frames) {
     const double looks = static_cast<double>(looks_in(frames)) *
                          (sizeof(std::vector<double>) + kHeapShare + 8 * (loads + 1));
     const double drives =
-        frames * (sizeof(Drive) + 2 * kHeapShare + parts * sizeof(Pose) + 8 * loads);
+        frames * (sizeof(Drive) + 4 * kHeapShare +
+                  parts * (sizeof(Pose) + sizeof(std::optional<WayEnds>)) + 8 * loads);
     // What was looked at is forgotten before the drives are made.
     return frames * static_cast<double>(sizeof(Leg)) + std::max(looks, drives);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,12 @@ struct Apparatus {
     std::vector<Load> load;
 };
 
+// How what moves unevenly sets out on its way from the drive before, and comes to the end of it: as
+// the twist from its first pose grows there, were the whole way gone so.
+struct WayEnds {
+    Twist leaving, coming;
+};
+
 // Poses at one time, in the order of the apparatus.
 struct Drive {
     double time = 0;  // [s] since the stage began
@@ -86,9 +93,15 @@ struct Drive {
     std::vector<Pose> world_from_blade;
     std::vector<double> load_strength;  // 1: full
     double gravity_strength = 1;        // share of SimSettings::gravity
+    // Of what comes from the drive before otherwise than straight (as a screw) and evenly; empty:
+    // nothing does. What is in motion would feel each corner of such a way as a blow.
+    std::vector<std::optional<WayEnds>> tool_way{}, grip_way{};
 };
 
-// The drive a share `s` of the way between two.
+// The pose a share `s` of a way that bends: by the cubic that has its ends.
+Pose between(const Pose& from, const Pose& to, const WayEnds& ends, double s);
+
+// The drive a share `s` of the way between two, which follow each other.
 Drive drive_between(const Drive& from, const Drive& to, double s);
 
 }  // namespace swage

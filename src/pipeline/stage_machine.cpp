@@ -91,7 +91,8 @@ Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
 
 std::vector<Drive> stage_drives(const StageSpec& stage, const Machine& machine,
                                 const std::vector<Leg>& legs, int steps, double duration) {
-    return at_stage(stage, [&] { return drives_of(machine, legs, steps, duration); });
+    const bool in_motion = stage.sim.solver != Solver::quasistatic;
+    return at_stage(stage, [&] { return drives_of(machine, legs, steps, duration, in_motion); });
 }
 
 }  // namespace swage

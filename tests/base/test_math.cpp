@@ -67,6 +67,21 @@ TEST_CASE("a turn by a rotation vector is that about its axis, and gives the vec
     CHECK((rotation_of(turn_by(Vec3(1e-200, 0, 0))) - Vec3(1e-200, 0, 0)).norm() < 1e-210);
 }
 
+TEST_CASE(
+    "a twist between two poses carries one to the other, and by a share on the screw between") {
+    for_each_pair([&](double a, double b) {
+        const Pose from{turn_by(Vec3(a, 0.3, -b)), Vec3(b, -1, a)};
+        const Pose to{turn_by(Vec3(0.2, b, a)), Vec3(1, a, -b)};
+        const Twist twist = twist_between(from, to);
+        const auto apart = [](const Pose& x, const Pose& y) {
+            return turn_between(x, y).norm() + (x.translation - y.translation).norm();
+        };
+        const double far = 1 + from.translation.norm() + to.translation.norm();
+        CHECK(apart(twisted(from, twist), to) < 1e-12 * far);
+        CHECK(apart(twisted(from, 0.3 * twist), between(from, to, 0.3)) < 1e-12 * far);
+    });
+}
+
 TEST_CASE("a turn onto a direction is the shortest, also onto the opposite one") {
     for_each_pair([&](double a, double b) {
         const Vec3 from(a, b, 1), to(-b, 2, a - 3);

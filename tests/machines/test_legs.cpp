@@ -26,7 +26,7 @@ constexpr double kSlack = 1e-3;
 // By straight legs, without missing what lies between their ends.
 double turned_along(const Machine& machine, const Legs& legs) {
     double sum = 0;
-    const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1);
+    const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1, false);
     for (std::size_t n = 1; n < way.size(); ++n) {
         sum += way[n].world_from_grip[1].rotation.angularDistance(
             way[n - 1].world_from_grip[1].rotation);
@@ -136,4 +136,59 @@ TEST_CASE("how far a load may be off its way goes by its own full strength") {
         CHECK(legs.lost == 0);
     }
     CHECK(legs_of(vice("0", "0", "0"), 6, kSlack, false).leg.size() == 6);
+}
+
+TEST_CASE("in motion grips keep the pace of their machine within legs and from one to the next") {
+    struct Case {
+        const char *turn, *move;
+        double (*pace)(double);  // of the turn or the move at t, a second
+    };
+    for (const Case& c :
+         {Case{"0", "length*t^2", [](double t) { return 2 * t; }},
+          Case{"0", "0.1*length*sin(20*t)", [](double t) { return 2 * std::cos(20 * t); }},
+          Case{"3*t^2", "0", [](double t) { return 6 * t; }},
+          Case{"sin(9*t)", "0", [](double t) { return 9 * std::cos(9 * t); }}}) {
+        const Machine machine = vice(c.turn, c.move);
+        const bool turns = std::string(c.turn) != "0";
+        const double scale = turns ? 1 : machine.frame.size.x();
+        for (const int frames : {5, 12}) {
+            const Legs legs = legs_of(machine, frames, kSlack, true);
+            const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1, true);
+            double most = 0, off = 0;
+            for (std::size_t n = 1; n < way.size(); ++n) {
+                const double step = 1e-3;
+                for (const double s : {0.0, 0.2, 0.5, 0.8, 1 - step}) {
+                    const Pose a = drive_between(way[n - 1], way[n], s).world_from_grip[1];
+                    const Pose b = drive_between(way[n - 1], way[n], s + step).world_from_grip[1];
+                    const double seconds = step * (way[n].time - way[n - 1].time);
+                    const double gone =
+                        turns ? turn_between(a, b).x() : (b.translation - a.translation).x();
+                    const double t =
+                        way[n - 1].time + (s + step / 2) * (way[n].time - way[n - 1].time);
+                    most = std::max(most, std::abs(scale * c.pace(t)));
+                    off = std::max(off, std::abs(gone / seconds - scale * c.pace(t)));
+                }
+            }
+            INFO(c.turn << " " << c.move << " " << frames << " frames, " << way.size() - 1
+                        << " legs");
+            CHECK(off < 2e-3 * most);
+            CHECK(legs.lost == 0);
+        }
+    }
+}
+
+TEST_CASE("what goes evenly has no bent ways, in motion either, and rests have none at all") {
+    for (const char* turn : {"0", "2*t"}) {
+        const Machine machine = vice(turn, "0.2*length*t");
+        const Legs legs = legs_of(machine, 7, kSlack, true);
+        CHECK(legs.leg.size() == 7);
+        for (const Drive& drive : drives_of(machine, legs.leg, 1, 1, true)) {
+            for (const auto& way : drive.grip_way) CHECK(!way);
+        }
+    }
+    const Machine machine = vice("t^2", "0");
+    for (const Drive& drive :
+         drives_of(machine, legs_of(machine, 7, kSlack, false).leg, 1, 1, false)) {
+        CHECK(drive.grip_way.empty());
+    }
 }

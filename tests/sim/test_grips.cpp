@@ -99,3 +99,37 @@ TEST_CASE("a grip that stands has not moved halfway, however it is turned") {
     }
     CHECK(farthest > 0);
 }
+
+TEST_CASE("what a grip speeds up evenly bears its mass times that, however few the frames") {
+    constexpr double kLeg = 0.1, kSpeedUp = 10;  // [m/s2]
+    const Material rubber{
+        .young_modulus = 1e7, .poisson_ratio = 0.3, .density = 1000, .damping_ratio = 0.05};
+    const Solver solver = GENERATE(Solver::explicit_steps, Solver::energy_stepped);
+    for (const int frames : {5, 11, 20}) {
+        Aggregate cube = make_block(3, 3, 3, 0.04 / 3, rubber);
+        Apparatus apparatus;
+        apparatus.grip.push_back(
+            hold(cube, points_where(cube, [&](const Vec3& x) { return x.x() < -0.02 + 1e-9; })));
+        SimSettings settings;
+        settings.solver = solver;
+        Simulation simulation(cube, apparatus, settings);
+        const auto drive_at = [&](int n) {
+            const double h = kLeg / frames, v = kSpeedUp * h * h;  // a leg
+            Drive drive = drive_of(apparatus, n * h, 1);
+            drive.world_from_grip[0].translation.x() = 0.5 * v * n * n;
+            drive.grip_way = {WayEnds{{Vec3::Zero(), Vec3((n - 1) * v, 0, 0)},
+                                      {Vec3::Zero(), Vec3(n * v, 0, 0)}}};
+            return drive;
+        };
+        FrameReport report;
+        for (int n = 1; n <= frames; ++n) {
+            report = simulation.advance(drive_at(n - 1), drive_at(n));
+        }
+        const double mass = cube.mass(), speed = kSpeedUp * kLeg;
+        CAPTURE(frames);
+        // Straight from frame to frame: 0.4 to 3 times that, and less than nothing.
+        CHECK(report.load[0].force.x() == Approx(mass * kSpeedUp).epsilon(0.02));
+        CHECK(report.kinetic == Approx(0.5 * mass * speed * speed).epsilon(0.01));
+        CHECK(std::abs(report.remainder) < 0.01 * report.kinetic);
+    }
+}
