@@ -34,6 +34,7 @@ void add_info_command(CLI::App& app, Action& chosen);
 void add_machines_command(CLI::App& app, Action& chosen);
 void add_keys_command(CLI::App& app, Action& chosen);
 void add_render_command(CLI::App& app, Action& chosen);
+void add_export_command(CLI::App& app, Action& chosen);
 void add_make_command(CLI::App& app, Action& chosen);
 void add_verify_command(CLI::App& app, Action& chosen);
 

@@ -48,6 +48,7 @@ int run_command_line(int argc, char** argv) {
     add_machines_command(app, chosen);
     add_keys_command(app, chosen);
     add_render_command(app, chosen);
+    add_export_command(app, chosen);
     add_make_command(app, chosen);
     add_verify_command(app, chosen);
     try {

@@ -9,7 +9,6 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "base/file_handle.h"
 
 namespace swage {
 
@@ -38,18 +37,35 @@ void publish(const fs::path& temporary, const fs::path& file) {
     if (std::rename(temporary.c_str(), file.c_str()) != 0) give_up(temporary, file, "be renamed");
 }
 
-void write_file_whole(const fs::path& file, std::string_view bytes) {
-    const fs::path temporary = temporary_for(file);
-    FileHandle handle(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-    if (!handle.is_open()) give_up(temporary, file, "be created");
+WholeFile::WholeFile(const fs::path& file)
+    : file_(file),
+      temporary_(temporary_for(file)),
+      handle_(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
+    if (!handle_.is_open()) give_up(temporary_, file_, "be created");
+}
+
+WholeFile::~WholeFile() {
+    if (handle_.is_open()) ::unlink(temporary_.c_str());
+}
+
+void WholeFile::put(std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t written = ::write(handle.id(), bytes.data(), bytes.size());
+        const ssize_t written = ::write(handle_.id(), bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) give_up(temporary, file, "be written");
+        if (written < 0) give_up(temporary_, file_, "be written");
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
-    handle.close();
-    publish(temporary, file);
+}
+
+void WholeFile::finish() {
+    handle_.close();
+    publish(temporary_, file_);
+}
+
+void write_file_whole(const fs::path& file, std::string_view bytes) {
+    WholeFile whole(file);
+    whole.put(bytes);
+    whole.finish();
 }
 
 }  // namespace swage

@@ -6,10 +6,28 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/file_handle.h"
+
 namespace swage {
 
 // Throws Error(output) naming the file and the reason; leaves no temporary behind.
 void write_file_whole(const std::filesystem::path& file, std::string_view bytes);
+
+// The same piece by piece, for files that are more than is to be held at once.
+class WholeFile {
+  public:
+    explicit WholeFile(const std::filesystem::path& file);
+    ~WholeFile();  // what was not finished goes
+    WholeFile(const WholeFile&) = delete;
+    WholeFile& operator=(const WholeFile&) = delete;
+
+    void put(std::string_view bytes);
+    void finish();
+
+  private:
+    std::filesystem::path file_, temporary_;
+    FileHandle handle_;
+};
 
 // For files that another program writes: give it `temporary_for(file)`, then `publish` it.
 std::filesystem::path temporary_for(const std::filesystem::path& file);

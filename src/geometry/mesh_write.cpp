@@ -73,34 +73,6 @@ std::string image_ending(std::string_view bytes) {
     return ".img";
 }
 
-// Puts each material's image beside `file`; returns the names, empty for no image. An equal file
-// that stands there already is left alone, a different one of that name is not touched.
-std::vector<std::string> copy_textures(const fs::path& file,
-                                       const std::vector<SurfaceMaterial>& material,
-                                       FilesBeside& beside) {
-    std::vector<std::string> names;
-    for (const SurfaceMaterial& m : material) {
-        std::string bytes, wanted;
-        if (m.embedded_texture != nullptr) {
-            bytes = *m.embedded_texture;
-            wanted = plain_name(m.name, "texture") + image_ending(bytes);
-            std::replace(wanted.begin(), wanted.end(), '/', '_');
-        } else if (!m.texture.empty()) {
-            std::optional<std::string> image = file_contents(m.texture);
-            if (!image)
-                fail(ExitCode::output, "{}: the texture {} cannot be read", file.string(),
-                     m.texture.string());
-            bytes = std::move(*image);
-            wanted = plain_name(m.texture.filename().string(), "texture");
-        } else {
-            names.emplace_back();
-            continue;
-        }
-        names.push_back(beside.add(file.parent_path(), wanted, bytes));
-    }
-    return names;
-}
-
 // Returns the name of the library beside `file`: the file's own, but one word.
 std::string write_mtl(const fs::path& file, const std::vector<SurfaceMaterial>& material,
                       const std::vector<std::string>& name, FilesBeside& beside) {
@@ -256,6 +228,32 @@ std::string FilesBeside::add(const fs::path& folder, const std::string& wanted,
     }
     if (!there) write(folder / name, bytes);
     return name;
+}
+
+std::vector<std::string> copy_textures(const fs::path& file,
+                                       const std::vector<SurfaceMaterial>& material,
+                                       FilesBeside& beside) {
+    std::vector<std::string> names;
+    for (const SurfaceMaterial& m : material) {
+        std::string bytes, wanted;
+        if (m.embedded_texture != nullptr) {
+            bytes = *m.embedded_texture;
+            wanted = plain_name(m.name, "texture") + image_ending(bytes);
+            std::replace(wanted.begin(), wanted.end(), '/', '_');
+        } else if (!m.texture.empty()) {
+            std::optional<std::string> image = file_contents(m.texture);
+            if (!image)
+                fail(ExitCode::output, "{}: the texture {} cannot be read", file.string(),
+                     m.texture.string());
+            bytes = std::move(*image);
+            wanted = plain_name(m.texture.filename().string(), "texture");
+        } else {
+            names.emplace_back();
+            continue;
+        }
+        names.push_back(beside.add(file.parent_path(), wanted, bytes));
+    }
+    return names;
 }
 
 void write_obj(const fs::path& file, const TriMesh& mesh) {

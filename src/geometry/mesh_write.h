@@ -46,4 +46,11 @@ class FilesBeside {
     std::vector<std::filesystem::path> made_;
 };
 
+// Puts each material's image beside `file`; returns the names, one word each, empty for no image.
+// An equal file that stands there already is left alone, a different one of that name is not
+// touched.
+std::vector<std::string> copy_textures(const std::filesystem::path& file,
+                                       const std::vector<SurfaceMaterial>& material,
+                                       FilesBeside& beside);
+
 }  // namespace swage

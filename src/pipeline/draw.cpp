@@ -107,10 +107,7 @@ void check_drawing(const RenderSettings& settings) {
 
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
                      const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch) {
-    if (frames.first < 1 || frames.last > store.frame_count()) {
-        fail(ExitCode::command_line, "--frames {}-{}: the run has the frames 1 to {}", frames.first,
-             frames.last, store.frame_count());
-    }
+    refuse_frames_beyond(store.frame_count(), frames);
     make_folder(files.folder());
     const Quat turn = drawn_from_world(wanted.up);
     RenderSettings settings = wanted;

@@ -24,10 +24,7 @@ namespace {
 FrameRange wanted_frames(const SceneSpec& scene, const RunOptions& options) {
     const int last = frame_count(scene);
     const FrameRange wanted = options.frames.value_or(FrameRange{1, last});
-    if (wanted.last > last) {
-        fail(ExitCode::command_line, "--frames {}-{}: the run has the frames 1 to {}", wanted.first,
-             wanted.last, last);
-    }
+    refuse_frames_beyond(last, wanted);
     return wanted;
 }
 

@@ -107,7 +107,7 @@ std::string difference(const RunInput& now, const RunInput& then) {
 // What a run leaves; nothing else in the directory is ever touched.
 void remove_products(const fs::path& root) {
     for (const char* name : {"run.json", "film.mp4", "contact.png", "motion.bin", "frames",
-                             "meshes", "curves", "again", kIdentityName}) {
+                             "meshes", "curves", "again", "usd", kIdentityName}) {
         std::error_code error;
         fs::remove_all(root / name, error);
         if (error) {

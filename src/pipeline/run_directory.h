@@ -57,6 +57,8 @@ class RunDirectory {
     static std::filesystem::path drawn_again(const std::filesystem::path& run) {
         return run / "again";
     }
+    // Where `swage export` writes likewise.
+    static std::filesystem::path exported(const std::filesystem::path& run) { return run / "usd"; }
 
   private:
     void claim(const RunIdentity& identity);

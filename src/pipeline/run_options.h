@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
+
 namespace swage {
 
 // Stills, both ends included. Frame 1 is the untouched start; numbers go on over all stages.
@@ -14,6 +16,13 @@ struct FrameRange {
     int first = 1;
     int last = 1;
 };
+
+// Throws Error(command_line) where a run of so many frames has not all of these.
+inline void refuse_frames_beyond(int count, const FrameRange& wanted) {
+    if (wanted.first >= 1 && wanted.last <= count) return;
+    fail(ExitCode::command_line, "--frames {}-{}: the run has the frames 1 to {}", wanted.first,
+         wanted.last, count);
+}
 
 struct RunOptions {
     std::filesystem::path out;           // the run directory

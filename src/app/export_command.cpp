@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <optional>
+
+#include "app/command.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/stopwatch.h"
+#include "base/text.h"
+#include "pipeline/render_record.h"
+#include "pipeline/run_record.h"
+#include "pipeline/usd_export.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct ExportArguments {
+    std::string run, out, frames;
+    std::optional<int> frames_per_second;
+    bool json = false;
+};
+
+UsdScene usd_scene_of(const Json& record, const std::optional<int>& frames_per_second) {
+    const RenderSettings drawn = render_settings_of(record);
+    UsdScene scene;
+    scene.frames_per_second = frames_per_second.value_or(drawn.frames_per_second);
+    scene.up = drawn.up;
+    try {
+        scene.name = fs::path(record.at("scene").get<std::string>()).stem().string();
+        for (const Json& body : record.at("bodies")) scene.body.push_back(body.at("name"));
+    } catch (const Json::exception&) {
+        fail(ExitCode::output,
+             "run.json does not say what bodies the run has; run it again with --fresh");
+    }
+    return scene;
+}
+
+int export_run(const ExportArguments& given) {
+    const fs::path run = given.run;
+    const std::optional<Json> record = read_record(run / "run.json");
+    if (!record) fail(ExitCode::output, "{}: is no finished run of swage", run.string());
+    const UsdScene scene = usd_scene_of(*record, given.frames_per_second);
+    const fs::path file = given.out.empty() ? RunDirectory::exported(run) / (scene.name + ".usda")
+                                            : fs::path(given.out);
+    if (file.extension() != ".usda") {
+        fail(ExitCode::command_line, "{}: can be written as .usda", file.string());
+    }
+    const FrameStore store(run / "motion.bin");
+    FrameRange frames{1, store.frame_count()};
+    if (!given.frames.empty()) frames = parse_frame_range(given.frames);
+    Stopwatch watch;
+    const UsdOutcome outcome = [&] {
+        const auto lap = watch.lap("export");
+        return export_usd(store, scene, frames, file);
+    }();
+    log_info("{}: {}, {}, {}", file.string(), counted(outcome.bodies, "body", "bodies"),
+             counted(std::size_t(frames.last - frames.first + 1), "frame", "frames"),
+             bytes_text(double(outcome.bytes)));
+    if (given.json) {
+        put_json({{"out", file.string()},
+                  {"images", outcome.image},
+                  {"bodies", outcome.bodies},
+                  {"frames", {frames.first, frames.last}},
+                  {"bytes", outcome.bytes},
+                  {"seconds", seconds_json(watch)}});
+    }
+    return 0;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, Action& chosen) {
+    static ExportArguments given;
+    CLI::App* command = add_command(
+        app, "export",
+        "Write the moving skins of a finished run as one file, for Blender, Houdini, Maya, ...",
+        "  swage export renders/calf-line\n"
+        "  swage export renders/calf-line --frames 1-40 --out /tmp/bend.usda\n",
+        chosen, [] { return export_run(given); });
+    command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
+    command
+        ->add_option("-o,--out", given.out,
+                     "USD as text (default: RUN/usd/SCENE.usda): every body with its materials and "
+                     "where it is in every frame, in metres; images go beside it. A file that was "
+                     "so written before gives way")
+        ->check(kSomewhere)
+        ->type_name("FILE");
+    command
+        ->add_option("--frames", given.frames,
+                     "only the frames A to B; 1 is the start. They keep their numbers")
+        ->type_name("A-B")
+        ->each([](const std::string& text) { parse_frame_range(text); });
+    command
+        ->add_option("--fps", given.frames_per_second,
+                     "frames a second (default: as the scene's film)")
+        ->check(CLI::Range(1, 240));
+    command->add_flag("--json", given.json, "print one JSON object");
+}
+
+}  // namespace swage

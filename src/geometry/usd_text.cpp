@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/usd_text.h"
+
+#include <fmt/compile.h>
+
+#include "base/text.h"
+
+namespace swage {
+
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+std::string usd_identifier(std::string_view name, std::set<std::string>& taken) {
+    std::string plain;
+    for (const char c : name) {
+        const bool goes_on = (static_cast<unsigned char>(c) & 0xc0) == 0x80;  // a letter of UTF-8
+        if (!goes_on) plain.push_back(is_letter(c) || is_digit(c) ? c : '_');
+    }
+    if (plain.empty() || is_digit(plain[0])) plain.insert(0, 1, '_');
+    std::string unique = plain;
+    for (int n = 2; !taken.insert(unique).second; ++n) unique = fmt::format("{}_{}", plain, n);
+    return unique;
+}
+
+std::string usd_string(std::string_view text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') quoted.push_back('\\');
+        if (static_cast<unsigned char>(c) >= ' ' && c != '\x7f') quoted.push_back(c);
+    }
+    return quoted + "\"";
+}
+
+std::string usd_asset(std::string_view path) {
+    const char* quote = path.find('@') == std::string_view::npos ? "@" : "@@@";
+    return fmt::format("{}{}{}", quote, path, quote);
+}
+
+void UsdText::line(std::string_view text) {
+    for (const std::string& one : lines_of(std::string(text))) {
+        if (!one.empty()) indent();
+        put(one);
+        put("\n");
+    }
+}
+
+void UsdText::open(std::string_view head) {
+    put("\n");
+    line(head);
+    line("{");
+    ++depth_;
+}
+
+void UsdText::close() {
+    --depth_;
+    line("}");
+}
+
+void UsdText::finish() {
+    flush();
+    file_.finish();
+}
+
+void UsdText::number(int value) {
+    const fmt::format_int digits(value);
+    bytes_.append(digits.data(), digits.size());
+}
+
+void UsdText::number(float value) {
+    fmt::format_to(std::back_inserter(bytes_), FMT_COMPILE("{}"), value + 0.0f);  // no "-0"
+}
+
+void UsdText::flush() {
+    file_.put(bytes_);
+    bytes_.clear();
+}
+
+}  // namespace swage

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Readers go straight from one sample of a float to the next where both are of one length: what
+// stays has a second sample before it changes. Whole numbers they hold.
+#include "pipeline/usd_export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "base/file_contents.h"
+#include "base/hash.h"
+#include "base/log.h"
+#include "geometry/edges.h"
+#include "geometry/mesh_write.h"
+#include "geometry/usd_look.h"
+#include "geometry/usd_text.h"
+#include "pipeline/interrupt.h"
+#include "pipeline/made_folder.h"
+#include "pipeline/run_directory.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Float3 = Eigen::Vector3f;
+
+constexpr std::string_view kBegin = "#usda 1.0\n(\n    doc = \"A run of swage";
+constexpr const char* kBinds = "prepend apiSchemas = [\"MaterialBindingAPI\"]";
+constexpr const char* kOfCorners = "faceVarying";
+
+struct Skin {
+    int id = -1;
+    TriMesh mesh;
+    PolygonCorners polygons;
+};
+
+// What is to be known of a body before it is written; arrays have a value a frame.
+struct Track {
+    std::string name, identifier;
+    std::vector<int> skin;
+    std::vector<std::uint64_t> shape;  // hash of places and skin
+    std::vector<std::array<Float3, 2>> extent;
+    std::vector<int> look;  // all that its polygons have
+    bool all_have_looks = true, is_open = false, has_normals = true, has_uv = false,
+         has_colors = false;
+};
+
+// Times at which something is another than before; `held`: and those right before.
+template <typename T>
+std::vector<int> changes(const std::vector<T>& of_frame, int first, bool held) {
+    std::vector<int> time = {first};
+    for (std::size_t f = 1; f < of_frame.size(); ++f) {
+        if (of_frame[f] == of_frame[f - 1]) continue;
+        const int now = first + static_cast<int>(f);
+        if (held && time.back() < now - 1) time.push_back(now - 1);
+        time.push_back(now);
+    }
+    return time;
+}
+
+bool is_open(const TriMesh& mesh) {
+    bool open = false;
+    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
+                  [&](auto uses) { open = open || excess(uses) != 0; });
+    return open;
+}
+
+// The values that corners have, without those that none has, and which of them each has.
+struct CornerValues {
+    std::vector<int> used, index;
+
+    CornerValues(const std::vector<Corners>& ids, std::size_t count, const PolygonCorners& polygons)
+        : index(polygons.corner.size(), -1) {
+        std::vector<int> number(count, -1);
+        for (std::size_t i = 0; i < index.size() && !ids.empty(); ++i) {
+            const int id = ids[polygons.corner[i] / 3][polygons.corner[i] % 3];
+            if (id < 0) continue;
+            if (number.at(id) < 0) {
+                number[id] = static_cast<int>(used.size());
+                used.push_back(id);
+            }
+            index[i] = number[id];
+        }
+    }
+};
+
+class Exporter {
+  public:
+    Exporter(const FrameStore& store, const UsdScene& scene, const FrameRange& frames)
+        : store_(store), scene_(scene), frames_(frames) {
+        std::set<std::string> taken;
+        root_ = usd_identifier(scene.name, taken);
+    }
+
+    UsdOutcome write(const fs::path& file) {
+        look_at_all();
+        int samples = 0;
+        for (const Track& track : track_) {
+            samples += static_cast<int>(moves(track).size()) * (track.has_normals ? 2 : 1);
+        }
+        progress_.emplace("export", samples);
+        FilesBeside beside;
+        const std::vector<std::string> image = copy_textures(file, looks_.materials(), beside);
+        UsdText out(file);
+        write_head(out);
+        out.open(fmt::format("def Xform \"{}\"", root_));
+        write_turn(out);
+        std::set<std::string> taken = {"materials"};
+        const std::string materials = "/" + root_ + "/materials";
+        if (looks_.count() > 0) {
+            out.open("def Scope \"materials\"");
+            looks_.write(out, materials, image);
+            out.close();
+        }
+        for (std::size_t b = 0; b < track_.size(); ++b) {
+            track_[b].identifier = usd_identifier(track_[b].name, taken);
+            write_body(out, b, materials);
+        }
+        out.close();
+        out.finish();
+        beside.stay();
+        UsdOutcome outcome{track_.size(), fs::file_size(file), {}};
+        for (const std::string& one : std::set(image.begin(), image.end())) {
+            if (!one.empty()) outcome.image.push_back(one);
+        }
+        return outcome;
+    }
+
+  private:
+    const Skin& skin(std::size_t body, int frame) {
+        const int id = track_[body].skin[std::size_t(frame - frames_.first)];
+        if (skin_.id != id) {
+            skin_.mesh = store_.skin(id);
+            skin_.polygons = rejoin_polygons(skin_.mesh);
+            skin_.id = id;
+        }
+        return skin_;
+    }
+    std::vector<Vec3> places(std::size_t body, int frame) {
+        throw_if_interrupted();
+        progress_->advance(++samples_);
+        return std::move(store_.frame(frame - 1).body.at(body).position);
+    }
+
+    void look_at_all() {
+        for (int frame = frames_.first; frame <= frames_.last; ++frame) {
+            throw_if_interrupted();
+            const StoredFrame stored = store_.frame(frame - 1);
+            track_.resize(std::max(track_.size(), stored.body.size()));
+            for (std::size_t b = 0; b < stored.body.size(); ++b) {
+                look_at(track_[b], stored.body[b]);
+                if (is_new_skin(track_[b].skin)) look_at_skin(track_[b], skin(b, frame));
+            }
+        }
+        for (std::size_t b = 0; b < track_.size(); ++b) {
+            track_[b].name =
+                b < scene_.body.size() ? scene_.body[b] : fmt::format("body-{}", b + 1);
+        }
+    }
+    static bool is_new_skin(const std::vector<int>& skin) {
+        return skin.size() < 2 || skin.back() != skin[skin.size() - 2];
+    }
+    static void look_at(Track& track, const StoredBody& body) {
+        std::array<Float3, 2> extent = {Float3::Zero(), Float3::Zero()};
+        Hasher shape;
+        shape.add_bytes(&body.skin, sizeof body.skin);
+        for (std::size_t i = 0; i < body.position.size(); ++i) {
+            const Float3 p = body.position[i].cast<float>();
+            shape.add_bytes(p.data(), 3 * sizeof(float));
+            extent[0] = i == 0 ? p : extent[0].cwiseMin(p).eval();
+            extent[1] = i == 0 ? p : extent[1].cwiseMax(p).eval();
+        }
+        track.skin.push_back(body.skin);
+        track.shape.push_back(shape.value());
+        track.extent.push_back(extent);
+    }
+    void look_at_skin(Track& track, const Skin& skin) {
+        for (const int look : looks_.of_polygons(skin.mesh, skin.polygons)) {
+            if (look < 0) track.all_have_looks = false;
+            if (look >= 0 &&
+                std::find(track.look.begin(), track.look.end(), look) == track.look.end()) {
+                track.look.push_back(look);
+            }
+        }
+        track.is_open = track.is_open || is_open(skin.mesh);
+        track.has_uv = track.has_uv || !skin.mesh.triangle_uv.empty();
+        track.has_colors = track.has_colors || !skin.mesh.position_color.empty();
+        track.has_normals =
+            track.has_normals && skin.mesh.triangle_smooth.size() == skin.mesh.triangle.size();
+    }
+
+    void write_head(UsdText& out) const {
+        out.line(
+            fmt::format("{}, {}\"\n"
+                        "    defaultPrim = \"{}\"\n"
+                        "    endTimeCode = {}\n"
+                        "    framesPerSecond = {}\n"
+                        "    metersPerUnit = 1\n"
+                        "    startTimeCode = {}\n"
+                        "    timeCodesPerSecond = {}\n"
+                        "    upAxis = \"{}\"\n"
+                        ")\n",
+                        kBegin, kVersion, root_, frames_.last, scene_.frames_per_second,
+                        frames_.first, scene_.frames_per_second, scene_.up == Up::z ? "Z" : "Y"));
+    }
+
+    // USD knows no x that is upward: there the scene is turned, as pictures of it are.
+    void write_turn(UsdText& out) const {
+        if (scene_.up != Up::x) return;
+        out.line(
+            "matrix4d xformOp:transform = ( (0, 1, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0), (0, 0, 0, 1) "
+            ")\nuniform token[] xformOpOrder = [\"xformOp:transform\"]");
+    }
+
+    void write_body(UsdText& out, std::size_t body, const std::string& materials) {
+        const Track& track = track_[body];
+        std::string head = fmt::format("def Mesh \"{}\"", track.identifier);
+        std::string about;
+        if (track.identifier != track.name) {
+            about += fmt::format("    customData = {{\n        string name = {}\n    }}\n",
+                                 usd_string(track.name));
+        }
+        if (!track.look.empty()) about += fmt::format("    {}\n", kBinds);
+        if (!about.empty()) head += " (\n" + about + ")";
+        out.open(head);
+        if (track.is_open) out.line("uniform bool doubleSided = 1");
+        const std::vector<int> moves = this->moves(track);
+        out.value("float3[] extent", "", moves, [&](int frame) {
+            const auto& extent = track.extent[std::size_t(frame - frames_.first)];
+            out.list(2, [&](std::size_t end) { out.vector(extent[end]); });
+        });
+        write_faces(out, body);
+        out.line("uniform token orientation = \"rightHanded\"");
+        out.value("point3f[] points", "", moves, [&](int frame) {
+            const std::vector<Vec3> place = places(body, frame);
+            out.list(place.size(), [&](std::size_t i) { out.vector<3>(place[i].cast<float>()); });
+        });
+        if (track.has_colors) write_colors(out, body);
+        if (track.has_normals) write_normals(out, body, moves);
+        if (track.has_uv) write_uv(out, body);
+        out.line("uniform token subdivisionScheme = \"none\"");
+        write_looks(out, body, materials);
+        out.close();
+    }
+
+    std::vector<int> moves(const Track& track) const {
+        return changes(track.shape, frames_.first, true);
+    }
+    std::vector<int> new_skins(std::size_t body, bool held) const {
+        return changes(track_[body].skin, frames_.first, held);
+    }
+
+    void write_faces(UsdText& out, std::size_t body) {
+        const std::vector<int> times = new_skins(body, false);
+        out.value("int[] faceVertexCounts", "", times, [&](int frame) {
+            const std::vector<std::size_t>& first = skin(body, frame).polygons.first;
+            out.list(first.size() - 1,
+                     [&](std::size_t p) { out.number(static_cast<int>(first[p + 1] - first[p])); });
+        });
+        out.value("int[] faceVertexIndices", "", times, [&](int frame) {
+            const Skin& now = skin(body, frame);
+            out.list(now.polygons.corner.size(), [&](std::size_t i) {
+                const int corner = now.polygons.corner[i];
+                out.number(now.mesh.triangle[corner / 3][corner % 3]);
+            });
+        });
+    }
+
+    // USD's are linear, as those of meshes here are.
+    void write_colors(UsdText& out, std::size_t body) {
+        out.value("color3f[] primvars:displayColor", "vertex", new_skins(body, true),
+                  [&](int frame) {
+                      const TriMesh& mesh = skin(body, frame).mesh;
+                      out.list(mesh.position.size(), [&](std::size_t i) {
+                          out.vector<3>(mesh.position_color.empty() ? Float3(Float3::Ones())
+                                                                    : mesh.position_color[i]);
+                      });
+                  });
+    }
+
+    void write_normals(UsdText& out, std::size_t body, const std::vector<int>& moves) {
+        const auto values = [&](const Skin& now) {
+            return CornerValues(now.mesh.triangle_smooth, std::size_t(now.mesh.smooth_group_count),
+                                now.polygons);
+        };
+        out.value("normal3f[] primvars:normals", kOfCorners, moves, [&](int frame) {
+            const std::vector<Vec3> place = places(body, frame);
+            const Skin& now = skin(body, frame);
+            std::vector<Vec3> normal;
+            if (!now.mesh.triangle.empty()) normal = smooth_normals(now.mesh, place);
+            const CornerValues known = values(now);
+            out.list(known.used.size(), [&](std::size_t i) {
+                const Vec3 n = normal[known.used[i]] * 1e5;  // to as much as they tell
+                out.vector<3>(Vec3(n.array().round() / 1e5).cast<float>());
+            });
+        });
+        out.value("int[] primvars:normals:indices", "", new_skins(body, false), [&](int frame) {
+            const CornerValues known = values(skin(body, frame));
+            out.list(known.index.size(), [&](std::size_t i) { out.number(known.index[i]); });
+        });
+    }
+
+    // What has none lies at the last of them, (0, 0).
+    void write_uv(UsdText& out, std::size_t body) {
+        const auto values = [&](const Skin& now) {
+            return CornerValues(now.mesh.triangle_uv, now.mesh.uv.size(), now.polygons);
+        };
+        out.value("texCoord2f[] primvars:st", kOfCorners, new_skins(body, true), [&](int frame) {
+            const Skin& now = skin(body, frame);
+            const CornerValues known = values(now);
+            out.list(known.used.size() + 1, [&](std::size_t i) {
+                const bool is_last = i == known.used.size();
+                out.vector<2>(
+                    (is_last ? Vec2(Vec2::Zero()) : now.mesh.uv[known.used[i]]).cast<float>());
+            });
+        });
+        out.value("int[] primvars:st:indices", "", new_skins(body, false), [&](int frame) {
+            const CornerValues known = values(skin(body, frame));
+            const int none = static_cast<int>(known.used.size());
+            out.list(known.index.size(), [&](std::size_t i) {
+                out.number(known.index[i] < 0 ? none : known.index[i]);
+            });
+        });
+    }
+
+    void write_looks(UsdText& out, std::size_t body, const std::string& materials) {
+        const Track& track = track_[body];
+        const auto bind = [&](int look) {
+            out.line(
+                fmt::format("rel material:binding = <{}/{}>", materials, looks_.identifier(look)));
+        };
+        if (track.look.size() == 1 && track.all_have_looks) {
+            bind(track.look[0]);
+            return;
+        }
+        if (track.look.empty()) return;
+        out.line(fmt::format("uniform token subsetFamily:materialBind:familyType = \"{}\"",
+                             track.all_have_looks ? "partition" : "nonOverlapping"));
+        for (const int look : track.look) {
+            out.open(
+                fmt::format("def GeomSubset \"{}\" (\n    {}\n)", looks_.identifier(look), kBinds));
+            out.line(
+                "uniform token elementType = \"face\"\n"
+                "uniform token familyName = \"materialBind\"");
+            out.value("int[] indices", "", new_skins(body, false), [&](int frame) {
+                const Skin& now = skin(body, frame);
+                const std::vector<int> of_polygon = looks_.of_polygons(now.mesh, now.polygons);
+                std::vector<int> face;
+                for (std::size_t p = 0; p < of_polygon.size(); ++p) {
+                    if (of_polygon[p] == look) face.push_back(static_cast<int>(p));
+                }
+                out.list(face.size(), [&](std::size_t i) { out.number(face[i]); });
+            });
+            bind(look);
+            out.close();
+        }
+    }
+
+    const FrameStore& store_;
+    const UsdScene& scene_;
+    const FrameRange frames_;
+    std::vector<Track> track_;
+    UsdLooks looks_;
+    std::string root_;
+    Skin skin_;  // as last read
+    std::optional<Progress> progress_;
+    int samples_ = 0;  // of places, as far as they are written
+};
+
+// Only an earlier file of these gives way to another.
+void refuse_foreign(const fs::path& file) {
+    std::error_code unknown;
+    if (!fs::exists(file, unknown)) return;
+    std::string why, begin(kBegin.size(), '\0');
+    const FileHandle handle = open_plain_file(file, why);
+    if (!handle.is_open()) fail(ExitCode::output, "{}: {}", file.string(), why);
+    if (read_up_to(handle.id(), begin.data(), begin.size()) != begin.size() || begin != kBegin) {
+        fail(ExitCode::foreign, "{}: is no file that swage export wrote; choose another --out",
+             file.string());
+    }
+}
+
+}  // namespace
+
+UsdOutcome export_usd(const FrameStore& store, const UsdScene& scene, const FrameRange& frames,
+                      const fs::path& file) {
+    refuse_frames_beyond(store.frame_count(), frames);
+    refuse_foreign(file);
+    const MadeFolder folder(fs::absolute(file).parent_path());
+    return Exporter(store, scene, frames).write(file);
+}
+
+}  // namespace swage

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/usd_export.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+#include "tests/shared/usda.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kFrames = 8, kCut = 5;  // the frame that has another skin
+const std::string kBody = "/two_falls/a_body";
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Of a square and two triangles.
+TriMesh pyramid(const fs::path& texture) {
+    TriMesh mesh;
+    mesh.position = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.1, 0.2, 1.0 / 3}};
+    mesh.triangle = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}};
+    mesh.triangle_polygon = {0, 0, 1, 2};
+    mesh.uv = {{0, 0}, {1, 0.25}, {7, 7}};
+    mesh.triangle_uv = {{0, 1, 1}, {0, 1, 1}, {0, 1, 0}, {0, 1, -1}};
+    mesh.triangle_material = {0, 0, 0, 0};
+    mesh.material.resize(1);
+    mesh.material[0].name = "hide";
+    mesh.material[0].texture = texture;
+    smooth_by_crease_angle(mesh);
+    return mesh;
+}
+
+// With a face more, of a cut.
+TriMesh cut_pyramid(const fs::path& texture) {
+    TriMesh mesh = pyramid(texture);
+    mesh.triangle.push_back({2, 3, 4});
+    mesh.triangle_polygon.push_back(3);
+    mesh.triangle_uv.push_back({-1, -1, -1});
+    mesh.triangle_material.push_back(1);
+    mesh.material.push_back({"cut", {0.5, 0.25, 1}});
+    smooth_by_crease_angle(mesh);
+    return mesh;
+}
+
+TriMesh colored() {
+    TriMesh mesh = pyramid({});
+    mesh.material.clear();
+    mesh.triangle_material.clear();
+    mesh.position_color.assign(5, Eigen::Vector3f(0.25f, 0.5f, 1));
+    return mesh;
+}
+
+std::vector<Vec3> moved(std::vector<Vec3> position, const Vec3& way) {
+    for (Vec3& p : position) p += way;
+    return position;
+}
+
+// One falls and is cut, one stays but in frame 6, one stays.
+struct Motion {
+    Scratch scratch;
+    std::vector<StoredFrame> frame;
+    std::vector<TriMesh> skin;
+    UsdScene scene{"two-falls", {"a body", "a-body", "3rd"}, 24};
+
+    Motion() {
+        const fs::path texture = scratch.path() / "spots of it.png";
+        std::ofstream(texture) << "\x89PNG of spots";
+        skin = {pyramid(texture), cut_pyramid(texture), colored()};
+        FrameStoreWriter writer(store());
+        for (const TriMesh& one : skin) writer.add_skin(one);
+        for (int f = 1; f <= kFrames; ++f) {
+            const int first = f < kCut ? 0 : 1;
+            StoredFrame now;
+            now.body = {{first, moved(skin[first].position, {0, -0.1 * f * f, 0})},
+                        {0, moved(skin[0].position, {0, 0, f == 6 ? 2.0 : 0.0})},
+                        {2, skin[2].position}};
+            writer.add_frame(now);
+            frame.push_back(now);
+        }
+        writer.finish();
+    }
+    fs::path store() const { return scratch.path() / "motion.bin"; }
+    fs::path file() const { return scratch.path() / "out" / "x.usda"; }
+    UsdOutcome write(const FrameRange& frames = {1, kFrames}) const {
+        return export_usd(FrameStore(store()), scene, frames, file());
+    }
+    Usda written(const FrameRange& frames = {1, kFrames}) const {
+        write(frames);
+        return Usda(bytes_of(file()));
+    }
+};
+
+}  // namespace
+
+TEST_CASE("of a run in USD every frame has the faces and the places of its skins") {
+    const Motion motion;
+    const Usda usd = motion.written();
+    const FrameStore store(motion.store());
+    const std::vector<std::string> body = {"a_body", "a_body_2", "_3rd"};
+    for (int f = 1; f <= kFrames; ++f) {
+        const StoredFrame frame = store.frame(f - 1);
+        for (std::size_t b = 0; b < body.size(); ++b) {
+            const std::string path = "/two_falls/" + body[b];
+            REQUIRE(usd.kind(path) == "Mesh");
+            std::vector<float> expected;
+            for (const Vec3& p : frame.body[b].position) {
+                for (int k = 0; k < 3; ++k) expected.push_back(static_cast<float>(p[k]));
+            }
+            CHECK(usd.numbers(path + ".points", f) == expected);
+            const std::vector<float> extent = usd.numbers(path + ".extent", f);
+            REQUIRE(extent.size() == 6);
+            for (std::size_t i = 0; i < expected.size(); ++i) {
+                CHECK(extent[i % 3] <= expected[i]);
+                CHECK(extent[3 + i % 3] >= expected[i]);
+            }
+            std::vector<float> counts = {4, 3, 3}, corners = {0, 3, 2, 1, 0, 1, 4, 1, 2, 4};
+            if (b == 0 && f >= kCut) {
+                counts.push_back(3);
+                corners.insert(corners.end(), {2, 3, 4});
+            }
+            CHECK(usd.numbers(path + ".faceVertexCounts", f) == counts);
+            CHECK(usd.numbers(path + ".faceVertexIndices", f) == corners);
+            CHECK(usd.numbers(path + ".primvars:normals:indices", f).size() == corners.size());
+        }
+    }
+}
+
+TEST_CASE("corners have their place in the image and their normal, those without lie at 0, 0") {
+    const Motion motion;
+    const Usda usd = motion.written();
+    for (const int f : {kCut - 1, kCut, kFrames}) {
+        const auto at = usd.numbers(kBody + ".primvars:st:indices", f);
+        const auto st = usd.numbers(kBody + ".primvars:st", f);
+        REQUIRE(st.size() == 6);  // what no corner has is left out
+        std::vector<float> u;
+        for (const float i : at) u.push_back(st[2 * std::size_t(i)]);
+        std::vector<float> expected = {0, 1, 1, 1, 0, 1, 0, 0, 1, 0};
+        if (f >= kCut) expected.insert(expected.end(), {0, 0, 0});
+        CHECK(u == expected);
+        const auto which = usd.numbers(kBody + ".primvars:normals:indices", f);
+        const auto normal = usd.numbers(kBody + ".primvars:normals", f);
+        const std::size_t down = 3 * std::size_t(which[0]);
+        CHECK(std::vector<float>(normal.begin() + long(down), normal.begin() + long(down) + 3) ==
+              std::vector<float>{0, 0, -1});
+    }
+    CHECK(usd.numbers("/two_falls/_3rd.primvars:displayColor", 1) ==
+          std::vector<float>{0.25f, 0.5f, 1, 0.25f, 0.5f, 1, 0.25f, 0.5f, 1, 0.25f, 0.5f, 1, 0.25f,
+                             0.5f, 1});
+    CHECK_FALSE(usd.has(kBody + ".primvars:displayColor"));
+}
+
+TEST_CASE("what does not change is written once, and what stays has a sample before it goes on") {
+    const Motion motion;
+    const Usda usd = motion.written();
+    const std::vector<int> none, cut = {1, kCut}, held = {1, kCut - 1, kCut};
+    const std::string still = "/two_falls/_3rd", waits = "/two_falls/a_body_2";
+    for (const char* one : {".points", ".extent", ".faceVertexIndices", ".primvars:normals"}) {
+        CHECK(usd.times(still + one) == none);
+    }
+    CHECK(usd.times(waits + ".faceVertexIndices") == none);
+    CHECK(usd.times(waits + ".points") == std::vector<int>{1, 5, 6, 7});
+    CHECK(usd.times(waits + ".primvars:normals") == std::vector<int>{1, 5, 6, 7});
+    CHECK(usd.times(kBody + ".points").size() == kFrames);
+    CHECK(usd.times(kBody + ".faceVertexIndices") == cut);
+    CHECK(usd.times(kBody + ".primvars:st:indices") == cut);
+    CHECK(usd.times(kBody + ".primvars:st") == held);  // a reader goes straight between samples
+}
+
+TEST_CASE("every face has the material of the skin, a textured one its image beside the file") {
+    const Motion motion;
+    const UsdOutcome outcome = motion.write();
+    const Usda usd(bytes_of(motion.file()));
+    CHECK(outcome.bodies == 3);
+    CHECK(outcome.bytes == fs::file_size(motion.file()));
+    REQUIRE(outcome.image == std::vector<std::string>{"spots_of_it.png"});
+    CHECK(bytes_of(motion.file().parent_path() / outcome.image[0]) == "\x89PNG of spots");
+    const std::string looks = "/two_falls/materials/";
+    CHECK(usd.text(looks + "hide/image.inputs:file") == "@./spots_of_it.png@");
+    CHECK(usd.text(looks + "cut/surface.inputs:diffuseColor") == "(0.5, 0.25, 1)");
+    // A face that has no place in the image has the colour alone.
+    CHECK(usd.has(looks + "hide_2/surface.inputs:diffuseColor"));
+    CHECK(usd.text(kBody + "/hide.material:binding") == "<" + looks + "hide>");
+    CHECK(usd.text(kBody + "/cut.material:binding") == "<" + looks + "cut>");
+    for (int f = 1; f <= kFrames; ++f) {
+        CHECK(usd.numbers(kBody + "/hide.indices", f) == std::vector<float>{0, 1});
+        CHECK(usd.numbers(kBody + "/hide_2.indices", f) == std::vector<float>{2});
+        CHECK(usd.numbers(kBody + "/cut.indices", f) ==
+              (f < kCut ? std::vector<float>{} : std::vector<float>{3}));
+    }
+    CHECK(usd.text(kBody + ".doubleSided") == "1");
+}
+
+TEST_CASE("a file of USD says its units, its times and what is upward in it") {
+    Motion motion;
+    const Usda usd = motion.written({3, 6});
+    CHECK(usd.text(".metersPerUnit") == "1");
+    CHECK(usd.text(".startTimeCode") == "3");
+    CHECK(usd.text(".endTimeCode") == "6");
+    CHECK(usd.text(".timeCodesPerSecond") == "24");
+    CHECK(usd.text(".upAxis") == "\"Y\"");
+    CHECK(usd.text(".defaultPrim") == "\"two_falls\"");
+    CHECK(usd.times(kBody + ".points") == std::vector<int>{3, 4, 5, 6});
+    motion.scene.up = Up::z;
+    CHECK(motion.written().text(".upAxis") == "\"Z\"");
+    const std::string once = bytes_of(motion.file());
+    motion.write();
+    CHECK(bytes_of(motion.file()) == once);
+}
+
+TEST_CASE("an export gives way to another, nothing else does, and one that fails leaves nothing") {
+    Motion motion;
+    const auto refused = [&](const FrameRange& frames, ExitCode code) {
+        try {
+            motion.write(frames);
+            return false;
+        } catch (const Error& error) {
+            return error.code() == code;
+        }
+    };
+    CHECK(refused({1, kFrames + 1}, ExitCode::command_line));
+    fs::remove(motion.scratch.path() / "spots of it.png");
+    CHECK(refused({1, kFrames}, ExitCode::output));
+    CHECK_FALSE(fs::exists(motion.file().parent_path()));
+    fs::create_directory(motion.file().parent_path());
+    std::ofstream(motion.file()) << "#usda 1.0\n(\n    doc = \"my own\"\n)\n";
+    const std::string mine = bytes_of(motion.file());
+    CHECK(refused({1, kFrames}, ExitCode::foreign));
+    CHECK(bytes_of(motion.file()) == mine);
+}
