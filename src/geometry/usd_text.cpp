@@ -49,7 +49,7 @@ void UsdText::line(std::string_view text) {
 }
 
 void UsdText::open(std::string_view head) {
-    put("\n");
+    if (!bytes_.ends_with("{\n")) put("\n");
     line(head);
     line("{");
     ++depth_;
