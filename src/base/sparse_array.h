@@ -56,6 +56,13 @@ class SparseArray {
         return values;
     }
 
+    // Gives `io` everything that it holds, to be written or read.
+    template <typename Io>
+    void visit(Io& io) {
+        auto& [usual, size, block, stored] = *this;
+        io(usual, size, block, stored);
+    }
+
   private:
     T usual_{};
     std::size_t size_ = 0;

@@ -153,6 +153,12 @@ class ReferencePlaces {
     }
     Vec3Array all() const;
 
+    template <typename Io>
+    void visit(Io& io) {  // as SparseArray has it
+        auto& [origin, step, size, run, first] = *this;
+        io(origin, step, size, run, first);
+    }
+
   private:
     Vec3 origin_ = Vec3::Zero(), step_ = Vec3::Zero();
     std::size_t size_ = 0;

@@ -69,6 +69,12 @@ class SurfacePoints {
     std::size_t bytes() const;
     bool operator==(const SurfacePoints&) const = default;
 
+    template <typename Io>
+    void visit(Io& io) {  // as SparseArray has it
+        auto& [row, place, normal, area] = *this;
+        io(row, place, normal, area);
+    }
+
   private:
     static constexpr ParticleId kLoose = -1;  // in row[1]: row[0] is the particle
 

@@ -9,17 +9,26 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "base/atomic_file.h"
 #include "base/file_contents.h"
 #include "base/hash.h"
+#include "pipeline/file_bytes.h"
 #include "pipeline/mesh_bytes.h"
 
 namespace swage {
 
 namespace fs = std::filesystem;
+
+template <typename Io>
+void visit(Io& io, DrawnPart& part) {
+    auto& [name, surface, color, finish] = part;
+    io(name, surface, color, finish);
+}
 
 namespace {
 
@@ -48,33 +57,61 @@ RecordHead head_of(std::uint32_t kind, const std::string& bytes) {
     return head;
 }
 
-void write_all(int handle, const fs::path& file, std::uint64_t offset, const void* data,
-               std::size_t size) {
-    const char* at = static_cast<const char*>(data);
-    while (size > 0) {
-        const ssize_t written = ::pwrite(handle, at, size, static_cast<off_t>(offset));
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) {
-            fail(ExitCode::output, "{}: cannot be written: {}", file.string(),
-                 std::strerror(errno));
-        }
-        at += written;
-        offset += static_cast<std::uint64_t>(written);
-        size -= static_cast<std::size_t>(written);
-    }
+std::uint64_t chained(std::uint64_t hash, const RecordHead& head) {
+    Hasher hasher;
+    hasher.add_bytes(&hash, sizeof hash);
+    hasher.add_bytes(&head, sizeof head);
+    return hasher.value();
 }
 
-bool read_all(int handle, std::uint64_t offset, void* data, std::size_t size) {
-    char* at = static_cast<char*>(data);
-    while (size > 0) {
-        const ssize_t got = ::pread(handle, at, size, static_cast<off_t>(offset));
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) return false;
-        at += got;
-        offset += static_cast<std::uint64_t>(got);
-        size -= static_cast<std::size_t>(got);
+// What a motion file holds before a place in it.
+struct Passed {
+    int skins = 0, machines = 0, frames = 0;
+    std::set<std::uint64_t> image;
+};
+
+// Nothing where that is not what the mark says; `to_the_byte`: or any byte of it is another.
+std::optional<Passed> pass_records(int handle, const MotionMark& mark, bool to_the_byte) {
+    Passed passed;
+    std::uint64_t magic = 0, hash = 0, at = sizeof magic;
+    char last = 0;
+    if (!read_at(handle, 0, &magic, sizeof magic) || magic != kMagic || mark.size < sizeof magic ||
+        !read_at(handle, mark.size - 1, &last, sizeof last)) {
+        return std::nullopt;
     }
-    return true;
+    std::string bytes;
+    while (at < mark.size) {
+        RecordHead head{};
+        if (!read_at(handle, at, &head, sizeof head) || head.check != check_of(head)) {
+            return std::nullopt;
+        }
+        at += sizeof head;
+        if (at > mark.size || head.size > mark.size - at) return std::nullopt;
+        if (to_the_byte) {
+            bytes.resize(head.size);
+            if (!read_at(handle, at, bytes.data(), bytes.size()) || hash_of(bytes) != head.hash) {
+                return std::nullopt;
+            }
+        }
+        passed.skins += head.kind == kSkin;
+        passed.machines += head.kind == kMachine;
+        passed.frames += head.kind == kFrame;
+        if (head.kind == kImage) passed.image.insert(head.hash);
+        hash = chained(hash, head);
+        at += head.size;
+    }
+    return at == mark.size && hash == mark.hash ? std::optional(passed) : std::nullopt;
+}
+
+void copy_start(int from, int to, const fs::path& file, std::uint64_t size) {
+    std::string bytes;
+    for (std::uint64_t at = 0; at < size; at += bytes.size()) {
+        bytes.resize(std::min(size - at, std::uint64_t(1) << 20));
+        if (!read_at(from, at, bytes.data(), bytes.size())) {
+            fail(ExitCode::output, "{}: cannot be read", file.string());
+        }
+        write_at(to, file, at, bytes.data(), bytes.size());
+    }
 }
 
 // By axis. What flies off leaves it with the rest.
@@ -91,18 +128,49 @@ Vec3 median(const std::vector<Vec3>& position) {
     return middle;
 }
 
-}  // namespace
-
-FrameStoreWriter::FrameStoreWriter(const fs::path& file)
-    : file_(file),
-      temporary_(temporary_for(file)),
-      handle_(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
-    if (!handle_.is_open()) {
+FileHandle created(const fs::path& temporary, const fs::path& file) {
+    FileHandle handle(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+    if (!handle.is_open()) {
         fail(ExitCode::output, "{}: cannot be created: {}", file.string(), std::strerror(errno));
     }
+    return handle;
+}
+
+}  // namespace
+
+bool holds_motion(const fs::path& file, const MotionMark& mark) {
+    std::string why;
+    const FileHandle handle = open_plain_file(file, why);
+    return handle.is_open() && pass_records(handle.id(), mark, true);
+}
+
+FrameStoreWriter::FrameStoreWriter(const fs::path& file)
+    : file_(file), written_(temporary_for(file)), handle_(created(written_, file)) {
     try {
-        write_all(handle_.id(), file_, 0, &kMagic, sizeof kMagic);
-        size_ = sizeof kMagic;
+        write_at(handle_.id(), file_, 0, &kMagic, sizeof kMagic);
+        mark_.size = sizeof kMagic;
+        put_end();
+    } catch (...) {
+        drop();
+        throw;
+    }
+}
+
+FrameStoreWriter::FrameStoreWriter(const fs::path& file, const fs::path& from,
+                                   const MotionMark& mark)
+    : file_(file),
+      written_(from == file ? temporary_for(file) : from),
+      is_kept_(from != file),
+      mark_(mark) {
+    FileHandle there(::open(from.c_str(), (is_kept_ ? O_RDWR : O_RDONLY) | O_CLOEXEC));
+    const auto passed = there.is_open() ? pass_records(there.id(), mark, false) : std::nullopt;
+    if (!passed) fail(ExitCode::output, "{}: cannot be gone on from", from.string());
+    skins_ = passed->skins, machines_ = passed->machines, frames_ = passed->frames;
+    image_ = passed->image;
+    handle_ = is_kept_ ? std::move(there) : created(written_, file);
+    try {
+        if (!is_kept_) copy_start(there.id(), handle_.id(), file_, mark_.size);
+        cut_off();
         put_end();
     } catch (...) {
         drop();
@@ -115,26 +183,32 @@ FrameStoreWriter::~FrameStoreWriter() { drop(); }
 void FrameStoreWriter::drop() {
     if (!handle_.is_open()) return;
     handle_.close();
-    ::unlink(temporary_.c_str());
+    if (!is_kept_) ::unlink(written_.c_str());
 }
 
 void FrameStoreWriter::put_end() {
     const RecordHead end = head_of(kEnd, {});
-    write_all(handle_.id(), file_, size_, &end, sizeof end);
+    write_at(handle_.id(), file_, mark_.size, &end, sizeof end);
+}
+
+// All but what is whole, and the room of an end.
+bool FrameStoreWriter::cut_off() {
+    return ::ftruncate(handle_.id(), static_cast<off_t>(mark_.size + sizeof(RecordHead))) == 0;
 }
 
 void FrameStoreWriter::put(std::uint32_t kind, const std::string& bytes) {
     const RecordHead head = head_of(kind, bytes);
-    const std::uint64_t before = size_;
+    const MotionMark before = mark_;
     try {
-        write_all(handle_.id(), file_, size_, &head, sizeof head);
-        write_all(handle_.id(), file_, size_ + sizeof head, bytes.data(), bytes.size());
-        size_ += sizeof head + bytes.size();
+        write_at(handle_.id(), file_, mark_.size, &head, sizeof head);
+        write_at(handle_.id(), file_, mark_.size + sizeof head, bytes.data(), bytes.size());
+        mark_.size += sizeof head + bytes.size();
+        mark_.hash = chained(mark_.hash, head);
         put_end();
     } catch (const Error&) {
         // The room of the end that stood here is kept.
-        size_ = before;
-        if (::ftruncate(handle_.id(), static_cast<off_t>(size_ + sizeof head)) == 0) put_end();
+        mark_ = before;
+        if (cut_off()) put_end();
         throw;
     }
 }
@@ -153,49 +227,46 @@ void FrameStoreWriter::put_images(const TriMesh& mesh) {
 int FrameStoreWriter::add_skin(const TriMesh& skin) {
     put_images(skin);
     ByteWriter out;
-    put_mesh(out, skin);
+    out(skin);
     put(kSkin, out.bytes());
     return skins_++;
 }
 
 int FrameStoreWriter::add_machine(const std::vector<DrawnPart>& parts) {
+    for (const DrawnPart& part : parts) put_images(part.surface);
     ByteWriter out;
-    out.put<std::uint64_t>(parts.size());
-    for (const DrawnPart& part : parts) {
-        out.put_text(part.name);
-        put_images(part.surface);
-        put_mesh(out, part.surface);
-        out.put(part.color);
-        out.put(part.finish);
-    }
+    out(parts);
     put(kMachine, out.bytes());
     return machines_++;
 }
 
 void FrameStoreWriter::add_frame(const StoredFrame& frame) {
     ByteWriter out;
-    out.put(frame.machine);
-    out.put<std::uint64_t>(frame.body.size());
+    out(frame.machine, std::uint64_t(frame.body.size()));
     for (const StoredBody& body : frame.body) {
-        out.put(body.skin);
         const Vec3 middle = median(body.position);
         std::vector<Eigen::Vector3f> away;
         away.reserve(body.position.size());
         for (const Vec3& p : body.position) away.push_back((p - middle).cast<float>());
-        out.put(middle);
-        out.put_array(away);
+        out(body.skin, middle, away);
     }
-    out.put<std::uint64_t>(frame.pose.size());
-    for (const Pose& pose : frame.pose) {
-        for (int c = 0; c < 4; ++c) out.put(pose.rotation.coeffs()[c]);
-        out.put(pose.translation);
-    }
+    out(std::uint64_t(frame.pose.size()));
+    for (const Pose& pose : frame.pose) out(pose.rotation.coeffs(), pose.translation);
     put(kFrame, out.bytes());
+    ++frames_;
+}
+
+void FrameStoreWriter::keep(const fs::path& as) {
+    if (::fsync(handle_.id()) != 0 || std::rename(written_.c_str(), as.c_str()) != 0) {
+        fail(ExitCode::output, "{}: cannot be kept: {}", as.string(), std::strerror(errno));
+    }
+    written_ = as;
+    is_kept_ = true;
 }
 
 void FrameStoreWriter::finish() {
     handle_.close();
-    publish(temporary_, file_);
+    publish(written_, file_);
 }
 
 FrameStore::FrameStore(const fs::path& file) : file_(file) {
@@ -206,13 +277,13 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
     handle_ = open_plain_file(file, why);
     if (!handle_.is_open()) give_up(why);
     std::uint64_t magic = 0;
-    if (!read_all(handle_.id(), 0, &magic, sizeof magic) || magic != kMagic) {
+    if (!read_at(handle_.id(), 0, &magic, sizeof magic) || magic != kMagic) {
         give_up("is no motion file of the kind that this build of swage writes");
     }
     const auto file_size = static_cast<std::uint64_t>(::lseek(handle_.id(), 0, SEEK_END));
     std::uint64_t at = sizeof magic;
     for (RecordHead head{};;) {
-        if (!read_all(handle_.id(), at, &head, sizeof head)) give_up("ends early");
+        if (!read_at(handle_.id(), at, &head, sizeof head)) give_up("ends early");
         at += sizeof head;
         if (head.check != check_of(head)) give_up("is damaged");
         if (head.size > file_size - at) give_up("ends early");
@@ -235,7 +306,7 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
 
 std::string FrameStore::bytes_at(const Place& place) const {
     std::string bytes(place.size, '\0');
-    if (!read_all(handle_.id(), place.offset, bytes.data(), bytes.size()) ||
+    if (!read_at(handle_.id(), place.offset, bytes.data(), bytes.size()) ||
         hash_of(bytes) != place.hash) {
         fail(ExitCode::output, "{}: is damaged", file_.string());
     }
@@ -246,48 +317,37 @@ StoredFrame FrameStore::frame(int index) const {
     const std::string bytes = bytes_at(frame_.at(static_cast<std::size_t>(index)));
     ByteReader in(bytes);
     StoredFrame frame;
-    frame.machine = in.get<int>();
-    frame.body.resize(in.get<std::uint64_t>());
+    in(frame.machine);
+    frame.body.resize(in.count(0, 1));
     for (StoredBody& body : frame.body) {
-        body.skin = in.get<int>();
+        in(body.skin);
         const auto middle = in.get<Vec3>();
-        for (const Eigen::Vector3f& away : in.get_array<Eigen::Vector3f>()) {
+        for (const Eigen::Vector3f& away : in.get<std::vector<Eigen::Vector3f>>()) {
             body.position.push_back(middle + away.cast<double>());
         }
     }
-    frame.pose.resize(in.get<std::uint64_t>());
-    for (Pose& pose : frame.pose) {
-        for (int c = 0; c < 4; ++c) pose.rotation.coeffs()[c] = in.get<double>();
-        pose.translation = in.get<Vec3>();
-    }
+    frame.pose.resize(in.count(0, 1));
+    for (Pose& pose : frame.pose) in(pose.rotation.coeffs(), pose.translation);
     return frame;
 }
 
-TriMesh FrameStore::mesh_from(ByteReader& in) const {
-    return get_mesh(in, [&](std::uint64_t hash) {
+template <typename T>
+T FrameStore::value_at(const Place& place) const {
+    const std::string bytes = bytes_at(place);
+    ByteReader in(bytes, [&](std::uint64_t hash) {
         const auto known = image_.find(hash);
         if (known == image_.end()) fail(ExitCode::output, "{}: is damaged", file_.string());
         return std::make_shared<const std::string>(bytes_at(known->second));
     });
+    return in.get<T>();
 }
 
 TriMesh FrameStore::skin(int index) const {
-    const std::string bytes = bytes_at(skin_.at(static_cast<std::size_t>(index)));
-    ByteReader in(bytes);
-    return mesh_from(in);
+    return value_at<TriMesh>(skin_.at(static_cast<std::size_t>(index)));
 }
 
 std::vector<DrawnPart> FrameStore::machine(int index) const {
-    const std::string bytes = bytes_at(machine_.at(static_cast<std::size_t>(index)));
-    ByteReader in(bytes);
-    std::vector<DrawnPart> parts(in.get<std::uint64_t>());
-    for (DrawnPart& part : parts) {
-        part.name = in.get_text();
-        part.surface = mesh_from(in);
-        part.color = in.get<Vec3>();
-        part.finish = in.get<Finish>();
-    }
-    return parts;
+    return value_at<std::vector<DrawnPart>>(machine_.at(static_cast<std::size_t>(index)));
 }
 
 }  // namespace swage

@@ -37,13 +37,23 @@ struct StoredFrame {
     std::vector<Pose> pose;  // world from part, of the machine's parts
 };
 
-class ByteReader;
+// How far a motion file goes: its bytes but for the end, and a hash of what they are.
+struct MotionMark {
+    std::uint64_t size = 0, hash = 0;
+};
+
+// Whether a file, if there is one, is this as far as that, to the byte.
+bool holds_motion(const std::filesystem::path& file, const MotionMark& mark);
 
 class FrameStoreWriter {
   public:
     // Writes to a temporary beside `file` until `finish`.
     explicit FrameStoreWriter(const std::filesystem::path& file);
-    ~FrameStoreWriter();  // removes what was not finished
+    // Goes on behind what holds_motion there: in `from` itself, where that was kept, or in a copy
+    // where it is `file`.
+    FrameStoreWriter(const std::filesystem::path& file, const std::filesystem::path& from,
+                     const MotionMark& mark);
+    ~FrameStoreWriter();  // removes what was neither finished nor kept
     FrameStoreWriter(const FrameStoreWriter&) = delete;
     FrameStoreWriter& operator=(const FrameStoreWriter&) = delete;
 
@@ -51,19 +61,27 @@ class FrameStoreWriter {
     int add_skin(const TriMesh& skin);
     int add_machine(const std::vector<DrawnPart>& part);
     void add_frame(const StoredFrame& frame);
+    int frame_count() const { return frames_; }
+
+    // Flushed to disk under that name, it stays there until `finish`, whatever becomes of the
+    // process: what the mark says then can be gone on from.
+    void keep(const std::filesystem::path& as);
+    const MotionMark& mark() const { return mark_; }
     void finish();
 
   private:
     // All of it or nothing: a full disk leaves what came before, with its end.
     void put(std::uint32_t kind, const std::string& bytes);
     void put_end();  // behind what is whole
+    bool cut_off();
     void drop();
     void put_images(const TriMesh& mesh);
 
-    std::filesystem::path file_, temporary_;
+    std::filesystem::path file_, written_;
+    bool is_kept_ = false;
     FileHandle handle_;
-    std::uint64_t size_ = 0;  // of what is whole
-    int skins_ = 0, machines_ = 0;
+    MotionMark mark_;  // of what is whole
+    int skins_ = 0, machines_ = 0, frames_ = 0;
     std::set<std::uint64_t> image_;  // that the file holds, by hash
 };
 
@@ -86,7 +104,8 @@ class FrameStore {
         std::uint64_t offset, size, hash;
     };
     std::string bytes_at(const Place& place) const;
-    TriMesh mesh_from(ByteReader& in) const;
+    template <typename T>
+    T value_at(const Place& place) const;
 
     std::filesystem::path file_;
     FileHandle handle_;

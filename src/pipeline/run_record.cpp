@@ -23,7 +23,7 @@ std::string hash_of_mesh(TriMesh mesh) {
     // Files may lie elsewhere; what the textures hold is hashed by itself.
     for (SurfaceMaterial& material : mesh.material) material.texture = material.texture.filename();
     ByteWriter out;
-    put_mesh(out, mesh);
+    out(mesh);
     return hash_text(hash_of(out.bytes()));
 }
 

@@ -25,6 +25,7 @@ class NewLook {
   public:
     // The mesh as it was molded, not empty.
     explicit NewLook(const TriMesh& mesh);
+    const TriMesh& mesh() const { return mesh_; }  // of which another is made that is alike
 
     // `mesh`: a boundary (skin/boundary.h), made of squares, two triangles each; `place`: of its
     // positions at molding. Faces of a cut, of its material 1, get kCutMaterial and no texture.

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How values pass to bytes and back (pipeline/bytes.h). What a thing consists of is said once for
+// both ways, so that a member that is added to it and forgotten here does not compile:
+//
+//     template <typename Io>
+//     void visit(Io& io, Thing& thing) {
+//         auto& [one, other] = thing;  // all of its members
+//         io(one, other);
+//     }
+//
+// Where members are private, `thing.visit(io)` does that.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/math.h"
+
+namespace swage {
+
+// What is one run of numbers, without gaps.
+template <typename T>
+struct IsRaw : std::bool_constant<std::is_arithmetic_v<T> || std::is_enum_v<T>> {};
+template <typename T, int rows, int columns>
+struct IsRaw<Eigen::Matrix<T, rows, columns>> : std::bool_constant<(rows > 0 && columns > 0)> {};
+template <typename T, std::size_t count>
+struct IsRaw<std::array<T, count>> : IsRaw<T> {};
+template <typename T>
+concept Raw = IsRaw<T>::value;
+template <typename T>
+concept Visited = !Raw<T>;
+template <typename T, typename Io>
+concept HasMembers = Visited<T> && requires(Io& io, T& value) {
+    value.visit(io);
+};
+template <typename T, typename Io>
+concept HasRule = Visited<T> && requires(Io& io, T& value) {
+    visit(io, value);
+};
+
+template <typename Io, Raw T>
+void pass(Io& io, T& value) {
+    io.raw(&value, sizeof value);
+}
+template <typename Io>
+void pass(Io& io, std::string& text) {
+    text.resize(io.count(text.size(), 1));
+    io.raw(text.data(), text.size());
+}
+template <typename Io>
+void pass(Io& io, std::filesystem::path& path) {
+    std::string text = path.string();
+    io(text);
+    path = text;
+}
+template <typename Io, typename T>
+void pass(Io& io, std::vector<T>& values) {
+    values.resize(io.count(values.size(), Raw<T> ? sizeof(T) : 1));
+    if constexpr (Raw<T>) {
+        io.raw(values.data(), values.size() * sizeof(T));
+    } else {
+        for (T& value : values) io(value);
+    }
+}
+template <typename Io, Visited T, std::size_t count>
+void pass(Io& io, std::array<T, count>& values) {
+    for (T& value : values) io(value);
+}
+template <typename Io, typename A, typename B>
+void pass(Io& io, std::pair<A, B>& both) {
+    io(both.first, both.second);
+}
+template <typename Io, typename T>
+void pass(Io& io, std::optional<T>& value) {
+    bool is_there = value.has_value();
+    io(is_there);
+    if (is_there && !value) value.emplace();
+    if (is_there) io(*value);
+}
+template <typename Io, HasMembers<Io> T>
+void pass(Io& io, T& value) {
+    value.visit(io);
+}
+template <typename Io, HasRule<Io> T>
+void pass(Io& io, T& value) {
+    visit(io, value);
+}
+
+}  // namespace swage

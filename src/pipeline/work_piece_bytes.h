@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A work-piece as bytes (pipeline/bytes.h): all of it, but for what is derived from the rest.
+#pragma once
+
+#include "pipeline/mesh_bytes.h"
+#include "pipeline/work_piece.h"
+
+namespace swage {
+
+template <typename Io>
+void visit(Io& io, Material& material) {
+    auto& [name, mechanics, elasticity, young_modulus, poisson_ratio, density, yield_stress,
+           hardening, strength, toughness, damping_ratio, friction, static_friction, restitution,
+           stickiness] = material;
+    io(name, mechanics, elasticity, young_modulus, poisson_ratio, density, yield_stress, hardening,
+       strength, toughness, damping_ratio, friction, static_friction, restitution, stickiness);
+}
+
+template <typename Io>
+void visit(Io& io, ParticleRun& run) {
+    auto& [i, j, k, first, count] = run;
+    io(i, j, k, first, count);
+}
+template <typename Io>
+void visit(Io& io, Span& span) {
+    auto& [direction, lower, upper, count] = span;
+    io(direction, lower, upper, count);
+}
+template <typename Io>
+void visit(Io& io, CellRun& run) {
+    auto& [i, j, k, first, count, row] = run;
+    io(i, j, k, first, count, row);
+}
+template <typename Io>
+void visit(Io& io, Lattice& lattice) {
+    auto& [origin, spacing, cell_count, particle_run, span, cell_run, cell_row_begin] = lattice;
+    io(origin, spacing, cell_count, particle_run, span, cell_run, cell_row_begin);
+}
+
+template <typename Io>
+void visit(Io& io, Vec3Array& array) {
+    auto& [x, y, z] = array;
+    io(x, y, z);
+}
+template <typename Io>
+void visit(Io& io, ConnectionArrays& arrays) {
+    auto& [weight, plastic, damage] = arrays;
+    io(weight, plastic, damage);
+}
+template <typename Io>
+void visit(Io& io, CellHistories& histories) {
+    auto& [row] = histories;
+    io(row);
+}
+template <typename Io>
+void visit(Io& io, MixedCell& mixed) {
+    auto& [cell, material, fill, centroid, normal, flowed] = mixed;
+    io(cell, material, fill, centroid, normal, flowed);
+}
+template <typename Io>
+void visit(Io& io, CellSet& set) {
+    auto& [cell, strain] = set;
+    io(cell, strain);
+}
+template <typename Io>
+void visit(Io& io, DampingBranches& branches) {
+    auto& [count, share, time] = branches;
+    io(count, share, time);
+}
+template <typename Io>
+void visit(Io& io, BranchMemory& memory) {
+    auto& [branches, strain] = memory;
+    io(branches, strain);
+}
+template <typename Io>
+void visit(Io& io, Aggregate& matter) {
+    auto& [material, lattice, particle_reference, particle_position, particle_velocity,
+           particle_mass, connection, cell_fill, cell_centroid, inset, cell_material, mixed_cell,
+           cell_cracked, cell_set, cell_history, cell_plastic, branch_memory, surface] = matter;
+    io(material, lattice, particle_reference, particle_position, particle_velocity, particle_mass,
+       connection, cell_fill, cell_centroid, inset, cell_material, mixed_cell, cell_cracked,
+       cell_set, cell_history, cell_plastic, branch_memory, surface);
+}
+
+// What finish_mount derives is left to it.
+template <typename Io>
+void visit(Io& io, Mount& mount) {
+    auto& [kind, reference, cell, side, hold, group, vertex, carrier, particle, stencil] = mount;
+    io(kind, reference, cell, side, hold);
+}
+
+template <typename Io>
+void visit(Io& io, WorkPiece& piece) {
+    auto& [name, matter, skin, mount, look, position, followed, finding, is_torn, whole_skin,
+           whole_mount, whole_position] = piece;
+    io(name, matter, skin, mount);
+    std::optional<TriMesh> like;
+    if (look) like = look->mesh();
+    io(like, position, followed, finding, is_torn, whole_skin, whole_mount, whole_position);
+    if constexpr (Io::kReads) {
+        if (like) look = std::make_shared<const NewLook>(*like);
+        finish_mount(mount, matter);
+        if (whole_skin) finish_mount(whole_mount, matter);
+    }
+}
+
+}  // namespace swage
