@@ -63,8 +63,11 @@ void log_warning_text(const std::string& line) {
     put_line(line, stderr_has_color() ? "\x1b[33mwarning:\x1b[0m " : "warning: ");
 }
 
-Progress::Progress(std::string title, int total)
-    : title_(std::move(title)), total_(std::max(1, total)), started_(now_seconds()) {}
+Progress::Progress(std::string title, int total, int before)
+    : title_(std::move(title)),
+      total_(std::max(1, total)),
+      before_(before),
+      started_(now_seconds()) {}
 
 Progress::~Progress() {
     const std::lock_guard lock(line_mutex);
@@ -76,7 +79,7 @@ void Progress::advance(int done, const std::string& note) {
     if (level == LogLevel::quiet) return;
     const double now = now_seconds();
     const double elapsed = now - started_;
-    const double left = done > 0 ? elapsed / done * (total_ - done) : 0;
+    const double left = done > before_ ? elapsed / (done - before_) * (total_ - done) : 0;
     const std::lock_guard lock(line_mutex);
     if (stderr_is_terminal()) {
         if (done < total_ && now - last_shown_ < 0.1) return;

@@ -38,13 +38,14 @@ void log_warning(fmt::format_string<Args...> text, Args&&... args) {
 // A bar with the time left when stderr is a terminal; a plain line now and then otherwise.
 class Progress {
   public:
-    Progress(std::string title, int total);
+    // `before`: done already, and not in the time that is taken now.
+    Progress(std::string title, int total, int before = 0);
     ~Progress();
     void advance(int done, const std::string& note = {});
 
   private:
     std::string title_;
-    int total_;
+    int total_, before_;
     double started_;
     double last_shown_ = -1;
     int last_tenth_ = -1;

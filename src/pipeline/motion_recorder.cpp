@@ -12,6 +12,15 @@ std::vector<Pose> part_poses(const Drive& drive) {
     return poses;
 }
 
+MotionRecorder::MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
+                               const MotionMark& mark, const std::vector<WorkPiece>& bodies,
+                               const std::vector<int>& skins)
+    : writer_(file, from, mark) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        skin_.push_back({bodies[b].skin, skins.at(b)});
+    }
+}
+
 MotionRecorder::~MotionRecorder() { set_frames_at_stake(false); }
 
 void MotionRecorder::set_machine(const Apparatus& apparatus) {
@@ -43,8 +52,13 @@ void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive
     frame.machine = machine_id_;
     frame.pose = part_poses(drive);
     writer_.add_frame(frame);
-    ++frames_;
     set_frames_at_stake(true);
+}
+
+std::vector<int> MotionRecorder::skins() const {
+    std::vector<int> ids;
+    for (const Skin& skin : skin_) ids.push_back(skin.id);
+    return ids;
 }
 
 }  // namespace swage

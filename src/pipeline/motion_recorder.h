@@ -15,12 +15,20 @@ std::vector<Pose> part_poses(const Drive& drive);
 class MotionRecorder {
   public:
     explicit MotionRecorder(const std::filesystem::path& file) : writer_(file) {}
+    // Goes on behind the mark, where the bodies had these skins.
+    MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
+                   const MotionMark& mark, const std::vector<WorkPiece>& bodies,
+                   const std::vector<int>& skins);
     // From its first frame on and as long as it lives, frames are at stake (pipeline/interrupt.h).
     ~MotionRecorder();
 
     void set_machine(const Apparatus& apparatus);
     void add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive);
-    int frame_count() const { return frames_; }
+    int frame_count() const { return writer_.frame_count(); }
+    // As FrameStoreWriter has these.
+    void keep(const std::filesystem::path& as) { writer_.keep(as); }
+    const MotionMark& mark() const { return writer_.mark(); }
+    std::vector<int> skins() const;  // of each body
     void finish() { writer_.finish(); }
 
   private:
@@ -31,7 +39,6 @@ class MotionRecorder {
     };
     std::vector<Skin> skin_;  // of each body
     int machine_id_ = -1;
-    int frames_ = 0;
 };
 
 }  // namespace swage

@@ -3,19 +3,14 @@
 
 #include <algorithm>
 
-#include "base/atomic_file.h"
 #include "base/failure.h"
-#include "base/hash.h"
 #include "base/log.h"
 #include "pipeline/cost.h"
-#include "pipeline/disk_reserve.h"
 #include "pipeline/draw.h"
 #include "pipeline/frame_store.h"
 #include "pipeline/interrupt.h"
-#include "pipeline/plot.h"
 #include "pipeline/run_record.h"
-#include "pipeline/stage.h"
-#include "pipeline/start_warnings.h"
+#include "pipeline/simulate.h"
 
 namespace swage {
 
@@ -43,104 +38,6 @@ bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory
              directory.record().string());
     }
     return true;
-}
-
-// What run.json may need beside what it holds already: times, warnings, and each stage's books.
-constexpr std::uint64_t kRecordRoom = 64 << 10, kStageRecordRoom = 16 << 10;
-
-void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch) {
-    // What is drawn later leaves what the simulation took.
-    record["seconds"].update(seconds_json(watch));
-    write_file_whole(directory.record(), json_text(record));
-}
-
-// What ended a simulation before its time.
-struct Ended {
-    std::optional<Error> stopped;
-    std::optional<Interrupted> interrupted;
-    bool early() const { return stopped || interrupted; }
-};
-
-// All stages; the motion file and run.json stand when it returns. `at_start`: what can be said
-// before anything is molded.
-Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               RunDirectory& directory, Json& record, Stopwatch& watch) {
-    const bool can_plot = gnuplot_is_present();
-    if (!can_plot) {
-        log_warning(
-            "no program gnuplot was found, so the curves are not plotted "
-            "(apt-get install gnuplot-nox)");
-    }
-    std::vector<WorkPiece> bodies;
-    for (std::size_t b = 0; b < input.size(); ++b) {
-        {
-            const auto lap = watch.lap("mold");
-            bodies.push_back(make_work_piece(input[b], scene.body[b], scene.skin));
-        }
-        for (const std::string& warning :
-             warnings_of_mold(bodies[b].name, input.size() > 1, bodies[b].finding)) {
-            log_warning("{}", warning);
-            at_start.mold.push_back(warning);
-        }
-        const Aggregate& matter = bodies[b].matter;
-        record["bodies"][b]["matter"] = matter_json(matter);
-        log_info("{}: {} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
-                 input.size() == 1 ? "molded" : "molded " + bodies[b].name, matter.cell_fill.size(),
-                 1e3 * matter.lattice.spacing, matter.particle_count(), matter.connection_count(),
-                 matter.mass());
-    }
-    at_start.bodies = warnings_of_bodies(scene, named(bodies));
-    for (const auto* untold : {&at_start.strength, &at_start.bodies}) {
-        for (const std::string& warning : *untold) log_warning("{}", warning);
-    }
-    std::vector<std::string> warnings = at_start.all();
-
-    MotionRecorder recorder(directory.store());
-    Progress progress("simulate", frame_count(scene) - 1);
-    Ended ended;
-    long steps = 0;
-    DiskReserve reserve;
-    const auto begin = [&] {
-        directory.begin();
-        reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
-                                           kStageRecordRoom * scene.stage.size());
-        make_folder(directory.root() / "meshes");
-        make_folder(directory.root() / "curves");
-    };
-    for (const StageSpec& stage : scene.stage) {
-        const StageContext context{scene, directory.root(), recorder, watch, progress,
-                                   begin, can_plot};
-        try {
-            throw_if_interrupted();
-            StageOutcome outcome = run_stage(stage, recorder.frame_count(), bodies, context);
-            record["stages"].push_back(outcome.record);
-            steps += outcome.steps;
-            warnings.insert(warnings.end(), outcome.warning.begin(), outcome.warning.end());
-            ended = {outcome.stopped, outcome.interrupted};
-        } catch (const Interrupted& interrupted) {
-            // While the stage was set up.
-            if (recorder.frame_count() == 0) throw;
-            ended.interrupted = interrupted;
-        } catch (const std::exception& error) {
-            // A stage that cannot be set up at what those before have made, or written, or that
-            // wants for memory.
-            ended.stopped = failure_of(error);
-            if (recorder.frame_count() == 0 || !ended.stopped) throw;
-        }
-        if (ended.early()) break;
-    }
-    reserve.release();
-    recorder.finish();
-    record["frames"] = recorder.frame_count();
-    record["steps"] = steps;
-    record["state_hash"] = hash_text(state_hash(bodies));
-    record["warnings"] = warnings;
-    record["state"] = ended.interrupted ? RunState::interrupted
-                      : ended.stopped   ? RunState::stopped
-                                        : RunState::simulated;
-    if (ended.stopped) record["stopped"] = ended.stopped->what();
-    write_record(directory, record, watch);
-    return ended;
 }
 
 }  // namespace
@@ -171,6 +68,7 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     const std::optional<Json> earlier =
         may_be_done ? read_record(directory.record()) : std::nullopt;
     const bool simulated = earlier && is_simulated(*earlier, scene, directory);
+    if (simulated) directory.remove_checkpoint();
     if (simulated && (!options.draw || is_drawn(*earlier, files, wanted, scene.render.film))) {
         log_info("{}: already complete", directory.root().string());
         outcome.record = *earlier;

@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/file_contents.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "pipeline/folder_lock.h"
@@ -107,7 +108,7 @@ std::string difference(const RunInput& now, const RunInput& then) {
 // What a run leaves; nothing else in the directory is ever touched.
 void remove_products(const fs::path& root) {
     for (const char* name : {"run.json", "film.mp4", "contact.png", "motion.bin", "frames",
-                             "meshes", "curves", "again", "usd", kIdentityName}) {
+                             "meshes", "curves", "resume", "again", "usd", kIdentityName}) {
         std::error_code error;
         fs::remove_all(root / name, error);
         if (error) {
@@ -157,6 +158,12 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
     return found;
 }
 
+std::string key_of(const RunIdentity& identity) {
+    std::string all = identity.version + "\n" + identity.build;
+    for (const RunInput& input : identity.input) all += "\n" + input.role + "\n" + input.hash;
+    return hash_text(hash_of(all));
+}
+
 std::string record_text(const fs::path& file, ExitCode code) {
     std::optional<std::string> text = file_contents(file, kLongestRecord);
     if (!text) {
@@ -175,6 +182,7 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
     : root_(root.has_filename() ? root : root.parent_path()),
       folder_(root_),
       identity_text_(identity_text(identity)),
+      key_(key_of(identity)),
       anew_(fresh) {
     // One that is being made holds files before it is a run.
     if (FolderLock::may_hold(root_)) lock_.emplace(root_);
@@ -214,6 +222,11 @@ void RunDirectory::begin() {
     }
     write_file_whole(root_ / kIdentityName, identity_text_);
     anew_ = false;
+}
+
+void RunDirectory::remove_checkpoint() const {
+    std::error_code ignored;
+    fs::remove_all(checkpoint().parent_path(), ignored);
 }
 
 RunDirectory::~RunDirectory() {

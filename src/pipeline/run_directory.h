@@ -33,6 +33,9 @@ struct RunIdentity {
 // One sentence a difference, empty when they are the same run. File names may differ.
 std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here);
 
+// The same text for the same run.
+std::string key_of(const RunIdentity& identity);
+
 // Whether a run of swage lies in this folder, of whatever scene.
 bool holds_run(const std::filesystem::path& folder);
 
@@ -49,10 +52,17 @@ class RunDirectory {
     RunDirectory& operator=(const RunDirectory&) = delete;
 
     const std::filesystem::path& root() const { return root_; }
+    const std::string& key() const { return key_; }
+    // Whatever run it holds is to make room.
+    bool is_anew() const { return anew_; }
     // The run is about to write its first frame: now what makes room for it is removed.
     void begin();
     std::filesystem::path record() const { return root_ / "run.json"; }
     std::filesystem::path store() const { return root_ / "motion.bin"; }
+    // Of a run that is not done: what it goes on from, and its motion file until it ends.
+    std::filesystem::path checkpoint() const { return root_ / "resume" / "checkpoint.bin"; }
+    std::filesystem::path kept_motion() const { return root_ / "resume" / "motion.bin"; }
+    void remove_checkpoint() const;
     // Where `swage render` draws a run that is not told where.
     static std::filesystem::path drawn_again(const std::filesystem::path& run) {
         return run / "again";
@@ -66,7 +76,7 @@ class RunDirectory {
 
     std::filesystem::path root_;
     MadeFolder folder_;
-    std::string identity_text_;
+    std::string identity_text_, key_;
     bool anew_, has_begun_ = false;
     std::optional<FolderLock> lock_;
 };

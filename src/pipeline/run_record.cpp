@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/atomic_file.h"
 #include "base/file_contents.h"
 #include "base/hash.h"
 #include "base/parallel.h"
@@ -168,6 +169,11 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
     }
     record["render"] = render_json(scene.render);
     return record;
+}
+
+void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch) {
+    record["seconds"].update(seconds_json(watch));
+    write_file_whole(directory.record(), json_text(record));
 }
 
 std::optional<Json> read_record(const fs::path& file) {

@@ -35,6 +35,9 @@ Json matter_json(const Aggregate& matter);
 Json drawing_json(const DrawOutcome& drawing);
 Json seconds_json(const Stopwatch& watch);
 
+// Writes it as it is, with the seconds spent; what is drawn later leaves what the simulation took.
+void write_record(const RunDirectory& directory, Json& record, const Stopwatch& watch);
+
 // An earlier record; none when there is none, or no whole one. Throws Error(output) where something
 // else has its name.
 std::optional<Json> read_record(const std::filesystem::path& file);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run leaves when what it writes finds no room.
-#include <signal.h>
-#include <sys/resource.h>
-
 #include <algorithm>
 
 #include "pipeline/json.h"
 #include "tests/app/program.h"
+#include "tests/app/small_disk.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 
@@ -14,21 +12,6 @@ namespace fs = std::filesystem;
 using swage::Json;
 
 namespace {
-
-// As long as it lives no program that is started writes a file of more bytes.
-class SmallDisk {
-  public:
-    explicit SmallDisk(std::uintmax_t bytes) {
-        ::getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit limit = {bytes, before_.rlim_max};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-        ::signal(SIGXFSZ, SIG_DFL);  // as a shell has it
-    }
-    ~SmallDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-
-  private:
-    rlimit before_{};
-};
 
 // What a shell does with a file system of its own at `full`, of so many kB, which is gone after it.
 Outcome in_small_room(const fs::path& folder, int kilobytes, const std::string& commands) {

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/simulate.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+
+#include "base/failure.h"
+#include "base/hash.h"
+#include "base/log.h"
+#include "pipeline/checkpoint.h"
+#include "pipeline/cost.h"
+#include "pipeline/disk_reserve.h"
+#include "pipeline/plot.h"
+#include "pipeline/run_record.h"
+#include "pipeline/stage.h"
+
+namespace swage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What run.json may need beside what it holds already: times, warnings, and each stage's books.
+constexpr std::uint64_t kRecordRoom = 64 << 10, kStageRecordRoom = 16 << 10;
+
+// Everything at its start.
+Reached molded(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
+               Stopwatch& watch) {
+    Reached reached;
+    std::vector<WorkPiece>& bodies = reached.bodies;
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        {
+            const auto lap = watch.lap("mold");
+            bodies.push_back(make_work_piece(input[b], scene.body[b], scene.skin));
+        }
+        for (const std::string& warning :
+             warnings_of_mold(bodies[b].name, input.size() > 1, bodies[b].finding)) {
+            log_warning("{}", warning);
+            at_start.mold.push_back(warning);
+        }
+        const Aggregate& matter = bodies[b].matter;
+        reached.matter.push_back(matter_json(matter));
+        log_info("{}: {} cells of {:.4g} mm, {} particles, {} connections, {:.4g} kg",
+                 input.size() == 1 ? "molded" : "molded " + bodies[b].name, matter.cell_fill.size(),
+                 1e3 * matter.lattice.spacing, matter.particle_count(), matter.connection_count(),
+                 matter.mass());
+    }
+    at_start.bodies = warnings_of_bodies(scene, named(bodies));
+    for (const auto* untold : {&at_start.strength, &at_start.bodies}) {
+        for (const std::string& warning : *untold) log_warning("{}", warning);
+    }
+    reached.warning = at_start.all();
+    return reached;
+}
+
+// What an earlier run got to, and the motion file that it left, if they are whole.
+struct Kept {
+    Reached reached;
+    fs::path motion;
+};
+std::optional<Kept> kept_by_earlier_run(const RunDirectory& directory) {
+    if (directory.is_anew()) return std::nullopt;
+    std::string why;
+    std::optional<Reached> reached = read_checkpoint(directory.checkpoint(), directory.key(), why);
+    for (const fs::path& motion : {directory.kept_motion(), directory.store()}) {
+        if (reached && holds_motion(motion, reached->motion)) {
+            return Kept{std::move(*reached), motion};
+        }
+    }
+    if (reached) why = "goes with a motion file that is damaged";
+    if (!why.empty()) {
+        log_warning("{}: {}, so the run begins anew", directory.checkpoint().string(), why);
+    }
+    return std::nullopt;
+}
+
+// Whether that could be written; the run goes on all the same.
+bool keep(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& watch,
+          Reached& reached) {
+    const auto lap = watch.lap("write");
+    try {
+        make_folder(directory.checkpoint().parent_path());
+        recorder.keep(directory.kept_motion());
+        reached.motion = recorder.mark();
+        reached.skin = recorder.skins();
+        reached.seconds = watch.phases();
+        write_checkpoint(directory.checkpoint(), directory.key(), reached);
+        return true;
+    } catch (const std::exception& error) {
+        const std::optional<Error> failure = failure_of(error);
+        if (!failure) throw;
+        log_warning("{}; a run that ends early cannot go on from here", failure->what());
+        return false;
+    }
+}
+
+}  // namespace
+
+Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
+               RunDirectory& directory, Json& record, Stopwatch& watch) {
+    const bool can_plot = gnuplot_is_present();
+    if (!can_plot) {
+        log_warning(
+            "no program gnuplot was found, so the curves are not plotted "
+            "(apt-get install gnuplot-nox)");
+    }
+    std::optional<Kept> kept = kept_by_earlier_run(directory);
+    Reached reached =
+        kept ? std::move(kept->reached) : molded(scene, input, std::move(at_start), watch);
+    for (std::size_t b = 0; b < reached.matter.size(); ++b) {
+        record["bodies"][b]["matter"] = reached.matter[b];
+    }
+    const auto recorder =
+        kept ? std::make_unique<MotionRecorder>(directory.store(), kept->motion, reached.motion,
+                                                reached.bodies, reached.skin)
+             : std::make_unique<MotionRecorder>(directory.store());
+
+    DiskReserve reserve;
+    const auto begin = [&] {
+        directory.begin();
+        if (!kept) directory.remove_checkpoint();
+        reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
+                                           kStageRecordRoom * scene.stage.size());
+        make_folder(directory.root() / "meshes");
+        make_folder(directory.root() / "curves");
+    };
+    const auto stages = static_cast<int>(scene.stage.size());
+    if (kept) {
+        for (const auto& [phase, seconds] : reached.seconds) watch.add(phase, seconds);
+        record["stages"] = reached.stage;
+        begin();
+        log_info("goes on after stage {} of {}, frame {}", reached.stages, stages,
+                 recorder->frame_count());
+    }
+    Progress progress("simulate", frame_count(scene) - 1, std::max(0, recorder->frame_count() - 1));
+    Ended ended;
+    int kept_stages = reached.stages;  // that are to be gone on from
+    while (reached.stages < stages) {
+        const StageSpec& stage = scene.stage[static_cast<std::size_t>(reached.stages)];
+        const StageContext context{scene, directory.root(), *recorder, watch, progress,
+                                   begin, can_plot};
+        try {
+            throw_if_interrupted();
+            StageOutcome outcome =
+                run_stage(stage, recorder->frame_count(), reached.bodies, context);
+            reached.stage.push_back(std::move(outcome.record));
+            reached.steps += outcome.steps;
+            std::move(outcome.warning.begin(), outcome.warning.end(),
+                      std::back_inserter(reached.warning));
+            ended = {outcome.stopped, outcome.interrupted};
+        } catch (const Interrupted& interrupted) {
+            // While the stage was set up.
+            if (recorder->frame_count() == 0) throw;
+            ended.interrupted = interrupted;
+        } catch (const std::exception& error) {
+            // A stage that cannot be set up at what those before have made, or written, or that
+            // wants for memory.
+            ended.stopped = failure_of(error);
+            if (recorder->frame_count() == 0 || !ended.stopped) throw;
+        }
+        if (ended.early()) break;
+        ++reached.stages;
+        if (reached.stages < stages && keep(directory, *recorder, watch, reached)) {
+            kept_stages = reached.stages;
+        }
+    }
+    reserve.release();
+    recorder->finish();
+    record["stages"] = reached.stage;
+    record["frames"] = recorder->frame_count();
+    record["steps"] = reached.steps;
+    record["state_hash"] = hash_text(state_hash(reached.bodies));
+    record["warnings"] = reached.warning;
+    record["state"] = ended.interrupted ? RunState::interrupted
+                      : ended.stopped   ? RunState::stopped
+                                        : RunState::simulated;
+    if (ended.stopped) record["stopped"] = ended.stopped->what();
+    write_record(directory, record, watch);
+    if (!ended.early()) {
+        directory.remove_checkpoint();
+    } else if (kept_stages > 0) {
+        log_info("swage run goes on after stage {} of {}", kept_stages, stages);
+    }
+    return ended;
+}
+
+}  // namespace swage

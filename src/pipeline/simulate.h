@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The stages of a run, one after another, from the first or from where an earlier run of the same
+// scene in the same directory got to.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/stopwatch.h"
+#include "pipeline/json.h"
+#include "pipeline/run_directory.h"
+#include "pipeline/start_warnings.h"
+#include "pipeline/work_piece.h"
+#include "scene/spec.h"
+
+namespace swage {
+
+// What ended a simulation before its time.
+struct Ended {
+    std::optional<Error> stopped;
+    std::optional<Interrupted> interrupted;
+    bool early() const { return stopped || interrupted; }
+};
+
+// The motion file and run.json stand when it returns. `record`: begin_record's. `at_start`: what
+// can be said before anything is molded.
+Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
+               RunDirectory& directory, Json& record, Stopwatch& watch);
+
+}  // namespace swage

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs that ended early and go on from the last stage that they finished.
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/app/small_disk.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+namespace {
+
+const std::string kMesh = "[mesh]\nfile = \"bar.obj\"\n", kBox = "[mesh]\nfile = \"box.obj\"\n";
+std::string falls(int speed) {
+    return fmt::format("turn = [0, \"20 deg\", \"30 deg\"]\nvelocity = [0, \"-{} m/s\", 0]\n",
+                       speed);
+}
+const std::string kBrittle =
+    "[material]\nyoung_modulus = \"50 MPa\"\npoisson_ratio = 0.2\ndensity = \"1200 kg/m3\"\n"
+    "damping_ratio = 0.02\nstrength = \"0.5 MPa\"\ntoughness = \"50 J/m2\"\n";
+const std::string kMold = "[mold]\nacross = 3\n";
+const std::string kBoundary = "[skin]\nkind = \"boundary\"\n";
+std::string floor(int frames) {
+    return fmt::format(
+        "[[stage]]\nmachine = \"floor\"\ndrop = \"2 mm\"\nframes = {}\nduration = \"4 ms\"\n",
+        frames);
+}
+
+std::string metal(const std::string& more) {
+    return "[material]\nname = \"lead\"\n" + more + kMold;
+}
+std::string worked(const std::string& at_the_cut = "") {
+    return "[[stage]]\nmachine = \"bend\"\nangle = \"40 deg\"\nframes = 3\n"
+           "[[stage]]\nmachine = \"twist\"\nangle = \"40 deg\"\nframes = 4\n"
+           "[[stage]]\nmachine = \"cut\"\ntilt = \"20 deg\"\nframes = 4\n" +
+           at_the_cut + "[[stage]]\nmachine = \"stretch\"\nstrain = 0.05\nframes = 3\n";
+}
+
+fs::path put_scene(const fs::path& folder, const std::string& text) {
+    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, folder);
+    put_text(folder / "box.obj",
+             "v 0 0 0\nv .1 0 0\nv .1 .02 0\nv 0 .02 0\nv 0 0 .02\nv .1 0 .02\nv .1 .02 .02\n"
+             "v 0 .02 .02\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    put_text(folder / "scene.toml", text);
+    return folder / "scene.toml";
+}
+
+Outcome run(const fs::path& scene, const fs::path& out, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"run", scene.string(), "--no-render", "--out", out.string()});
+    return run_swage(more);
+}
+
+// All that a run left, but for what it took.
+std::map<std::string, std::string> products(const fs::path& folder) {
+    std::map<std::string, std::string> files = files_below(folder);
+    Json record = Json::parse(files.at("run.json"));
+    record["seconds"] = nullptr;
+    files["run.json"] = record.dump(1);
+    return files;
+}
+
+void check_same(const fs::path& one, const fs::path& other) {
+    const auto there = products(one), here = products(other);
+    for (const auto& [name, bytes] : there) {
+        INFO(name);
+        REQUIRE(here.contains(name));
+        CHECK((here.at(name) == bytes));
+    }
+    CHECK(here.size() == there.size());
+}
+
+// Two stages; what the second is at shows.
+const std::string kTwo =
+    "[output]\nmeshes_per_frame = true\n"
+    "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 2\n"
+    "[[stage]]\nmachine = \"bend\"\nangle = \"20 deg\"\nframes = 40\n";
+
+// Ends a run of these by a signal in the middle of the second.
+Outcome end_in_second_stage(int signal, const fs::path& scene, const fs::path& out) {
+    fs::remove_all(out / "meshes/2-bend");
+    RunningSwage running({"run", scene.string(), "--no-render", "--out", out.string()},
+                         scene.parent_path());
+    while (!fs::exists(out / "meshes/2-bend/frame_0006.obj") && running.is_running()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    running.signal(signal);
+    Outcome outcome = running.wait();
+    CHECK(outcome.code == 128 + signal);
+    REQUIRE(fs::exists(out / "resume/checkpoint.bin"));
+    return outcome;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a run that ended early and goes on leaves what one leaves that went through, to the byte") {
+    const auto& [name, text] = GENERATE(table<std::string, std::string>({
+        {"flows, is cut", kMesh + metal("") + worked()},
+        {"springs", kMesh + metal("mechanics = \"springs\"\n") + worked()},
+        {"boundary", kMesh + metal("") + kBoundary + worked()},
+        {"molded anew", kMesh + metal("") + kBoundary + worked("remold = true\n")},
+        {"meshes of every frame",
+         kMesh + metal("") + "[output]\nmeshes_per_frame = true\n" + worked()},
+        {"breaks in motion, boundary",
+         kMesh + falls(8) + kBrittle + kMold + kBoundary + floor(12) + floor(12) + floor(12)},
+        {"breaks in motion, two bodies of two materials, is cut",
+         kBox + falls(4) + kBrittle + kMold +
+             "[[body]]\nname = \"other\"\nfile = \"box.obj\"\nat = [0, \"8 cm\", 0]\n"
+             "velocity = [0, \"-8 m/s\", 0]\nacross = 2\n"
+             "[[inset]]\nname = \"lead\"\nfrom = [0.3, 0.2, 0.2]\nto = [0.55, 0.7, 0.7]\n" +
+             floor(3) + "[[stage]]\nmachine = \"cut\"\nframes = 4\nduration = \"4 ms\"\n" +
+             floor(3)},
+    }));
+    INFO(name);
+    const Scratch scratch;
+    const fs::path scene = put_scene(scratch.path(), text), whole = scratch.path() / "whole";
+    const Outcome at_once = run(scene, whole);
+    INFO(at_once.err);
+    REQUIRE(at_once.code == 0);
+    CHECK_FALSE(fs::exists(whole / "resume"));
+    const std::uintmax_t size = fs::file_size(whole / "motion.bin");
+    for (const double share : {0.5, 0.95}) {
+        const fs::path out = scratch.path() / fmt::format("run{}", share);
+        {
+            const SmallDisk disk(static_cast<std::uintmax_t>(share * double(size)));
+            CHECK(run(scene, out).code == 5);
+        }
+        const Outcome outcome = run(scene, out);
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        CHECK(outcome.err.find("goes on after stage ") != std::string::npos);
+        check_same(whole, out);
+    }
+}
+
+TEST_CASE("a run that was killed or interrupted within a stage goes on from the one before") {
+    const Scratch scratch;
+    const fs::path scene = put_scene(scratch.path(), kMesh + metal("") + kTwo),
+                   whole = scratch.path() / "whole", out = scratch.path() / "run";
+    REQUIRE(run(scene, whole).code == 0);
+    // Again and again, in whatever order.
+    for (const int signal : {SIGKILL, SIGINT, SIGKILL, SIGKILL, SIGINT}) {
+        const Outcome ended = end_in_second_stage(signal, scene, out);
+        INFO(ended.err);
+        if (signal == SIGINT) {
+            CHECK(Json::parse(bytes_of(out / "run.json")).at("state") == "interrupted");
+            CHECK(ended.err.find("swage run goes on after stage 1 of 2") != std::string::npos);
+            CHECK_FALSE(fs::exists(out / "resume/motion.bin"));
+        }
+    }
+    const Outcome outcome = run(scene, out);
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.find("goes on after stage 1 of 2, frame 3") != std::string::npos);
+    check_same(whole, out);
+}
+
+TEST_CASE("a run that is to be fresh begins anew, and so does one whose checkpoint is damaged") {
+    const Scratch scratch;
+    const fs::path scene = put_scene(scratch.path(), kMesh + metal("") + kTwo),
+                   whole = scratch.path() / "whole", out = scratch.path() / "run";
+    REQUIRE(run(scene, whole).code == 0);
+    const fs::path checkpoint = out / "resume/checkpoint.bin";
+    const auto anew = [&](const std::string& told, std::vector<std::string> more = {}) {
+        const Outcome outcome = run(scene, out, std::move(more));
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        CHECK(outcome.err.find("goes on after") == std::string::npos);
+        CHECK(outcome.err.find(told) != std::string::npos);
+        check_same(whole, out);
+        fs::remove_all(out);
+    };
+    end_in_second_stage(SIGKILL, scene, out);
+    anew("molded", {"--fresh"});
+
+    end_in_second_stage(SIGINT, scene, out);
+    std::string bytes = bytes_of(checkpoint);
+    bytes[bytes.size() / 2] ^= 1;
+    put_text(checkpoint, bytes);
+    anew("checkpoint.bin: is damaged, so the run begins anew");
+
+    end_in_second_stage(SIGKILL, scene, out);
+    bytes = bytes_of(out / "resume/motion.bin");
+    bytes[1000] ^= 1;
+    put_text(out / "resume/motion.bin", bytes);
+    anew("goes with a motion file that is damaged, so the run begins anew");
+
+    // Of another run, in the place of this one's.
+    const fs::path other = scratch.path() / "other";
+    end_in_second_stage(SIGINT, scene, out);
+    put_text(scratch.path() / "softer.toml", kMesh + "[material]\nname = \"tin\"\n" + kMold + kTwo);
+    end_in_second_stage(SIGINT, scratch.path() / "softer.toml", other);
+    fs::copy_file(other / "resume/checkpoint.bin", checkpoint,
+                  fs::copy_options::overwrite_existing);
+    anew("is of another run, or of another build of swage, so the run begins anew");
+}
+
+TEST_CASE("a fresh run that cannot start leaves what another may go on from") {
+    const Scratch scratch;
+    const fs::path scene = put_scene(scratch.path(), kMesh + metal("") + kTwo),
+                   out = scratch.path() / "run";
+    end_in_second_stage(SIGINT, scene, out);
+    const auto before = files_below(out);
+    CHECK(run(scene, out, {"--fresh", "--set", "stage.1.radius=1 um"}).code == 3);
+    CHECK(run(scene, out, {"--set", "stage.2.frames=3"}).code == 8);
+    CHECK(files_below(out) == before);
+}
+
+TEST_CASE("a run goes on where its checkpoint finds no room") {
+    const Scratch scratch;
+    // Of so much matter, in so few frames, that nothing else is as large.
+    const std::string stage = "[[stage]]\nmachine = \"bend\"\nangle = \"2 deg\"\nframes = 1\n";
+    const fs::path scene = put_scene(scratch.path(), kMesh +
+                                                         "[material]\nname = \"rubber\"\n"
+                                                         "[mold]\nacross = 9\n" +
+                                                         stage + stage);
+    const fs::path whole = scratch.path() / "whole", out = scratch.path() / "run";
+    REQUIRE(run(scene, whole).code == 0);
+    std::uintmax_t largest = 0;
+    for (const auto& [name, bytes] : files_below(whole)) {
+        largest = std::max<std::uintmax_t>(largest, bytes.size());
+    }
+    const SmallDisk disk(largest);
+    const Outcome outcome = run(scene, out);
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.find("a run that ends early cannot go on from here") != std::string::npos);
+    check_same(whole, out);
+}
