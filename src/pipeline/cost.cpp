@@ -172,8 +172,9 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
                         vertices * kBytesPerVertex + way +
                         (options.draw ? kDrawingBytes + pixels * 60 : 0);
-    cost.disk_bytes =
-        disk_bytes(scene, input, {double(cost.frames), stills, cost.mold.active_cells, vertices});
+    cost.disk_bytes = disk_bytes(scene, input,
+                                 {double(cost.frames), stills, cost.mold.active_cells,
+                                  cost.mold.particles, cost.mold.bytes, vertices});
 }
 
 // Of a body's mesh and of its strength.

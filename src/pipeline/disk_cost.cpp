@@ -21,6 +21,10 @@ constexpr double kToolFileShare = 3;                    // there: of a tool's ow
 constexpr double kFrameBytes = 1000;                    // of poses and curves
 constexpr double kStageBytes = 60e3, kRunBytes = 20e3;  // of plots and records
 constexpr double kBrokenVertices = 3;                   // a cell, on the faces where matter broke
+// In a checkpoint, beside the matter.
+constexpr double kKeptBytesPerVertex = 230, kLookBytesPerVertex = 200;
+constexpr double kKeptBytesPerParticle = 30;
+constexpr double kDampedBytes = 180, kYieldedBytes = 100;  // a particle, for its history
 
 // Of a machine as it is drawn.
 double machine_bytes(const MachineSpec& machine) {
@@ -35,13 +39,21 @@ double machine_bytes(const MachineSpec& machine) {
     return bytes;
 }
 
-// Pictures of the mesh: beside its meshes, and what its file holds in the motion file too.
-double texture_bytes(const TriMesh& mesh) {
+double embedded_bytes(const TriMesh& mesh) {
     double bytes = 0;
     for (const SurfaceMaterial& material : mesh.material) {
         if (material.embedded_texture) {
-            bytes += 2 * static_cast<double>(material.embedded_texture->size());
-        } else if (!material.texture.empty()) {
+            bytes += static_cast<double>(material.embedded_texture->size());
+        }
+    }
+    return bytes;
+}
+
+// Pictures of the mesh: beside its meshes, and what its file holds in the motion file too.
+double texture_bytes(const TriMesh& mesh) {
+    double bytes = 2 * embedded_bytes(mesh);
+    for (const SurfaceMaterial& material : mesh.material) {
+        if (!material.texture.empty()) {
             std::error_code none;
             const std::uintmax_t size = fs::file_size(material.texture, none);
             if (!none) bytes += static_cast<double>(size);
@@ -60,10 +72,30 @@ double picture_bytes(const RenderSettings& render, double stills) {
 
 }  // namespace
 
-double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
-                  const DiskShare& of) {
+double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                        const DiskShare& of) {
+    const bool moves =
+        std::any_of(scene.stage.begin(), scene.stage.end(),
+                    [](const StageSpec& stage) { return stage.sim.solver != Solver::quasistatic; });
+    const bool damps =
+        moves && scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
+    const bool yields = scene.any_material([](const Material& m) { return m.yields(); });
+    double bytes = of.matter + of.vertices * kKeptBytesPerVertex +
+                   of.particles * (kKeptBytesPerParticle + (damps ? kDampedBytes : 0) +
+                                   (yields ? kYieldedBytes : 0));
+    for (const InputMesh& one : input) {
+        if (scene.skin.kind == SkinKind::boundary) {
+            bytes += kLookBytesPerVertex * static_cast<double>(one.mesh.position.size());
+        }
+        bytes += embedded_bytes(one.mesh);
+    }
+    return bytes;
+}
+
+double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of) {
     const bool breaks = scene.any_material([](const Material& m) { return m.breaks(); });
-    const double vertices = of.vertices + (breaks ? kBrokenVertices * of.cells : 0);
+    if (breaks) of.vertices += kBrokenVertices * of.cells;
+    const double vertices = of.vertices;
     double skins = 1;  // stored: where matter may part in every frame
     double bytes = kRunBytes;
     for (const StageSpec& stage : scene.stage) {
@@ -74,8 +106,12 @@ double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
     for (const InputMesh& one : input) bytes += texture_bytes(one.mesh);
     const double meshes =
         scene.output.meshes_per_frame ? of.frames : static_cast<double>(scene.stage.size());
-    return bytes + picture_bytes(scene.render, of.stills) +
-           of.frames * (vertices * 12 + kFrameBytes) +
+    // Pictures are drawn when nothing is left to go on from, of which there are two while the
+    // newer one is written.
+    const int kept = std::clamp(static_cast<int>(scene.stage.size()) - 1, 0, 2);
+    bytes +=
+        std::max(picture_bytes(scene.render, of.stills), kept * checkpoint_bytes(scene, input, of));
+    return bytes + of.frames * (vertices * 12 + kFrameBytes) +
            vertices * (skins * kSkinBytesPerVertex + meshes * kMeshBytesPerVertex);
 }
 

@@ -12,11 +12,16 @@ namespace swage {
 
 // Of all bodies together.
 struct DiskShare {
-    double frames, stills, cells;
+    double frames, stills, cells, particles;
+    double matter;    // [byte] in memory
     double vertices;  // of skins
 };
 
-// [byte]
-double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, const DiskShare& of);
+// Of a run that ends early, to go on from [byte].
+double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                        const DiskShare& of);
+
+// [byte], when the directory holds the most.
+double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of);
 
 }  // namespace swage

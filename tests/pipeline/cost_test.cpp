@@ -12,9 +12,12 @@
 #include "geometry/box_mesh.h"
 #include "geometry/make_shape.h"
 #include "mold/mold.h"
+#include "pipeline/checkpoint.h"
+#include "pipeline/disk_cost.h"
 #include "skin/boundary.h"
 #include "skin/divided_mesh.h"
 #include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
 
 using namespace swage;
 
@@ -116,6 +119,46 @@ TEST_CASE("what a run writes is told with tools, textures and skins that are sto
     stage.machine.blade.clear();
     bar.scene.body[0].material.strength = 1e6;
     CHECK(bar.cost().disk_bytes > pressed + stage.frames * skin);
+}
+
+TEST_CASE("what a run keeps to go on from is told, and counts where nothing else is as large") {
+    BarScene bar(9);
+    const Scratch scratch;
+    for (const SkinKind skin : {SkinKind::mount, SkinKind::boundary}) {
+        for (const bool flows : {false, true}) {
+            bar.scene.skin.kind = skin;
+            BodySpec& body = bar.scene.body[0];
+            body.material.yield_stress = flows ? 1e5 : std::numeric_limits<double>::infinity();
+            Reached reached;
+            reached.bodies.push_back(make_work_piece(bar.input, body, bar.scene.skin));
+            reached.skin = {0};
+            WorkPiece& piece = reached.bodies[0];
+            const double cells = static_cast<double>(piece.matter.cell_fill.size());
+            const DiskShare of = {1,
+                                  0,
+                                  cells,
+                                  static_cast<double>(piece.matter.particle_count()),
+                                  static_cast<double>(piece.matter.bytes()),
+                                  static_cast<double>(piece.skin.position.size())};
+            if (flows) piece.matter.cell_history.assign(piece.matter.cell_fill.size());
+            write_checkpoint(scratch.path() / "checkpoint.bin", "key", reached);
+            const auto size =
+                static_cast<double>(std::filesystem::file_size(scratch.path() / "checkpoint.bin"));
+            const double told = checkpoint_bytes(bar.scene, {bar.input}, of);
+            INFO(int(skin) << " " << flows << ": " << told << " " << size);
+            CHECK(told > size);
+            CHECK(told < 1.5 * size);
+        }
+    }
+    // One while the next is written; none of a single stage.
+    const auto disk = [&](std::size_t stages) {
+        bar.scene.stage.resize(stages);
+        return bar.cost().disk_bytes;
+    };
+    const double one = disk(1), two = disk(2), three = disk(3), four = disk(4);
+    const double stage = four - three, kept = two - one - stage;
+    CHECK(kept > 1e6);
+    CHECK(three - two == Approx(stage + kept));
 }
 
 TEST_CASE("what a machine's way over very many frames takes is told") {
