@@ -50,7 +50,7 @@
 //
 // Rubber is W = f V [mu (|F|^2 - 3)/2 - mu (J - 1) + (lambda + mu)(J - 1)^2 / 2] + f^3 W_q with
 // J = det F, which resists being turned inside out (Smith, de Goes, Kim, "Stable neo-Hookean flesh
-// simulation", ACM Trans. Graph. 37, 2018, without its logarithm).
+// simulation", ACM Trans. Graph. 37, 2018, without its logarithm). Foam: laws/cell_foam.h.
 //
 // NOTE: the papers have springs alone, whose Poisson's ratio is 1/4 and which are too stiff in
 // bending and torsion on coarse lattices.

@@ -5,10 +5,25 @@
 #pragma once
 
 #include "laws/cell.h"
+#include "laws/cell_foam.h"
 
 namespace swage {
 
-enum class CellKind { elastic, yielding, rubber };
+enum class CellKind { elastic, yielding, rubber, foam };
+
+// By the gradient itself, which shows where a cell is inside out, instead of by C = F^T F.
+inline constexpr bool knows_inside(CellKind kind) {
+    return kind == CellKind::rubber || kind == CellKind::foam;
+}
+// Elastic energy of the mean strain per volume of material, at gradient f, less what has flowed
+// `strain`.
+template <typename N>
+SWAGE_INLINE N mean_energy(CellKind kind, const CellModuli& law, const Columns<N>& f,
+                           const CellStrain<N>& strain) {
+    return kind == CellKind::rubber ? rubber_energy(law, f)
+           : kind == CellKind::foam ? foam_energy(law, f)
+                                    : strain_energy(law, strain);
+}
 
 // What all cells share.
 struct CellConstants {
@@ -23,12 +38,14 @@ struct CellConstants {
         const double lame = folded.bulk - 2.0 / 3 * folded.shear;
         rubber_rise = scale * (lame + folded.shear) * (scale * gram);
         rubber_rest = scale * (lame + 2 * folded.shear);
+        foam_push = -scale * folded.shear;
     }
     CellModuli law;
     double scale;                     // s = 1 / 4a
     double gram;                      // s^2
     CellModuli folded;                // give the forces on the sums from D and F^T Q / s
     double rubber_rise, rubber_rest;  // of the factor of cof D, with det D
+    double foam_push;                 // the same with J^-m
 };
 
 // What a partly filled cell has of its own.
@@ -71,10 +88,16 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
     CellModes<N> g;  // stress of the modes
     Columns<N> p;    // of D
     Symmetric<N> stress;
-    if constexpr (kKind == CellKind::rubber) {
+    if constexpr (knows_inside(kKind)) {
         const Columns<N> cofactor = {cross(d.y, d.z), cross(d.z, d.x), cross(d.x, d.y)};
         N shear = k.folded.shear + N{};
-        N pressure = k.rubber_rise * dot(d.x, cofactor.x) - k.rubber_rest;
+        const N det = dot(d.x, cofactor.x);
+        N pressure;
+        if constexpr (kKind == CellKind::rubber) {
+            pressure = k.rubber_rise * det - k.rubber_rest;
+        } else {
+            pressure = k.foam_push * foam_pressure(k.law, (k.scale * k.gram) * det);
+        }
         g = mode_stress(k.folded, modes);
         if constexpr (kPart) {
             shear = share.fill * shear;
@@ -116,10 +139,10 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
     }
     if constexpr (requires { c.x.x.slope; }) {
         const Columns<N> e = slope_scaled(d, turning);
-        if constexpr (kKind != CellKind::rubber) p = e * stress;
+        if constexpr (!knows_inside(kKind)) p = e * stress;
         return spread_stress<kPart, kFlowed>(slope_scaled(c, turning), e, a, share, p, g);
     } else {
-        if constexpr (kKind != CellKind::rubber) p = d * stress;
+        if constexpr (!knows_inside(kKind)) p = d * stress;
         return spread_stress<kPart, kFlowed>(c, d, a, share, p, g);
     }
 }

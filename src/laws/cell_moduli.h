@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace swage {
 
 // f^2, a partly filled cell's deviations over its mean strain, is never taken below this: with
@@ -20,11 +22,16 @@ struct CellModuli {
     double diagonal;      // c_d [N/m]
     double yield_stress;  // sigma_y [Pa], finite
     double hardening;     // H [Pa]
+    double foam_power;    // m of laws/cell_foam.h
+    double foam_least;    // J below which that law goes on in a straight line
 };
+
+inline constexpr double kMostStiffened = 1000;
 
 inline CellModuli cell_moduli(double young_modulus, double poisson_ratio, double spacing,
                               double yield_stress = 0, double hardening = 0) {
     const double mu = young_modulus / (2 * (1 + poisson_ratio));
+    const double m = 1 / (1 - 2 * poisson_ratio);
     const double edge =
         (poisson_ratio + std::sqrt((1 + poisson_ratio) * (1 + poisson_ratio) + 1)) / 3;
     return {spacing,
@@ -33,7 +40,9 @@ inline CellModuli cell_moduli(double young_modulus, double poisson_ratio, double
             mu * spacing * edge / 16,
             mu * spacing / 48,
             yield_stress,
-            hardening};
+            hardening,
+            m,
+            portable::pow(kMostStiffened, -1 / (m + 1))};
 }
 
 }  // namespace swage

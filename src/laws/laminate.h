@@ -61,8 +61,8 @@ SWAGE_INLINE Columns<Dual<N>> turned_by(const Columns<Dual<N>>& f, double turnin
 template <typename N>
 SWAGE_INLINE void find_stress(const Phase<N>& m, const Columns<N>& f, PhaseState<N>& s,
                               double turning = 1) {
-    if (m.kind == CellKind::rubber) {
-        s.stress = rubber_stress(*m.law, f);
+    if (knows_inside(m.kind)) {
+        s.stress = m.kind == CellKind::foam ? foam_stress(*m.law, f) : rubber_stress(*m.law, f);
         s.mode_stress = mode_stress(*m.law, s.modes);
         return;
     }

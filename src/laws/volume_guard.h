@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What crushed cells resist with. Neither springs nor a strain of C = F^T F know inside from
 // outside: a mirrored cell is as content as the cell, and the push against being crushed fades on
-// the way there; rubber's law rests at a point too. Below half of its volume a cell therefore also
-// resists by its volume and by a strain that goes on where the law's turns back:
+// the way there; rubber's law rests at a point too, and foam's. Below half of its volume, and foam
+// below where its law goes straight on, a cell therefore also resists by its volume and by a strain
+// that goes on where the law's turns back:
 //
-//     W = E (1/2 - J)^2 / 2 + b(J) [H(g(s)) - W_law]         per volume at molding [J/m3]
-//     H(e) = mu |dev e|^2 + K (tr e)^2 / 2        b = (1 - 2 J)^2 (1 + 4 J), 1 where J < 0
+//     W = E (V - J)^2 / 2 + b(J) [H(g(s)) - W_law]           per volume at molding [J/m3]
+//     H(e) = mu |dev e|^2 + K (tr e)^2 / 2        b = (1 - J/V)^2 (1 + 2 J/V), 1 where J < 0
 //     g(s) = e(s), the strain of laws/cell.h, y + y^3/3 + y^5/5, y = (s^2 - 1)/(s^2 + 1);
 //            below s_t = 1/3, where e is steepest,
 //            e(s_t) - e'(s_t) d / (1 + d/L), d = s_t - s, L = 1/2    rising for every s
 //
-// J = det F, s the principal stretches: of F_e where a cell has flowed. Where J < 0 each of the
-// three may be the one that is turned: H(g) is the mean of the three, weighed by 1/s_i^2, which
-// next to J = 0 leaves the smallest (taken alone, as by Irving, Teran, Fedkiw, "Invertible finite
-// elements", SCA 2004, the force would jump where two are equal). Cells of the cell law give up
-// what their own law says, W_law, by the share b, for H(g) + K g(J)^2 / 2, and so rest in one shape
-// alone. Springs and rubber keep theirs, for which W_law stands for 0.
+// V = 1/2, or less for foam, J = det F, s the principal stretches: of F_e where a cell has flowed.
+// Where J < 0 each of the three may be the one that is turned: H(g) is the mean of the three,
+// weighed by 1/s_i^2, which next to J = 0 leaves the smallest (taken alone, as by Irving, Teran,
+// Fedkiw, "Invertible finite elements", SCA 2004, the force would jump where two are equal). Cells
+// of the cell law give up what their own law says, W_law, by the share b, for H(g) + K g(J)^2 / 2,
+// and so rest in one shape alone. Springs, rubber and foam keep theirs, for which W_law stands for
+// 0.
 //
-// Nothing above half the volume feels any of this: it changes no answer that can be trusted.
+// Nothing above that volume feels any of this: it changes no answer that can be trusted.
 //
 // NOTE: a larger L gives more back than matter can take without being torn; with a smaller one g
 // turns too flat to win over what nearly incompressible matter has besides.
@@ -34,8 +36,9 @@ inline constexpr double kSteepest = 1.0 / 3;  // s_t
 inline constexpr double kFlattens = 0.5;      // L
 
 struct GuardModuli {
-    double young, shear, bulk;  // E, mu, K [Pa]
-    bool fades;                 // the cell's own law
+    double young, shear, bulk;       // E, mu, K [Pa]
+    bool fades;                      // the cell's own law
+    double volume = kGuardedVolume;  // V
 };
 
 struct GuardedCell {
@@ -109,17 +112,18 @@ inline CellResistance inverted_resistance(const GuardModuli& law, const Vec3& x)
     return sum;
 }
 
-// Zero above half of the volume.
+// Zero above V.
 inline GuardedCell guard_cell(const GuardModuli& law, const Mat3& gradient) {
-    const double volume = gradient.determinant(), lost = kGuardedVolume - volume;
+    const double volume = gradient.determinant(), whole = law.volume, lost = whole - volume;
     if (!(lost > 0)) return {0, Mat3::Zero(), 0, Mat3::Zero()};
     const Eigen::JacobiSVD<Mat3> split(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Vec3 x = split.singularValues();
     const bool inverted = volume < 0;
     const CellResistance asked = inverted ? inverted_resistance(law, x) : resistance_of(law, x);
     const StretchStrain size = guarded_strain(volume);
-    const double share = inverted ? 1 : 4 * lost * lost * (1 + 4 * volume);
-    const double share_slope = inverted ? 0 : -48 * volume * lost;
+    const double square = whole * whole;
+    const double share = inverted ? 1 : 1 / square * lost * lost * (1 + 2 / whole * volume);
+    const double share_slope = inverted ? 0 : -6 / (square * whole) * volume * lost;
     const Vec3 area = (inverted ? -1 : 1) * Vec3(x[1] * x[2], x[2] * x[0], x[0] * x[1]);  // dJ/dx
     const double bulk = law.fades ? law.bulk : 0;
     const double resisted = asked.energy + 0.5 * bulk * size.value * size.value;
