@@ -15,6 +15,7 @@ enum class Mechanics {
 enum class Elasticity {
     hencky,       // linear in the logarithmic strain; what can yield
     neo_hookean,  // rubber: resists being turned inside out
+    storakers,    // foam: that too, and the same Poisson's ratio however far it is pressed
 };
 
 struct Material {

@@ -3,6 +3,7 @@
 // eight cells of a row at a time. Each cell's numbers are added in the order of the cells.
 
 #include "base/parallel.h"
+#include "laws/cell_forces.h"
 #include "laws/cell_growth.h"
 #include "laws/cell_rest.h"
 #include "sim/cell_history.h"
@@ -83,8 +84,7 @@ SWAGE_INLINE void add_energy(BookTask& task) {
         const CellModes<V> q = c.modes - c.history.modes;
         const V modes =
             0.5 * mode_fill(c.fill) * product(mode_stress(law, taken_back(c.history), q), q);
-        const V mean = kind == CellKind::rubber ? rubber_energy(law, c.gradient)
-                                                : strain_energy(law, c.strain);
+        const V mean = mean_energy(kind, law, c.gradient, c.strain);
         const V energy = volume * c.fill * mean + modes;
         for (int l = 0; l < count; ++l) {
             if (c.fill[l] > 0) task.sum += energy[l];
@@ -216,8 +216,7 @@ double CellSweep::energy_of(const Aggregate& matter, const CellRun& run, int n) 
     const Columns<double> f = centroid_gradient(sums, material_place(matter, cell), a);
     const Columns<double> elastic = f * taken_back(history);
     const CellModes<double> q = pulled_back(elastic, sums) - history.modes;
-    const double mean =
-        kind == CellKind::rubber ? rubber_energy(law, f) : strain_energy(law, cell_strain(elastic));
+    const double mean = mean_energy(kind, law, f, cell_strain(elastic));
     return a * a * a * fill * mean +
            0.5 * mode_fill(fill) * product(mode_stress(law, taken_back(history), q), q);
 }

@@ -19,8 +19,8 @@ constexpr ParticleId kZeroAhead = 2048;  // particles whose forces are zeroed at
 // Cells that share a particle never all move in their stiffest way at once. Of the sum over eight
 // cells the fastest motion of a block has, measured for nu = 0 to 0.49, this much of each modulus.
 constexpr double kAssembledBulk = 0.47, kAssembledShear = 0.55;
-// Where the guard's own pass is asked, of the volume of a whole cell.
-constexpr double kMaybeCrushed = kGuardedVolume + 1e-6;
+// Over where the guard's own pass is asked, of the volume of a whole cell.
+constexpr double kMaybeCrushed = 1e-6;
 
 // Cells this close to yielding are told: the law in lanes and the law alone differ in rounding.
 constexpr double kNearYield = 1e-6;  // of the yield stress
@@ -28,8 +28,8 @@ constexpr double kNearYield = 1e-6;  // of the yield stress
 // What a kernel is given of a slab.
 struct SlabTask {
     const CellConstants* constants = nullptr;
-    double crushed;   // det D below which a run is reported
-    double strained;  // the same of strain_measure() above; none: 0
+    double crushed = 0;  // det D below which a run is reported
+    double strained;     // the same of strain_measure() above; none: 0
     const CellRun *run = nullptr, *run_end = nullptr;
     const std::int32_t* batch = nullptr;  // of the first run
     const float* share;
@@ -153,6 +153,7 @@ void slab_of(SlabTask& task) {
 template <bool kWatched>
 void slab_by_kind(CellKind kind, SlabTask& task) {
     kind == CellKind::rubber     ? slab_of<CellKind::rubber, kWatched>(task)
+    : kind == CellKind::foam     ? slab_of<CellKind::foam, kWatched>(task)
     : kind == CellKind::yielding ? slab_of<CellKind::yielding, kWatched>(task)
                                  : slab_of<CellKind::elastic, kWatched>(task);
 }
@@ -230,8 +231,7 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
     }
     const Vec3Array& x = matter.particle_position;
     force.resize(x.size());
-    SlabTask whole{.crushed = kMaybeCrushed * 64 * matter.lattice.cell_volume(),
-                   .strained = strain_measure_at(onset_),
+    SlabTask whole{.strained = strain_measure_at(onset_),
                    .share = share_.data(),
                    .particles = static_cast<int>(x.size()),
                    .position = {x.x.data(), x.y.data(), x.z.data()},
@@ -256,6 +256,8 @@ void CellSweep::forces(const Aggregate& matter, Flow flow, Vec3Array& force) {
             } while (task.run_end != end &&
                      matter.material_number(task.run_end->first) == material);
             task.constants = &constants[material];
+            task.crushed = (guarded_volume(laws[material]) + kMaybeCrushed) * 64 *
+                           matter.lattice.cell_volume();
             sweep_slab(laws[material].kind, task);
         }
         task.zero_up_to(slab.end);

@@ -218,6 +218,7 @@ void do_kind(const T& task) {
 template <typename T>
 void do_task(CellKind kind, const T& task) {
     kind == CellKind::rubber     ? do_kind<CellKind::rubber>(task)
+    : kind == CellKind::foam     ? do_kind<CellKind::foam>(task)
     : kind == CellKind::yielding ? do_kind<CellKind::yielding>(task)
                                  : do_kind<CellKind::elastic>(task);
 }

@@ -32,6 +32,15 @@ std::vector<MaterialLaw> guard_laws(const Aggregate& matter, Flow flow) {
     return laws;
 }
 
+// Those of `found` that their guard acts on.
+std::vector<SmallCell> crushed_of(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
+                                  std::vector<SmallCell> found) {
+    std::erase_if(found, [&](const SmallCell& cell) {
+        return !(cell.volume < guarded_volume(laws[matter.material_number(cell.id())]));
+    });
+    return found;
+}
+
 // One crushed cell.
 struct Crushed {
     double volume;  // of its material [m3]
@@ -52,7 +61,7 @@ struct Crushed {
         const MaterialLaw& own = laws[matter.material_number(id)];
         const double a = matter.lattice.spacing;
         law = &own.moduli;
-        fades = matter.material.mechanics == Mechanics::cells && own.kind != CellKind::rubber &&
+        fades = matter.material.mechanics == Mechanics::cells && !knows_inside(own.kind) &&
                 matter.mixed_at(id) == nullptr;
         fill = matter.cell_fill[id];
         volume = fill * a * a * a;
@@ -60,7 +69,8 @@ struct Crushed {
         sums = corner_sums(matter, *cell.run, cell.n);
         if (fades) history = committed_history(matter, id);
         gradient = centroid_gradient(sums, at, a) * taken_back(history);
-        guard = guard_cell({matter.material_of(id).young_modulus, law->shear, law->bulk, fades},
+        guard = guard_cell({matter.material_of(id).young_modulus, law->shear, law->bulk, fades,
+                            guarded_volume(own)},
                            matrix_of(gradient));
         if (!fades) return;
         strain = cell_strain(gradient);
@@ -92,12 +102,12 @@ struct Crushed {
     }
 };
 
-int resist(const Aggregate& matter, Flow flow, const std::vector<SmallCell>& crushed,
+int resist(const Aggregate& matter, Flow flow, const std::vector<SmallCell>& small,
            Vec3Array& force) {
-    if (crushed.empty()) return 0;
+    if (small.empty()) return 0;
     const std::vector<MaterialLaw> laws = guard_laws(matter, flow);
     int mirrored = 0;
-    for (const SmallCell& cell : crushed) {
+    for (const SmallCell& cell : crushed_of(matter, laws, small)) {
         mirrored += cell.volume < 0;
         double own[3][8];
         spread_corners(Crushed(matter, laws, cell).forces(), own);
@@ -124,11 +134,12 @@ int add_guard_forces(const Aggregate& matter, Flow flow,
 }
 
 double guard_energy_of(const Aggregate& matter) {
-    const std::vector<SmallCell> crushed = cells_below(matter, kGuardedVolume);
-    if (crushed.empty()) return 0;
+    const std::vector<SmallCell> small = cells_below(matter, kGuardedVolume);
+    if (small.empty()) return 0;
     const std::vector<MaterialLaw> laws = guard_laws(matter, Flow::none);
     double sum = 0;
-    for (const SmallCell& cell : crushed) sum += Crushed(matter, laws, cell).energy();
+    for (const SmallCell& cell : crushed_of(matter, laws, small))
+        sum += Crushed(matter, laws, cell).energy();
     return sum;
 }
 
@@ -136,7 +147,8 @@ double guard_energy_of(const Aggregate& matter) {
 // would tear it apart, so it is taken on the way.
 double calm_crushed(Aggregate& matter, double keep) {
     double taken = 0;
-    for (const SmallCell& cell : cells_below(matter, kGuardedVolume)) {
+    const std::vector<MaterialLaw> laws = guard_laws(matter, Flow::none);
+    for (const SmallCell& cell : crushed_of(matter, laws, cells_below(matter, kGuardedVolume))) {
         std::array<std::size_t, 8> p;
         double mass = 0;
         Vec3 center = Vec3::Zero(), drift = Vec3::Zero();
@@ -193,14 +205,16 @@ void add_guard_stiffness(const Aggregate& matter, std::vector<double>& stiffness
             const Vec3 x = f.col(1).cross(f.col(2)), y = f.col(2).cross(f.col(0)),
                        z = f.col(0).cross(f.col(1));
             const double cofactor = x.squaredNorm() + y.squaredNorm() + z.squaredNorm();
-            if (cofactor < kSqueezed) continue;
+            const MaterialLaw& law = laws[matter.material_number(id)];
+            const bool foam = law.kind == CellKind::foam;
+            if (!foam && cofactor < kSqueezed) continue;
             if (!cell_is_sound(matter, id, run.row_at(n))) continue;
             const double volume = f.col(0).dot(x), slope = guarded_strain(volume).slope;
-            const double more = cofactor * slope * slope - 3;
-            if (!(volume > 0) || !(more > 0)) continue;
-            add(run, n,
-                0.5 * matter.cell_fill[id] * a * laws[matter.material_number(id)].moduli.bulk *
-                    more * thinned(flowed));
+            const double more = foam
+                                    ? foam_stiffening(law.moduli, volume, f.squaredNorm(), cofactor)
+                                    : law.moduli.bulk * (cofactor * slope * slope - 3);
+            if (!(foam || volume > 0) || !(more > 0)) continue;
+            add(run, n, 0.5 * matter.cell_fill[id] * a * more * thinned(flowed));
         }
     }
 }

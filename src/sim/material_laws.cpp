@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/material_laws.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "laws/volume_guard.h"
 
 namespace swage {
 
 std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
     constexpr double kNeverYields = 1e100;  // [Pa]
     std::vector<MaterialLaw> laws;
+    const bool cells = matter.material.mechanics == Mechanics::cells;
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
         const Material& m = matter.material_at(n);
+        const bool foam = cells && m.elasticity == Elasticity::storakers;
         const CellKind kind = m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
+                              : foam                                  ? CellKind::foam
                               : std::isfinite(m.yield_stress)         ? CellKind::yielding
                                                                       : CellKind::elastic;
         const bool yields = kind == CellKind::yielding;
@@ -20,6 +26,11 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
                         kind});
     }
     return laws;
+}
+
+double guarded_volume(const MaterialLaw& law) {
+    return law.kind == CellKind::foam ? std::min(law.moduli.foam_least, kGuardedVolume)
+                                      : kGuardedVolume;
 }
 
 }  // namespace swage

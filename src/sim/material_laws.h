@@ -16,5 +16,7 @@ struct MaterialLaw {
 };
 // By material; without flow none yields.
 std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow = Flow::trial);
+// The volume below which the guard acts on a cell (laws/volume_guard.h).
+double guarded_volume(const MaterialLaw& law);
 
 }  // namespace swage

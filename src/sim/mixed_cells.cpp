@@ -223,9 +223,7 @@ double MixedCells::elastic_energy(const Aggregate& matter,
             const PhaseState<double>& s = one.found.phase[p];
             const Columns<double> f = gradient_of(one, cell, p);
             const Symmetric<double> a = taken_back(m.history);
-            const double mean = m.kind == CellKind::rubber
-                                    ? rubber_energy(*m.law, f)
-                                    : strain_energy(*m.law, cell_strain(f * a));
+            const double mean = mean_energy(m.kind, *m.law, f, cell_strain(f * a));
             const CellModes<double> q = s.modes - m.history.modes;
             sum += volume * m.fill * mean +
                    0.5 * mode_fill(m.fill) * product(mode_stress(*m.law, a, q), q);

@@ -112,6 +112,9 @@ MovingBody::MovingBody(Aggregate& matter, int number, const Apparatus& apparatus
       remembers_(breaks_ || matter.yields()),
       implicit_(settings.solver == Solver::implicit_steps),
       saves_branches_(settings.solver == Solver::energy_stepped) {
+    for (std::size_t n = 0; n < matter.material_count(); ++n) {
+        stiffens_ = stiffens_ || matter.material_at(n).elasticity == Elasticity::storakers;
+    }
     if (implicit_) let_go();
 }
 
@@ -314,8 +317,8 @@ double MovingBody::round_off(double step) const {
     const Vec3 gravity = this->gravity().cwiseAbs();
     const double eps = std::numeric_limits<double>::epsilon();
     const Material& material = matter_.material;
-    const bool rubber = material.elasticity == Elasticity::neo_hookean;
-    const double modulus = rubber ? material.young_modulus / material.density : 0;  // [J/kg]
+    const bool is_hencky = material.elasticity == Elasticity::hencky;
+    const double modulus = !is_hencky ? material.young_modulus / material.density : 0;  // [J/kg]
     return chunked_sum(x.size(), [&](std::size_t p) {
         const double mass = matter_.particle_mass[p];
         const Vec3 far = eps * x.at(p).cwiseAbs();
@@ -342,7 +345,7 @@ double MovingBody::present_step() {
             std::min(step_, swage::stable_step(matter_, safety_, lattice_, swings_, damping_));
         flowed_ = false;
     }
-    if (inside_out_ == 0) return present_step_;
+    if (inside_out_ == 0 && !stiffens_) return present_step_;
     std::vector<double> guard(matter_.particle_count(), 0.0);
     add_guard_stiffness(matter_, guard);
     double highest = 0;

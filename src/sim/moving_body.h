@@ -75,8 +75,8 @@ class MovingBody {
     Stored stored(const Drive& now, double step);
     double kinetic_energy(double step) const;  // alone [J]
     // How wrong a step of this length [s] may leave its energy, for places are rounded: to what
-    // forces then do, and as if speeds were to that in a step; the law of rubber adds up terms of
-    // the size of its modulus [J].
+    // forces then do, and as if speeds were to that in a step; the laws of rubber and foam add up
+    // terms of the size of their modulus [J].
     double round_off(double step) const;
 
     // What a solution by the tangent asks for.
@@ -90,7 +90,8 @@ class MovingBody {
     double top_speed() const;  // of any particle [m/s]
     // Cells inside out when the forces were found; of rubber, when it was last looked at.
     int inside_out() const { return inside_out_; }
-    // Of the present state: what has flowed is thinner; cells inside out included [s].
+    // Of the present state: what has flowed is thinner, pressed foam stiffer; cells inside out
+    // included [s].
     double present_step();
     Vec3 acceleration(std::size_t p) const {
         return force_.at(p) / matter_.particle_mass[p] + gravity_;
@@ -156,10 +157,11 @@ class MovingBody {
     SurfaceDrag drag_;
     Vec3Array force_;
     std::vector<LoadSum> load_;
-    double turned_ = 0;  // way gone since the last look at what is bent, at the most [m]
-    double gone_ = 0;    // no particle has gone farther since candidates were found [m]
-    bool touches_;       // a tool could
-    bool remembers_;     // its matter yields or breaks
+    double turned_ = 0;      // way gone since the last look at what is bent, at the most [m]
+    double gone_ = 0;        // no particle has gone farther since candidates were found [m]
+    bool touches_;           // a tool could
+    bool remembers_;         // its matter yields or breaks
+    bool stiffens_ = false;  // as it is pressed, far
     bool implicit_;
     bool saves_branches_;
     // In the branches [J]: now, negative where it is not known; when the block began.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nanoseconds for one evaluation of the forces inside the matter: a cell by the cell law, elastic,
-// rubber and flowing, in blocks and balls and by each width of vectors that the machine has; a
-// connection by springs; two threads against one; bytes. Medians, beside the bars that were set.
+// rubber, foam and flowing, in blocks and balls and by each width of vectors that the machine has;
+// a connection by springs; two threads against one; bytes. Medians, beside the bars that were set.
 // Arguments: the numbers of cells to try, or none for 1e4, 1e5 and 1e6.
 #include <fmt/format.h>
 
@@ -70,6 +70,11 @@ Material rubber() {
     m.elasticity = Elasticity::neo_hookean;
     return m;
 }
+Material foam() {
+    Material m = kElastic;
+    m.elasticity = Elasticity::storakers;
+    return m;
+}
 Material flowing() {
     Material m = kElastic;
     m.yield_stress = 2e3;
@@ -89,15 +94,16 @@ double cell_ns(Aggregate& matter) {
 void kernels(double cells) {
     for (const std::string shape : {"bar", "sphere"}) {
         Aggregate elastic = molded(shape, cells, kElastic);
-        Aggregate soft = elastic, flows = elastic;
+        Aggregate soft = elastic, foamy = elastic, flows = elastic;
         soft.material = rubber();
+        foamy.material = foam();
         flows.material = flowing();
         for (int width : {8, 4}) {
             limit_vector_width(width);
             if (vector_width() != width) continue;
-            fmt::print("{:<8}{:>9} cells, vectors of {}{:>10.1f}{:>10.1f}{:>10.1f}\n", shape,
-                       elastic.cell_fill.size(), width, cell_ns(elastic), cell_ns(soft),
-                       cell_ns(flows));
+            fmt::print("{:<8}{:>9} cells, vectors of {}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}\n",
+                       shape, elastic.cell_fill.size(), width, cell_ns(elastic), cell_ns(soft),
+                       cell_ns(foamy), cell_ns(flows));
         }
         limit_vector_width(0);
     }
@@ -110,6 +116,7 @@ int main(int argc, char** argv) {
     for (int n = 1; n < argc; ++n) sizes.push_back(std::atof(argv[n]));
     if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
     set_thread_count(1);
-    fmt::print("ns a cell, guard included{:>22}{:>10}{:>10}\n", "elastic", "rubber", "flowing");
+    fmt::print("ns a cell, guard included{:>22}{:>10}{:>10}{:>10}\n", "elastic", "rubber", "foam",
+               "flowing");
     for (double cells : sizes) kernels(cells);
 }

@@ -57,9 +57,10 @@ Aggregate shaken_block(const Material& material, bool flowed) {
 
 TEST_CASE("forces of crushed matter are minus the slope of its energy, whatever it has flowed") {
     Material elastic{.young_modulus = 1e6, .poisson_ratio = 0.4}, rubber = elastic, flows = elastic;
-    rubber.elasticity = Elasticity::neo_hookean;
+    Material foam = elastic;
+    rubber.elasticity = Elasticity::neo_hookean, foam.elasticity = Elasticity::storakers;
     flows.yield_stress = 1e30;  // it has flowed, and does not flow on
-    for (const Material& material : {elastic, rubber, flows}) {
+    for (const Material& material : {elastic, rubber, foam, flows}) {
         Aggregate m = shaken_block(material, std::isfinite(material.yield_stress));
         int crushed = 0, inverted = 0;
         for (const SmallCell& cell : cells_below(m, kGuardedVolume)) {

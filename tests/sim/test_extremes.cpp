@@ -134,6 +134,7 @@ TEST_CASE("extremes: crushed a hundred times, or turned inside out, a body finds
     };
     const Kind kinds[] = {{"cells", Mechanics::cells, Elasticity::hencky},
                           {"rubber", Mechanics::cells, Elasticity::neo_hookean},
+                          {"foam", Mechanics::cells, Elasticity::storakers},
                           {"springs", Mechanics::springs, Elasticity::hencky}};
     for (const Kind& kind : kinds) {
         for (const Solver solver : kAll) {

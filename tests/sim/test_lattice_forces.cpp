@@ -60,6 +60,7 @@ double largest_force(const Aggregate& m) {
 const Material kMaterials[] = {
     {.young_modulus = 1e5, .poisson_ratio = 0.4},
     {.elasticity = Elasticity::neo_hookean, .young_modulus = 1e5, .poisson_ratio = 0.45},
+    {.elasticity = Elasticity::storakers, .young_modulus = 1e5, .poisson_ratio = 0.3},
     {.mechanics = Mechanics::springs, .young_modulus = 1e5},
 };
 

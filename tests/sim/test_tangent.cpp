@@ -57,6 +57,7 @@ const Material kMaterials[] = {
     {.young_modulus = 1e5, .poisson_ratio = 0.4},
     {.young_modulus = 1e5, .poisson_ratio = 0.3, .yield_stress = 2e3, .hardening = 1e4},
     {.elasticity = Elasticity::neo_hookean, .young_modulus = 1e5, .poisson_ratio = 0.45},
+    {.elasticity = Elasticity::storakers, .young_modulus = 1e5, .poisson_ratio = 0.3},
 };
 
 }  // namespace
