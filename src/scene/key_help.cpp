@@ -23,7 +23,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[material]", "mechanics",
          "cells are right for any Poisson's ratio; springs are the "
          "papers' connections alone"},
-        {"[material]", "elasticity", "hencky: what may yield and break; neo-hookean: rubber"},
+        {"[material]", "elasticity",
+         "hencky: what may yield and break; neo-hookean: rubber; storakers: foam"},
         {"[material]", "young_modulus", "needed without a name", {}, "-"},
         {"[material]", "poisson_ratio", "springs have 0.25 whatever it says"},
         {"[material]", "density", "needed without a name", {}, "-"},

@@ -40,6 +40,16 @@ bool is_infinite(const Node* node) {
     }
 }
 
+constexpr std::pair<const char*, Elasticity> kElasticity[] = {
+    {"hencky", Elasticity::hencky},
+    {"neo-hookean", Elasticity::neo_hookean},
+    {"storakers", Elasticity::storakers}};
+std::string name_of(Elasticity elasticity) {
+    return std::find_if(std::begin(kElasticity), std::end(kElasticity),
+                        [&](const auto& one) { return one.second == elasticity; })
+        ->first;
+}
+
 // Strength and toughness make sense together only; `strength = inf` takes both away.
 void read_fracture(TableReader& table, Material& material) {
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -73,10 +83,11 @@ void read_fracture(TableReader& table, Material& material) {
                         quantity_text(material.strength, Quantity::stress),
                         quantity_text(material.young_modulus, Quantity::stress), kMostStrength));
     }
-    if (material.elasticity == Elasticity::neo_hookean) {
+    if (material.elasticity != Elasticity::hencky) {
         table.mistake("strength",
-                      "neo-hookean matter does not break: leave strength out (or inf), or use "
-                      "elasticity = \"hencky\"");
+                      fmt::format("{} matter does not break: leave strength out (or inf), or use "
+                                  "elasticity = \"hencky\"",
+                                  name_of(material.elasticity)));
     }
 }
 
@@ -100,15 +111,14 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     const bool has_modulus =
         table.quantity("young_modulus", Quantity::stress, kStiffness, material.young_modulus);
     table.quantity("poisson_ratio", Quantity::number, between(0, 0.49), material.poisson_ratio);
-    table.choice<Elasticity>(
-        "elasticity", {{"hencky", Elasticity::hencky}, {"neo-hookean", Elasticity::neo_hookean}},
-        material.elasticity);
+    table.choice<Elasticity>("elasticity", {std::begin(kElasticity), std::end(kElasticity)},
+                             material.elasticity);
     if (material.mechanics == Mechanics::cells && material.elasticity == Elasticity::neo_hookean &&
         material.poisson_ratio < kRubberPoisson) {
         table.warn("elasticity",
                    fmt::format("neo-hookean with poisson_ratio = {:g} is too soft where it is "
                                "pressed together far, and grows thin: it is for rubber, from {:g} "
-                               "on; \"hencky\" is right for foam",
+                               "on; \"storakers\" is for foam",
                                material.poisson_ratio, kRubberPoisson));
     }
     const bool has_density =
@@ -190,13 +200,15 @@ void read_material(TableReader& table, const AssetPaths& assets,
     if (asks_elasticity && material.mechanics == Mechanics::springs) {
         table.warn("elasticity", "elasticity has no effect on springs");
     }
-    if (material.elasticity == Elasticity::neo_hookean && std::isfinite(material.yield_stress)) {
-        // A rubber that is told to yield is taken as what can.
+    if (material.elasticity != Elasticity::hencky && std::isfinite(material.yield_stress)) {
+        const std::string name = name_of(material.elasticity);
+        // A rubber or foam that is told to yield is taken as what can.
         material.elasticity = Elasticity::hencky;
         if (asks_elasticity) {
             table.mistake("elasticity",
-                          "neo-hookean matter does not yield: leave yield_stress out (or inf), or "
-                          "use elasticity = \"hencky\"");
+                          name +
+                              " matter does not yield: leave yield_stress out (or inf), or "
+                              "use elasticity = \"hencky\"");
         }
     }
     if (table.find("hardening") != nullptr && std::isinf(material.yield_stress)) {
