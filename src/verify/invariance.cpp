@@ -92,7 +92,8 @@ double scatter(std::size_t n) {
 
 void energy_slope(bool, Values& values) {
     for (const auto& [elasticity, name] : {std::pair(Elasticity::hencky, "Hencky"),
-                                           std::pair(Elasticity::neo_hookean, "neo-Hookean")}) {
+                                           std::pair(Elasticity::neo_hookean, "neo-Hookean"),
+                                           std::pair(Elasticity::storakers, "Storakers")}) {
         Material material = unit_material(0.3);
         material.elasticity = elasticity;
         Aggregate bar = unit_bar(2, kAcross, material);
