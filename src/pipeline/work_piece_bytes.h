@@ -91,15 +91,16 @@ void visit(Io& io, Mount& mount) {
 
 template <typename Io>
 void visit(Io& io, WorkPiece& piece) {
-    auto& [name, matter, skin, mount, look, position, followed, finding, is_torn, whole_skin,
+    auto& [name, matter, skin, mount, look, position, followed, finding, probe, is_torn, whole_skin,
            whole_mount, whole_position] = piece;
-    io(name, matter, skin, mount);
+    io(name, matter, skin, mount, probe);
     std::optional<TriMesh> like;
     if (look) like = look->mesh();
     io(like, position, followed, finding, is_torn, whole_skin, whole_mount, whole_position);
     if constexpr (Io::kReads) {
         if (like) look = std::make_shared<const NewLook>(*like);
         finish_mount(mount, matter);
+        finish_mount(probe, matter);
         if (whole_skin) finish_mount(whole_mount, matter);
     }
 }
