@@ -8,23 +8,11 @@
 #include <iterator>
 
 #include "base/text.h"
+#include "pipeline/csv.h"
 
 namespace swage {
 
 namespace {
-
-// What is not known stays empty: every reader of tables takes that for a gap.
-std::string number(double value) {
-    return std::isnan(value) ? std::string() : fmt::format("{:.9g}", value);
-}
-
-// A name inside a comma separated line: quoted when it holds a comma or a quote.
-std::string cell(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
 
 void begin_row(LoadCurve& load, const Pose& pose) {
     load.pose.push_back(pose);
@@ -101,48 +89,44 @@ std::string csv_text(const StageCurves& curves) {
               "force z [N]", "torque x [N m]", "torque y [N m]", "torque z [N m]", "work [J]",
               "penetration [m]", "contacts"}) {
             text += ',';
-            text += cell(load.name + " " + column);
+            text += csv_text_cell(load.name + " " + column);
         }
     }
     for (const ProbePlace& probe : curves.probes().front()) {
         for (const char* column : {"x [m]", "y [m]", "z [m]"}) {
-            text += ',' + cell(probe.name + " " + column);
+            text += ',' + csv_text_cell(probe.name + " " + column);
         }
     }
+    for (const EnergyColumn& column : kEnergyColumns) text += std::string(",") + column.name;
     text +=
-        ",kinetic energy [J],elastic energy [J],contact energy [J],plastic work [J],"
-        "damped work [J],friction work [J],drag work [J],"
-        "machine work [J],load work [J],gravity work [J],severed energy [J],fracture energy "
-        "[J],set free [J],remainder [J],severed connections,broken connections,pieces,"
-        "iterations,increments,halvings,steps,steps taken back,residual\n";
+        ",severed connections,broken connections,pieces,iterations,increments,halvings,steps,"
+        "steps taken back,residual\n";
     for (std::size_t row = 0; row < curves.rows(); ++row) {
         const FrameReport& report = curves.report()[row];
-        std::vector<std::string> cells = {std::to_string(curves.frame()[row]), number(report.time)};
+        std::vector<std::string> cells = {std::to_string(curves.frame()[row]),
+                                          csv_number(report.time)};
         for (const LoadCurve& load : curves.load()) {
-            for (int c = 0; c < 3; ++c) cells.push_back(number(load.pose[row].translation[c]));
-            cells.push_back(number(load.turn[row]));
-            cells.push_back(number(load.travel[row]));
-            for (int c = 0; c < 3; ++c) cells.push_back(number(load.force[row][c]));
-            for (int c = 0; c < 3; ++c) cells.push_back(number(load.torque[row][c]));
-            cells.push_back(number(load.work[row]));
-            cells.push_back(number(load.penetration[row]));
+            for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.pose[row].translation[c]));
+            cells.push_back(csv_number(load.turn[row]));
+            cells.push_back(csv_number(load.travel[row]));
+            for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.force[row][c]));
+            for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.torque[row][c]));
+            cells.push_back(csv_number(load.work[row]));
+            cells.push_back(csv_number(load.penetration[row]));
             cells.push_back(std::to_string(load.contacts[row]));
         }
         for (const ProbePlace& probe : curves.probes()[row]) {
-            for (int c = 0; c < 3; ++c) cells.push_back(number(probe.place[c]));
+            for (int c = 0; c < 3; ++c) cells.push_back(csv_number(probe.place[c]));
         }
-        for (double energy :
-             {report.kinetic, report.elastic, report.contact, report.plastic, report.damped,
-              report.friction, report.drag, report.work, report.load_work, report.gravity_work,
-              report.severed_energy, report.fracture, report.set_free, report.remainder}) {
-            cells.push_back(number(energy));
+        for (const EnergyColumn& column : kEnergyColumns) {
+            cells.push_back(csv_number(report.*column.value));
         }
         for (long count :
              {long(report.severed), long(report.broken), long(report.pieces), report.iterations,
               report.increments, report.halvings, report.steps, report.rejected}) {
             cells.push_back(std::to_string(count));
         }
-        cells.push_back(number(report.residual));
+        cells.push_back(csv_number(report.residual));
         text += joined(cells, ",");
         text += '\n';
     }

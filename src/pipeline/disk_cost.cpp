@@ -19,6 +19,7 @@ constexpr double kPartBytes = 170e3;                    // there: of a machine's
 constexpr double kBallBytes = 1e6;                      // there: of a tool that is a sphere
 constexpr double kToolFileShare = 3;                    // there: of a tool's own mesh file
 constexpr double kFrameBytes = 1000;                    // of poses and curves
+constexpr double kBodyFrameBytes = 400;                 // of its motion
 constexpr double kStageBytes = 60e3, kRunBytes = 20e3;  // of plots and records
 constexpr double kBrokenVertices = 3;                   // a cell, on the faces where matter broke
 // In a checkpoint, beside the matter.
@@ -101,6 +102,9 @@ double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, D
     for (const StageSpec& stage : scene.stage) {
         bytes += kStageBytes + machine_bytes(stage.machine);
         if (stage.remold) ++skins;
+        if (stage.sim.solver != Solver::quasistatic) {
+            bytes += kBodyFrameBytes * static_cast<double>(scene.body.size()) * stage.frames;
+        }
         if (breaks || !stage.machine.blade.empty()) skins += stage.frames;
     }
     for (const InputMesh& one : input) bytes += texture_bytes(one.mesh);

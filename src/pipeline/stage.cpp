@@ -11,6 +11,7 @@
 #include "base/failure.h"
 #include "geometry/mesh_write.h"
 #include "machines/legs.h"
+#include "pipeline/body_table.h"
 #include "pipeline/curves.h"
 #include "pipeline/machine_place.h"
 #include "pipeline/plot.h"
@@ -156,6 +157,7 @@ class StageRun {
         StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()), first_,
                            apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
                            probes());
+        if (in_motion()) body_table_.emplace(last_frame, bodies_, first_);
         for (int n = 1; n <= stage_.frames && !outcome_.stopped; ++n) {
             if (!work(simulation, n, last_frame + n, curves)) break;
             keep([&] { record(last_frame + n); });
@@ -167,6 +169,12 @@ class StageRun {
             keep([&] { write_meshes(bodies_[b].deformed(), meshes_[b]); });
         }
         keep([&] { write_curves(curves, context_); });
+        if (body_table_) {
+            keep([&] {
+                write_file_whole(context_.root / "curves" / (stage_.name + "-bodies.csv"),
+                                 body_table_->csv_text());
+            });
+        }
         finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1);
         return std::move(outcome_);
     }
@@ -201,6 +209,7 @@ class StageRun {
         }
     }
 
+    bool in_motion() const { return stage_.sim.solver != Solver::quasistatic; }
     bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
 
     // The machine goes through the n-th frame; false where that was given up. What legs of it were
@@ -238,6 +247,7 @@ class StageRun {
         last_ = std::move(frame);
         dress(number);
         curves.add(number, last_, probes());
+        if (body_table_) body_table_->add(number, bodies_, last_);
         totals_.add(last_, machine_.apparatus.tool.size());
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
     }
@@ -328,6 +338,7 @@ class StageRun {
     std::size_t leg_ = 0;
     std::vector<char> cuts_;  // a body each: whether its cut is settled
     std::vector<fs::path> meshes_;
+    std::optional<BodyTable> body_table_;  // of a stage in motion
     FrameReport first_, last_;
     StageTotals totals_;
     WarningBook warnings_;

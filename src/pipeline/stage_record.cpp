@@ -64,6 +64,8 @@ Json stage_record(const StageEnd& end, double overlap, const std::vector<std::st
         probes[probe.name] = {probe.place.x(), probe.place.y(), probe.place.z()};
     }
     Json by_body = Json::array();
+    Json masses = Json::object();
+    for (const WorkPiece& body : end.bodies) masses[body.name] = body.matter.mass();
     for (const Books& books : last.body) by_body.push_back(energies_json(books));
     return {
         {"name", end.stage.name},
@@ -75,6 +77,7 @@ Json stage_record(const StageEnd& end, double overlap, const std::vector<std::st
         {"legs", end.legs},
         {"duration_s", end.duration},
         {"remolded", end.stage.remold},
+        {"masses_kg", masses},
         {"particles", particle_count(end.bodies)},
         {"connections_before", end.connections_before},
         {"connections_after", connection_count(end.bodies)},

@@ -78,25 +78,34 @@ void refuse_remolded_blocks(TableReader& root, const SceneSpec& scene) {
 }
 
 // Meshes are named after their stage, where there are several bodies also after those; a stage's
-// meshes of every frame are in a folder of its name.
+// meshes of every frame are in a folder of its name. Tables of bodies in motion lie among those of
+// the stages' curves.
 void refuse_same_files(TableReader& root, const SceneSpec& scene) {
     const bool has_several = scene.body.size() > 1;
     std::map<std::string, std::string> of;
+    const auto refuse_same = [&](const std::vector<std::string>& files, const std::string& what) {
+        for (const std::string& file : files) {
+            const auto [at, is_new] = of.try_emplace(file, what);
+            if (is_new || at->second == what) continue;  // those of one name are told already
+            root.mistake("stage", fmt::format("{} and {} would both be written as {}: give one "
+                                              "another name",
+                                              at->second, what, file));
+            break;
+        }
+    };
     for (const StageSpec& stage : scene.stage) {
+        std::vector<std::string> tables = {"curves/" + stage.name + ".csv"};
+        if (stage.sim.solver != Solver::quasistatic) {
+            tables.push_back("curves/" + stage.name + "-bodies.csv");
+        }
+        refuse_same(tables, fmt::format("stage \"{}\"", stage.name));
         for (const BodySpec& body : scene.body) {
             std::string what = fmt::format("stage \"{}\"", stage.name);
             if (has_several) what = fmt::format("body \"{}\" of {}", body.name, what);
             const std::string stem = has_several ? stage.name + "-" + body.name : stage.name;
             std::vector<std::string> files = {stem + ".obj", stem + ".mtl", stem + ".ply"};
             if (scene.output.meshes_per_frame) files.push_back(stem);
-            for (const std::string& file : files) {
-                const auto [at, is_new] = of.try_emplace(file, what);
-                if (is_new || at->second == what) continue;  // those of one name are told already
-                root.mistake("stage", fmt::format("{} and {} would both be written as {}: give one "
-                                                  "another name",
-                                                  at->second, what, file));
-                break;
-            }
+            refuse_same(files, what);
         }
     }
 }

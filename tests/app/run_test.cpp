@@ -360,4 +360,8 @@ TEST_CASE("the first row of the curves is the start, with what is known of it") 
     CHECK(std::stod(at_start("kinetic energy [J]")) == Approx(0.5 * mass * 4).epsilon(1e-6));
     CHECK(at_start("pieces") == "2");
     CHECK(at_start("contact energy [J]") == "0");  // not looked for yet
+
+    const std::string bodies = bytes_of(run / "curves/1-floor-bodies.csv");
+    CHECK(bodies.find("\n1,0,work-piece,") != std::string::npos);
+    CHECK(bodies.find("\n2,0.001,other,") != std::string::npos);
 }

@@ -89,6 +89,20 @@ TEST_CASE("a block is not molded anew, and no two meshes have one name") {
     });
 }
 
+TEST_CASE("a table of bodies in motion and a stage's curves have no file in common") {
+    Parts both;
+    both.stage =
+        "[[stage]]\nname = \"a\"\nmachine = \"floor\"\ngravity = 9.81\n"
+        "[[stage]]\nname = \"a-bodies\"\nmachine = \"bend\"\n";
+    check_all({{"bodies",
+                both,
+                {"stage \"a\" and stage \"a-bodies\" would both be written as "
+                 "curves/a-bodies.csv: give one another name"}}});
+    both.stage.replace(both.stage.find("floor"), 5, "bend");
+    both.stage.erase(both.stage.find("gravity"), 15);
+    CHECK(mistakes_in(both.text()) == "");
+}
+
 TEST_CASE("numbers that no scene can mean are refused where they stand, with their range") {
     check_all({
         {"gravity",
