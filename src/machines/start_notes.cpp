@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/units.h"
+#include "machines/tool_clash.h"
 #include "machines/touch.h"
 #include "matter/cell_middle.h"
 
@@ -160,11 +161,13 @@ std::vector<std::string> start_notes(const Machine& machine, const Aggregate& ma
     const double slack = kOff * matter.lattice.spacing;
     std::vector<Vec3> inner;
     if (!machine.apparatus.tool.empty()) inner = whole_middles(machine, matter);
+    std::vector<std::vector<Pose>> tool_way;
     for (std::size_t n = 0; n < machine.apparatus.tool.size(); ++n) {
-        const std::vector<Pose> way = way_of(machine.tool_motion[n]);
+        const std::vector<Pose>& way = tool_way.emplace_back(way_of(machine.tool_motion[n]));
         note(depth_note(machine, n, touch, inner, way.empty() ? Pose{} : way.front(), slack));
         note(pivot_note(machine, n, machine.tool_motion[n].axis(), way, slack));
     }
+    for (std::string& clash : tool_clashes(machine, tool_way, slack)) note(std::move(clash));
     const double reach = 0.5 * machine.frame.size.norm();
     const double jump = kJump * matter.lattice.spacing;
     const auto of_jumps = [&](const std::string& kind, const auto& part,

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/machine.h"
 
+#include <filesystem>
+#include <utility>
+
+#include "geometry/mesh_write.h"
+
 #include "tests/catch.h"
 #include "tests/machines/bodies.h"
+#include "tests/pipeline/scratch.h"
 #include "tests/shared/block.h"
+#include "tests/shared/meshes.h"
 
 using namespace swage;
 
@@ -137,4 +144,85 @@ TEST_CASE("a blade that passes beside the work-piece all its way is noted, one t
     lift.motion.move = {"0", "height*t", "0"};
     spec.tool = {lift};
     CHECK(notes({"0", "-1.5*height*t", "0"}).empty());
+}
+
+namespace {
+
+ToolSpec box_tool(const char* name, const Expression3& size, const Expression3& at,
+                  const Expression3& move = {"0", "0", "0"}) {
+    ToolSpec tool;
+    tool.name = name;
+    tool.shape = ToolShape::box;
+    tool.size = size;
+    tool.rounding = "0.01*height";
+    tool.at = at;
+    tool.motion.move = move;
+    return tool;
+}
+
+// A block stands beside the way of a punch that comes down above the work-piece; both as far from
+// it as their motions need. Spacing: height/8.
+MachineSpec punch_and(const ToolSpec& beside, const char* down) {
+    MachineSpec spec;
+    spec.name = "press";
+    spec.tool = {box_tool("punch", {"height", "height", "height"}, {"0", "10*height", "0"},
+                          {"0", down, "0"}),
+                 beside};
+    return spec;
+}
+
+}  // namespace
+
+TEST_CASE("tools that pass into each other are noted with depth and time, those that meet not") {
+    const ToolSpec below =
+        box_tool("die", {"2*height", "height", "2*height"}, {"0.1*height", "7*height", "0"});
+    CHECK(notes_of(punch_and(below, "-2*height*t")).empty());  // flush at the end
+    CHECK(notes_of(punch_and(below, "-1.5*height*sin(pi*t)")).empty());
+    const char* deeper = "-2.1*height*ramp(t, 0, 0.5) + 3*height*ramp(t, 0.5, 1)";
+    const std::vector<std::string> notes = notes_of(punch_and(below, deeper));
+    CHECK(tells(notes, "tools punch and die go 2 cm deep into each other by t = 0.5"));
+
+    // Crossed bars have no corner in each other.
+    const ToolSpec across =
+        box_tool("bar", {"0.2*height", "0.2*height", "9*height"}, {"0", "7*height", "0"});
+    CHECK(tells(notes_of(punch_and(across, "-2.5*height*t")), "tools punch and bar go"));
+    const ToolSpec past =
+        box_tool("bar", {"0.2*height", "9*height", "9*height"}, {"0.61*height", "7*height", "0"});
+    CHECK(notes_of(punch_and(past, "-2.5*height*t")).empty());
+}
+
+TEST_CASE("a machine built of boxes that stand in each other is noted only where they go deeper") {
+    const Expression3 size = {"3*height", "height", "3*height"}, at = {"0", "9.4*height", "0"};
+    const char* down = "-2*height*t";
+    CHECK(notes_of(punch_and(box_tool("arm", size, at), "0")).empty());
+    CHECK(notes_of(punch_and(box_tool("arm", size, at, {"0", down, "0"}), down)).empty());
+    CHECK(notes_of(punch_and(box_tool("arm", size, at), "2*height*t")).empty());
+    CHECK(tells(notes_of(punch_and(box_tool("arm", size, at), "-0.2*height*t")),
+                " of it from the start"));
+}
+
+TEST_CASE("a punch that ends below the rim of a ring is noted, one that goes down its bore not") {
+    const Scratch folder;
+    const std::filesystem::path file = folder.path() / "ring.obj";
+    write_obj(file, test::torus_mesh(0.4, 0.1, 96, 48));
+    ToolSpec ring = box_tool("ring", {"0", "0", "0"}, {"0", "5*height", "0"});
+    ring.shape = ToolShape::mesh;
+    ring.mesh = file;
+    ring.length = "5*height";  // 1 m: as it is
+    ring.axis = {"0", "1", "0"};
+    ToolSpec punch = box_tool("punch", {"0", "0", "0"}, {"0", "10*height", "0"});
+    punch.shape = ToolShape::cylinder;
+    punch.axis = {"0", "1", "0"};
+    punch.length = "height";
+    MachineSpec spec;
+    spec.name = "draw";
+    // Its low end comes to 1.2 cm below the ring's top, which is at 5.5 heights.
+    punch.motion.move = {"0", "-4.06*height*t", "0"};
+    for (const auto& [radius, is_caught] : {std::pair("0.29", false), std::pair("0.45", true)}) {
+        punch.radius = radius;
+        spec.tool = {ring, punch};
+        const std::vector<std::string> notes = notes_of(spec);
+        CHECK(notes.empty() != is_caught);
+        if (is_caught) CHECK(tells(notes, "tools ring and punch go 1.2 cm deep"));
+    }
 }
