@@ -133,14 +133,35 @@ std::string csv_text(const StageCurves& curves) {
     return text;
 }
 
+std::vector<double> stroke_of(const LoadCurve& load) {
+    constexpr double kStraight = 0.05;  // of the way
+    const auto gone = [&](std::size_t row) -> Vec3 {
+        return load.pose[row].translation - load.pose.front().translation;
+    };
+    Vec3 farthest = Vec3::Zero();
+    for (std::size_t row = 0; row < load.pose.size(); ++row) {
+        if (gone(row).norm() > farthest.norm()) farthest = gone(row);
+    }
+    std::vector<double> stroke;
+    if (farthest.isZero()) return stroke;
+    const Vec3 along = farthest.normalized();
+    for (std::size_t row = 0; row < load.pose.size(); ++row) {
+        stroke.push_back(along.dot(gone(row)));
+        const Vec3 beside = gone(row) - stroke.back() * along;
+        if (beside.norm() > kStraight * farthest.norm()) return {};
+    }
+    return stroke;
+}
+
 PlotAxis plot_axis(const StageCurves& curves) {
     PlotAxis axis;
     const LoadCurve *turns = nullptr, *travels = nullptr;
-    double most_turn = kPi / 180, most_travel = 1e-12;
+    double most_turn = 0, least_turn = kPi / 180, most_travel = 1e-12;
     for (std::size_t n = 0; n < curves.parts(); ++n) {
         const LoadCurve& load = curves.load()[n];
-        if (std::abs(load.turn.back()) > most_turn) {
-            most_turn = std::abs(load.turn.back());
+        for (double turn : load.turn) {
+            if (std::abs(turn) <= std::max(std::abs(most_turn), least_turn)) continue;
+            most_turn = turn;
             turns = &load;
         }
         if (load.travel.back() > most_travel) {
@@ -150,11 +171,13 @@ PlotAxis plot_axis(const StageCurves& curves) {
     }
     if (turns != nullptr) {
         axis.label = fmt::format("turn of {} [deg]", turns->name);
-        const double way = turns->turn.back() < 0 ? -1 : 1;
+        const double way = most_turn < 0 ? -1 : 1;
         for (double t : turns->turn) axis.value.push_back(way * t * 180 / kPi);
     } else if (travels != nullptr) {
-        axis.label = fmt::format("travel of {} [mm]", travels->name);
-        for (double t : travels->travel) axis.value.push_back(1e3 * t);
+        const std::vector<double> stroke = stroke_of(*travels);
+        axis.label =
+            fmt::format("{} of {} [mm]", stroke.empty() ? "travel" : "stroke", travels->name);
+        for (double t : stroke.empty() ? travels->travel : stroke) axis.value.push_back(1e3 * t);
     } else {
         axis.label = "time [s]";
         for (const FrameReport& report : curves.report()) axis.value.push_back(report.time);

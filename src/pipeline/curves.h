@@ -65,8 +65,13 @@ class StageCurves {
 // Comma separated; the first line names each column and its unit, as in "pusher force x [N]".
 std::string csv_text(const StageCurves& curves);
 
+// How far along the way to its farthest place it is, by row [m], so that what comes back comes back
+// to 0; empty where it leaves that straight way by more than a twentieth, or goes nowhere.
+std::vector<double> stroke_of(const LoadCurve& load);
+
 // What to plot the loads against: the turn of the machine's part that turns most (when any turns by
-// more than a degree), else the travel of the one that travels most, else time.
+// more than a degree), else the stroke of the one that travels most, or its travel where it has no
+// stroke, else time.
 struct PlotAxis {
     std::string label;  // with the unit
     std::vector<double> value;

@@ -27,20 +27,30 @@ std::string quoted(const std::string& text) {
     return result + "'";
 }
 
-// One graph of `size(load, row)` for every load that is ever felt; empty when none is.
-template <typename Size>
-std::string graph(const StageCurves& curves, const std::string& label, const Size& size) {
+constexpr double kLever = 2e-3;  // below it the lattice makes torques of forces, or the reverse
+
+double most_of(const StageCurves& curves, std::vector<Vec3> LoadCurve::*felt) {
+    double most = 0;
+    for (const LoadCurve& load : curves.load()) {
+        for (const Vec3& v : load.*felt) most = std::max(most, v.norm());
+    }
+    return most;
+}
+
+// One graph of what is felt, for every load that ever feels any; empty when none does.
+std::string graph(const StageCurves& curves, const std::string& label,
+                  std::vector<Vec3> LoadCurve::*felt) {
+    const PlotAxis axis = plot_axis(curves);
     std::vector<std::string> lines;
     for (std::size_t n = 0; n < curves.load().size(); ++n) {
         const LoadCurve& load = curves.load()[n];
-        double most = 0;
-        for (std::size_t row = 0; row < curves.rows(); ++row)
-            most = std::max(most, size(load, row));
-        if (most <= 0) continue;
+        if (std::all_of((load.*felt).begin(), (load.*felt).end(),
+                        [](const Vec3& v) { return v.isZero(0); })) {
+            continue;
+        }
         std::string data = fmt::format("$load{} << EOD\n", n);
-        const PlotAxis axis = plot_axis(curves);
         for (std::size_t row = 0; row < curves.rows(); ++row) {
-            data += fmt::format("{:.9g} {:.9g}\n", axis.value[row], size(load, row));
+            data += fmt::format("{:.9g} {:.9g}\n", axis.value[row], (load.*felt)[row].norm());
         }
         lines.push_back(data + "EOD\n");
         lines.push_back(fmt::format("$load{} using 1:2 with lines linetype {} linewidth 2 title {}",
@@ -59,13 +69,16 @@ std::string graph(const StageCurves& curves, const std::string& label, const Siz
 
 }  // namespace
 
-std::string plot_program(const StageCurves& curves, const std::filesystem::path& svg) {
-    const std::string force =
-        graph(curves, "force on the matter [N]",
-              [](const LoadCurve& load, std::size_t row) { return load.force[row].norm(); });
-    const std::string torque =
-        graph(curves, "torque about the tool's centre [N m]",
-              [](const LoadCurve& load, std::size_t row) { return load.torque[row].norm(); });
+std::string plot_program(const StageCurves& curves, double size, const std::filesystem::path& svg) {
+    const double most_force = most_of(curves, &LoadCurve::force) * size;
+    const double most_torque = most_of(curves, &LoadCurve::torque);
+    std::string force, torque;
+    if (most_force > kLever * most_torque) {
+        force = graph(curves, "force on the matter [N]", &LoadCurve::force);
+    }
+    if (most_torque > kLever * most_force) {
+        torque = graph(curves, "torque about the tool's centre [N m]", &LoadCurve::torque);
+    }
     const int panels = !force.empty() + !torque.empty();
     std::string program = fmt::format(
         "set terminal svg size 900,{} noenhanced font 'sans-serif,14' background '#ffffff'\n"
@@ -87,10 +100,10 @@ std::string plot_program(const StageCurves& curves, const std::filesystem::path&
 
 bool gnuplot_is_present() { return program_exists("gnuplot"); }
 
-bool draw_plot(const StageCurves& curves, const std::filesystem::path& svg) {
+bool draw_plot(const StageCurves& curves, double size, const std::filesystem::path& svg) {
     const std::filesystem::path temporary = temporary_for(svg);
     PipedProgram gnuplot({"gnuplot"});
-    gnuplot.write(plot_program(curves, temporary));
+    gnuplot.write(plot_program(curves, size, temporary));
     const int status = gnuplot.finish();
     std::error_code error;
     if (status != 0 || !std::filesystem::exists(temporary, error)) {

@@ -9,12 +9,14 @@
 
 namespace swage {
 
-// A gnuplot program with its data inside: force above, torque below, each against plot_axis.
-std::string plot_program(const StageCurves& curves, const std::filesystem::path& svg);
+// A gnuplot program with its data inside: force above, torque below, each against plot_axis. Of a
+// work-piece of this size [m]: torques that its forces make by a lever of no more than two
+// thousandths of it are left out, and forces that are as small beside torques.
+std::string plot_program(const StageCurves& curves, double size, const std::filesystem::path& svg);
 
 bool gnuplot_is_present();
 
 // Writes the SVG whole. False when gnuplot failed; its words go to the log.
-bool draw_plot(const StageCurves& curves, const std::filesystem::path& svg);
+bool draw_plot(const StageCurves& curves, double size, const std::filesystem::path& svg);
 
 }  // namespace swage

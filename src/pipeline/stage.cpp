@@ -69,10 +69,11 @@ void write_meshes(const TriMesh& mesh, const fs::path& stem) {
     write_ply(fs::path(stem) += ".ply", mesh);
 }
 
-void write_curves(const StageCurves& curves, const StageContext& context) {
+// `size`: of the work-piece [m].
+void write_curves(const StageCurves& curves, double size, const StageContext& context) {
     const fs::path stem = context.root / "curves" / curves.stage();
     write_file_whole(fs::path(stem) += ".csv", csv_text(curves));
-    if (context.can_plot && !is_stopping()) draw_plot(curves, fs::path(stem) += ".svg");
+    if (context.can_plot && !is_stopping()) draw_plot(curves, size, fs::path(stem) += ".svg");
 }
 
 // What a blade sweeps as it turns lies between its poses in steps at most this long.
@@ -168,7 +169,7 @@ class StageRun {
         for (std::size_t b = 0; is_whole && b < bodies_.size(); ++b) {
             keep([&] { write_meshes(bodies_[b].deformed(), meshes_[b]); });
         }
-        keep([&] { write_curves(curves, context_); });
+        keep([&] { write_curves(curves, machine_.frame.size.norm(), context_); });
         if (body_table_) {
             keep([&] {
                 write_file_whole(context_.root / "curves" / (stage_.name + "-bodies.csv"),

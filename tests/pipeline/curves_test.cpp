@@ -89,7 +89,7 @@ TEST_CASE("loads are plotted against what moves most") {
     report.load[0].pose.translation = {0, -0.02, 0};
     press.add(2, report);
     const PlotAxis travel = plot_axis(press);
-    CHECK(travel.label == "travel of ram [mm]");
+    CHECK(travel.label == "stroke of ram [mm]");
     CHECK(travel.value.back() == Approx(20.0));
 
     // What falls takes gravity with it, which is driven nowhere.
@@ -97,6 +97,48 @@ TEST_CASE("loads are plotted against what moves most") {
     report.load = {{"floor", Pose{}}, {"gravity", {Quat::Identity(), {0, -0.02, 0}}}};
     fall.add(2, report);
     CHECK(plot_axis(fall).label == "time [s]");
+}
+
+namespace {
+
+StageCurves going(const std::vector<Pose>& way) {
+    StageCurves curves("s", 1, {{"ram", way.front()}});
+    for (std::size_t n = 1; n < way.size(); ++n) {
+        FrameReport report;
+        report.load.resize(1);
+        report.load[0].pose = way[n];
+        curves.add(1 + int(n), report);
+    }
+    return curves;
+}
+
+}  // namespace
+
+TEST_CASE("what comes back on its way comes back in the plot, and beyond its start") {
+    std::vector<Pose> press;
+    for (double down : {0.0, 2e-3, 4.4e-3, 2e-3, -2.2e-3}) {
+        press.push_back({Quat::Identity(), Vec3(0.3, 1 - down, 1e-2 * down)});
+    }
+    const PlotAxis stroke = plot_axis(going(press));
+    CHECK(stroke.label == "stroke of ram [mm]");
+    const double expected[] = {0, 2, 4.4, 2, -2.2};
+    for (int n = 0; n < 5; ++n) CHECK(stroke.value[n] == Approx(expected[n]).epsilon(1e-3));
+
+    std::vector<Pose> circle;
+    for (int n = 0; n <= 16; ++n) {
+        circle.push_back(
+            {Quat::Identity(), turn_about(Vec3::UnitZ(), n * kPi / 8) * Vec3(0, 1, 0)});
+    }
+    const PlotAxis travel = plot_axis(going(circle));
+    CHECK(travel.label == "travel of ram [mm]");
+    CHECK(travel.value.back() > 6e3);
+
+    std::vector<Pose> wrench;
+    for (double angle : {0.0, -1.0, -2.0, -1.0, 0.0}) wrench.push_back(turned(angle));
+    const PlotAxis turn = plot_axis(going(wrench));
+    CHECK(turn.label == "turn of ram [deg]");
+    CHECK(turn.value[2] == Approx(2 * 180 / kPi));
+    CHECK(turn.value.back() == Approx(0).margin(1e-9));
 }
 
 TEST_CASE("a frame of several legs keeps the deepest that a tool went in") {

@@ -27,12 +27,34 @@ StageCurves squeeze(const std::string& name) {
 }  // namespace
 
 TEST_CASE("a plot shows what was felt, names its axes with units, and nothing else") {
-    const std::string program = plot_program(squeeze("1-squeeze"), "out.svg");
-    CHECK(program.find("travel of ram''s head [mm]") != std::string::npos);
+    const std::string program = plot_program(squeeze("1-squeeze"), 0.1, "out.svg");
+    CHECK(program.find("stroke of ram''s head [mm]") != std::string::npos);
     CHECK(program.find("[N]") != std::string::npos);
     CHECK(program.find("idle_roller") == std::string::npos);
     CHECK(program.find("N m") == std::string::npos);
     CHECK(program.find("5 50\n") != std::string::npos);
+}
+
+TEST_CASE("a plot leaves out what is nothing beside the rest: torques of forces, and the reverse") {
+    const double size = 0.1;
+    const auto program = [&](double force, double torque) {
+        StageCurves curves("1-press", 1, {{"ram", Pose{}}});
+        FrameReport report;
+        report.load.resize(1);
+        report.load[0].force = {0, -force, 0};
+        report.load[0].torque = {torque, 0, 0};
+        curves.add(2, report);
+        return plot_program(curves, size, "out.svg");
+    };
+    const auto shows = [](const std::string& program, const char* unit) {
+        return program.find(unit) != std::string::npos;
+    };
+    CHECK(shows(program(1e4, 10), "[N m]"));
+    CHECK(shows(program(1e4, 10), "[N]"));
+    CHECK_FALSE(shows(program(1e4, 1), "[N m]"));
+    CHECK_FALSE(shows(program(1e-3, 1), "[N]"));
+    CHECK(shows(program(1e4, 0), "[N]"));
+    CHECK(shows(program(0, 1), "[N m]"));
 }
 
 TEST_CASE("gnuplot draws every plot, an empty one too") {
@@ -44,7 +66,7 @@ TEST_CASE("gnuplot draws every plot, an empty one too") {
     const std::filesystem::path svg = scratch.path() / "it's a plot.svg";
     for (const StageCurves& curves :
          {squeeze("1-squeeze"), StageCurves("2-rest", 6, {{"ram", Pose{}}})}) {
-        REQUIRE(draw_plot(curves, svg));
+        REQUIRE(draw_plot(curves, 0.1, svg));
         std::ifstream in(svg);
         std::stringstream text;
         text << in.rdbuf();
