@@ -153,6 +153,25 @@ std::vector<double> stroke_of(const LoadCurve& load) {
     return stroke;
 }
 
+std::vector<LoadPeaks> peaks_of(const StageCurves& curves) {
+    std::vector<LoadPeaks> all;
+    for (const LoadCurve& load : curves.load()) {
+        LoadPeaks peaks{load.name, {0, curves.frame().front()}, {0, curves.frame().front()}};
+        for (std::size_t row = 0; row < curves.rows(); ++row) {
+            const auto raise = [&](Peak& peak, double size) {
+                if (size > peak.size) peak = {size, curves.frame()[row]};
+            };
+            raise(peaks.force, load.force[row].norm());
+            raise(peaks.torque, load.torque[row].norm());
+            const Vec3 gone = load.pose[row].translation - load.pose.front().translation;
+            peaks.stroke = std::max(peaks.stroke, gone.norm());
+            if (std::abs(load.turn[row]) > std::abs(peaks.turn)) peaks.turn = load.turn[row];
+        }
+        all.push_back(peaks);
+    }
+    return all;
+}
+
 PlotAxis plot_axis(const StageCurves& curves) {
     PlotAxis axis;
     const LoadCurve *turns = nullptr, *travels = nullptr;

@@ -69,6 +69,19 @@ std::string csv_text(const StageCurves& curves);
 // to 0; empty where it leaves that straight way by more than a twentieth, or goes nowhere.
 std::vector<double> stroke_of(const LoadCurve& load);
 
+// The most of what a tool, grip, blade or load did, and the frame it was in.
+struct Peak {
+    double size = 0;
+    int frame = 0;
+};
+struct LoadPeaks {
+    std::string name;
+    Peak force, torque;  // [N], [N m]
+    double stroke = 0;   // [m] from where it was at the start, the farthest
+    double turn = 0;     // [rad] since the start, the most to either side
+};
+std::vector<LoadPeaks> peaks_of(const StageCurves& curves);
+
 // What to plot the loads against: the turn of the machine's part that turns most (when any turns by
 // more than a degree), else the stroke of the one that travels most, or its travel where it has no
 // stroke, else time.

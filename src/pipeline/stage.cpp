@@ -176,7 +176,7 @@ class StageRun {
                                  body_table_->csv_text());
             });
         }
-        finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1);
+        finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1, curves);
         return std::move(outcome_);
     }
 
@@ -290,7 +290,7 @@ class StageRun {
         context_.progress.advance(number - 1, stage_.name);
     }
 
-    void finish(int first_frame, int last_frame) {
+    void finish(int first_frame, int last_frame, const StageCurves& curves) {
         const StageEnd end{.stage = stage_,
                            .machine = machine_,
                            .bodies = bodies_,
@@ -323,7 +323,7 @@ class StageRun {
             log_warning("{}", outcome_.warning[n]);
         }
         outcome_.steps = totals_.iterations + totals_.steps;
-        outcome_.record = stage_record(end, verdict.overlap, outcome_.warning);
+        outcome_.record = stage_record(end, curves, verdict.overlap, outcome_.warning);
     }
 
     const StageSpec& stage_;

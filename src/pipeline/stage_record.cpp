@@ -17,6 +17,16 @@ Json parameters_json(const Machine& machine) {
     return json;
 }
 
+Json peaks_json(const StageCurves& curves) {
+    Json json = Json::object();
+    for (const LoadPeaks& peaks : peaks_of(curves)) {
+        json[peaks.name] = {{"force_N", peaks.force.size},     {"force_frame", peaks.force.frame},
+                            {"torque_N_m", peaks.torque.size}, {"torque_frame", peaks.torque.frame},
+                            {"stroke_m", peaks.stroke},        {"turn_rad", peaks.turn}};
+    }
+    return json;
+}
+
 Json energies_json(const Books& last) {
     return {{"machine_work", last.work},
             {"load_work", last.load_work},
@@ -56,7 +66,8 @@ int piece_count(const std::vector<WorkPiece>& bodies) {
     return count;
 }
 
-Json stage_record(const StageEnd& end, double overlap, const std::vector<std::string>& warnings) {
+Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap,
+                  const std::vector<std::string>& warnings) {
     const StageTotals& totals = end.totals;
     const FrameReport& last = end.last;
     Json probes = Json::object();
@@ -96,6 +107,7 @@ Json stage_record(const StageEnd& end, double overlap, const std::vector<std::st
         {"largest_residual", totals.residual},
         {"deepest_penetration_m", totals.penetration},
         {"own_overlap_m", overlap},
+        {"peaks", peaks_json(curves)},
         {"probes_m", probes},
         {"energies_J", energies_json(last)},
         {"energies_by_body_J", by_body},

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "machines/machine.h"
+#include "pipeline/curves.h"
 #include "pipeline/json.h"
 #include "pipeline/probes.h"
 #include "pipeline/work_piece.h"
@@ -54,6 +55,7 @@ std::size_t connection_count(const std::vector<WorkPiece>& bodies);
 int piece_count(const std::vector<WorkPiece>& bodies);
 
 // `overlap`: of the work-piece with itself [m].
-Json stage_record(const StageEnd& end, double overlap, const std::vector<std::string>& warnings);
+Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap,
+                  const std::vector<std::string>& warnings);
 
 }  // namespace swage

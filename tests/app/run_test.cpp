@@ -60,6 +60,10 @@ TEST_CASE(
     // Every line of the table: its heading, the start, three frames.
     const std::string table = bytes_of(run / "curves/1-bend.csv");
     CHECK(std::count(table.begin(), table.end(), '\n') == 5);
+    const Json& pusher = record.at("stages").at(0).at("peaks").at("left");
+    CHECK(pusher.at("force_N").get<double>() > 0);
+    CHECK(pusher.at("force_frame") >= 2);
+    CHECK(pusher.at("stroke_m").get<double>() > 0);
     // No temporary, no lock, and no more bytes than were told before.
     std::size_t bytes_there = 0;
     for (const auto& [name, bytes] : files_below(run)) {

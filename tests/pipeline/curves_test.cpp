@@ -141,6 +141,31 @@ TEST_CASE("what comes back on its way comes back in the plot, and beyond its sta
     CHECK(turn.value.back() == Approx(0).margin(1e-9));
 }
 
+TEST_CASE("peaks are the most that was felt, in the frame it was, and the farthest way") {
+    StageCurves curves("s", 7, {{"ram", Pose{}}, {"idle", Pose{}}});
+    const double forces[] = {3, -8, 8, 1}, torques[] = {0.5, 0.25, -1, 0}, ways[] = {1, 4, 2, -3};
+    for (int n = 0; n < 4; ++n) {
+        FrameReport report;
+        report.load.resize(2);
+        report.load[0].force = {0, forces[n], 0};
+        report.load[0].torque = {0, 0, torques[n]};
+        report.load[0].pose = turned(-0.1 * ways[n]);
+        report.load[0].pose.translation = {0, 0, 1e-3 * ways[n]};
+        curves.add(8 + n, report);
+    }
+    const std::vector<LoadPeaks> peaks = peaks_of(curves);
+    REQUIRE(peaks.size() == 2);
+    CHECK(peaks[0].name == "ram");
+    CHECK(peaks[0].force.size == 8);
+    CHECK(peaks[0].force.frame == 9);  // the first of two alike
+    CHECK(peaks[0].torque.size == 1);
+    CHECK(peaks[0].torque.frame == 10);
+    CHECK(peaks[0].stroke == Approx(4e-3));
+    CHECK(peaks[0].turn == Approx(-0.4));
+    CHECK(peaks[1].force.size == 0);
+    CHECK(peaks[1].stroke == 0);
+}
+
 TEST_CASE("a frame of several legs keeps the deepest that a tool went in") {
     FrameReport frame;
     for (double depth : {1e-4, 3e-4, 2e-4}) {
