@@ -30,10 +30,17 @@ constexpr int kTravelSamples = 64;  // of a blade's way, to see where it goes
 struct Setting {  // what every part of a machine is set up in
     const WorkFrame& frame;
     double spacing;
+    double duration;                        // [s]
     std::vector<Vec3> point;                // the body's surface, in the work frame
     std::vector<Vec3> touch;                // what of it meets tools
     Variables known;                        // grows with each tool
     std::vector<Variables> known_beside{};  // to the bodies beside it: what differs
+
+    Variables timed() const {  // what expressions that see t know beside it
+        Variables all = known;
+        all["duration"] = duration;
+        return all;
+    }
 };
 
 // Of what stands there; build_machine() adds whose it is.
@@ -225,7 +232,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
     grip.jaw =
         clamp_around({jaws.low - center, jaws.high - center}, kClampClearance * setting.spacing);
 
-    Motion motion(spec.motion, setting.known);
+    Motion motion(spec.motion, setting.timed());
     const Pose start = pose_at(motion, "grip " + spec.name, 0);
     const double size = setting.frame.size.norm();
     if ((start * center - center).norm() > kAtRest * size ||
@@ -255,7 +262,7 @@ void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) 
                            quantity_text(thickness, Quantity::length)));
     }
     const Vec3 centre = box_of(edge).center();
-    Motion motion(spec.motion, setting.known);
+    Motion motion(spec.motion, setting.timed());
 
     // The plate stands behind the edge and is tall enough to show above what it has cut.
     const std::string whose = "blade " + spec.name;
@@ -309,7 +316,7 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
     }
     machine.load_on.push_back(components_of(matter, load));
     machine.apparatus.load.push_back(std::move(load));
-    machine.load_strength.emplace_back(spec.strength, setting.known, Quantity::number);
+    machine.load_strength.emplace_back(spec.strength, setting.timed(), Quantity::number);
 }
 
 template <typename Part>
@@ -350,9 +357,9 @@ Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame) 
 namespace {
 
 Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& given,
-               const WorkFrame& frame, const Aggregate& matter,
-               const std::vector<Material>& beside) {
-    Setting setting{frame, matter.lattice.spacing, {}, {}, {}};
+               const WorkFrame& frame, const Aggregate& matter, const std::vector<Material>& beside,
+               double duration) {
+    Setting setting{frame, matter.lattice.spacing, duration, {}, {}, {}};
     const Pose work_from_world = frame.world_from_work.inverse();
     for (const Vec3& p : surface_positions(matter)) setting.point.push_back(work_from_world * p);
     const TouchPoints touch(matter);
@@ -378,14 +385,14 @@ Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& giv
 
     for (const ToolSpec& tool : spec.tool) add_tool(machine, setting, tool);
     for (const ToolSpec& tool : spec.tool) {
-        machine.tool_motion.emplace_back(tool.motion, setting.known);
+        machine.tool_motion.emplace_back(tool.motion, setting.timed());
     }
     std::vector<Box> regions;
     for (const GripSpec& grip : spec.grip) add_grip(machine, setting, matter, grip, regions);
     for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
     for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
     if (!spec.gravity_strength.empty()) {
-        machine.gravity_strength.emplace(spec.gravity_strength, setting.known, Quantity::number);
+        machine.gravity_strength.emplace(spec.gravity_strength, setting.timed(), Quantity::number);
     }
     machine.notes = start_notes(machine, matter, setting.touch);
     for (const CheckSpec& check : spec.check) {
@@ -398,8 +405,8 @@ Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& giv
 
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
                       const WorkFrame& frame, const Aggregate& matter,
-                      const std::vector<Material>& beside) {
-    return naming(spec, [&] { return set_up(spec, given, frame, matter, beside); });
+                      const std::vector<Material>& beside, double duration) {
+    return naming(spec, [&] { return set_up(spec, given, frame, matter, beside, duration); });
 }
 
 std::vector<double> strengths_at(const Machine& machine, double t) {

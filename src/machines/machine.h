@@ -62,10 +62,10 @@ Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame);
 // that can never touch, or whose mesh cannot be read; a grip that holds nothing, a point that two
 // hold, or one that does not start at rest; a load on nothing.
 // `beside`: the materials of the bodies beside the work-piece, on which tools whose friction
-// follows from that of the material have another.
+// follows from that of the material have another. `duration`: of the stage [s].
 Machine build_machine(const MachineSpec& spec, const std::map<std::string, double>& given,
                       const WorkFrame& frame, const Aggregate& matter,
-                      const std::vector<Material>& beside = {});
+                      const std::vector<Material>& beside = {}, double duration = 1);
 
 // Of each load, then gravity, at `t` (0 to 1). Throws as drive_at().
 std::vector<double> strengths_at(const Machine& machine, double t);

@@ -6,7 +6,7 @@
 // (how far particles stick out of that box, at the most) and material_friction; tools also the
 // placed centres of the tools before them, as NAME_x, NAME_y, NAME_z in the work frame, and
 // motions, grips, blades, loads and checks those of all tools. Motions and strengths of loads also
-// see t, 0 at the start of the stage and 1 at its end.
+// see t, 0 at the start of the stage and 1 at its end, and duration, of the stage [s].
 //
 // The work frame stands at the centre of the work-piece's box: x along its length, y the way the
 // machine calls up, z across.

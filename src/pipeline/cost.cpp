@@ -255,7 +255,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const StageSpec& first = scene.stage.front();
     std::vector<Material> beside;
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
-    const Machine machine = stage_machine(first, matter[0], beside);
+    const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first));
     cost.place = machine_places(scene, machine, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     for (std::string& amiss : tool_overlaps(machine, named)) {

@@ -108,7 +108,7 @@ std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& 
             if (!is_first && stage.machine.load.empty()) {
                 later.frame = stage_frame(stage, work_piece);
             } else if (!is_first) {
-                later = stage_machine(stage, work_piece, beside);
+                later = stage_machine(stage, work_piece, beside, scene.duration_of(stage));
             }
             const Machine& machine = is_first ? first : later;
             places.push_back({stage.name, axes_text(machine.frame), load_texts(machine),

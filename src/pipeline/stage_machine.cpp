@@ -54,10 +54,10 @@ WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece) {
 }
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
-                      const std::vector<Material>& beside) {
+                      const std::vector<Material>& beside, double duration) {
     return at_stage(stage, [&] {
         return build_machine(stage.machine, stage.parameter, stage_frame(stage, work_piece),
-                             work_piece, beside);
+                             work_piece, beside, duration);
     });
 }
 

@@ -13,9 +13,9 @@ namespace swage {
 WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece);
 
 // A stage's machine, set up at the work-piece as it is now. `beside`: the materials of the other
-// bodies. Throws SceneError where build_machine throws.
+// bodies; `duration`: of the stage [s]. Throws SceneError where build_machine throws.
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
-                      const std::vector<Material>& beside);
+                      const std::vector<Material>& beside, double duration);
 
 // What the machines of all stages but the first would say against their parameters at the
 // work-piece as it is before the first.

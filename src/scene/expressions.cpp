@@ -31,6 +31,12 @@ void ExpressionReader::add_names(const std::vector<std::string>& names) {
     known_.insert(known_.end(), names.begin(), names.end());
 }
 
+ExpressionReader ExpressionReader::timed() const {
+    ExpressionReader reader = *this;
+    reader.add_names({"t", "duration"});
+    return reader;
+}
+
 namespace {
 
 std::string word_at(const std::string& text, std::size_t at) {

@@ -25,6 +25,8 @@ class ExpressionReader {
     void add_name(const std::string& name) { known_.push_back(name); }
     void add_names(const std::vector<std::string>& names);
     const std::vector<std::string>& names() const { return known_; }
+    // One that also sees what motions and strengths see beside all that: t and duration.
+    ExpressionReader timed() const;
     // Parameters of the file that it does not see yet.
     void expect_later(std::set<std::string> names) { later_ = std::move(names); }
 

@@ -123,7 +123,8 @@ SectionReference expression_reference() {
     for (const auto& [name, meaning] : work_piece_names_told()) add(name, meaning);
     add("NAME", "a parameter of the machine");
     add("TOOL_x, TOOL_y, TOOL_z", "in what follows a [[tool]]: its middle");
-    add("t", "in motions: 0 to 1 over the stage");
+    add("t", "in motions and strengths: 0 to 1 over the stage");
+    add("duration", "likewise: of the stage, so that t*duration is the time in it");
     for (const FormulaFunction& f : formula_functions()) add(f.call, f.help);
     return all;
 }

@@ -58,8 +58,7 @@ void read_load_keys(TableReader& table, ExpressionReader& expression, LoadSpec& 
                       "from and to are opposite corners of one box: give both");
     }
     if (has_from && has_to) load.box = box;
-    ExpressionReader timed = expression;
-    timed.add_name("t");
+    ExpressionReader timed = expression.timed();
     timed.read(table, "strength", Quantity::number, load.strength);
     expression.take_used(timed);
 }

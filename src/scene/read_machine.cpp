@@ -240,8 +240,7 @@ class MachineReader {
 
     void read_motion(TableReader& part, const std::string& section, MotionSpec& motion) {
         TableReader table(part.table("motion"), section, reading_);
-        ExpressionReader timed = expression_;
-        timed.add_name("t");
+        ExpressionReader timed = expression_.timed();
         timed.read(table, "move", Quantity::length, motion.move);
         const bool turns = timed.read(table, "turn", Quantity::angle, motion.turn);
         const bool has_axis = expression_.read(table, "axis", Quantity::number, motion.axis);

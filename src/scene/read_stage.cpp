@@ -192,8 +192,7 @@ void StageReader::read_loads(TableReader& table, StageSpec& stage) {
         one.finish();
         stage.machine.load.push_back(std::move(load));
     }
-    ExpressionReader timed = expression;
-    timed.add_name("t");
+    ExpressionReader timed = expression.timed();
     if (timed.read(table, "gravity_strength", Quantity::number, stage.machine.gravity_strength) &&
         stage.sim.gravity == Vec3::Zero()) {
         table.warn("gravity_strength", "gravity_strength has no effect without gravity");

@@ -401,6 +401,7 @@ TEST_CASE("one's own machine is told where a scene would find it, and by its fil
     const std::string keys = run_swage({"keys", "--machine", "expressions"}).out;
     CHECK(keys.find("ramp(t, a, b)") != std::string::npos);
     CHECK(keys.find("lattice_reach") != std::string::npos);
+    CHECK(keys.find("duration") != std::string::npos);
 }
 
 TEST_CASE("made meshes are the same to the bit each time, and as large as asked for") {

@@ -362,6 +362,23 @@ TEST_CASE("a blade's edge goes where its motion says, its plate behind it") {
     CHECK(says(refusal(spec), {"guillotine", "blade", "thickness"}));
 }
 
+TEST_CASE("motions and strengths go by the time in the stage, as x = a t^2 / 2") {
+    MachineSpec spec = vice();
+    spec.grip[1].motion.move = {"0.5*0.04*(t*duration)^2", "0", "0"};
+    spec.gravity_strength = "ramp(t*duration, 1, 3)";
+    const Aggregate body = bar();
+    for (const double duration : {0.5, 4.0}) {
+        const Machine machine = build_machine(spec, {}, place_work_frame(body), body, {}, duration);
+        const Vec3 from = drive_at(machine, 0, duration).world_from_grip[1].translation;
+        for (const double time : {0.1, 0.5}) {
+            const Drive now = drive_at(machine, time / duration, duration);
+            CHECK((now.world_from_grip[1].translation - from).norm() ==
+                  Approx(0.5 * 0.04 * time * time));
+        }
+        CHECK(drive_at(machine, 1, duration).gravity_strength == (duration > 3 ? 1 : 0));
+    }
+}
+
 TEST_CASE("the drive's time is the share of the stage's duration") {
     CHECK(drive_at(set_up(vice()), 0.25, 8).time == 2);
 }

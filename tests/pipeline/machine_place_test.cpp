@@ -21,7 +21,7 @@ TEST_CASE(
     REQUIRE(reading.scene);
     const SceneSpec& scene = *reading.scene;
     const Aggregate bar = test::make_block(4, 16, 4, 0.1, scene.work_piece().material);
-    const Machine machine = stage_machine(scene.stage[0], bar, {});
+    const Machine machine = stage_machine(scene.stage[0], bar, {}, 1);
     const std::vector<MachinePlace> places = machine_places(scene, machine, bar, {});
     REQUIRE(places.size() == 2);
     CHECK(places[0].axes == "the machine's x, y, z are the world's y, z, x");

@@ -37,7 +37,7 @@ struct CutBar {
 
     std::string told_of(const StageSpec& stage, const FrameReport& last, int first_frame,
                         double residual = 0) {
-        const Machine machine = stage_machine(stage, bodies[0].matter, {});
+        const Machine machine = stage_machine(stage, bodies[0].matter, {}, 1);
         StageTotals totals;
         totals.severed = 1;
         totals.residual = residual;

@@ -363,3 +363,12 @@ TEST_CASE("a machine stands that gives none of its parts a motion") {
     CHECK_FALSE(stands("[grip.motion]\nturn = \"30 deg*t\"\n"));
     CHECK_FALSE(stands("[grip.motion]\nmove = [0, \"reach*t\", 0]\n"));
 }
+
+TEST_CASE("the duration of the stage is known where the time is, and nowhere else") {
+    const std::string motion =
+        "[grip.motion]\nmove = [\"0.5*reach*(t*duration)^2\", \"ramp(t*duration, 1, 2)\", 0]\n";
+    CHECK(mistakes_in(kHead + kGrip + motion) == "");
+    CHECK(mistakes_in(kHead + "[[grip]]\nname = \"hold\"\nfrom = [0, 0, \"-duration\"]\n"
+                              "to = [1, 1, \"reach\"]\n")
+              .find("duration") != std::string::npos);
+}
