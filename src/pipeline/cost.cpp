@@ -15,6 +15,7 @@
 #include "pipeline/probes.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/start_overlap.h"
+#include "pipeline/stiffness_note.h"
 #include "sim/advance.h"
 
 namespace swage {
@@ -109,12 +110,24 @@ double thickness_of(const TriMesh& mesh, double spacing, int across) {
     return mean < kThin * across ? mean : across;
 }
 
+std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
+    std::vector<NamedMatter> named;
+    for (std::size_t b = 0; b < matter.size(); ++b) {
+        named.push_back({scene.body[b].name, &matter[b]});
+    }
+    return named;
+}
+
 // As much as this many cells of the work-piece pressed as tools do.
-double softest_give(const SceneSpec& scene) {
+double softest_give(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
     double most = 0;
     for (const StageSpec& stage : scene.stage) {
+        if (stage.machine.tool.empty()) continue;
+        const double share =
+            matter.empty() ? 1 : stiffness_share_at_tools(stage, named(scene, matter));
         for (const ToolSpec& tool : stage.machine.tool) {
-            most = std::max(most, 1 / stage.sim.stiffness_of_contacts(tool.contact_stiffness));
+            const double asked = stage.sim.stiffness_of_contacts(tool.contact_stiffness);
+            most = std::max(most, 1 / (asked * share));
         }
     }
     return most;
@@ -124,7 +137,7 @@ double softest_give(const SceneSpec& scene) {
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
             const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
     cost.frames = frame_count(scene);
-    cost.tool_give = softest_give(scene);
+    cost.tool_give = softest_give(scene, matter);
     cost.steps = 0;
     cost.slow.clear();
     double work = 0;  // the steps, as if nothing damped or yielded in them
@@ -245,11 +258,8 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         cost.mold.connections += static_cast<double>(matter[b].connection_count());
         cost.mold.bytes += static_cast<double>(matter[b].bytes());
     }
-    std::vector<NamedMatter> named;
-    for (std::size_t b = 0; b < matter.size(); ++b) {
-        named.push_back({scene.body[b].name, &matter[b]});
-    }
-    cost.warning.bodies = warnings_of_bodies(scene, named);
+    const std::vector<NamedMatter> bodies = named(scene, matter);
+    cost.warning.bodies = warnings_of_bodies(scene, bodies);
     const std::string steps = step_note(scene, matter);
     if (!steps.empty()) cost.note.push_back(steps);
     const StageSpec& first = scene.stage.front();
@@ -258,8 +268,12 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first));
     cost.place = machine_places(scene, machine, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
-    for (std::string& amiss : tool_overlaps(machine, named)) {
+    for (std::string& amiss : tool_overlaps(machine, bodies)) {
         cost.warning.bodies.push_back(std::move(amiss));
+    }
+    for (const StageSpec& stage : scene.stage) {
+        const std::string note = stiffness_note(stage, bodies);
+        if (!note.empty()) cost.warning.bodies.push_back(stage.name + ": " + note);
     }
     const Legs legs = stage_legs(first, machine, std::min(first.frames, kSampledFrames), matter[0]);
     const long equilibria =

@@ -20,6 +20,7 @@
 #include "pipeline/stage_verdict.h"
 #include "pipeline/start_overlap.h"
 #include "pipeline/start_warnings.h"
+#include "pipeline/stiffness_note.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
@@ -131,7 +132,10 @@ class StageRun {
         if (!axes.empty()) log_info("{}: {}", stage.name, axes);
         for (const std::string& load : load_texts(machine_)) log_info("{}: {}", stage.name, load);
         for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
-        for (const std::string& warning : tool_overlaps(machine_, named(bodies))) {
+        std::vector<std::string> told = tool_overlaps(machine_, named(bodies));
+        const std::string note = stiffness_note(stage, named(bodies));
+        if (!note.empty()) told.push_back(note);
+        for (const std::string& warning : told) {
             outcome_.warning.push_back(fmt::format("{}: {}", stage.name, warning));
             log_warning("{}", outcome_.warning.back());
         }

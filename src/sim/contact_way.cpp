@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "sim/contact_search.h"
+#include "sim/limited_stiffness.h"
 #include "sim/surface_forces.h"
 #include "sim/surface_modulus.h"
 
@@ -16,8 +17,6 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // contacts
-constexpr double kShare = 1;         // of the 4 by which explicit steps go in turns
-constexpr double kFaces = 2;         // of a cell, as which at most a point counts on it
 
 // Trilinear weights of a place in a cell, in steps of 2^-23, so that as floats they still sum to
 // exactly one.
@@ -166,23 +165,13 @@ void ContactWay::surfaces_changed(bool points_too, double step) {
 void ContactWay::set_stiffness(double step) {
     const Aggregate &a = from_->matter(), &b = onto_->matter();
     const SurfacePoints& points = from_->points();
-    const std::vector<double> modulus = surface_moduli(a, points, solver_);
-    const double own = pressed_modulus(a.material, solver_),
-                 other = surface_modulus(b, solver_) / b.lattice.spacing;
     const double hold = is_static() ? 0 : 0.5 * (a.material.stickiness + b.material.stickiness);
-    // A point pushes one cell, which larger cells' points would drive in alone.
-    const double most = kFaces * b.lattice.spacing * b.lattice.spacing;
-    stiffness_.clear();
+    stiffness_ = stiffness_on_body(a, points, b, scale_, solver_);
     hold_.clear();
-    for (std::size_t p = 0; p < points.size(); ++p) {
-        const double one = (modulus.empty() ? own : modulus[p]) / a.lattice.spacing;
-        const double area = std::min(points.area(p), most);
-        stiffness_.push_back(scale_ * one * other / (one + other) * area);
-        hold_.push_back(hold * area);
-    }
+    for (std::size_t p = 0; p < points.size(); ++p) hold_.push_back(hold * area_on(b, points, p));
     stiffest_.assign(points.size(), std::numeric_limits<double>::infinity());
     // Half of which acts where the other way does as much.
-    if (step > 0) stiffest_ = stiffest_of_points(a, points, stiffness_, kShare / (step * step));
+    if (step > 0) stiffest_ = stiffest_of_points(a, points, stiffness_, kMeetShare / (step * step));
 }
 
 void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {

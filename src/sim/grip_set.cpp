@@ -9,13 +9,6 @@
 
 namespace swage {
 
-namespace {
-
-// What points that are gripped may add to the square of a swing by which steps go in turns, 4.
-constexpr double kGripShare = 1;
-
-}  // namespace
-
 GripSet::GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimSettings& settings,
                  int body)
     : apparatus_(&apparatus),

@@ -34,6 +34,10 @@ inline double lightest_carrier(const Aggregate& matter, std::size_t point) {
     return lightest_carrier(matter, matter.surface, point);
 }
 
+// What points that touch tools, that are gripped and that meet another body may add to the square
+// of a swing by which steps go in turns, 4.
+inline constexpr double kTouchShare = 0.5, kGripShare = 1, kMeetShare = 1;
+
 // How stiff points may push [N/m], in proportion to `stiffness`, if all of them together are to
 // make no particle swing faster than sqrt(most) [rad/s]: their Gram matrix, G_ij = sqrt(k_i k_j)
 // sum_c w_ic w_jc / m_c, has the same largest eigenvalue as what they do to the particles, and

@@ -19,8 +19,6 @@ constexpr double kSureShare = 0.5;
 // Spacings that a point beyond the middle of a tool may lie beside it, and how deep where nothing
 // has a speed: what is let go of there goes round tools and through them on its way to rest.
 constexpr double kBeside = 0.25, kDeepAtRest = 1;
-// What points that touch may add to the square of a swing by which steps go in turns, 4.
-constexpr double kTouchShare = 0.5;
 
 // The farthest that any corner of the tool's bounds moves.
 double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {

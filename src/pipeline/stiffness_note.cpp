@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/stiffness_note.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/text.h"
+#include "sim/limited_stiffness.h"
+#include "sim/moving_body.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kWhole = 0.9;         // a share of what is asked that is as good as all
+constexpr double kShortest = 1 << 16;  // that steps are made shorter by
+
+double step_of(const StageSpec& stage, const std::vector<NamedMatter>& bodies) {
+    double step = std::numeric_limits<double>::infinity();
+    for (const NamedMatter& body : bodies) {
+        step = std::min(step, explicit_step(*body.matter, stage.sim));
+    }
+    return step;
+}
+
+// Of several, the one that has least.
+void keep_worse(std::optional<LimitedPoints>& worst, LimitedPoints&& points) {
+    if (!worst || points.share() < worst->share()) worst = std::move(points);
+}
+
+double shorter_by(const LimitedPoints& points) {
+    double low = 1, high = 1;
+    while (points.share(high) < kWhole && high < kShortest) high *= 2;
+    for (int n = 0; n < 30; ++n) {
+        const double mid = 0.5 * (low + high);
+        (points.share(mid) < kWhole ? low : high) = mid;
+    }
+    return high;
+}
+
+// To two digits, downward.
+double rounded_down(double value) {
+    const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
+    return digit * std::floor(value / digit * (1 + 1e-12));
+}
+
+}  // namespace
+
+std::string stiffness_note(const StageSpec& stage, const std::vector<NamedMatter>& bodies) {
+    const SimSettings& sim = stage.sim;
+    const bool asks = sim.contact_stiffness > 0,
+               asks_of_grips = sim.grip_stiffness != SimSettings{}.grip_stiffness;
+    if (sim.solver != Solver::explicit_steps || !(asks || asks_of_grips)) return {};
+    const double step = step_of(stage, bodies);
+    std::optional<LimitedPoints> tools, between, grips;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const Aggregate& matter = *bodies[b].matter;
+        if (asks && !stage.machine.tool.empty()) {
+            keep_worse(tools, points_at_tools(matter, sim, step));
+        }
+        // Of many bodies, so many pairs.
+        if (asks && b > 0) {
+            keep_worse(between, points_between(*bodies[b - 1].matter, matter, sim, step));
+        }
+        if (asks_of_grips && !stage.machine.grip.empty()) {
+            keep_worse(grips, points_in_grips(matter, sim, step));
+        }
+    }
+    double shorter = 1;
+    const auto acts_as = [&](const std::optional<LimitedPoints>& points, double asked,
+                             const char* where) -> std::string {
+        if (!points || points->share() >= kWhole) return {};
+        shorter = std::max(shorter, shorter_by(*points));
+        return fmt::format("about {:.2g}{}", asked * points->share(), where);
+    };
+    std::vector<std::string> contacts, all;
+    for (const std::string& one : {acts_as(tools, sim.contact_stiffness, " under tools"),
+                                   acts_as(between, sim.contact_stiffness, " between bodies")}) {
+        if (!one.empty()) contacts.push_back(one);
+    }
+    if (!contacts.empty()) {
+        all.push_back(fmt::format("contact_stiffness = {:g} acts as {}", sim.contact_stiffness,
+                                  joined(contacts, " and ")));
+    }
+    const std::string held = acts_as(grips, sim.grip_stiffness, "");
+    if (!held.empty()) {
+        all.push_back(fmt::format("grip_stiffness = {:g} acts as {}", sim.grip_stiffness, held));
+    }
+    if (all.empty()) return {};
+    const double safety = rounded_down(sim.step_safety / shorter);
+    return fmt::format(
+        "steps at step_safety = {:g} are too long for what is asked, {}: step_safety = {:.2g} "
+        "gives it, in {:.2g} times the steps",
+        sim.step_safety, joined(all, ", "), safety, sim.step_safety / safety);
+}
+
+double stiffness_share_at_tools(const StageSpec& stage, const std::vector<NamedMatter>& bodies) {
+    if (stage.sim.solver != Solver::explicit_steps) return 1;
+    const Aggregate& work_piece = *bodies.front().matter;
+    return points_at_tools(work_piece, stage.sim, step_of(stage, bodies)).share();
+}
+
+}  // namespace swage

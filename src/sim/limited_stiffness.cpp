@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/limited_stiffness.h"
+
+#include <algorithm>
+
+#include "matter/touch_points.h"
+#include "sim/surface_forces.h"
+#include "sim/surface_modulus.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kFaces = 2;  // of a cell, as which at most a point counts on it
+
+LimitedPoints on_rigid(const Aggregate& matter, const SurfacePoints& points, double of_layer,
+                       Solver solver, double most) {
+    const std::vector<double> modulus = surface_moduli(matter, points, solver);
+    const double pressed = pressed_modulus(matter.material, solver);
+    LimitedPoints limited;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        limited.asked.push_back(of_layer * (modulus.empty() ? pressed : modulus[p]) *
+                                points.area(p) / matter.lattice.spacing);
+    }
+    limited.stiffest = stiffest_of_points(matter, points, limited.asked, most);
+    return limited;
+}
+
+LimitedPoints one_way(const Aggregate& from, const Aggregate& onto, const SimSettings& settings,
+                      double most) {
+    const TouchPoints touch(from);
+    LimitedPoints limited;
+    limited.asked = stiffness_on_body(from, touch.points(), onto, settings.stiffness_of_contacts(),
+                                      settings.solver);
+    limited.stiffest = stiffest_of_points(from, touch.points(), limited.asked, most);
+    return limited;
+}
+
+}  // namespace
+
+double area_on(const Aggregate& onto, const SurfacePoints& points, std::size_t point) {
+    return std::min(points.area(point), kFaces * onto.lattice.spacing * onto.lattice.spacing);
+}
+
+std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints& points,
+                                      const Aggregate& onto, double contact_stiffness,
+                                      Solver solver) {
+    const std::vector<double> modulus = surface_moduli(from, points, solver);
+    const double own = pressed_modulus(from.material, solver),
+                 other = surface_modulus(onto, solver) / onto.lattice.spacing;
+    std::vector<double> stiffness;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const double one = (modulus.empty() ? own : modulus[p]) / from.lattice.spacing;
+        const double area = area_on(onto, points, p);
+        stiffness.push_back(contact_stiffness * one * other / (one + other) * area);
+    }
+    return stiffness;
+}
+
+void LimitedPoints::add(const LimitedPoints& others) {
+    asked.insert(asked.end(), others.asked.begin(), others.asked.end());
+    stiffest.insert(stiffest.end(), others.stiffest.begin(), others.stiffest.end());
+}
+
+double LimitedPoints::share(double shorter) const {
+    double all = 0, left = 0;
+    for (std::size_t p = 0; p < asked.size(); ++p) {
+        all += asked[p];
+        left += std::min(asked[p], stiffest[p] * shorter * shorter);
+    }
+    return all > 0 ? left / all : 1;
+}
+
+LimitedPoints points_at_tools(const Aggregate& matter, const SimSettings& settings, double step) {
+    return on_rigid(matter, TouchPoints(matter).points(), settings.stiffness_of_contacts(),
+                    settings.solver, kTouchShare / (step * step));
+}
+
+LimitedPoints points_in_grips(const Aggregate& matter, const SimSettings& settings, double step) {
+    return on_rigid(matter, matter.surface, settings.grip_stiffness, settings.solver,
+                    kGripShare / (step * step));
+}
+
+LimitedPoints points_between(const Aggregate& one, const Aggregate& other,
+                             const SimSettings& settings, double step) {
+    const double most = kMeetShare / (step * step);
+    LimitedPoints both = one_way(one, other, settings, most);
+    both.add(one_way(other, one, settings, most));
+    return both;
+}
+
+}  // namespace swage
