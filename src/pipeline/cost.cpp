@@ -118,6 +118,8 @@ std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<Aggrega
     return named;
 }
 
+bool moves(const StageSpec& stage) { return stage.sim.solver != Solver::quasistatic; }
+
 // As much as this many cells of the work-piece pressed as tools do.
 double softest_give(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
     double most = 0;
@@ -268,7 +270,7 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
     const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first));
     cost.place = machine_places(scene, machine, matter[0], beside);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
-    for (std::string& amiss : tool_overlaps(machine, bodies)) {
+    for (std::string& amiss : tool_overlaps(machine, bodies, moves(first))) {
         cost.warning.bodies.push_back(std::move(amiss));
     }
     for (const StageSpec& stage : scene.stage) {

@@ -132,7 +132,9 @@ class StageRun {
         if (!axes.empty()) log_info("{}: {}", stage.name, axes);
         for (const std::string& load : load_texts(machine_)) log_info("{}: {}", stage.name, load);
         for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
-        std::vector<std::string> told = tool_overlaps(machine_, named(bodies));
+        std::vector<std::string> told = tool_overlaps(
+            machine_, named(bodies),
+            stage.sim.solver != Solver::quasistatic && &stage == &context.scene.stage.front());
         const std::string note = stiffness_note(stage, named(bodies));
         if (!note.empty()) told.push_back(note);
         for (const std::string& warning : told) {

@@ -97,15 +97,14 @@ std::string how_deep(const Books& last, const StageEnd& end, const std::string& 
     const bool later = end.first_frame > 1;
     if (end.bodies.size() == 1 && last.among_at_start > 0.5 * last.contact_at_start) {
         return fmt::format(
-            "starts a little deep in itself, or its pieces in each other, which "
+            "starts pressed into itself, or its pieces in each other, which "
             "throws them apart by {}: {}",
             thrown,
             later ? "smaller cells make it less; without self_contact = true they pass through "
                     "each other"
                   : "its mesh runs into itself there");
     }
-    return fmt::format("starts a little deep in what it touches, which throws it off by {}: {}",
-                       thrown,
+    return fmt::format("starts pressed into what it touches, which throws it off by {}: {}", thrown,
                        later ? "leave a gap to the machine's tools, or let the stage before leave "
                                "it further off"
                              : "put it further off, with `at`");
@@ -114,10 +113,11 @@ std::string how_deep(const Books& last, const StageEnd& end, const std::string& 
 // What contacts and grips hold as a stage in motion begins is let go of at once, and no mistake
 // where it lifts a body by less than a cell, moves it by less in all of the stage, or a second, or
 // is little beside how it flies. A body that is pressed by right is strained, and holds more
-// itself.
-std::vector<std::string> pressed_at_start(const StageEnd& end) {
-    std::vector<std::string> told;
-    if (end.stage.sim.solver == Solver::quasistatic) return told;
+// itself. Of several, the one that is thrown fastest. Empty: none is.
+std::string pressed_at_start(const StageEnd& end) {
+    if (end.stage.sim.solver == Solver::quasistatic) return {};
+    std::size_t worst = 0, count = 0;
+    double fastest = 0, thrown_by = 0;
     for (std::size_t b = 0; b < end.last.body.size(); ++b) {
         const Aggregate& matter = end.bodies[b].matter;
         const double energy = end.last.body[b].contact_at_start, mass = matter.mass();
@@ -125,15 +125,20 @@ std::vector<std::string> pressed_at_start(const StageEnd& end) {
         const double harmless =
             mass * std::max(end.stage.sim.gravity.norm() * a, 0.5 * slowly * slowly);
         const Books& first = end.first.body[b];
-        if (energy > std::max({harmless, first.elastic, 0.01 * first.kinetic})) {
-            const std::string thrown =
-                fmt::format("{:.3g} J, at most at {}", energy,
-                            quantity_text(std::sqrt(2 * energy / mass), Quantity::speed));
-            told.push_back(
-                fmt::format("{} {}", end.bodies[b].name, how_deep(end.last.body[b], end, thrown)));
-        }
+        if (energy <= std::max({harmless, first.elastic, 0.01 * first.kinetic})) continue;
+        ++count;
+        const double speed = std::sqrt(2 * energy / mass);
+        if (speed > fastest) worst = b, fastest = speed, thrown_by = energy;
     }
-    return told;
+    if (count == 0) return {};
+    std::string thrown =
+        fmt::format("{:.3g} J, at most at {}", thrown_by, quantity_text(fastest, Quantity::speed));
+    if (count > 1) {
+        thrown += fmt::format(", and so {} {}", count == 2 ? "is" : "are",
+                              counted(count - 1, "other body", "other bodies"));
+    }
+    return fmt::format("{} {}", end.bodies[worst].name,
+                       how_deep(end.last.body[worst], end, thrown));
 }
 
 // What to look for at the end: folds of what is at rest, and in motion pieces that do not meet.
@@ -185,7 +190,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             "the work-piece only, by its place, its width or its way",
             end.totals.severed));
     }
-    for (const std::string& sentence : pressed_at_start(end)) warn(sentence);
+    if (const std::string pressed = pressed_at_start(end); !pressed.empty()) warn(pressed);
     if (const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
         // At rest, what snaps or slips through is lost, and no mistake.
         sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {

@@ -24,10 +24,11 @@ constexpr double kNearer = 0.45;
 constexpr float kSolid = 0.5f;  // share of a cell, that its middle is in the body
 // What lies on something does so a little deep [spacings].
 constexpr double kDeep = 0.25;
+// What touches as it is molded is not as deep, however its mesh is rounded [spacings].
+constexpr double kTouches = 0.05;
 
-struct SolidCells {
-    std::vector<CellId> cell;
-    std::vector<Vec3> middle, centroid;  // of the cell, of what of it is matter [m]
+struct MatterCells {
+    std::vector<Vec3> middle, centroid;  // of each cell, of what of it is matter [m]
 };
 
 // How a body that nothing has deformed yet lies at this cell.
@@ -43,30 +44,16 @@ Pose world_from_reference(const Aggregate& matter, CellId cell) {
     return {turn, low - turn * matter.particle_reference.at(corner[0])};
 }
 
-SolidCells solid_cells(const Aggregate& matter) {
-    SolidCells cells;
+MatterCells matter_cells(const Aggregate& matter) {
+    MatterCells cells;
     for (std::size_t c = 0; c < matter.cell_fill.size(); ++c) {
-        if (matter.cell_fill[c] < kSolid) continue;
         const Vec3 middle = cell_middle(matter, static_cast<CellId>(c));
         const Pose pose = world_from_reference(matter, static_cast<CellId>(c));
         const Vec3 off = matter.lattice.spacing * matter.cell_centroid[c].cast<double>();
-        cells.cell.push_back(static_cast<CellId>(c));
         cells.middle.push_back(middle);
         cells.centroid.push_back(middle + pose.turn(off));
     }
     return cells;
-}
-
-// Whether a place lies well below the surface of a body with this cell.
-bool is_deep_in(const Aggregate& matter, CellId near, const RestSurface& surface,
-                const Vec3& place) {
-    const Vec3 reference = world_from_reference(matter, near).inverse() * place;
-    const Vec3 at = (reference - matter.lattice.origin) / matter.lattice.spacing;
-    const Vec3 low(std::floor(at.x()), std::floor(at.y()), std::floor(at.z()));
-    const Vec3i site = low.cast<int>();
-    const CellId cell = matter.lattice.cell_at(site);
-    if (cell < 0) return false;
-    return !surface.is_rim(cell) || surface.at(cell, at - low).distance < -kDeep;
 }
 
 std::vector<Vec3> touching_points(const Aggregate& matter) {
@@ -112,52 +99,151 @@ Standing standing_at(const BoxShape& plate, const Pose& plate_from_world, const 
     return standing;
 }
 
+// A body that nothing has deformed yet, and what is found of it where another comes near.
+class Starting {
+  public:
+    explicit Starting(const NamedMatter& body)
+        : name(body.name),
+          matter(*body.matter),
+          cells(matter_cells(matter)),
+          point(touching_points(matter)),
+          box(box_of(point)),
+          reference_from_world_(world_from_reference(matter, 0).inverse()) {}
+
+    double spacing() const { return matter.lattice.spacing; }
+    bool is_solid(std::size_t cell) const { return matter.cell_fill[cell] >= kSolid; }
+    // How deep a place lies below its surface, a spacing where that is more; outside about as far
+    // as it is away, or this.
+    static constexpr double kFar = -1;
+    double depth_at(const Vec3& place) {
+        const Vec3 at = (reference_from_world_ * place - matter.lattice.origin) / spacing();
+        const Vec3 low(std::floor(at.x()), std::floor(at.y()), std::floor(at.z()));
+        const CellId cell = matter.lattice.cell_at(low.cast<int>());
+        if (cell < 0) return kFar * spacing();
+        if (!surface_) surface_ = std::make_unique<RestSurface>(matter);
+        return spacing() * (surface_->is_rim(cell) ? -surface_->at(cell, at - low).distance : 1);
+    }
+
+    std::string name;
+    const Aggregate& matter;
+    MatterCells cells;
+    std::vector<Vec3> point;
+    Box box;
+
+  private:
+    Pose reference_from_world_;
+    std::unique_ptr<RestSurface> surface_;
+};
+
+// Whether a solid cell of the first lies well in the second.
+bool shares_cells(const Starting& a, Starting& b) {
+    const double reach = kNearer * (a.spacing() + b.spacing());
+    std::vector<Box> box;
+    for (std::size_t q = 0; q < b.cells.middle.size(); ++q) {
+        const Vec3& m = b.cells.middle[q];
+        box.push_back(b.is_solid(q) ? Box{m - Vec3::Constant(reach), m + Vec3::Constant(reach)}
+                                    : Box{});
+    }
+    for (const auto& [point, other] : near_pairs(a.cells.middle, box)) {
+        const std::size_t p = static_cast<std::size_t>(point), q = static_cast<std::size_t>(other);
+        if (!a.is_solid(p) || (a.cells.middle[p] - b.cells.middle[q]).norm() >= reach) continue;
+        if (b.depth_at(a.cells.centroid[p]) > kDeep * b.spacing()) return true;
+    }
+    return false;
+}
+
+// Of the first body, what lies in the second, about [m3]: of each cell as if its matter were a
+// layer that the other's surface is parallel to.
+double shared_volume(const Starting& a, Starting& b) {
+    double cells = 0;
+    for (std::size_t p = 0; p < a.cells.centroid.size(); ++p) {
+        const double fill = a.matter.cell_fill[p];
+        if (!(fill > 0)) continue;
+        const double depth = b.depth_at(a.cells.centroid[p]) / a.spacing();
+        cells += fill * std::clamp(0.5 + depth / fill, 0.0, 1.0);
+    }
+    const double all = cells * a.spacing() * a.spacing() * a.spacing();
+    return std::min({all, a.matter.volume(), b.matter.volume()});
+}
+
+// By how much either lies in the other [m]; 0 where that is nothing to tell of.
+double shared_depth(Starting& a, Starting& b) {
+    const double least = kTouches * std::min(a.spacing(), b.spacing());
+    const Vec3 both = a.box.high.cwiseMin(b.box.high) - a.box.low.cwiseMax(b.box.low);
+    if ((both.array() < least).any()) return 0;
+    double deepest = least;
+    for (const Vec3& point : b.point) deepest = std::max(deepest, a.depth_at(point));
+    for (const Vec3& point : a.point) deepest = std::max(deepest, b.depth_at(point));
+    return deepest > least ? deepest : 0;
+}
+
+// What is worst of its kind, and how many there are.
+struct Worst {
+    std::string who;
+    double value = 0, rank = 0;
+    int count = 0;
+
+    void add(const std::string& name, double found, double worse) {
+        if (++count == 1 || worse > rank) who = name, value = found, rank = worse;
+    }
+    // ", and so do 3 other bodies".
+    std::string others(const char* one, const char* many) const {
+        if (count < 2) return {};
+        return fmt::format(", and so {} {} other {}", count == 2 ? "does" : "do", count - 1,
+                           count == 2 ? one : many);
+    }
+};
+
 }  // namespace
 
 std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) {
-    std::vector<SolidCells> cells_of;
-    for (const NamedMatter& body : bodies) cells_of.push_back(solid_cells(*body.matter));
-    std::vector<std::unique_ptr<RestSurface>> surface(bodies.size());
-    std::vector<std::string> told;
-    for (std::size_t a = 0; a < bodies.size(); ++a) {
-        for (std::size_t b = a + 1; b < bodies.size(); ++b) {
-            const double side_a = bodies[a].matter->lattice.spacing,
-                         side_b = bodies[b].matter->lattice.spacing;
-            const double reach = kNearer * (side_a + side_b);
-            std::vector<Box> box;
-            for (const Vec3& m : cells_of[b].middle) {
-                box.push_back({m - Vec3::Constant(reach), m + Vec3::Constant(reach)});
+    if (bodies.size() < 2) return {};
+    std::vector<Starting> start(bodies.begin(), bodies.end());
+    Worst volume, depth;
+    for (std::size_t a = 0; a < start.size(); ++a) {
+        for (std::size_t b = a + 1; b < start.size(); ++b) {
+            const std::string both = fmt::format("\"{}\" and \"{}\"", start[a].name, start[b].name);
+            if (shares_cells(start[a], start[b])) {
+                const double shared = shared_volume(start[a], start[b]);
+                volume.add(both, shared, shared);
+            } else if (const double deep = shared_depth(start[a], start[b]); deep > 0) {
+                depth.add(both, deep, deep);
             }
-            std::vector<char> shared(cells_of[a].middle.size(), 0);
-            for (const auto& [point, other] : near_pairs(cells_of[a].middle, box)) {
-                const std::size_t p = static_cast<std::size_t>(point),
-                                  q = static_cast<std::size_t>(other);
-                const Vec3 way = cells_of[a].middle[p] - cells_of[b].middle[q];
-                if (way.norm() >= reach || shared[p]) continue;
-                if (!surface[b]) surface[b] = std::make_unique<RestSurface>(*bodies[b].matter);
-                shared[p] = is_deep_in(*bodies[b].matter, cells_of[b].cell[q], *surface[b],
-                                       cells_of[a].centroid[p]);
-            }
-            const auto cells = std::count(shared.begin(), shared.end(), 1);
-            if (cells == 0) continue;
-            told.push_back(
-                fmt::format("\"{}\" and \"{}\" lie in each other at the start, about {} of them: "
-                            "they will burst "
-                            "apart; put them further apart with `at`",
-                            bodies[a].name, bodies[b].name,
-                            volume_text(static_cast<double>(cells) * side_a * side_a * side_a)));
         }
+    }
+    std::vector<std::string> told;
+    if (volume.count > 0) {
+        told.push_back(fmt::format(
+            "{} lie in each other at the start, about {} of them{}: they will burst apart; put "
+            "them further apart with `at`",
+            volume.who, volume_text(volume.value), volume.others("pair", "pairs")));
+    }
+    if (depth.count > 0) {
+        told.push_back(fmt::format(
+            "{} start {} deep in each other{}: that throws them apart; put them further apart "
+            "with `at`",
+            depth.who, quantity_text(depth.value, Quantity::length),
+            depth.others("pair", "pairs")));
     }
     return told;
 }
 
 std::vector<std::string> tool_overlaps(const Machine& machine,
-                                       const std::vector<NamedMatter>& bodies) {
+                                       const std::vector<NamedMatter>& bodies,
+                                       bool to_move_as_molded) {
+    const std::size_t first = to_move_as_molded ? 0 : 1;
     std::vector<std::string> told;
-    if (bodies.size() < 2 || machine.apparatus.tool.empty()) return told;
+    if (bodies.size() <= first || machine.apparatus.tool.empty()) return told;
     const std::vector<Pose> world_from_tool = drive_at(machine, 0, 1).world_from_tool;
     const Vec3 work_piece = machine.frame.world_from_work.translation;
-    for (std::size_t b = 1; b < bodies.size(); ++b) {
+    const auto set_up = [&](std::size_t tool) {
+        return fmt::format("the tool {} of the machine {}", machine.apparatus.tool[tool].name,
+                           machine.spec.name);
+    };
+    std::vector<Worst> deep(world_from_tool.size());
+    for (std::size_t b = first; b < bodies.size(); ++b) {
+        const double least =
+            (to_move_as_molded ? kTouches : kDeep) * bodies[b].matter->lattice.spacing;
         const std::vector<Vec3> points = touching_points(*bodies[b].matter);
         const Vec3 middle = box_of(points).center();
         for (std::size_t n = 0; n < world_from_tool.size(); ++n) {
@@ -170,21 +256,24 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
             } else {
                 standing.deep = -nearest_distance(tool.shape, world_from_tool[n], points);
             }
-            const std::string start = fmt::format("\"{}\" starts", bodies[b].name),
-                              which = fmt::format(
-                                  "the tool {} of the machine {}, which is set up "
-                                  "by the work-piece alone",
-                                  tool.name, machine.spec.name);
-            if (!standing.astray.empty()) {
+            if (!standing.astray.empty() && b > 0) {
                 told.push_back(fmt::format(
-                    "{} {} {} and ends somewhere, although it is drawn endless: put the body "
-                    "elsewhere with `at`, or make the tool larger or set it lower",
-                    start, standing.astray, which));
-            } else if (standing.deep > kDeep * bodies[b].matter->lattice.spacing) {
-                told.push_back(fmt::format("{} {} deep in {}: put it elsewhere with `at`", start,
-                                           quantity_text(standing.deep, Quantity::length), which));
+                    "\"{}\" starts {} {}, which is set up by the work-piece alone and ends "
+                    "somewhere, although it is drawn endless: put the body elsewhere with `at`, or "
+                    "make the tool larger or set it lower",
+                    bodies[b].name, standing.astray, set_up(n)));
+            } else if (standing.deep > least) {
+                deep[n].add(bodies[b].name, standing.deep, standing.deep);
             }
         }
+    }
+    for (std::size_t n = 0; n < deep.size(); ++n) {
+        if (deep[n].count == 0) continue;
+        told.push_back(fmt::format(
+            "\"{}\" starts {} deep in {}, which is set up by the work-piece alone{}: put {} "
+            "elsewhere with `at`, or the tool",
+            deep[n].who, quantity_text(deep[n].value, Quantity::length), set_up(n),
+            deep[n].others("body", "bodies"), deep[n].count == 1 ? "it" : "them"));
     }
     return told;
 }

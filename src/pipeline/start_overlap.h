@@ -10,12 +10,17 @@
 
 namespace swage {
 
-// A sentence for every two bodies that share the room of a cell or more.
+// Of bodies as they were molded: a sentence for all pairs that share the room of a cell or more,
+// and one for those that lie in each other by more than a twentieth of a cell. Each names the pair
+// that is worst.
 std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies);
 
-// A sentence for every body beside the work-piece, which is the first, that starts in a tool of the
-// machine, past the sides of one that is drawn endless, or behind it.
+// A sentence for every tool of the machine that bodies beside the work-piece, which is the first,
+// start in, and for every body past the sides of one that is drawn endless, or behind it. As they
+// were molded, and to move, the work-piece too, and from a twentieth of a cell on: nothing presses
+// there by right.
 std::vector<std::string> tool_overlaps(const Machine& machine,
-                                       const std::vector<NamedMatter>& bodies);
+                                       const std::vector<NamedMatter>& bodies,
+                                       bool to_move_as_molded = false);
 
 }  // namespace swage

@@ -42,9 +42,10 @@ double shorter_by(const LimitedPoints& points) {
     return high;
 }
 
-// To two digits, downward.
+// Of what is 1 at most, to two digits, downward.
 double rounded_down(double value) {
-    const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
+    double digit = 1;
+    while (value < 10 * digit) digit /= 10;
     return digit * std::floor(value / digit * (1 + 1e-12));
 }
 

@@ -94,14 +94,14 @@ TEST_CASE("a cut through matter at rest is said to have made no energy") {
     }
 }
 
-TEST_CASE("what starts a little deep in the floor, or in another body, is said to be thrown off") {
+TEST_CASE("what starts pressed into the floor, or another body, is said to be thrown off") {
     const auto beside = [](const std::string& at) {
         return told_of(kBar,
                        "[[body]]\nname = \"other\"\nfile = \"body.obj\"\nacross = 2\nat = " + at +
                            "\n[[stage]]\nmachine = \"floor\"\ndrop = 0\nframes = 2\n"
                            "duration = \"20 ms\"\ngravity = 9.81\n");
     };
-    const std::string thrown = "starts a little deep in what it touches, which throws it off";
+    const std::string thrown = "starts pressed into what it touches, which throws it off";
     CHECK(says(beside("[0.2, -0.001, 0]"), "other " + thrown));
     CHECK(says(beside("[0.0, 0.019, 0]"), "other " + thrown));
     CHECK(!says(beside("[0.2, 0, 0]"), thrown));

@@ -129,10 +129,10 @@ TEST_CASE("what is thrown off as a stage begins is told from what, with what can
     const auto says = [](const std::string& text, const char* words) {
         return text.find(words) != std::string::npos;
     };
-    CHECK(says(told(0, 1), "bar starts a little deep in what it touches"));
+    CHECK(says(told(0, 1), "bar starts pressed into what it touches"));
     CHECK(says(told(0, 1), "with `at`"));
     CHECK(says(told(0, 9), "leave a gap"));
-    CHECK(says(told(5, 9), "bar starts a little deep in itself, or its pieces in each other"));
+    CHECK(says(told(5, 9), "bar starts pressed into itself, or its pieces in each other"));
     CHECK(says(told(5, 9), "without self_contact = true"));
     for (const double among : {0.0, 5.0}) CHECK_FALSE(says(told(among, 9), "with `at`"));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/start_overlap.h"
 
+#include "geometry/make_shape.h"
+#include "mold/mold.h"
 #include "scene/find.h"
 #include "scene/read_machine.h"
 #include "tests/catch.h"
@@ -25,10 +27,64 @@ TEST_CASE("bodies that lie in each other at the start are told, those that touch
     CHECK(told(0.1, 4, 0.3)[0].find("about 0.016 m3 of them") != std::string::npos);
     CHECK(told(0.04, 5, 0.1).size() == 1);
     CHECK(told(0.04, 5, 0.03).size() == 1);  // wholly inside
+    // A little deep: an eighth of the smaller cells, not a thirtieth.
+    for (const auto& [spacing, across, touches] :
+         {std::tuple(0.1, 4, 0.4), std::tuple(0.04, 5, 0.3)}) {
+        INFO(spacing);
+        CHECK(told(spacing, across, touches - 0.03 * spacing).empty());
+        const std::vector<std::string> deep = told(spacing, across, touches - 0.125 * spacing);
+        REQUIRE(deep.size() == 1);
+        CHECK(deep[0].find("deep in each other: that throws them apart") != std::string::npos);
+    }
+    CHECK(told(0.1, 4, 0.388)[0].find("start 1.2 cm deep") != std::string::npos);
+}
+
+TEST_CASE("bodies of which many start in each other are told in one line that names the worst") {
+    for (const double deeper : {0.005, 0.1}) {
+        std::vector<Aggregate> row(4, test::make_block(3, 3, 3, 0.1, Material{}));
+        const double at[] = {0, 0.3, 0.6 - deeper, 0.9 - 3 * deeper};
+        std::vector<NamedMatter> named;
+        for (int n = 0; n < 4; ++n) {
+            for (double& x : row[n].particle_position.x) x += at[n];
+            named.push_back({std::string(1, char('a' + n)), &row[n]});
+        }
+        const std::vector<std::string> told = start_overlaps(named);
+        INFO(deeper);
+        REQUIRE(told.size() == 1);
+        CHECK(told[0].find("\"c\" and \"d\"") == 0);
+        CHECK(told[0].find(", and so does 1 other pair: ") != std::string::npos);
+    }
+}
+
+TEST_CASE("bodies share no more than the smaller of them holds, about what they do") {
+    const auto ball = [](double radius, double x) {
+        MoldSettings settings;
+        settings.spacing = 0.02;
+        Aggregate ball =
+            mold(make_shape("sphere", {{"diameter", 2 * radius}}).mesh, Material{}, settings);
+        for (double& at : ball.particle_position.x) at += x;
+        return ball;
+    };
+    const auto shared = [](const Aggregate& one, const Aggregate& other) {
+        const std::vector<std::string> told = start_overlaps({{"one", &one}, {"other", &other}});
+        REQUIRE(told.size() == 1);
+        const std::string word = "about ";
+        return std::stod(told[0].substr(told[0].find(word) + word.size()));  // [cm3]
+    };
+    const Aggregate large = ball(0.06, 0), small = ball(0.04, 0.005), aside = ball(0.06, 0.05);
+    const double most = 1e6 * small.volume();
+    CHECK(shared(large, large) == Approx(1e6 * large.volume()).epsilon(0.02));
+    CHECK(shared(large, large) <= 1e6 * large.volume() * 1.0001);
+    CHECK(shared(small, large) == Approx(most).epsilon(0.02));
+    CHECK(shared(large, small) == Approx(most).epsilon(0.25));
+    CHECK(shared(large, small) <= most * 1.0001);
+    // A lens: pi / 12 (4 R + d) (2 R - d)^2.
+    CHECK(shared(large, aside) == Approx(371.6).epsilon(0.05));
 }
 
 TEST_CASE(
-    "round bodies with air between them do not lie in each other, whatever their cells hold") {
+    "round bodies that touch, or with air between them, do not lie in each other, whatever their "
+    "cells hold") {
     for (const double a : {0.022, 0.03, 0.041}) {
         const auto ball = [&](double x) {
             const int count = static_cast<int>(0.14 / a) + 2;
@@ -37,7 +93,7 @@ TEST_CASE(
                                     middle - Vec3::Constant(0.07), Vec3i::Constant(count), a);
         };
         const Aggregate one = ball(0);
-        for (const double away : {0.1205, 0.123, 0.13}) {
+        for (const double away : {0.12, 0.1205, 0.123, 0.13}) {
             const Aggregate other = ball(away);
             INFO(a << " " << away);
             CHECK(start_overlaps({{"one", &one}, {"other", &other}}).empty());
@@ -57,6 +113,7 @@ TEST_CASE("a body beside the work-piece that starts in, beyond or under the floo
         build_machine(*floor.machine, {},
                       place_work_frame(work_piece, WorldAxis::x, WorldAxis::y, true), work_piece);
     int other_cells = 4;
+    bool to_move_as_molded = false;
     const auto told = [&](const Vec3& at) {
         const double side = other_cells == 1 ? 0.8 : 0.05;
         Aggregate other = test::make_block(other_cells, other_cells, other_cells, side, Material{});
@@ -64,7 +121,7 @@ TEST_CASE("a body beside the work-piece that starts in, beyond or under the floo
             other.particle_position.set(p, other.particle_position.at(p) + at);
         }
         const std::vector<std::string> all =
-            tool_overlaps(machine, {{"cube", &work_piece}, {"other", &other}});
+            tool_overlaps(machine, {{"cube", &work_piece}, {"other", &other}}, to_move_as_molded);
         CHECK(all.size() <= 1);
         return all.empty() ? "" : all[0];
     };
@@ -81,4 +138,7 @@ TEST_CASE("a body beside the work-piece that starts in, beyond or under the floo
           std::string::npos);
     CHECK(told({0, 0.1, 2.1}).find("starts with its middle past the edge of the tool floor") !=
           std::string::npos);
+    to_move_as_molded = true;
+    CHECK(told({0, -0.205, 0}).find("\"other\" starts 5 mm deep in the tool floor") == 0);
+    for (const double off : {-1e-3, 0.0, 1e-3}) CHECK(told({0, -0.2 + off, 0}) == "");
 }
