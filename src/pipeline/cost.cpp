@@ -47,6 +47,7 @@ constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and t
 constexpr double kDrawingAddresses = 550e6;
 constexpr double kLongestRun = 30 * 86400.0;
 constexpr double kFarShorter = 4;          // a step than a body needs
+constexpr double kFarMore = 10;            // steps than explicit ones
 constexpr double kCountedCells = 300'000;  // molded for real by count_cost
 
 // The stable step of a full lattice: neither slivers nor damping.
@@ -135,6 +136,27 @@ double softest_give(const SceneSpec& scene, const std::vector<Aggregate>& matter
     return most;
 }
 
+// Of a solver that takes far more than explicit steps, how many times as many, about.
+double more_steps(const SceneSpec& scene, Solver solver) {
+    if (solver == Solver::energy_stepped) return kEnergyStepsPerStep;
+    return solver == Solver::euler ? 1 / std::max(least_damping(scene), 1e-3) : 1;
+}
+
+// Of the stages that take far more steps than explicit ones would, those with the same solver as
+// one.
+void note_more_steps(const SceneSpec& scene, RunCost& cost) {
+    for (const Solver solver : {Solver::energy_stepped, Solver::euler}) {
+        const double more = more_steps(scene, solver);
+        const auto by = [&](const StageSpec& stage) { return stage.sim.solver == solver; };
+        const auto first = std::find_if(scene.stage.begin(), scene.stage.end(), by);
+        if (first == scene.stage.end() || more < kFarMore) continue;
+        cost.note.push_back(fmt::format(
+            "{}: solver = \"{}\" takes about {:.2g} times the steps of \"explicit\"{}", first->name,
+            name_of(solver), more,
+            solver == Solver::energy_stepped ? " while anything swings, turns or is driven" : ""));
+    }
+}
+
 // `matter`: of each body, or empty. `equilibria`: of the first stage, 0: not known.
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
             const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
@@ -162,11 +184,7 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
             cost.steps += steps, work += kImplicitWork * steps;
             if (cost.slow.empty()) cost.slow = "what is thin, or hits a tool,";
         } else {
-            const double shorter = solver == Solver::energy_stepped ? kEnergyStepsPerStep
-                                   : solver == Solver::euler
-                                       ? 1 / std::max(least_damping(scene), 1e-3)
-                                       : 1;
-            const double steps = shorter * scene.duration_of(stage) *
+            const double steps = more_steps(scene, solver) * scene.duration_of(stage) *
                                  steps_per_second(scene, cost, matter, stage.sim);
             cost.steps += steps, work += law_share(scene) * steps;
         }
@@ -235,6 +253,7 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         cost.mold.bytes += mold.bytes;
     }
     add_up(cost, scene, input, options, {}, 0);
+    note_more_steps(scene, cost);
     return cost;
 }
 

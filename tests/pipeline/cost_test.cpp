@@ -192,6 +192,28 @@ TEST_CASE("a step that damps, or of matter that yields, is told to take longer")
     CHECK(seconds_a_step(0.02, 1e6) > 1.2 * damped);
 }
 
+TEST_CASE("a solver that takes many times the steps of explicit ones is said to") {
+    BarScene bar(4);
+    bar.scene.stage.resize(2);
+    for (StageSpec& stage : bar.scene.stage) {
+        stage.duration = 0.1;
+        stage.sim.solver = Solver::explicit_steps;
+    }
+    CHECK(bar.cost().note.empty());
+    const double few = bar.cost().steps;
+    for (StageSpec& stage : bar.scene.stage) stage.sim.solver = Solver::energy_stepped;
+    const RunCost cost = bar.cost();
+    REQUIRE(cost.note.size() == 1);
+    CHECK(cost.note[0].find(fmt::format("solver = \"energy-stepped\" takes about {:.2g} times the "
+                                        "steps of \"explicit\"",
+                                        cost.steps / few)) != std::string::npos);
+    for (StageSpec& stage : bar.scene.stage) stage.sim.solver = Solver::euler;
+    bar.scene.body[0].material.damping_ratio = 0.05;
+    CHECK(bar.cost().note.size() == 1);
+    bar.scene.body[0].material.damping_ratio = 0.5;
+    CHECK(bar.cost().note.empty());
+}
+
 TEST_CASE("implicit steps are told by the frame, each taking hundreds of times an explicit one") {
     BarScene bar(6);
     bar.scene.stage[0].frames = 10;
