@@ -94,7 +94,7 @@ double unaccounted(const Books& first, const Books& b, double stored, double lea
 
 // What a body starts deep in, which throws it so, and what can be done about it.
 std::string how_deep(const Books& last, const StageEnd& end, const std::string& thrown) {
-    const bool later = end.first_frame > 1;
+    const bool later = end.first_frame > 2;  // the first frame of all is the start
     if (end.bodies.size() == 1 && last.among_at_start > 0.5 * last.contact_at_start) {
         return fmt::format(
             "starts pressed into itself, or its pieces in each other, which "

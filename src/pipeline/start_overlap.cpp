@@ -177,6 +177,11 @@ double shared_depth(Starting& a, Starting& b) {
     return deepest > least ? deepest : 0;
 }
 
+// Rounded first, for surfaces are known as floats: a little less than 1 mm is no 1000 um.
+std::string depth_text(double depth) {
+    return quantity_text(std::stod(fmt::format("{:.3g}", depth)), Quantity::length);
+}
+
 // What is worst of its kind, and how many there are.
 struct Worst {
     std::string who;
@@ -222,8 +227,7 @@ std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) 
         told.push_back(fmt::format(
             "{} start {} deep in each other{}: that throws them apart; put them further apart "
             "with `at`",
-            depth.who, quantity_text(depth.value, Quantity::length),
-            depth.others("pair", "pairs")));
+            depth.who, depth_text(depth.value), depth.others("pair", "pairs")));
     }
     return told;
 }
@@ -272,8 +276,8 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
         told.push_back(fmt::format(
             "\"{}\" starts {} deep in {}, which is set up by the work-piece alone{}: put {} "
             "elsewhere with `at`, or the tool",
-            deep[n].who, quantity_text(deep[n].value, Quantity::length), set_up(n),
-            deep[n].others("body", "bodies"), deep[n].count == 1 ? "it" : "them"));
+            deep[n].who, depth_text(deep[n].value), set_up(n), deep[n].others("body", "bodies"),
+            deep[n].count == 1 ? "it" : "them"));
     }
     return told;
 }

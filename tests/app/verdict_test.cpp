@@ -105,6 +105,7 @@ TEST_CASE("what starts pressed into the floor, or another body, is said to be th
     CHECK(says(beside("[0.2, -0.001, 0]"), "other " + thrown));
     const std::string both = beside("[0.0, 0.019, 0]");
     CHECK(says(both, thrown));
+    CHECK(says(both, "put it further off, with `at`"));
     CHECK(says(both, ", and so is 1 other body: "));
     CHECK(says(both, "start 1 mm deep in each other"));
     CHECK(says(beside("[0.2, -0.001, 0]"), "\"other\" starts 1 mm deep in the tool floor"));
