@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shadow and occlusion, as the pictures show them.
+#include "render/camera.h"
 #include "tests/render/drawn.h"
 
 using namespace swage;
@@ -121,4 +122,52 @@ TEST_CASE("a large picture is shaded as a small one", "[renderer]") {
     apart /= (small.width - 4.0) * (small.height - 4.0);
     INFO("apart by " << apart << " of 255");
     CHECK(apart < 1);
+}
+
+TEST_CASE("a crease is as dark through any lens and from any distance, and never black",
+          "[renderer]") {
+    if (!can_draw()) return;
+    const TriMesh board = surface_of(BoxShape{Vec3(2, 0.2, 1), 0});
+    const SurfaceMaterial white = colored({0.8, 0.8, 0.8});
+    const Quat on_edge(Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitX()));
+    // Seen from below, where the key light does not reach.
+    const std::vector<DrawItem> corner = {
+        {&board, nullptr, {Quat::Identity(), {0, 0.7, 0.4}}, white},  // its underside at 0.6
+        {&board, nullptr, {on_edge, {0, 0.5, -0.2}}, white}};         // its front at -0.1
+    // Brightness of the underside at some distances from the crease.
+    const auto seen = [&](double zoom, double lens, int width, int height) {
+        RenderSettings settings = small_picture();
+        settings.ground = false;
+        settings.width = width, settings.height = height;
+        settings.field_of_view = lens;
+        settings.camera[0].azimuth = 0;
+        settings.camera[0].elevation = -0.6;
+        settings.camera[0].zoom = zoom;
+        const Image image = drawn(settings, corner);
+        const View view = CameraPath(settings, kAction).at(0);
+        std::vector<double> light;
+        for (const double off : {0.015, 0.03, 0.06, 0.12, 0.25}) {
+            const Vec3 p = view.in_view({0, 0.6, -0.1 + off});
+            const double high = 0.5 * height * (1 + p.y() / p.z() / std::tan(0.5 * lens));
+            light.push_back(brightness(image, width / 2, static_cast<int>(high)));
+        }
+        return light;
+    };
+    const std::vector<double> usual = seen(1, 0.6, 1280, 720);
+    CHECK(usual.front() < usual.back() - 25);  // a crease, indeed
+    const auto same = [&](const std::vector<double>& light) {
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            INFO("place " << i << ": " << light[i] << " where it was " << usual[i]);
+            CHECK(std::abs(light[i] - usual[i]) < 8);
+        }
+    };
+    for (const double zoom : {0.8, 1.6, 2.2, 3.5}) {
+        INFO("zoom " << zoom);
+        same(seen(zoom, 0.6, 960, 540));
+    }
+    for (const double lens : {0.2, 1.05}) {
+        INFO("lens " << lens);
+        same(seen(2.2, lens, 960, 540));
+    }
+    same(seen(1, 0.6, 2560, 1440));
 }
