@@ -39,16 +39,18 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     const auto radians = [&](const std::optional<double>& degrees) {
         return degrees ? std::optional(*degrees * kDegree) : std::nullopt;
     };
-    const CameraChange change{radians(given.azimuth), radians(given.elevation), given.zoom,
-                              radians(given.turn)};
+    const auto place = [](const std::vector<double>& p) { return Vec3(p[0], p[1], p[2]); };
+    CameraChange change{radians(given.azimuth), radians(given.elevation), given.zoom,
+                        radians(given.turn)};
+    if (given.eye.empty() && !given.target.empty()) change.target = place(given.target);
     if (change.any() && stands_at_eye(settings.camera)) {
         log_info("the scene's eye and target give way to the camera that is asked for");
     }
     settings.camera = changed_camera(std::move(settings.camera), change);
     if (!given.eye.empty()) {
         CameraKey key;
-        key.eye = Vec3(given.eye[0], given.eye[1], given.eye[2]);
-        key.target = Vec3(given.target[0], given.target[1], given.target[2]);
+        key.eye = place(given.eye);
+        key.target = place(given.target);
         if (key.eye == key.target) {
             fail(ExitCode::command_line, "--camera-eye and --camera-target are the same point");
         }
@@ -126,7 +128,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
                      "where the camera stands about the upward axis, at the film's start: 0 is +z "
                      "and 90 +x, or with z up +x and +y. What the scene has it do from there on "
                      "(orbit, keys) it does; an eye and target of the scene give way to this and "
-                     "the next three")
+                     "the next three, and to a target alone")
         ->check(kFinite)
         ->type_name("DEG");
     command
@@ -146,12 +148,13 @@ void add_render_command(CLI::App& app, Action& chosen) {
     CLI::Option* eye = command->add_option(
         "--camera-eye", given.eye,
         "where the camera stands [m], all through the film, instead of all these and of what the "
-        "scene says of it");
+        "scene says of it; needs a target");
     CLI::Option* target =
-        command->add_option("--camera-target", given.target, "what it looks at [m]");
+        command->add_option("--camera-target", given.target,
+                            "what it looks at [m], from the eye, or without one from where the "
+                            "others say, as far away as what shows the whole action");
     for (CLI::Option* place : {eye, target}) place->expected(3)->check(kFinite)->type_name("X Y Z");
     eye->needs(target);
-    target->needs(eye);
     for (const char* other :
          {"--camera-azimuth", "--camera-elevation", "--camera-zoom", "--camera-turn"}) {
         eye->excludes(command->get_option(other));

@@ -124,7 +124,7 @@ bool comes_round(const std::vector<CameraKey>& keys) {
     const CameraKey &first = keys.front(), &last = keys.back();
     const double turns = (last.azimuth - first.azimuth) / (2 * kPi), whole = std::round(turns);
     return whole != 0 && std::abs(turns - whole) < 1e-9 && first.elevation == last.elevation &&
-           first.zoom == last.zoom;
+           first.zoom == last.zoom && first.target == last.target;
 }
 
 double still_share(const std::vector<CameraKey>& keys, int still, int count) {
@@ -147,7 +147,11 @@ CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds,
             value_.pop_back();
         }
         share_.push_back(key.at);
-        value_.push_back({key.azimuth, key.elevation, std::log(std::max(1e-6, key.zoom))});
+        const Mat3 rotation = orbit_rotation(key.azimuth, key.elevation);
+        const Vec3 aim =
+            key.target.value_or(frame_points(outline_, bounds_.center(), rotation, lens_).target);
+        value_.push_back({key.azimuth, key.elevation, std::log(std::max(1e-6, key.zoom)), aim.x(),
+                          aim.y(), aim.z(), key.target ? 1.0 : 0.0});
     }
     distance_ = 0;
     constexpr int kSamples = 64;
@@ -168,9 +172,9 @@ CameraPath::CameraPath(const RenderSettings& settings, const Box& action_bounds,
             eye = *named->eye;
             target = *named->target;
         } else {
-            const View view = orbit(value_[k][0], value_[k][1], std::exp(value_[k][2]));
+            const View view = orbit(value_[k]);
             eye = view.eye;
-            const double depth = -view.in_view(bounds_.center()).z();
+            const double depth = -view.in_view(named->target.value_or(bounds_.center())).z();
             target = eye - depth * view.world_from_view.col(2);
         }
         places.push_back({eye.x(), eye.y(), eye.z(), target.x(), target.y(), target.z()});
@@ -187,16 +191,18 @@ std::vector<double> CameraPath::interpolated(double film_share) const {
     return result;
 }
 
-View CameraPath::orbit(double azimuth, double elevation, double zoom) const {
-    const Mat3 rotation = orbit_rotation(azimuth, elevation);
+View CameraPath::orbit(const std::vector<double>& value) const {
+    const Mat3 rotation = orbit_rotation(value[0], value[1]);
     const Framing framing = frame_points(outline_, bounds_.center(), rotation, lens_);
-    return {framing.target + distance_ / zoom * rotation.col(2), rotation};
+    const Vec3 aim = {value[3], value[4], value[5]};
+    const Vec3 middle = framing.target + value[6] * (aim - framing.target);
+    return {middle + distance_ / std::exp(value[2]) * rotation.col(2), rotation};
 }
 
 View CameraPath::at(double film_share) const {
     const std::vector<double> v = interpolated(film_share);
     if (by_eye_) return look_at({v[0], v[1], v[2]}, {v[3], v[4], v[5]});
-    return orbit(v[0], v[1], std::exp(v[2]));
+    return orbit(v);
 }
 
 }  // namespace swage

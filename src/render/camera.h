@@ -72,13 +72,15 @@ class CameraPath {
     View at(double film_share) const;
 
   private:
-    View orbit(double azimuth, double elevation, double zoom) const;
+    // At azimuth, elevation, log of zoom, and what is looked at with a weight: 0 is the framed
+    // action.
+    View orbit(const std::vector<double>& value) const;
     std::vector<double> interpolated(double film_share) const;
 
     Box bounds_;
     std::vector<Vec3> outline_;
     Lens lens_;
-    bool by_eye_;  // a key's values are eye and target; else azimuth, elevation, log of zoom
+    bool by_eye_;  // a key's values are eye and target; else those of an orbit
     bool comes_round_;
     double distance_ = 1;
     std::vector<double> share_;

@@ -35,6 +35,7 @@ std::vector<CameraKey> changed_camera(std::vector<CameraKey> keys, const CameraC
         key.azimuth = change.turn ? start + key.at * *change.turn : key.azimuth + shift;
         if (change.elevation) key.elevation = *change.elevation;
         if (change.zoom) key.zoom = *change.zoom;
+        if (change.target) key.target = change.target;
     }
     return keys;
 }

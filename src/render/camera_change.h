@@ -14,7 +14,8 @@ struct CameraChange {
     std::optional<double> azimuth = {};  // where the flight begins; it goes on from there as it did
     std::optional<double> elevation = {}, zoom = {};  // all through the flight
     std::optional<double> turn = {};                  // how far it goes round, evenly
-    bool any() const { return azimuth || elevation || zoom || turn; }
+    std::optional<Vec3> target = {};                  // looked at all through the flight [m]
+    bool any() const { return azimuth || elevation || zoom || turn || target; }
 };
 
 bool stands_at_eye(const std::vector<CameraKey>& keys);  // at any of them

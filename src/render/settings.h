@@ -21,10 +21,12 @@ inline constexpr std::array<const char*, 3> kGlName = {"auto", "osmesa", "egl"};
 // between keys the values move smoothly.
 struct CameraKey {
     double at = 0;
-    double azimuth = 0.6;             // about up, from the world's +z toward +x where y is up
-    double elevation = 0.35;          // above the horizon, -pi/2 to pi/2
-    double zoom = 1.0;                // 1 frames the bodies' whole way; 2 is twice as near; > 0
-    std::optional<Vec3> eye, target;  // both given: these instead of azimuth, elevation and zoom
+    double azimuth = 0.6;     // about up, from the world's +z toward +x where y is up
+    double elevation = 0.35;  // above the horizon, -pi/2 to pi/2
+    double zoom = 1.0;        // 1 frames the bodies' whole way; 2 is twice as near; > 0
+    // Eye and target: these instead of azimuth, elevation and zoom. A target alone: what the camera
+    // looks at from there, instead of the middle of the action.
+    std::optional<Vec3> eye, target;
 };
 
 struct RenderSettings {

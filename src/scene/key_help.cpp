@@ -166,7 +166,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render.camera]", "elevation", "above the horizon", "angle, -90 deg to 90 deg"},
         {"[render.camera]", "zoom", "1 frames the bodies on all of their way"},
         {"[render.camera]", "eye", "with target, instead of azimuth, elevation and zoom"},
-        {"[render.camera]", "target", "what the eye looks at"},
+        {"[render.camera]", "target",
+         "what is looked at, from the eye or, without one, from azimuth, elevation and zoom"},
         {"[render.camera]", "orbit",
          "by which azimuth turns over the film, at one pace if by whole turns, whose last still is "
          "a step short of the first"},

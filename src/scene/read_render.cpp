@@ -46,9 +46,12 @@ void read_view(TableReader& table, CameraKey& key) {
     const bool has_eye = table.vector("eye", Quantity::length, eye);
     const bool has_target = table.vector("target", Quantity::length, target);
     if (!has_eye && !has_target) return;
-    if (has_eye != has_target) {
-        table.mistake(has_eye ? "eye" : "target",
-                      "eye and target are given together or not at all");
+    if (!has_eye) {
+        key.target = target;
+        return;
+    }
+    if (!has_target) {
+        table.mistake("eye", "an eye needs a target to look at");
         return;
     }
     if (orbits[0] || orbits[1] || orbits[2]) {

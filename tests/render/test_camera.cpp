@@ -157,6 +157,34 @@ TEST_CASE("an eye and a target are taken as they are, even straight down", "[cam
     CHECK(t.z() < 0);
 }
 
+TEST_CASE("a target without an eye is looked at from where azimuth, elevation and zoom say",
+          "[camera]") {
+    const Vec3 target(0.3, -0.2, 0.1);
+    RenderSettings settings;
+    settings.camera = changed_camera({CameraKey{}}, {.azimuth = 1.2, .zoom = 4, .target = target});
+    const View view = CameraPath(settings, kBoxes[0]).at(0.5);
+    const Vec3 seen = view.in_view(target);
+    CHECK(std::hypot(seen.x(), seen.y()) < 1e-12);
+    RenderSettings framing = settings;
+    framing.camera[0].target.reset();
+    const View framed = CameraPath(framing, kBoxes[0]).at(0.5);
+    CHECK((view.world_from_view - framed.world_from_view).norm() < 1e-12);
+    CHECK(-seen.z() == Approx(-framed.in_view(kBoxes[0].center()).z()));
+    // A flight from the whole action to the target arrives at it.
+    settings.camera.insert(settings.camera.begin(), framing.camera[0]);
+    settings.camera[1].at = 1;
+    const CameraPath flight(settings, kBoxes[0]);
+    CHECK((flight.at(0).eye - framed.eye).norm() < 1e-12);
+    CHECK((flight.at(1).eye - view.eye).norm() < 1e-12);
+    // An eye and a target of the scene give way to another target.
+    CameraKey eye;
+    eye.eye = Vec3(1, 2, 3);
+    eye.target = Vec3(0, 0, 0);
+    const auto changed = changed_camera({eye}, {.target = target});
+    CHECK(!changed[0].eye);
+    CHECK(changed[0].target == target);
+}
+
 TEST_CASE("depth holds the action, also from inside it", "[camera]") {
     const Box box = kBoxes[0];
     for (const double at : {0.0, 0.5, 0.99, 3.0, 50.0}) {

@@ -274,7 +274,7 @@ TEST_CASE("values out of range are refused with the range") {
         {"camera at its target",
          render("camera = {eye = [1, 2, 3], target = [1, 2, 3]}"),
          {"11:17: eye and target are the same point"}},
-        {"eye alone", render("camera = {eye = [1, 2, 3]}"), {"given together or not at all"}},
+        {"eye alone", render("camera = {eye = [1, 2, 3]}"), {"an eye needs a target"}},
         {"eye and zoom",
          render("camera = {eye = [1, 2, 3], target = [0, 0, 0], zoom = 2}"),
          {"eye and target stand instead of azimuth"}},

@@ -237,7 +237,7 @@ machine = "bend"
 [render.camera]
 keys = [
     {at = 1, eye = [0, "50 cm", 1], target = [0, 0, 0]},
-    {at = 0, azimuth = "20 deg"},
+    {at = 0, azimuth = "20 deg", target = ["10 cm", 0, 0]},
 ]
 )");
     INFO(told(reading.mistakes, scratch.folder()));
@@ -245,6 +245,8 @@ keys = [
     const auto& camera = reading.scene->render.camera;
     REQUIRE(camera.size() == 2);
     CHECK(camera[0].azimuth == Approx(20 * kPi / 180));
+    CHECK(camera[0].target.value() == Vec3(0.1, 0, 0));
+    CHECK(!camera[0].eye);
     CHECK(camera[1].eye.value() == Vec3(0, 0.5, 1));
     CHECK(camera[1].target.value() == Vec3(0, 0, 0));
 }
