@@ -178,7 +178,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(CLI::IsMember(std::vector<std::string>(kGlName.begin(), kGlName.end())));
     command->add_flag("--no-film", given.no_film, "stills only");
     command->add_flag("--no-tools", given.no_tools, "the work-piece alone");
-    command->add_flag("--no-ground", given.no_ground, "no ground");
+    command->add_flag("--no-ground", given.no_ground, "no ground, and no floor that stands for it");
     command->add_flag("--json", given.json, "print one JSON object");
 }
 

@@ -24,8 +24,12 @@ namespace {
 // One frame of the run as the renderer wants it; skins and machines are read when they change.
 class FrameSource {
   public:
-    FrameSource(const FrameStore& store, bool tools, const Quat& drawn_from_world)
-        : store_(store), tools_(tools), drawn_from_world_{drawn_from_world, Vec3::Zero()} {}
+    FrameSource(const FrameStore& store, const RenderSettings& settings,
+                const Quat& drawn_from_world)
+        : store_(store),
+          tools_(settings.tools),
+          ground_(settings.ground),
+          drawn_from_world_{drawn_from_world, Vec3::Zero()} {}
 
     Picture picture(int frame) {
         StoredFrame stored = store_.frame(frame - 1);
@@ -46,11 +50,12 @@ class FrameSource {
                 {&body.skin, &body.position, drawn_from_world_, std::nullopt, false});
         }
         for (std::size_t b = 0; tools_ && b < machine_.size(); ++b) {
-            if (machine_[b].surface.triangle.empty()) continue;
+            const Finish finish = machine_[b].finish;
+            const bool hidden = finish == Finish::endless && !ground_;  // it stands for the ground
+            if (hidden || machine_[b].surface.triangle.empty()) continue;
             SurfaceMaterial look;
             look.name = machine_[b].name;
             look.color = machine_[b].color;
-            const Finish finish = machine_[b].finish;
             look.roughness = finish == Finish::metal ? 0.4 : 0.95;
             look.metallic = finish == Finish::metal ? 0.6 : 0;
             picture.item.push_back({&machine_[b].surface, nullptr,
@@ -62,7 +67,7 @@ class FrameSource {
 
   private:
     const FrameStore& store_;
-    bool tools_;
+    bool tools_, ground_;
     Pose drawn_from_world_;
     struct Body {
         int skin_id = -1;
@@ -127,7 +132,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     }
     const std::vector<int> on_sheet = sheet_frames(frames);
     std::vector<Image> thumbnails;
-    FrameSource source(store, settings.tools, turn);
+    FrameSource source(store, settings, turn);
     Progress progress("draw", frames.last - frames.first + 1);
     std::future<void> writing;  // of the picture before, while the next is drawn
     for (int frame = frames.first; frame <= frames.last; ++frame) {

@@ -152,7 +152,7 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "fps", "frames a second of the film"},
         {"[render]", "film", "write film.mp4 too"},
         {"[render]", "tools", "draw tools, grips and blades"},
-        {"[render]", "ground", "draw a ground under it all"},
+        {"[render]", "ground", "draw a ground under it all; false hides an endless floor too"},
         {"[render]", "gl", "who draws"},
         {"[render]", "field_of_view", "of the camera, vertical"},
         {"[render]", "up",

@@ -11,8 +11,14 @@ namespace {
 // A run of four frames that can be drawn.
 class DrawableRun {
   public:
-    DrawableRun() {
-        const fs::path scene = put_small_scene(scratch_.path());
+    explicit DrawableRun(const std::string& render = "", const std::string& machine = "bend") {
+        const fs::path scene = put_small_scene(scratch_.path(), 3, render);
+        if (machine != "bend") {
+            std::string text = bytes_of(scene);
+            const std::string stage = "machine = \"bend\"\nangle = \"10 deg\"\n";
+            text.replace(text.find(stage), stage.size(), "machine = \"" + machine + "\"\n");
+            put_text(scene, text);
+        }
         REQUIRE(run_swage({"run", scene.string(), "--out", run().string(), "--no-render"}).code ==
                 0);
     }
@@ -78,6 +84,18 @@ TEST_CASE(
          {"frames/frame_0003.png", "frames/frame_0004.png", "frames/frame_0077.png", "film.mp4"}) {
         CHECK_FALSE(fs::exists(drawable.out() / name));
     }
+}
+
+TEST_CASE("without the ground, a floor that stands for it is not drawn either") {
+    const DrawableRun drawable("", "floor");
+    const auto still = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--frames", "2"});
+        REQUIRE(drawable.draw(drawable.out(), more).code == 0);
+        return bytes_of(drawable.out() / "frames/frame_0002.png");
+    };
+    const std::string bare = still({"--no-ground"});
+    CHECK(bare == still({"--no-ground", "--no-tools"}));
+    CHECK(bare != still({}));
 }
 
 TEST_CASE("what a drawing that was killed left unfinished goes with the next") {
