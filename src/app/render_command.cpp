@@ -27,7 +27,7 @@ struct RenderArguments {
     std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
     std::vector<double> eye, target;                                      // [m]
     std::optional<int> frames_per_second;
-    bool no_film = false, no_tools = false, no_ground = false, json = false;
+    bool film = false, no_film = false, no_tools = false, no_ground = false, json = false;
 };
 
 // As the run's scene says; what is given on the command line takes the place of that alone.
@@ -58,6 +58,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     }
     if (!given.up.empty()) settings.up = up_named(given.up);
     if (given.frames_per_second) settings.frames_per_second = *given.frames_per_second;
+    if (given.film) settings.film = true;
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;
     if (given.no_ground) settings.ground = false;
@@ -176,7 +177,9 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(CLI::Range(1, 240));
     command->add_option("--gl", given.gl, "library that draws")
         ->check(CLI::IsMember(std::vector<std::string>(kGlName.begin(), kGlName.end())));
-    command->add_flag("--no-film", given.no_film, "stills only");
+    CLI::Option* film =
+        command->add_flag("--film", given.film, "a film too, although the scene has film = false");
+    command->add_flag("--no-film", given.no_film, "stills only")->excludes(film);
     command->add_flag("--no-tools", given.no_tools, "the work-piece alone");
     command->add_flag("--no-ground", given.no_ground, "no ground, and no floor that stands for it");
     command->add_flag("--json", given.json, "print one JSON object");

@@ -86,6 +86,21 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("a film can be made of a run whose scene wants none") {
+    const DrawableRun drawable("film = false\n");
+    const fs::path out = drawable.out();
+    const auto draw = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", drawable.run().string(), "--out", out.string()});
+        return run_swage(more);
+    };
+    CHECK(draw({}).code == 0);
+    CHECK_FALSE(fs::exists(out / "film.mp4"));
+    const Outcome filmed = draw({"--film"});
+    CHECK(filmed.code == 0);
+    CHECK(fs::exists(out / "film.mp4") != (filmed.err.find("no film") != std::string::npos));
+    CHECK(draw({"--film", "--no-film"}).code == 2);
+}
+
 TEST_CASE("without the ground, a floor that stands for it is not drawn either") {
     const DrawableRun drawable("", "floor");
     const auto still = [&](std::vector<std::string> more) {
