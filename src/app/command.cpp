@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -66,11 +67,19 @@ void put_out(std::string_view text) { write_out(printable(text)); }
 
 void put_json(const Json& json) { write_out(json_text(json)); }
 
-FrameRange parse_frame_range(const std::string& text) {
+FrameRange parse_frame_range(const std::string& text, int frame_count) {
     const std::size_t dash = text.find('-');
+    const std::string first = text.substr(0, dash), last = text.substr(std::min(dash, text.size()));
     FrameRange range;
-    range.first = parse_whole(text.substr(0, dash));
-    range.last = dash == std::string::npos ? range.first : parse_whole(text.substr(dash + 1));
+    try {
+        range.first = parse_whole(first);
+        range.last = last.empty()  ? range.first
+                     : last == "-" ? std::max(range.first, frame_count)
+                                   : parse_whole(last.substr(1));
+    } catch (const CLI::ValidationError&) {
+        throw CLI::ValidationError(
+            fmt::format("\"{}\" is no frame or range of frames such as 7, 3-9 or 3-", text));
+    }
     if (range.last < range.first) {
         throw CLI::ValidationError(fmt::format("\"{}\" ends before it begins", text));
     }

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -45,8 +46,10 @@ extern const CLI::Validator kSomewhere;
 void put_out(std::string_view text);
 void put_json(const Json& json);
 
-// Reads "7" or "3-9". Throws CLI::ValidationError without the name of its option.
-FrameRange parse_frame_range(const std::string& text);
+// Reads "7", "3-9", or "3-", which ends at the last of the run's frames. Throws
+// CLI::ValidationError without the name of its option.
+FrameRange parse_frame_range(const std::string& text,
+                             int frame_count = std::numeric_limits<int>::max());
 // Reads "1280x720". Throws CLI::ValidationError.
 std::pair<int, int> parse_size(const std::string& text);
 

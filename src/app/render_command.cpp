@@ -74,7 +74,7 @@ int render(const RenderArguments& given) {
     }
     const FrameStore store(run / "motion.bin");
     FrameRange frames{1, store.frame_count()};
-    if (!given.frames.empty()) frames = parse_frame_range(given.frames);
+    if (!given.frames.empty()) frames = parse_frame_range(given.frames, store.frame_count());
 
     // The run's own pictures stay what its scene says they are.
     const fs::path out = given.out.empty() ? RunDirectory::drawn_again(run) : fs::path(given.out);
@@ -168,7 +168,11 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("--size", given.size, "of a still in pixels (default: as the scene says)")
         ->type_name("WxH")
         ->each([](const std::string& text) { parse_size(text); });
-    command->add_option("--frames", given.frames, "draw only the stills A to B; 1 is the start")
+    command
+        ->add_option(
+            "--frames", given.frames,
+            "draw only the stills A to B, A, or A- to the end; 1 is the start. The pictures "
+            "frame the whole run all the same")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "app/scene_argument.h"
+#include "pipeline/cost.h"
 #include "pipeline/run.h"
 
 namespace swage {
@@ -15,8 +16,8 @@ struct RunArguments {
 
 int run(const RunArguments& given) {
     RunOptions options;
-    if (!given.frames.empty()) options.frames = parse_frame_range(given.frames);
     const SceneSpec scene = checked_scene(given.scene);
+    if (!given.frames.empty()) options.frames = parse_frame_range(given.frames, frame_count(scene));
     options.out = given.out.empty() ? std::filesystem::path("renders") / scene.name
                                     : std::filesystem::path(given.out);
     options.overrides = given.scene.overrides;
@@ -42,7 +43,9 @@ void add_run_command(CLI::App& app, Action& chosen) {
     command->add_option("--out", given.out, "run directory (default: renders/NAME-OF-SCENE)")
         ->check(kSomewhere)
         ->type_name("DIR");
-    command->add_option("--frames", given.frames, "draw only the stills A to B; 1 is the start")
+    command
+        ->add_option("--frames", given.frames,
+                     "draw only the stills A to B, A, or A- to the end; 1 is the start")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command->add_flag("--no-render", given.no_render, "no pictures; needs no OpenGL");

@@ -109,7 +109,7 @@ TEST_CASE("a wrong command line ends with 2 and a hint") {
     CHECK(code_of({"info", "--threads", "0", "assets/meshes/bar.obj"}) == 2);
     CHECK(code_of({"info", "--threads", "two", "assets/meshes/bar.obj"}) == 2);
     CHECK(code_of({"info", "--quiet", "--verbose", "assets/meshes/bar.obj"}) == 2);
-    for (const char* frames : {"0-3", "5-2", "x", "1-", "-2", "1-2-3", "1.5"}) {
+    for (const char* frames : {"0-3", "5-2", "x", "-", "-2", "1-2-3", "1.5", "1,3", "1--2"}) {
         const Outcome refused = run_swage({"run", "a.toml", std::string("--frames=") + frames});
         CHECK(refused.code == 2);
         CHECK(refused.err.find("error: --frames: \"") == 0);

@@ -86,6 +86,18 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("stills can be asked for from one on to the end") {
+    const DrawableRun drawable;
+    CHECK(drawable.draw(drawable.out(), {"--frames", "3-"}).code == 0);
+    CHECK_FALSE(fs::exists(drawable.out() / "frames/frame_0002.png"));
+    CHECK(fs::exists(drawable.out() / "frames/frame_0003.png"));
+    CHECK(fs::exists(drawable.out() / "frames/frame_0004.png"));
+    CHECK(drawable.draw(drawable.out(), {"--frames", "5-"}).code == 2);
+    const Outcome list = drawable.draw(drawable.out(), {"--frames", "1,3"});
+    CHECK(list.code == 2);
+    CHECK(list.err.find("such as 7, 3-9 or 3-") != std::string::npos);
+}
+
 TEST_CASE("a film can be made of a run whose scene wants none") {
     const DrawableRun drawable("film = false\n");
     const fs::path out = drawable.out();
