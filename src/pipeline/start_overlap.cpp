@@ -273,11 +273,15 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
     }
     for (std::size_t n = 0; n < deep.size(); ++n) {
         if (deep[n].count == 0) continue;
+        // The machine goes where the work-piece does.
+        const bool is_work_piece = deep[n].who == bodies.front().name;
         told.push_back(fmt::format(
-            "\"{}\" starts {} deep in {}, which is set up by the work-piece alone{}: put {} "
-            "elsewhere with `at`, or the tool",
-            deep[n].who, depth_text(deep[n].value), set_up(n), deep[n].others("body", "bodies"),
-            deep[n].count == 1 ? "it" : "them"));
+            "\"{}\" starts {} deep in {}{}{}: {}", deep[n].who, depth_text(deep[n].value),
+            set_up(n), is_work_piece ? "" : ", which is set up by the work-piece alone",
+            deep[n].others("body", "bodies"),
+            is_work_piece        ? "set the tool further off"
+            : deep[n].count == 1 ? "put it elsewhere with `at`, or the tool"
+                                 : "put them elsewhere with `at`, or the tool"));
     }
     return told;
 }

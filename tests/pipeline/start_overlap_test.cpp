@@ -141,4 +141,12 @@ TEST_CASE("a body beside the work-piece that starts in, beyond or under the floo
     to_move_as_molded = true;
     CHECK(told({0, -0.205, 0}).find("\"other\" starts 5 mm deep in the tool floor") == 0);
     for (const double off : {-1e-3, 0.0, 1e-3}) CHECK(told({0, -0.2 + off, 0}) == "");
+    Aggregate sunk = work_piece;
+    for (double& y : sunk.particle_position.y) y -= 0.21;
+    CHECK(tool_overlaps(machine, {{"cube", &sunk}}).empty());
+    const std::vector<std::string> own = tool_overlaps(machine, {{"cube", &sunk}}, true);
+    REQUIRE(own.size() == 1);
+    CHECK(own[0] ==
+          "\"cube\" starts 1 cm deep in the tool floor of the machine floor: set the tool "
+          "further off");
 }
