@@ -151,7 +151,7 @@ void note_more_steps(const SceneSpec& scene, RunCost& cost) {
         const auto first = std::find_if(scene.stage.begin(), scene.stage.end(), by);
         if (first == scene.stage.end() || more < kFarMore) continue;
         cost.note.push_back(fmt::format(
-            "{}: solver = \"{}\" takes about {:.2g} times the steps of \"explicit\"{}", first->name,
+            "{}: solver = \"{}\" takes about {:.0f} times the steps of \"explicit\"{}", first->name,
             name_of(solver), more,
             solver == Solver::energy_stepped ? " while anything swings, turns or is driven" : ""));
     }

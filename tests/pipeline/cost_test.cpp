@@ -204,7 +204,7 @@ TEST_CASE("a solver that takes many times the steps of explicit ones is said to"
     for (StageSpec& stage : bar.scene.stage) stage.sim.solver = Solver::energy_stepped;
     const RunCost cost = bar.cost();
     REQUIRE(cost.note.size() == 1);
-    CHECK(cost.note[0].find(fmt::format("solver = \"energy-stepped\" takes about {:.2g} times the "
+    CHECK(cost.note[0].find(fmt::format("solver = \"energy-stepped\" takes about {:.0f} times the "
                                         "steps of \"explicit\"",
                                         cost.steps / few)) != std::string::npos);
     for (StageSpec& stage : bar.scene.stage) stage.sim.solver = Solver::euler;
