@@ -12,7 +12,7 @@ layout(location = 0) out vec4 visibility;
 
 const int OCCLUSION_TAPS = 10;
 const int SEARCH_TAPS = 12;
-const int SHADOW_TAPS = 12;
+const int SHADOW_TAPS = 12;    // at least
 const float REACH = 0.22;      // of occlusion [stage]
 
 // Samples go round by the golden angle, which fills a disc evenly at any count.
@@ -63,7 +63,7 @@ float occlusion(vec3 p, vec3 n, float turn) {
     return min(softened(1.0 - 0.37 * sum / float(OCCLUSION_TAPS)), 1.0);
 }
 
-float lit(vec3 p, vec3 n, float turn) {
+float lit(vec3 p, vec3 n, float depth_in_view, float turn) {
     float slope = clamp(1.0 - dot(n, key.xyz), 0.0, 1.0);
     vec3 s = (shadow_from_stage * vec4(p + n * shadow.x * (1.5 + 4.0 * slope), 1.0)).xyz;
     // A little outside, soft edges still reach; the texels of the rim are empty.
@@ -96,16 +96,19 @@ float lit(vec3 p, vec3 n, float turn) {
     float light = 0.0;
     // Wider kernels look past their own tilted surface; the bias grows with them.
     float slack = bias + radius * slope * 0.25;
-    turns = blockers > 0.0 ? SHADOW_TAPS : 0;
+    // Few would show as single steps where the edge is wide, in large pictures and near views.
+    float pixels = radius * shadow.x / (shadow.y * 2.0 * depth_in_view * lens.y * half_size.w);
+    int taps = SHADOW_TAPS * int(clamp(pixels / 12.0, 1.0, 8.0));
+    turns = blockers > 0.0 ? taps : 0;
     for (int i = 0; i < turns; ++i) {
-        vec2 at = s.xy + radius * outward(i, SHADOW_TAPS, turn) * direction;
+        vec2 at = s.xy + radius * outward(i, taps, turn) * direction;
         direction = GOLDEN_TURN * direction;
         float d = texelFetch(shadow_depth, clamp(ivec2(at * size), ivec2(0), last), 0).r;
         light += step(depth - slack, d);
     }
     // What looks away shades itself; so does the floor where it meets that, at the same depth.
     if (away) return 0.0;
-    return blockers > 0.0 ? light / float(SHADOW_TAPS) : 1.0;
+    return blockers > 0.0 ? light / float(taps) : 1.0;
 }
 
 void main() {
@@ -114,6 +117,6 @@ void main() {
     float turn = pattern();
     vec3 at = (stage_from_view * vec4(p, 1.0)).xyz;
     vec2 visible = vec2(occlusion(p, here.xyz, turn),
-                        lit(at, mat3(stage_from_view) * here.xyz, turn));
+                        lit(at, mat3(stage_from_view) * here.xyz, here.w, turn));
     visibility = packed_seen(Seen(visible, here.w, here.xy));
 }

@@ -124,6 +124,41 @@ TEST_CASE("a large picture is shaded as a small one", "[renderer]") {
     CHECK(apart < 1);
 }
 
+TEST_CASE("a soft edge of a shadow shows no single samples in a near view", "[renderer]") {
+    if (!can_draw()) return;
+    const TriMesh board = surface_of(BoxShape{Vec3(0.5, 0.05, 0.5), 0});
+    RenderSettings settings = small_picture();
+    settings.width = 960, settings.height = 540;
+    settings.camera[0].elevation = 1.4;
+    settings.camera[0].zoom = 5;
+    // Where the light through the board's middle meets the ground, and a little beside it.
+    const double azimuth = settings.camera[0].azimuth - 0.8 + kPi, far = 0.8 / std::tan(0.9);
+    settings.camera[0].target = Vec3(far * std::sin(azimuth) + 0.2, 0, far * std::cos(azimuth));
+    const Image image = drawn(settings, {{&board, nullptr, {Quat::Identity(), {0, 0.8, 0}}, {}}});
+    const int side = 6, columns = image.width / side, rows = image.height / side;
+    const auto block = [&](int column, int row) {  // a mean, which takes out the dither
+        double sum = 0;
+        for (int i = 0; i < side * side; ++i) {
+            sum += brightness(image, column * side + i % side, row * side + i / side);
+        }
+        return sum / (side * side);
+    };
+    double rough = 0, low = 255, high = 0;
+    for (int row = 1; row + 1 < rows; ++row) {
+        for (int column = 1; column + 1 < columns; ++column) {
+            const double here = block(column, row);
+            low = std::min(low, here);
+            high = std::max(high, here);
+            rough += std::abs(here - 0.5 * (block(column - 1, row) + block(column + 1, row))) +
+                     std::abs(here - 0.5 * (block(column, row - 1) + block(column, row + 1)));
+        }
+    }
+    rough /= 2.0 * (rows - 2) * (columns - 2);
+    INFO("rough by " << rough << " of " << high - low);
+    CHECK(high - low > 40);  // an edge, indeed
+    CHECK(rough < 0.1);
+}
+
 TEST_CASE("a crease is as dark through any lens and from any distance, and never black",
           "[renderer]") {
     if (!can_draw()) return;
