@@ -2,8 +2,9 @@
 // Powers of positive numbers, lane by lane the same bytes in vectors of any width, to some 1e-15
 // times 1 + |e ln x|. (SLEEF's vectors are declared only in files that are built for one width.)
 //
-//     x = 2^k m, m from sqrt(1/2) to sqrt(2)     ln m = 2 (s + s^3/3 + s^5/5 + ...), s =
-//     (m-1)/(m+1) e^y = 2^n e^r, |r| <= ln(2)/2              e^r by its series
+//     x = 2^k m, m from sqrt(1/2) to sqrt(2): ln m = 2 (s + s^3/3 + ...), s = (m - 1) / (m + 1)
+//
+//     e^y = 2^n e^r, |r| <= ln(2)/2: e^r by its series
 //
 // Both series are cut off where the rest is below 1e-17.
 #pragma once
