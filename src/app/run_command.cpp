@@ -11,7 +11,7 @@ namespace {
 struct RunArguments {
     SceneArgument scene;
     std::string out, frames;
-    bool no_render = false, fresh = false, force = false, json = false;
+    bool no_render = false, fresh = false, go_on = false, force = false, json = false;
 };
 
 int run(const RunArguments& given) {
@@ -23,6 +23,7 @@ int run(const RunArguments& given) {
     options.overrides = given.scene.overrides;
     options.draw = !given.no_render;
     options.fresh = given.fresh;
+    options.go_on = given.go_on;
     options.insist = given.force;
     const RunOutcome outcome = run_scene(scene, options);
     if (given.json) put_json(outcome.record);
@@ -49,9 +50,14 @@ void add_run_command(CLI::App& app, Action& chosen) {
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command->add_flag("--no-render", given.no_render, "no pictures; needs no OpenGL");
-    command->add_flag(
+    CLI::Option* fresh = command->add_flag(
         "--fresh", given.fresh,
         "throw away what an earlier run left in the directory, once this one is set up");
+    command
+        ->add_flag("--go-on", given.go_on,
+                   "where the scene was changed from some stage on, and the run in the directory "
+                   "ended early: keep the stages that it finished before, throw away the others")
+        ->excludes(fresh);
     command->add_flag("--force", given.force,
                       "run even if it seems to need more memory, disk or time than there is");
     command->add_flag("--json", given.json, "print the run's record on stdout");

@@ -25,7 +25,27 @@ void visit_json(Io& io, Json& json) {
     if constexpr (Io::kReads) json = Json::parse(text);
 }
 
+struct Head {
+    int stages = 0;
+    std::string key;
+};
+constexpr std::size_t kLongestHead = 256;
+
+Head head_of(const StageKeys& keys, int stages) {
+    return {stages, keys.at(static_cast<std::size_t>(stages))};
+}
+bool is_of(const StageKeys& keys, const Head& head) {
+    return head.stages > 0 && static_cast<std::size_t>(head.stages) < keys.size() &&
+           keys[static_cast<std::size_t>(head.stages)] == head.key;
+}
+
 }  // namespace
+
+template <typename Io>
+void visit(Io& io, Head& head) {
+    auto& [stages, key] = head;
+    io(stages, key);
+}
 
 template <typename Io>
 void visit(Io& io, MotionMark& mark) {
@@ -35,21 +55,38 @@ void visit(Io& io, MotionMark& mark) {
 
 template <typename Io>
 void visit(Io& io, Reached& reached) {
-    auto& [stages, bodies, matter, stage, warning, steps, seconds, motion, skin] = reached;
+    auto& [stages, bodies, matter, stage, start_warning, warning, steps, seconds, motion, skin] =
+        reached;
     io(stages, bodies);
     visit_json(io, matter);
     visit_json(io, stage);
-    io(warning, steps, seconds, motion, skin);
+    io(start_warning, warning, steps, seconds, motion, skin);
 }
 
-void write_checkpoint(const fs::path& file, const std::string& key, const Reached& reached) {
+void write_checkpoint(const fs::path& file, const StageKeys& keys, const Reached& reached) {
     ByteWriter out(true);
-    out(kMagic, key, state_hash(reached.bodies), reached);
+    out(kMagic, head_of(keys, reached.stages), state_hash(reached.bodies), reached);
     out(hash_of(std::string_view(out.bytes()).substr(sizeof kMagic)));
     write_file_whole(file, out.bytes());
 }
 
-std::optional<Reached> read_checkpoint(const fs::path& file, const std::string& key,
+int stages_kept(const fs::path& file, const StageKeys& keys) {
+    std::string why;
+    const FileHandle handle = open_plain_file(file, why);
+    std::string bytes(kLongestHead, '\0');
+    const auto got = handle.is_open() ? read_up_to(handle.id(), bytes.data(), bytes.size())
+                                      : std::optional<std::size_t>(0);
+    try {
+        ByteReader in(std::span(bytes.data(), got.value_or(0)));
+        if (in.get<std::uint64_t>() != kMagic) return 0;
+        const auto head = in.get<Head>();
+        return is_of(keys, head) ? head.stages : 0;
+    } catch (const Error&) {
+        return 0;
+    }
+}
+
+std::optional<Reached> read_checkpoint(const fs::path& file, const StageKeys& keys,
                                        std::string& why) {
     why.clear();
     std::error_code unknown;
@@ -71,14 +108,15 @@ std::optional<Reached> read_checkpoint(const fs::path& file, const std::string& 
     if (hash != hash_of(hashed)) return std::nullopt;
     try {
         ByteReader in(hashed);
-        if (in.get<std::string>() != key) {
+        const auto head = in.get<Head>();
+        if (!is_of(keys, head)) {
             why = "is of another run, or of another build of swage";
             return std::nullopt;
         }
         in(hash);
         auto reached = in.get<Reached>();
-        if (in.left() > 0 || reached.skin.size() != reached.bodies.size() ||
-            state_hash(reached.bodies) != hash) {
+        if (in.left() > 0 || reached.stages != head.stages ||
+            reached.skin.size() != reached.bodies.size() || state_hash(reached.bodies) != hash) {
             return std::nullopt;
         }
         return reached;

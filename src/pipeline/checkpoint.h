@@ -19,21 +19,27 @@ struct Reached {
     int stages = 0;  // finished
     std::vector<WorkPiece> bodies;
     Json matter = Json::array(), stage = Json::array();  // of each body and stage, for run.json
-    std::vector<std::string> warning;
+    std::vector<std::string> start_warning, warning;     // of what was molded, and of stages
     long steps = 0;
     std::vector<std::pair<std::string, double>> seconds;  // by phase
     MotionMark motion;
     std::vector<int> skin;  // of each body: its number in the motion file
 };
 
-// Under its name when it is whole. `key`: of the run, and of the build that reads it again. Throws
-// Error(output).
-void write_checkpoint(const std::filesystem::path& file, const std::string& key,
+// Of a run that has finished so many stages: what made it what it is until then, and which build
+// reads it again (RunIdentity).
+using StageKeys = std::vector<std::string>;
+
+// Under its name when it is whole. Throws Error(output).
+void write_checkpoint(const std::filesystem::path& file, const StageKeys& keys,
                       const Reached& reached);
 
-// Nothing where there is none that can be gone on from by this key, and then `why`, as in "is
+// Nothing where there is none that can be gone on from by these keys, and then `why`, as in "is
 // damaged"; empty: no file.
-std::optional<Reached> read_checkpoint(const std::filesystem::path& file, const std::string& key,
+std::optional<Reached> read_checkpoint(const std::filesystem::path& file, const StageKeys& keys,
                                        std::string& why);
+
+// How many stages it says to have finished, by these keys; 0: none.
+int stages_kept(const std::filesystem::path& file, const StageKeys& keys);
 
 }  // namespace swage

@@ -61,12 +61,12 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     const bool may_be_done =
         !options.fresh && std::filesystem::exists(options.out / "run.json", unknown);
     if (!may_be_done) refuse_early();
-    RunDirectory directory(options.out, identity, options.fresh);
+    RunDirectory directory(options.out, identity, options.fresh, options.go_on);
     const DrawnFiles files{directory.root()};
 
     RunOutcome outcome;
     const std::optional<Json> earlier =
-        may_be_done ? read_record(directory.record()) : std::nullopt;
+        may_be_done && !directory.is_changed() ? read_record(directory.record()) : std::nullopt;
     const bool simulated = earlier && is_simulated(*earlier, scene, directory);
     if (simulated) directory.remove_checkpoint();
     if (simulated && (!options.draw || is_drawn(*earlier, files, wanted, scene.render.film))) {

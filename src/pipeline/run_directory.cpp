@@ -6,9 +6,9 @@
 
 #include "base/atomic_file.h"
 #include "base/file_contents.h"
-#include "base/hash.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "pipeline/checkpoint.h"
 #include "pipeline/folder_lock.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/json.h"
@@ -105,17 +105,46 @@ std::string difference(const RunInput& now, const RunInput& then) {
                        lines_beside(then.text, now.text));
 }
 
+void remove_product(const fs::path& product) {
+    std::error_code error;
+    fs::remove_all(product, error);
+    if (error) {
+        fail(ExitCode::output, "{}: cannot be removed: {}", product.string(), error.message());
+    }
+}
+
 // What a run leaves; nothing else in the directory is ever touched.
 void remove_products(const fs::path& root) {
     for (const char* name : {"run.json", "film.mp4", "contact.png", "motion.bin", "frames",
                              "meshes", "curves", "resume", "again", "usd", kIdentityName}) {
-        std::error_code error;
-        fs::remove_all(root / name, error);
-        if (error) {
-            fail(ExitCode::output, "{}: cannot be removed: {}", (root / name).string(),
-                 error.message());
+        remove_product(root / name);
+    }
+}
+
+// But for what the first stages left; the motion file is gone on from, and replaced.
+void remove_later_products(const fs::path& root, const std::vector<std::string>& kept) {
+    for (const char* name : {"run.json", "film.mp4", "contact.png", "frames", "again", "usd"}) {
+        remove_product(root / name);
+    }
+    const auto is_kept = [&](const fs::path& name) {
+        return std::find(kept.begin(), kept.end(), name) != kept.end();
+    };
+    std::vector<fs::path> others;
+    std::error_code error;
+    for (const char* folder : {"meshes", "curves"}) {
+        for (fs::directory_iterator it(root / folder, error), end; !error && it != end;
+             it.increment(error)) {
+            // Pictures beside meshes are of all stages.
+            const fs::path ending = it->path().extension();
+            const bool is_folder = it->is_directory(error);
+            const bool is_of_stage = is_folder || ending == ".obj" || ending == ".mtl" ||
+                                     ending == ".ply" || ending == ".csv" || ending == ".svg";
+            if (is_of_stage && !is_kept(is_folder ? it->path().filename() : it->path().stem())) {
+                others.push_back(it->path());
+            }
         }
     }
+    for (const fs::path& product : others) remove_product(product);
 }
 
 // A run that ended before its first frame leaves no file but these two.
@@ -158,12 +187,6 @@ std::vector<std::string> differences(const RunIdentity& there, const RunIdentity
     return found;
 }
 
-std::string key_of(const RunIdentity& identity) {
-    std::string all = identity.version + "\n" + identity.build;
-    for (const RunInput& input : identity.input) all += "\n" + input.role + "\n" + input.hash;
-    return hash_text(hash_of(all));
-}
-
 std::string record_text(const fs::path& file, ExitCode code) {
     std::optional<std::string> text = file_contents(file, kLongestRecord);
     if (!text) {
@@ -178,11 +201,12 @@ bool holds_run(const fs::path& folder) {
     return fs::exists(folder / kIdentityName, unknown);
 }
 
-RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bool fresh)
+RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bool fresh,
+                           bool go_on)
     : root_(root.has_filename() ? root : root.parent_path()),
       folder_(root_),
       identity_text_(identity_text(identity)),
-      key_(key_of(identity)),
+      stage_keys_(identity.stage_key),
       anew_(fresh) {
     // One that is being made holds files before it is a run.
     if (FolderLock::may_hold(root_)) lock_.emplace(root_);
@@ -192,11 +216,11 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
     }
     if (!lock_) lock_.emplace(root_);
     remove_temporaries(root_, 0);
-    if (!anew_) claim(identity);
+    if (!anew_) claim(identity, go_on);
     set_unfinished_work(root_);
 }
 
-void RunDirectory::claim(const RunIdentity& identity) {
+void RunDirectory::claim(const RunIdentity& identity, bool go_on) {
     const fs::path file = root_ / kIdentityName;
     std::error_code unknown;
     if (!fs::exists(file, unknown) || !holds_products(root_)) {
@@ -204,24 +228,34 @@ void RunDirectory::claim(const RunIdentity& identity) {
         return;
     }
     const std::vector<std::string> found = differences(read_identity(file), identity);
-    if (!found.empty()) {
-        fail(ExitCode::foreign,
-             "{}: belongs to another run: {}; choose another --out, or "
-             "--fresh to throw that run away",
-             root_.string(), joined(found, "; "));
-    }
+    if (found.empty()) return;
+    const int kept = stages_kept(checkpoint(), stage_keys_);
+    changed_ = go_on && kept > 0;
+    if (changed_) return;
+    fail(ExitCode::foreign,
+         "{}: belongs to another run: {}{}; choose another --out, or {}--fresh to throw that run "
+         "away",
+         root_.string(), joined(found, "; "),
+         go_on ? "; and it has kept no stage to go on from that is the same" : "",
+         kept > 0 ? fmt::format("--go-on to keep its first {}, or ",
+                                counted(std::size_t(kept), "stage", "stages"))
+                  : "");
 }
 
-void RunDirectory::begin() {
+void RunDirectory::begin(const std::vector<std::string>& kept) {
     has_begun_ = true;
-    if (!anew_) return;
+    if (!anew_ && !changed_) return;
     {
         std::optional<FolderLock> drawing;  // of the run, which `swage render` may be at
         if (fs::is_directory(drawn_again(root_))) drawing.emplace(drawn_again(root_));
-        remove_products(root_);
+        if (anew_) {
+            remove_products(root_);
+        } else {
+            remove_later_products(root_, kept);
+        }
     }
     write_file_whole(root_ / kIdentityName, identity_text_);
-    anew_ = false;
+    anew_ = changed_ = false;
 }
 
 void RunDirectory::remove_checkpoint() const {

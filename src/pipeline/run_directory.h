@@ -28,13 +28,13 @@ struct RunIdentity {
     std::string version = kVersion;
     std::vector<RunInput> input;
     std::string build = kBuildName;
+    // Of the run up to each stage, from none of them to all, a text that is another where anything
+    // is that what was done until then depends on.
+    std::vector<std::string> stage_key = {};
 };
 
 // One sentence a difference, empty when they are the same run. File names may differ.
 std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here);
-
-// The same text for the same run.
-std::string key_of(const RunIdentity& identity);
 
 // Whether a run of swage lies in this folder, of whatever scene.
 bool holds_run(const std::filesystem::path& folder);
@@ -44,19 +44,24 @@ class RunDirectory {
     // Creates the directory, and those that it is to lie in, or enters it. Throws Error(output)
     // when it cannot be written, Error(foreign) when it holds anything but this run, or while
     // another process writes in it. `fresh`: whatever run it holds, that is to make room in
-    // begin(). One that ended before its first frame always does.
-    RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh);
+    // begin(). One that ended before its first frame always does. `go_on`: one whose first stages
+    // are the same may be there, if it has kept what is to be gone on from.
+    RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh,
+                 bool go_on = false);
     // Lets others in. Where no run has begun, neither this one nor another, nothing is left of it.
     ~RunDirectory();
     RunDirectory(const RunDirectory&) = delete;
     RunDirectory& operator=(const RunDirectory&) = delete;
 
     const std::filesystem::path& root() const { return root_; }
-    const std::string& key() const { return key_; }
+    const std::vector<std::string>& stage_keys() const { return stage_keys_; }
     // Whatever run it holds is to make room.
     bool is_anew() const { return anew_; }
-    // The run is about to write its first frame: now what makes room for it is removed.
-    void begin();
+    // Of the run that it holds later stages are others.
+    bool is_changed() const { return changed_; }
+    // The run is about to write its first frame: now what makes room for it is removed. `kept`: of
+    // a run that is changed the names, but for their endings, of meshes and curves that stay.
+    void begin(const std::vector<std::string>& kept = {});
     std::filesystem::path record() const { return root_ / "run.json"; }
     std::filesystem::path store() const { return root_ / "motion.bin"; }
     // Of a run that is not done: what it goes on from, and its motion file until it ends.
@@ -71,13 +76,14 @@ class RunDirectory {
     static std::filesystem::path exported(const std::filesystem::path& run) { return run / "usd"; }
 
   private:
-    void claim(const RunIdentity& identity);
+    void claim(const RunIdentity& identity, bool go_on);
     void remove_unbegun();
 
     std::filesystem::path root_;
     MadeFolder folder_;
-    std::string identity_text_, key_;
-    bool anew_, has_begun_ = false;
+    std::string identity_text_;
+    std::vector<std::string> stage_keys_;
+    bool anew_, changed_ = false, has_begun_ = false;
     std::optional<FolderLock> lock_;
 };
 

@@ -73,6 +73,44 @@ void add_as_read(RunIdentity& identity, const std::string& role, const fs::path&
     }
 }
 
+// Files that stages from this one on read, and nothing else.
+std::vector<fs::path> files_of_later_stages(const SceneSpec& scene, std::size_t first) {
+    const auto add = [](const StageSpec& stage, std::vector<fs::path>& files) {
+        files.push_back(stage.machine.file);
+        for (const ToolSpec& tool : stage.machine.tool) files.push_back(tool.mesh);
+    };
+    std::vector<fs::path> files, others;
+    for (std::size_t s = 0; s < scene.stage.size(); ++s) {
+        add(scene.stage[s], s < first ? others : files);
+    }
+    for (const BodySpec& body : scene.body) {
+        others.push_back(body.mesh.file);
+        for (const InsetSpec& inset : body.inset) others.push_back(inset.file);
+    }
+    std::erase_if(files, [&](const fs::path& file) {
+        return std::find(others.begin(), others.end(), file) != others.end();
+    });
+    return files;
+}
+
+// `identity`: but for these. What names no file is in what the scene says.
+std::vector<std::string> stage_keys(const SceneSpec& scene, const RunIdentity& identity) {
+    std::vector<std::string> keys;
+    std::string said = identity.version + "\n" + identity.build + "\n" + scene.said + "\n";
+    for (std::size_t stages = 0; stages <= scene.stage.size(); ++stages) {
+        if (stages > 0) said += scene.stage[stages - 1].said + "\n";
+        const std::vector<fs::path> later = files_of_later_stages(scene, stages);
+        std::string read;
+        for (const RunInput& input : identity.input) {
+            if (input.role == "scene" || input.role == "--set") continue;
+            if (std::find(later.begin(), later.end(), input.file) != later.end()) continue;
+            read += input.hash + "\n";
+        }
+        keys.push_back(hash_text(hash_of(said + read)));
+    }
+    return keys;
+}
+
 }  // namespace
 
 RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
@@ -98,6 +136,7 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
     }
     identity.input.push_back({"--set", joined(options.overrides, ", "),
                               hash_text(hash_of(joined(options.overrides, "\n")))});
+    identity.stage_key = stage_keys(scene, identity);
     return identity;
 }
 

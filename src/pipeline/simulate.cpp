@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <utility>
 
 #include "base/failure.h"
 #include "base/hash.h"
@@ -50,7 +51,7 @@ Reached molded(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     for (const auto* untold : {&at_start.strength, &at_start.bodies}) {
         for (const std::string& warning : *untold) log_warning("{}", warning);
     }
-    reached.warning = at_start.all();
+    reached.start_warning = at_start.all();
     return reached;
 }
 
@@ -62,17 +63,34 @@ struct Kept {
 std::optional<Kept> kept_by_earlier_run(const RunDirectory& directory) {
     if (directory.is_anew()) return std::nullopt;
     std::string why;
-    std::optional<Reached> reached = read_checkpoint(directory.checkpoint(), directory.key(), why);
+    std::optional<Reached> reached =
+        read_checkpoint(directory.checkpoint(), directory.stage_keys(), why);
     for (const fs::path& motion : {directory.kept_motion(), directory.store()}) {
         if (reached && holds_motion(motion, reached->motion)) {
             return Kept{std::move(*reached), motion};
         }
     }
     if (reached) why = "goes with a motion file that is damaged";
+    if (directory.is_changed()) {
+        fail(ExitCode::foreign, "{}: {}; choose another --out, or --fresh to throw that run away",
+             directory.checkpoint().string(), why);
+    }
     if (!why.empty()) {
         log_warning("{}: {}, so the run begins anew", directory.checkpoint().string(), why);
     }
     return std::nullopt;
+}
+
+// Of the meshes and curves that the first of them leave.
+std::vector<std::string> names_of_stages(const SceneSpec& scene, int count) {
+    std::vector<std::string> names;
+    for (int s = 0; s < count; ++s) {
+        const std::string& stage = scene.stage[static_cast<std::size_t>(s)].name;
+        names.push_back(stage);
+        names.push_back(stage + "-bodies");  // the table of how they move
+        for (const BodySpec& body : scene.body) names.push_back(stage + "-" + body.name);
+    }
+    return names;
 }
 
 // Whether that could be written; the run goes on all the same.
@@ -85,7 +103,7 @@ bool keep(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& wa
         reached.motion = recorder.mark();
         reached.skin = recorder.skins();
         reached.seconds = watch.phases();
-        write_checkpoint(directory.checkpoint(), directory.key(), reached);
+        write_checkpoint(directory.checkpoint(), directory.stage_keys(), reached);
         return true;
     } catch (const std::exception& error) {
         const std::optional<Error> failure = failure_of(error);
@@ -106,8 +124,15 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             "(apt-get install gnuplot-nox)");
     }
     std::optional<Kept> kept = kept_by_earlier_run(directory);
-    Reached reached =
-        kept ? std::move(kept->reached) : molded(scene, input, std::move(at_start), watch);
+    Reached reached;
+    if (!kept || directory.is_changed()) {
+        // What is told of the start foresees later stages too.
+        reached = molded(scene, input, std::move(at_start), watch);
+    }
+    if (kept) {
+        if (directory.is_changed()) kept->reached.start_warning = std::move(reached.start_warning);
+        reached = std::move(kept->reached);
+    }
     for (std::size_t b = 0; b < reached.matter.size(); ++b) {
         record["bodies"][b]["matter"] = reached.matter[b];
     }
@@ -117,8 +142,10 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
              : std::make_unique<MotionRecorder>(directory.store());
 
     DiskReserve reserve;
+    bool has_begun = false;
     const auto begin = [&] {
-        directory.begin();
+        if (std::exchange(has_begun, true)) return;
+        directory.begin(names_of_stages(scene, kept ? reached.stages : 0));
         if (!kept) directory.remove_checkpoint();
         reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
                                            kStageRecordRoom * scene.stage.size());
@@ -129,11 +156,14 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     if (kept) {
         for (const auto& [phase, seconds] : reached.seconds) watch.add(phase, seconds);
         record["stages"] = reached.stage;
-        begin();
         log_info("goes on after stage {} of {}, frame {}", reached.stages, stages,
                  recorder->frame_count());
     }
     Progress progress("simulate", frame_count(scene) - 1, std::max(0, recorder->frame_count() - 1));
+    // Of what was there before nothing is lost for it.
+    const auto is_in_vain = [&] {
+        return recorder->frame_count() == 0 || (!has_begun && directory.is_changed());
+    };
     Ended ended;
     int kept_stages = reached.stages;  // that are to be gone on from
     while (reached.stages < stages) {
@@ -151,13 +181,13 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             ended = {outcome.stopped, outcome.interrupted};
         } catch (const Interrupted& interrupted) {
             // While the stage was set up.
-            if (recorder->frame_count() == 0) throw;
+            if (is_in_vain()) throw;
             ended.interrupted = interrupted;
         } catch (const std::exception& error) {
             // A stage that cannot be set up at what those before have made, or written, or that
             // wants for memory.
             ended.stopped = failure_of(error);
-            if (recorder->frame_count() == 0 || !ended.stopped) throw;
+            if (is_in_vain() || !ended.stopped) throw;
         }
         if (ended.early()) break;
         ++reached.stages;
@@ -165,13 +195,16 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             kept_stages = reached.stages;
         }
     }
+    begin();
     reserve.release();
     recorder->finish();
     record["stages"] = reached.stage;
     record["frames"] = recorder->frame_count();
     record["steps"] = reached.steps;
     record["state_hash"] = hash_text(state_hash(reached.bodies));
-    record["warnings"] = reached.warning;
+    std::vector<std::string> warnings = std::move(reached.start_warning);
+    warnings.insert(warnings.end(), reached.warning.begin(), reached.warning.end());
+    record["warnings"] = warnings;
     record["state"] = ended.interrupted ? RunState::interrupted
                       : ended.stopped   ? RunState::stopped
                                         : RunState::simulated;

@@ -150,7 +150,7 @@ class StageRun {
         std::vector<Aggregate*> matter;
         for (WorkPiece& body : bodies_) matter.push_back(&body.matter);
         Simulation simulation(matter, machine_.apparatus, stage_.sim);
-        if (last_frame == 0) context_.begin();
+        context_.begin();
         if (each_frame()) {
             for (const fs::path& folder : meshes_) make_folder(folder);
         }

@@ -26,7 +26,7 @@ struct StageContext {
     MotionRecorder& recorder;
     Stopwatch& watch;
     Progress& progress;
-    std::function<void()> begin;  // called once the first stage is set up, before its first frame
+    std::function<void()> begin;  // called once a stage is set up, before its first frame
     bool can_plot = false;
 };
 

@@ -112,6 +112,25 @@ Place place_inside(const Node& node, std::size_t at) {
     return place;
 }
 
+std::string told(const Node& node) {
+    using Kind = Node::Kind;
+    std::string all;
+    if (node.kind == Kind::table) {
+        for (const Entry& one : node.entry) {
+            all += fmt::format("{}:{}={};", one.key.size(), one.key, told(one.value));
+        }
+        return "{" + all + "}";
+    }
+    if (node.kind == Kind::array) {
+        for (const Node& one : node.item) all += told(one) + ",";
+        return "[" + all + "]";
+    }
+    if (node.kind == Kind::truth) return node.truth ? "true" : "false";
+    if (node.kind == Kind::whole || node.kind == Kind::real)
+        return fmt::format("{:a}", node.number);
+    return fmt::format("{}:{}", node.text.size(), node.text);
+}
+
 std::string kind_text(const Node& node) {
     switch (node.kind) {
         case Node::Kind::table:

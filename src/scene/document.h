@@ -58,6 +58,9 @@ Place place_inside(const Node& text, std::size_t at);
 // "a text", "a whole number", ...
 std::string kind_text(const Node& node);
 
+// All that a tree says, whatever it looks like in the file: the same text for what says the same.
+std::string told(const Node& node);
+
 // The same for rooms below.
 TextPlace text_place(const Place& place);
 Mistake mistake_at(const TextPlace& place, const std::string& text, ExitCode code);

@@ -110,6 +110,19 @@ void refuse_same_files(TableReader& root, const SceneSpec& scene) {
     }
 }
 
+// Of a scene without mistakes: nothing in it is deep.
+void tell(const Node& root, SceneSpec& scene) {
+    for (const Entry& one : root.entry) {
+        if (one.key != "stage") {
+            scene.said += one.key + "=" + told(one.value) + "\n";
+            continue;
+        }
+        for (std::size_t s = 0; s < scene.stage.size(); ++s) {
+            scene.stage[s].said = told(one.value.item[s]);
+        }
+    }
+}
+
 }  // namespace
 
 void read_scene_document(const Document& document, const AssetPaths& assets, Reading& reading,
@@ -193,7 +206,10 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
         reading.is_complete = document->is_complete;
         read_scene_document(*document, assets, reading, scene);
     }
-    if (mistakes.is_clean()) result.scene = std::move(scene);
+    if (mistakes.is_clean()) {
+        tell(document->root, scene);
+        result.scene = std::move(scene);
+    }
     result.mistakes = mistakes.take(file);
     return result;
 }

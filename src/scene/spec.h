@@ -80,6 +80,7 @@ struct StageSpec {
     double duration = 0;  // [s] of machine time; 0: frames / frames_per_second
     bool remold = false;  // mold the deformed mesh anew before this stage
     SimSettings sim;
+    std::string said;  // what the scene says of it (told() in scene/document.h)
 };
 
 struct OutputSpec {
@@ -110,6 +111,7 @@ struct SceneSpec {
     }
     RenderSettings render;
     OutputSpec output;
+    std::string said;  // likewise, but of stages
     // Every file that was read but for the meshes of bodies: the scene, materials, machines, the
     // meshes of tools and insets.
     std::vector<std::filesystem::path> inputs;

@@ -234,3 +234,105 @@ TEST_CASE("a run goes on where its checkpoint finds no room") {
     CHECK(outcome.err.find("a run that ends early cannot go on from here") != std::string::npos);
     check_same(whole, out);
 }
+
+TEST_CASE(
+    "where later stages were changed a run goes on from those before them when it is asked to") {
+    const Scratch scratch;
+    const std::string head = kMesh + metal("") + "[output]\nmeshes_per_frame = true\n",
+                      first = "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 2\n",
+                      second = "[[stage]]\nmachine = \"bend\"\nangle = \"20 deg\"\nframes = 40\n",
+                      twist = "[[stage]]\nmachine = \"twist\"\nangle = \"9 deg\"\nframes = 3\n";
+    const fs::path scene = put_scene(scratch.path(), head + first + second),
+                   whole = scratch.path() / "whole", out = scratch.path() / "run";
+    end_in_second_stage(GENERATE(SIGINT, SIGKILL), scene, out);
+    const auto as = [&](const std::string& text) { put_text(scene, text); };
+    // But for what a killed run did not clear away, and what of its motion file is not whole.
+    const auto kept = [&] {
+        auto files = files_below(out);
+        std::erase_if(files, [](const auto& file) {
+            return file.first[0] == '.' || file.first.find("/.") != std::string::npos;
+        });
+        files.erase("resume/motion.bin");
+        return files;
+    };
+    const auto before = kept();
+    const auto is_refused = [&](const std::vector<std::string>& more, const std::string& told) {
+        const Outcome outcome = run(scene, out, more);
+        INFO(outcome.err);
+        CHECK(outcome.code == 8);
+        CHECK(outcome.err.find(told) != std::string::npos);
+        CHECK((kept() == before));
+    };
+    SECTION("another machine, and one more") {
+        as(head + first + twist + second);
+        is_refused({}, "choose another --out, or --go-on to keep its first 1 stage, or --fresh");
+    }
+    SECTION("a remark and a parameter") {
+        as("# Softly.\n" + head + first + "\n\n" + second + "radius = \"4 cm\"\n");
+    }
+    SECTION("fewer") { as(head + first); }
+    SECTION("another first stage") {
+        as(head + twist + second);
+        is_refused({}, "choose another --out, or --fresh");
+        is_refused({"--go-on"}, "has kept no stage to go on from that is the same");
+        return;
+    }
+    SECTION("another material") {
+        as(kMesh + metal("friction = 0.5\n") + "[output]\nmeshes_per_frame = true\n" + first +
+           twist);
+        is_refused({"--go-on"}, "has kept no stage to go on from that is the same");
+        return;
+    }
+    SECTION("a stage that cannot be set up leaves what was there") {
+        as(head + first + twist + "[[stage]]\nmachine = \"bend\"\n");
+        CHECK(run(scene, out,
+                  {"--go-on", "--set", "stage.2.machine=bend", "--set", "stage.2.radius=1 um"})
+                  .code == 3);
+        CHECK((kept() == before));
+    }
+    const Outcome outcome = run(scene, out, {"--go-on"});
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.find("goes on after stage 1 of ") != std::string::npos);
+    REQUIRE(run(scene, whole).code == 0);
+    check_same(whole, out);
+    CHECK(run(scene, out, {"--go-on", "--fresh"}).code == 2);
+}
+
+TEST_CASE("a machine's file that was changed is told from one that only later stages use") {
+    const Scratch scratch;
+    const fs::path scene =
+        put_scene(scratch.path(), kMesh + metal("") +
+                                      "[[stage]]\nmachine = \"./one.toml\"\nframes = 2\n"
+                                      "[[stage]]\nmachine = \"./two.toml\"\nframes = 40\n");
+    const fs::path out = scratch.path() / "run";
+    const auto machine = [&](const char* name, const char* turn) {
+        put_text(scratch.path() / name,
+                 fmt::format("[[grip]]\nname = \"left\"\nfrom = [\"-length\", \"-height\", "
+                             "\"-width\"]\nto = [\"-length/3\", \"height\", \"width\"]\n"
+                             "[[grip]]\nname = \"right\"\nfrom = [\"length/3\", \"-height\", "
+                             "\"-width\"]\nto = [\"length\", \"height\", \"width\"]\n"
+                             "[grip.motion]\nturn = \"{}*t\"\naxis = [1, 0, 0]\n",
+                             turn));
+    };
+    machine("one.toml", "0.1"), machine("two.toml", "0.2");
+    {
+        RunningSwage running({"run", scene.string(), "--no-render", "--out", out.string()},
+                             scratch.path());
+        while (!fs::exists(out / "resume/checkpoint.bin") && running.is_running()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        running.signal(SIGKILL);
+        const Outcome outcome = running.wait();
+        INFO(outcome.err);
+        REQUIRE(fs::exists(out / "resume/checkpoint.bin"));
+    }
+    machine("one.toml", "0.11");
+    CHECK(run(scene, out, {"--go-on"}).code == 8);
+    machine("one.toml", "0.1"), machine("two.toml", "0.3");
+    CHECK(run(scene, out).code == 8);
+    CHECK(run(scene, out, {"--go-on"}).code == 0);
+    const fs::path whole = scratch.path() / "whole";
+    REQUIRE(run(scene, whole).code == 0);
+    check_same(whole, out);
+}

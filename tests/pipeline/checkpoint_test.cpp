@@ -84,12 +84,16 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
     return piece;
 }
 
+// The run has finished two stages.
+const StageKeys kKeys = {"begun", "one", "key", "more"};
+
 Reached reached_with(std::vector<WorkPiece> bodies) {
     Reached reached;
     reached.stages = 2;
     reached.bodies = std::move(bodies);
     reached.matter.push_back({{"cells", 5}, {"mass", 0.1}});
     reached.stage.push_back({{"name", "1-bend"}, {"ways", {1e-300, 0.1, -0.0}}});
+    reached.start_warning = {"coarse"};
     reached.warning = {"odd \xff text", ""};
     reached.steps = 12345678901;
     reached.seconds = {{"mold", 0.5}};
@@ -108,15 +112,16 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
         reached.bodies.push_back(piece_that_went_through_all(skin));
     }
     reached.skin = {4, 0, 7};
-    write_checkpoint(file, "key", reached);
+    write_checkpoint(file, kKeys, reached);
     std::string why;
-    std::optional<Reached> read = read_checkpoint(file, "key", why);
+    std::optional<Reached> read = read_checkpoint(file, kKeys, why);
     INFO(why);
     REQUIRE(read);
     CHECK(read->stages == 2);
     CHECK(json_text(read->matter) == json_text(reached.matter));
     CHECK(json_text(read->stage) == json_text(reached.stage));
     CHECK(read->warning == reached.warning);
+    CHECK(read->start_warning == reached.start_warning);
     CHECK(read->steps == reached.steps);
     CHECK(read->seconds == reached.seconds);
     CHECK(read->motion.size == 1234);
@@ -151,13 +156,13 @@ TEST_CASE("images are kept once, and are one again") {
     like.material[0].embedded_texture = shared;
     reached.bodies[0].look = std::make_shared<const NewLook>(like);
     reached.bodies[0].skin.material[0].embedded_texture = shared;
-    write_checkpoint(file, "key", reached);
+    write_checkpoint(file, kKeys, reached);
     const std::string bytes = bytes_of(file);
     const std::size_t first = bytes.find(image);
     CHECK(first != std::string::npos);
     CHECK(bytes.find(image, first + 1) == std::string::npos);
     std::string why;
-    const std::optional<Reached> read = read_checkpoint(file, "key", why);
+    const std::optional<Reached> read = read_checkpoint(file, kKeys, why);
     REQUIRE(read);
     const WorkPiece& piece = read->bodies[0];
     CHECK(*piece.skin.material[0].embedded_texture == image);
@@ -169,16 +174,16 @@ TEST_CASE("a checkpoint that is damaged, cut short or foreign is told from a who
     const Scratch scratch;
     const fs::path file = scratch.path() / "checkpoint.bin";
     std::string why;
-    CHECK_FALSE(read_checkpoint(file, "key", why));
+    CHECK_FALSE(read_checkpoint(file, kKeys, why));
     CHECK(why.empty());
-    write_checkpoint(file, "key", reached_with({piece_that_went_through_all(SkinKind::mount)}));
+    write_checkpoint(file, kKeys, reached_with({piece_that_went_through_all(SkinKind::mount)}));
     const std::string whole = bytes_of(file);
-    REQUIRE(read_checkpoint(file, "key", why));
-    CHECK_FALSE(read_checkpoint(file, "other", why));
+    REQUIRE(read_checkpoint(file, kKeys, why));
+    CHECK_FALSE(read_checkpoint(file, {"", "", "other"}, why));
     CHECK(why == "is of another run, or of another build of swage");
     const auto refused = [&](const std::string& bytes) {
         put_bytes(file, bytes);
-        return !read_checkpoint(file, "key", why) && why == "is damaged";
+        return !read_checkpoint(file, kKeys, why) && why == "is damaged";
     };
     for (std::size_t at = 0; at < whole.size(); at += at < 300 ? 1 : 4999) {
         std::string bytes = whole;
@@ -192,7 +197,7 @@ TEST_CASE("a checkpoint that is damaged, cut short or foreign is told from a who
     for (const std::size_t size : {std::size_t(8), std::size_t(40), std::size_t(4000)}) {
         for (const char fill : {'\0', '\x7f', '\xff'}) {
             ByteWriter out;
-            out(std::string("key"), std::uint64_t(0));
+            out(2, std::string("key"), std::uint64_t(0));
             out.raw(std::string(size, fill).data(), size);
             ByteWriter hash;
             hash(hash_of(out.bytes()));
@@ -201,6 +206,6 @@ TEST_CASE("a checkpoint that is damaged, cut short or foreign is told from a who
     }
     fs::remove(file);
     fs::create_directory(file);
-    CHECK_FALSE(read_checkpoint(file, "key", why));
+    CHECK_FALSE(read_checkpoint(file, kKeys, why));
     CHECK(why == "is a folder, not a file");
 }

@@ -141,7 +141,7 @@ TEST_CASE("what a run keeps to go on from is told, and counts where nothing else
                                   static_cast<double>(piece.matter.bytes()),
                                   static_cast<double>(piece.skin.position.size())};
             if (flows) piece.matter.cell_history.assign(piece.matter.cell_fill.size());
-            write_checkpoint(scratch.path() / "checkpoint.bin", "key", reached);
+            write_checkpoint(scratch.path() / "checkpoint.bin", {"key"}, reached);
             const auto size =
                 static_cast<double>(std::filesystem::file_size(scratch.path() / "checkpoint.bin"));
             const double told = checkpoint_bytes(bar.scene, {bar.input}, of);
