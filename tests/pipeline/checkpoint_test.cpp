@@ -132,6 +132,28 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
     for (std::size_t b = 0; b < 3; ++b) {
         WorkPiece &before = reached.bodies[b], &after = read->bodies[b];
         CHECK(bytes_of(after) == bytes_of(before));
+        // What bytes would not tell if it were left out of them.
+        CHECK(after.name == before.name);
+        CHECK(after.finding == before.finding);
+        CHECK(after.is_torn);
+        CHECK(after.position == before.position);
+        CHECK(after.followed.y == before.followed.y);
+        CHECK(after.whole_skin.has_value() == before.whole_skin.has_value());
+        CHECK(after.whole_position == before.whole_position);
+        CHECK(after.whole_mount.reference == before.whole_mount.reference);
+        CHECK(after.whole_mount.vertex == before.whole_mount.vertex);
+        CHECK(after.mount.kind == before.mount.kind);
+        CHECK(after.mount.hold == before.mount.hold);
+        CHECK(after.mount.side == before.mount.side);
+        CHECK(after.matter.surface == before.matter.surface);
+        CHECK(after.matter.cell_fill == before.matter.cell_fill);
+        CHECK(after.matter.cell_centroid.all() == before.matter.cell_centroid.all());
+        CHECK(after.matter.cell_material == before.matter.cell_material);
+        CHECK(after.matter.inset.at(0).yield_stress == 1e5);
+        CHECK(after.matter.lattice.cell_row_begin == before.matter.lattice.cell_row_begin);
+        CHECK(after.matter.branch_memory.at(0).branches.time ==
+              before.matter.branch_memory.at(0).branches.time);
+        CHECK(after.matter.mixed_cell[1].normal == before.matter.mixed_cell[1].normal);
         CHECK(after.mount.vertex == before.mount.vertex);
         CHECK(after.mount.particle == before.mount.particle);
         CHECK(after.mount.stencil.axis == before.mount.stencil.axis);
