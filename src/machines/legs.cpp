@@ -223,14 +223,14 @@ std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& leg
     return drives;
 }
 
-double bytes_of_way(const MachineSpec& spec, int frames) {
+double bytes_of_way(const MachineSpec& spec, int frames, bool in_motion) {
     const auto loads = static_cast<double>(spec.load.size());
     const auto parts = static_cast<double>(spec.tool.size() + spec.grip.size() + spec.blade.size());
     const double looks = static_cast<double>(looks_in(frames)) *
                          (sizeof(std::vector<double>) + kHeapShare + 8 * (loads + 1));
+    const double way = in_motion ? 2 * kHeapShare + parts * sizeof(std::optional<WayEnds>) : 0;
     const double drives =
-        frames * (sizeof(Drive) + 4 * kHeapShare +
-                  parts * (sizeof(Pose) + sizeof(std::optional<WayEnds>)) + 8 * loads);
+        frames * (sizeof(Drive) + 2 * kHeapShare + parts * sizeof(Pose) + 8 * loads + way);
     // What was looked at is forgotten before the drives are made.
     return frames * static_cast<double>(sizeof(Leg)) + std::max(looks, drives);
 }

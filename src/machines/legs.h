@@ -36,6 +36,6 @@ std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& leg
                              double duration, bool in_motion);
 
 // What legs and drives take, about, at one leg a frame [byte].
-double bytes_of_way(const MachineSpec& spec, int frames);
+double bytes_of_way(const MachineSpec& spec, int frames, bool in_motion);
 
 }  // namespace swage

@@ -167,8 +167,9 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     double work = 0;  // the steps, as if nothing damped or yielded in them
     double way = 0;   // [byte], of the machine's, one after another
     for (const StageSpec& stage : scene.stage) {
-        way = std::max(way, bytes_of_way(stage.machine, stage.frames));
         const Solver solver = stage.sim.solver;
+        way =
+            std::max(way, bytes_of_way(stage.machine, stage.frames, solver != Solver::quasistatic));
         if (solver == Solver::quasistatic) {
             const bool relaxes = !stage.machine.tool.empty();
             const bool counted = equilibria > 0 && &stage == &scene.stage.front();

@@ -128,7 +128,9 @@ TEST_CASE("what a grip speeds up evenly bears its mass times that, however few t
         const double mass = cube.mass(), speed = kSpeedUp * kLeg;
         CAPTURE(frames);
         // Straight from frame to frame: 0.4 to 3 times that, and less than nothing.
-        CHECK(report.load[0].force.x() == Approx(mass * kSpeedUp).epsilon(0.02));
+        // Steps that energy chooses are of many lengths, which stirs the grip by itself.
+        const double within = solver == Solver::explicit_steps ? 1e-4 : 0.1;
+        CHECK(report.load[0].force.x() == Approx(mass * kSpeedUp).epsilon(within));
         CHECK(report.kinetic == Approx(0.5 * mass * speed * speed).epsilon(0.01));
         CHECK(std::abs(report.remainder) < 0.01 * report.kinetic);
     }
