@@ -175,10 +175,10 @@ Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
     std::vector<std::size_t> bent;
     const auto divide = [&](const auto& again, const Leg& leg, int halvings) -> void {
         const bool is_straight = straight.of(leg.begin, leg.end);
-        const bool is_smooth = !in_motion || straight.is_smooth(leg.begin, leg.end);
-        if ((is_straight && is_smooth) || halvings == 0) {
+        const bool bends = in_motion && straight.is_smooth(leg.begin, leg.end);
+        if ((is_straight && bends == in_motion) || halvings == 0) {
             if (!is_straight) bent.push_back(legs.leg.size());
-            legs.leg.push_back(leg);
+            legs.leg.push_back({leg.frame, leg.begin, leg.end, bends});
             return;
         }
         const double middle = 0.5 * (leg.begin + leg.end);
@@ -208,7 +208,7 @@ Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
 }
 
 std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& legs, int steps,
-                             double duration, bool in_motion) {
+                             double duration) {
     std::vector<Drive> drives;
     drives.reserve(legs.size() * static_cast<std::size_t>(steps) + 1);
     drives.push_back(drive_at(machine, legs.front().begin, duration));
@@ -218,7 +218,7 @@ std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& leg
             drives.push_back(drive_at(machine, (1 - s) * leg.begin + s * leg.end, duration));
         }
         drives.push_back(drive_at(machine, leg.end, duration));
-        if (in_motion) find_ways(machine, leg.begin, leg.end, drives.back());
+        if (leg.bends) find_ways(machine, leg.begin, leg.end, drives.back());
     }
     return drives;
 }

@@ -14,6 +14,8 @@ namespace swage {
 struct Leg {
     int frame;          // 0 for the first
     double begin, end;  // of the stage, 0 to 1
+    bool bends =
+        false;  // in motion, where a cubic follows the machine; else straight, as jumps are
 };
 
 struct Legs {
@@ -31,9 +33,9 @@ struct Legs {
 Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion);
 
 // At the start and at the end of each of `steps` parts of each leg, of a stage of `duration` [s].
-// In motion the last of a leg says how its ways from the leg's start bend.
+// The last of a leg that bends says how.
 std::vector<Drive> drives_of(const Machine& machine, const std::vector<Leg>& legs, int steps,
-                             double duration, bool in_motion);
+                             double duration);
 
 // What legs and drives take, about, at one leg a frame [byte].
 double bytes_of_way(const MachineSpec& spec, int frames, bool in_motion);

@@ -91,8 +91,7 @@ Legs stage_legs(const StageSpec& stage, const Machine& machine, int frames,
 
 std::vector<Drive> stage_drives(const StageSpec& stage, const Machine& machine,
                                 const std::vector<Leg>& legs, int steps, double duration) {
-    const bool in_motion = stage.sim.solver != Solver::quasistatic;
-    return at_stage(stage, [&] { return drives_of(machine, legs, steps, duration, in_motion); });
+    return at_stage(stage, [&] { return drives_of(machine, legs, steps, duration); });
 }
 
 }  // namespace swage

@@ -26,7 +26,7 @@ constexpr double kSlack = 1e-3;
 // By straight legs, without missing what lies between their ends.
 double turned_along(const Machine& machine, const Legs& legs) {
     double sum = 0;
-    const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1, false);
+    const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1);
     for (std::size_t n = 1; n < way.size(); ++n) {
         sum += way[n].world_from_grip[1].rotation.angularDistance(
             way[n - 1].world_from_grip[1].rotation);
@@ -153,7 +153,7 @@ TEST_CASE("in motion grips keep the pace of their machine within legs and from o
         const double scale = turns ? 1 : machine.frame.size.x();
         for (const int frames : {5, 12}) {
             const Legs legs = legs_of(machine, frames, kSlack, true);
-            const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1, true);
+            const std::vector<Drive> way = drives_of(machine, legs.leg, 1, 1);
             double most = 0, off = 0;
             for (std::size_t n = 1; n < way.size(); ++n) {
                 const double step = 1e-3;
@@ -182,13 +182,35 @@ TEST_CASE("what goes evenly has no bent ways, in motion either, and rests have n
         const Machine machine = vice(turn, "0.2*length*t");
         const Legs legs = legs_of(machine, 7, kSlack, true);
         CHECK(legs.leg.size() == 7);
-        for (const Drive& drive : drives_of(machine, legs.leg, 1, 1, true)) {
+        for (const Drive& drive : drives_of(machine, legs.leg, 1, 1)) {
             for (const auto& way : drive.grip_way) CHECK(!way);
         }
     }
     const Machine machine = vice("t^2", "0");
-    for (const Drive& drive :
-         drives_of(machine, legs_of(machine, 7, kSlack, false).leg, 1, 1, false)) {
+    for (const Drive& drive : drives_of(machine, legs_of(machine, 7, kSlack, false).leg, 1, 1)) {
         CHECK(drive.grip_way.empty());
+    }
+}
+
+TEST_CASE(
+    "what jumps or begins at an endless pace goes straight in motion, and no farther than there") {
+    for (const char* move : {"0.1*length*step(t, 0.5)", "0.1*length*step(t, 0.437)",
+                             "0.1*length*sqrt(t)", "t < 0.5 ? 0 : 0.1*length*t"}) {
+        const Machine machine = vice("0", move);
+        const double start = drive_at(machine, 0, 1).world_from_grip[1].translation.x(),
+                     far = drive_at(machine, 1, 1).world_from_grip[1].translation.x() - start;
+        for (const int frames : {1, 4, 10}) {
+            const std::vector<Drive> way =
+                drives_of(machine, legs_of(machine, frames, kSlack, true).leg, 1, 1);
+            for (std::size_t n = 1; n < way.size(); ++n) {
+                for (double s = 0; s < 1; s += 0.05) {
+                    const Drive now = drive_between(way[n - 1], way[n], s);
+                    const double at = now.world_from_grip[1].translation.x() - start;
+                    CAPTURE(move, frames, n, s);
+                    CHECK(at > -0.01 * far);
+                    CHECK(at < 1.01 * far);
+                }
+            }
+        }
     }
 }

@@ -246,7 +246,7 @@ TEST_CASE("the cutter parts a rod however its cells lie in it, and however they 
             }
             const Machine machine = at_bar("cut", {}, body);
             const std::vector<Drive> way =
-                drives_of(machine, legs_of(machine, 40, 1, false).leg, 1, 1, false);
+                drives_of(machine, legs_of(machine, 40, 1, false).leg, 1, 1);
             sever(body, crossed_connections(body, swept_triangles(machine.apparatus, way)));
             CHECK(find_pieces(body).count == 2);
         }
