@@ -49,7 +49,7 @@ int export_run(const ExportArguments& given) {
     }
     const FrameStore store(run / "motion.bin");
     FrameRange frames{1, store.frame_count()};
-    if (!given.frames.empty()) frames = parse_frame_range(given.frames);
+    if (!given.frames.empty()) frames = parse_frame_range(given.frames, store.frame_count());
     Stopwatch watch;
     const UsdOutcome outcome = [&] {
         const auto lap = watch.lap("export");
@@ -89,7 +89,8 @@ void add_export_command(CLI::App& app, Action& chosen) {
         ->type_name("FILE");
     command
         ->add_option("--frames", given.frames,
-                     "only the frames A to B; 1 is the start. They keep their numbers")
+                     "only the frames A to B, A, or A- to the end; 1 is the start. They keep their "
+                     "numbers")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command

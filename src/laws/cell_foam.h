@@ -63,8 +63,9 @@ SWAGE_INLINE N foam_energy(const CellModuli& law, const Columns<N>& f) {
 inline double foam_stiffening(const CellModuli& law, double volume, double stretch, double area) {
     const double least = larger(volume, law.foam_least);
     const double p = power(least, -law.foam_power);
-    return law.shear * larger(0, law.foam_power * (p / least * area - 3) + p * std::sqrt(stretch) -
-                                     std::sqrt(3.0));
+    return law.shear *
+           larger(0, law.foam_power * (p / least * area - 3) +
+                         foam_pressure(law, volume) * std::sqrt(stretch) - std::sqrt(3.0));
 }
 
 }  // namespace swage

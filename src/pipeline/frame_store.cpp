@@ -265,6 +265,7 @@ void FrameStoreWriter::keep(const fs::path& as) {
 }
 
 void FrameStoreWriter::finish() {
+    if (is_kept_) return keep(file_);  // what cannot get its name stays, to be gone on from
     handle_.close();
     publish(written_, file_);
 }

@@ -92,11 +92,13 @@ std::string stiffness_note(const StageSpec& stage, const std::vector<NamedMatter
         all.push_back(fmt::format("grip_stiffness = {:g} acts as {}", sim.grip_stiffness, held));
     }
     if (all.empty()) return {};
-    const double safety = rounded_down(sim.step_safety / shorter);
-    return fmt::format(
-        "steps at step_safety = {:g} are too long for what is asked, {}: step_safety = {:.2g} "
-        "gives it, in {:.2g} times the steps",
-        sim.step_safety, joined(all, ", "), safety, sim.step_safety / safety);
+    const std::string told =
+        fmt::format("steps at step_safety = {:g} are too long for what is asked, {}",
+                    sim.step_safety, joined(all, ", "));
+    if (shorter >= kShortest) return told;  // no step that can be taken gives it
+    const double safety = rounded_down(sim.step_safety / shorter), times = sim.step_safety / safety;
+    return fmt::format("{}: step_safety = {:.2g} gives it, in {:.{}f} times the steps", told,
+                       safety, times, times < 10 ? 1 : 0);
 }
 
 double stiffness_share_at_tools(const StageSpec& stage, const std::vector<NamedMatter>& bodies) {

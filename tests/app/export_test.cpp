@@ -65,8 +65,14 @@ TEST_CASE("a run that ended early exports the frames that it has") {
                                            "radius = \"1 um\"\n");
     const fs::path run = scratch.path() / "run";
     REQUIRE(run_swage({"run", scene.string(), "--out", run.string(), "--no-render"}).code == 3);
-    CHECK(run_swage({"export", run.string()}).code == 0);
-    CHECK(Usda(bytes_of(run / "usd/small.usda")).text(".endTimeCode") == "3");
+    for (const std::vector<std::string>& which : {std::vector<std::string>{}, {"--frames", "2-"}}) {
+        std::vector<std::string> arguments = {"export", run.string()};
+        arguments.insert(arguments.end(), which.begin(), which.end());
+        CHECK(run_swage(arguments).code == 0);
+        const Usda usda(bytes_of(run / "usd/small.usda"));
+        CHECK(usda.text(".startTimeCode") == (which.empty() ? "1" : "2"));
+        CHECK(usda.text(".endTimeCode") == "3");
+    }
 }
 
 TEST_CASE("what cannot be exported is told, and leaves what was there as it was") {
