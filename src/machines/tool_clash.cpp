@@ -98,8 +98,7 @@ std::vector<std::string> tool_clashes(const Machine& machine,
             if (clash.most - clash.at_start <= slack) continue;
             notes.push_back(fmt::format(
                 "tools {} and {} go {} deep into each other by t = {:.3g}{}: what is caught "
-                "between "
-                "them has no room, and their forces say nothing",
+                "between them has no room, and their forces say nothing",
                 tool[a].name, tool[b].name, quantity_text(clash.most, Quantity::length), clash.t,
                 clash.at_start > slack
                     ? fmt::format(", {} of it from the start",
