@@ -122,7 +122,7 @@ void remove_products(const fs::path& root) {
 }
 
 // But for what the first stages left; the motion file is gone on from, and replaced.
-void remove_later_products(const fs::path& root, const std::vector<std::string>& kept) {
+void remove_later_products(const fs::path& root, const std::vector<fs::path>& kept) {
     for (const char* name : {"run.json", "film.mp4", "contact.png", "frames", "again", "usd"}) {
         remove_product(root / name);
     }
@@ -131,7 +131,7 @@ void remove_later_products(const fs::path& root, const std::vector<std::string>&
     };
     std::vector<fs::path> others;
     std::error_code error;
-    for (const char* folder : {"meshes", "curves"}) {
+    for (const fs::path folder : {"meshes", "curves"}) {
         for (fs::directory_iterator it(root / folder, error), end; !error && it != end;
              it.increment(error)) {
             // Pictures beside meshes are of all stages.
@@ -139,7 +139,8 @@ void remove_later_products(const fs::path& root, const std::vector<std::string>&
             const bool is_folder = it->is_directory(error);
             const bool is_of_stage = is_folder || ending == ".obj" || ending == ".mtl" ||
                                      ending == ".ply" || ending == ".csv" || ending == ".svg";
-            if (is_of_stage && !is_kept(is_folder ? it->path().filename() : it->path().stem())) {
+            const fs::path name = is_folder ? it->path().filename() : it->path().stem();
+            if (is_of_stage && !is_kept(folder / name)) {
                 others.push_back(it->path());
             }
         }
@@ -242,7 +243,7 @@ void RunDirectory::claim(const RunIdentity& identity, bool go_on) {
                   : "");
 }
 
-void RunDirectory::begin(const std::vector<std::string>& kept) {
+void RunDirectory::begin(const std::vector<fs::path>& kept) {
     has_begun_ = true;
     if (!anew_ && !changed_) return;
     {

@@ -60,8 +60,8 @@ class RunDirectory {
     // Of the run that it holds later stages are others.
     bool is_changed() const { return changed_; }
     // The run is about to write its first frame: now what makes room for it is removed. `kept`: of
-    // a run that is changed the names, but for their endings, of meshes and curves that stay.
-    void begin(const std::vector<std::string>& kept = {});
+    // a run that is changed the meshes and curves that stay, from its root on and without endings.
+    void begin(const std::vector<std::filesystem::path>& kept = {});
     std::filesystem::path record() const { return root_ / "run.json"; }
     std::filesystem::path store() const { return root_ / "motion.bin"; }
     // Of a run that is not done: what it goes on from, and its motion file until it ends.

@@ -81,16 +81,22 @@ std::optional<Kept> kept_by_earlier_run(const RunDirectory& directory) {
     return std::nullopt;
 }
 
-// Of the meshes and curves that the first of them leave.
-std::vector<std::string> names_of_stages(const SceneSpec& scene, int count) {
-    std::vector<std::string> names;
+// What the first of them leave in a run directory, but for endings.
+std::vector<fs::path> products_of_stages(const SceneSpec& scene, int count) {
+    const fs::path meshes = "meshes", curves = "curves";
+    std::vector<fs::path> products;
     for (int s = 0; s < count; ++s) {
-        const std::string& stage = scene.stage[static_cast<std::size_t>(s)].name;
-        names.push_back(stage);
-        names.push_back(stage + "-bodies");  // the table of how they move
-        for (const BodySpec& body : scene.body) names.push_back(stage + "-" + body.name);
+        const StageSpec& stage = scene.stage[static_cast<std::size_t>(s)];
+        products.push_back(curves / stage.name);
+        if (stage.sim.solver != Solver::quasistatic) {
+            products.push_back(curves / (stage.name + "-bodies"));
+        }
+        if (scene.body.size() == 1) products.push_back(meshes / stage.name);
+        for (std::size_t b = 0; scene.body.size() > 1 && b < scene.body.size(); ++b) {
+            products.push_back(meshes / (stage.name + "-" + scene.body[b].name));
+        }
     }
-    return names;
+    return products;
 }
 
 // Whether that could be written; the run goes on all the same.
@@ -145,7 +151,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     bool has_begun = false;
     const auto begin = [&] {
         if (std::exchange(has_begun, true)) return;
-        directory.begin(names_of_stages(scene, kept ? reached.stages : 0));
+        directory.begin(products_of_stages(scene, kept ? reached.stages : 0));
         if (!kept) directory.remove_checkpoint();
         reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
                                            kStageRecordRoom * scene.stage.size());

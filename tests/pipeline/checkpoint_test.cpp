@@ -2,26 +2,23 @@
 #include "pipeline/checkpoint.h"
 
 #include <fstream>
-#include <iterator>
 
 #include "geometry/make_shape.h"
 #include "pipeline/work_piece_bytes.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
+#include "tests/shared/bytes_of.h"
 
 using namespace swage;
+using test::bytes_of;
 namespace fs = std::filesystem;
 
 namespace {
 
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 void put_bytes(const fs::path& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
 }
-std::string bytes_of(const WorkPiece& piece) {
+std::string piece_bytes(const WorkPiece& piece) {
     ByteWriter out(true);
     out(piece);
     return out.bytes();
@@ -131,7 +128,7 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
     CHECK(state_hash(read->bodies) == state_hash(reached.bodies));
     for (std::size_t b = 0; b < 3; ++b) {
         WorkPiece &before = reached.bodies[b], &after = read->bodies[b];
-        CHECK(bytes_of(after) == bytes_of(before));
+        CHECK(piece_bytes(after) == piece_bytes(before));
         // What bytes would not tell if it were left out of them.
         CHECK(after.name == before.name);
         CHECK(after.finding == before.finding);
@@ -164,7 +161,7 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
             }
             show_matter(*piece, true);
         }
-        CHECK(bytes_of(after) == bytes_of(before));
+        CHECK(piece_bytes(after) == piece_bytes(before));
     }
 }
 

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A motion file that is gone on with.
 #include <fstream>
-#include <iterator>
 
 #include "base/error.h"
 #include "pipeline/frame_store.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
+#include "tests/shared/bytes_of.h"
 
 using namespace swage;
+using test::bytes_of;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 TriMesh triangle(const std::string& image) {
     TriMesh mesh;

@@ -9,20 +9,17 @@
 #include "base/text.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
+#include "tests/shared/bytes_of.h"
 #include "tests/shared/usda.h"
 
 using namespace swage;
+using test::bytes_of;
 namespace fs = std::filesystem;
 
 namespace {
 
 constexpr int kFrames = 8, kCut = 5;  // the frame that has another skin
 const std::string kBody = "/two_falls/a_body";
-
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 // Of a square and two triangles.
 TriMesh pyramid(const fs::path& texture) {

@@ -28,6 +28,22 @@ WorkPiece block(const StartSpec& start, SkinKind skin) {
     return make_work_piece(input, body, {skin});
 }
 
+// Cut across its length, what lies on the right moved by that much.
+WorkPiece parted_block(SkinKind kind, const Vec3& apart) {
+    WorkPiece piece = block({}, kind);
+    const double x = 0.01;
+    const Vec3 a(x, -1, -1), b(x, 1, -1), up(0, 0, 2);
+    cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}});
+    test::sever_plane(piece.matter, {x, 0, 0}, Vec3::UnitX());
+    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
+        if (piece.matter.particle_reference.at(p).x() > x) {
+            piece.matter.particle_position.add(p, apart);
+        }
+    }
+    show_matter(piece, true);
+    return piece;
+}
+
 // What a run makes of a file that holds this mesh.
 InputMesh read_from_file(const TriMesh& mesh) {
     const Scratch scratch;
@@ -173,17 +189,8 @@ TEST_CASE("matter molded anew is as heavy as it was, pressed together or drawn")
 
 TEST_CASE("matter molded anew is as heavy as it was where its pieces lie in each other") {
     const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
-    WorkPiece piece = block({}, kind);
-    const Vec3 a(0.01, -1, -1), b(0.01, 1, -1), up(0, 0, 2);
-    cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}});
-    test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
+    const WorkPiece piece = parted_block(kind, {-0.08, 0.01, 0});
     const double mass = piece.matter.mass();
-    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
-        if (piece.matter.particle_reference.at(p).x() > 0.01) {
-            piece.matter.particle_position.add(p, {-0.08, 0.01, 0});
-        }
-    }
-    show_matter(piece, true);
     BodySpec body;
     body.mold.across = 3;
     const WorkPiece anew = mold_anew(piece, body, {kind});
@@ -302,16 +309,7 @@ TEST_CASE("a body in motion is molded anew in motion") {
 
 TEST_CASE("a painted body that is molded anew keeps its colour, and cut faces keep theirs") {
     const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::boundary);
-    WorkPiece piece = block({}, kind);
-    const Vec3 a(0.01, -1, -1), b(0.01, 1, -1), up(0, 0, 2);
-    cut_skins(piece, {{a, b, b + up}, {a, b + up, a + up}});
-    test::sever_plane(piece.matter, {0.01, 0, 0}, Vec3::UnitX());
-    for (std::size_t p = 0; p < piece.matter.particle_count(); ++p) {
-        if (piece.matter.particle_reference.at(p).x() > 0.01) {
-            piece.matter.particle_position.add(p, {0.3, 0, 0});
-        }
-    }
-    show_matter(piece, true);
+    const WorkPiece piece = parted_block(kind, {0.3, 0, 0});
     REQUIRE(piece.skin.material.size() == 2);
     BodySpec body;
     body.mold.across = 3;

@@ -11,8 +11,10 @@
 #include "render/film.h"
 #include "render/png.h"
 #include "tests/catch.h"
+#include "tests/shared/bytes_of.h"
 
 using namespace swage;
+using test::bytes_of;
 namespace fs = std::filesystem;
 
 namespace {
@@ -36,11 +38,6 @@ struct Folder {
     Folder() { fs::create_directories(path); }
     ~Folder() { fs::remove_all(path); }
 };
-
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 }  // namespace
 
