@@ -21,6 +21,9 @@ bool stderr_has_color();  // a terminal, and NO_COLOR is not set
 void log_text(const std::string& line);
 void log_error_text(const std::string& line);
 void log_warning_text(const std::string& line);
+// Where stderr is a terminal: a last line that stays last, and changes; then a whole line again.
+void log_bar(const std::string& line);
+void end_bar();
 
 template <typename... Args>
 void log_info(fmt::format_string<Args...> text, Args&&... args) {
@@ -34,21 +37,5 @@ template <typename... Args>
 void log_warning(fmt::format_string<Args...> text, Args&&... args) {
     log_warning_text(fmt::format(text, std::forward<Args>(args)...));
 }
-
-// A bar with the time left when stderr is a terminal; a plain line now and then otherwise.
-class Progress {
-  public:
-    // `before`: done already, and not in the time that is taken now.
-    Progress(std::string title, int total, int before = 0);
-    ~Progress();
-    void advance(int done, const std::string& note = {});
-
-  private:
-    std::string title_;
-    int total_, before_;
-    double started_;
-    double last_shown_ = -1;
-    int last_tenth_ = -1;
-};
 
 }  // namespace swage

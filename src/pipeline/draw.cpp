@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "pipeline/action_box.h"
 #include "pipeline/interrupt.h"
 #include "render/camera.h"

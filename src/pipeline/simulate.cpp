@@ -9,6 +9,7 @@
 #include "base/failure.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/cost.h"
 #include "pipeline/disk_reserve.h"

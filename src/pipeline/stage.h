@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "pipeline/json.h"
 #include "pipeline/motion_recorder.h"

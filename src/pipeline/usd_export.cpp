@@ -11,6 +11,7 @@
 #include "base/file_contents.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "geometry/edges.h"
 #include "geometry/mesh_write.h"
 #include "geometry/usd_look.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/units.h"
 #include "sim/quasistatic.h"
 #include "sim/vector_sums.h"
 
@@ -18,6 +19,22 @@ bool has_broken(const Aggregate& matter) {
     return std::any_of(matter.connection.begin(), matter.connection.end(), [](const auto& all) {
         return std::any_of(all.damage.begin(), all.damage.end(), [](float d) { return d >= 1; });
     });
+}
+
+// Where it was at rest last, and what of the loads it bore there.
+std::string borne_last(const Apparatus& apparatus, const Drive& at) {
+    std::string text = fmt::format("it was last at rest at {:.4g} s", at.time);
+    for (std::size_t n = 0; n < apparatus.load.size(); ++n) {
+        const Load& load = apparatus.load[n];
+        Vec3 force = Vec3::Zero();
+        for (const Vec3& one : load.force) force += at.load_strength[n] * one;
+        const std::string size =
+            load.force.empty()
+                ? quantity_text(at.load_strength[n] * load.pressure, Quantity::stress)
+                : quantity_text(force.norm(), Quantity::force);
+        text += fmt::format("{}{} of {}", n > 0 ? ", " : " under ", size, load.name);
+    }
+    return text;
 }
 
 }  // namespace
@@ -57,9 +74,9 @@ void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
     }
     fail(ExitCode::stopped,
          "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings (residual "
-         "{:.2g} of the largest push, wanted {:.2g}; {}); {}",
+         "{:.2g} of the largest push, wanted {:.2g}; {}); {}; {}",
          apparatus_.name, move.to.time, tried.iterations, move.depth, tried.residual,
-         settings_.tolerance, met, advice);
+         settings_.tolerance, met, borne_last(apparatus_, move.from), advice);
 }
 
 }  // namespace swage
