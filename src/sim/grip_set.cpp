@@ -5,7 +5,6 @@
 
 #include "matter/parted.h"
 #include "sim/surface_forces.h"
-#include "sim/surface_modulus.h"
 
 namespace swage {
 
@@ -13,10 +12,8 @@ GripSet::GripSet(const Aggregate& matter, const Apparatus& apparatus, const SimS
                  int body)
     : apparatus_(&apparatus),
       body_(body),
-      of_modulus_(settings.grip_stiffness),
-      spacing_(matter.lattice.spacing),
-      pressed_modulus_(pressed_modulus(matter.material, settings.solver)),
-      modulus_(surface_moduli(matter, matter.surface, settings.solver)) {
+      of_layer_(settings.grip_stiffness),
+      layer_(matter, matter.surface, settings.solver) {
     connections_changed(matter);
 }
 
@@ -33,8 +30,7 @@ void GripSet::connections_changed(const Aggregate& matter) {
 }
 
 double GripSet::stiffness(const Aggregate& matter, int point) const {
-    const double modulus = modulus_.empty() ? pressed_modulus_ : modulus_[point];
-    const double k = of_modulus_ * modulus * matter.surface.area(point) / spacing_;
+    const double k = layer_.stiffness(matter.surface, std::size_t(point), of_layer_);
     return limit_.empty() ? k : std::min(k, limit_[point]);
 }
 

@@ -16,6 +16,7 @@
 #include "sim/held_point.h"
 #include "sim/load_sum.h"
 #include "sim/settings.h"
+#include "sim/surface_modulus.h"
 
 namespace swage {
 
@@ -67,11 +68,11 @@ class GripSet {
 
     const Apparatus* apparatus_;
     int body_;
-    double of_modulus_;  // stiffness of a layer of cells, in a grip
-    double spacing_, pressed_modulus_;
-    // Of bodies of several materials [Pa], and limits [N/m], by point of the surface; empty: none.
-    std::vector<double> modulus_, limit_;
-    std::vector<char> torn_;  // by point of the surface; empty: none
+    double of_layer_;  // so many times as stiff is a grip
+    SurfaceLayer layer_;
+    // By point of the surface; empty: none.
+    std::vector<double> limit_;  // [N/m]
+    std::vector<char> torn_;
 };
 
 }  // namespace swage

@@ -15,12 +15,10 @@ constexpr double kFaces = 2;  // of a cell, as which at most a point counts on i
 
 LimitedPoints on_rigid(const Aggregate& matter, const SurfacePoints& points, double of_layer,
                        Solver solver, double most) {
-    const std::vector<double> modulus = surface_moduli(matter, points, solver);
-    const double pressed = pressed_modulus(matter.material, solver);
+    const SurfaceLayer layer(matter, points, solver);
     LimitedPoints limited;
     for (std::size_t p = 0; p < points.size(); ++p) {
-        limited.asked.push_back(of_layer * (modulus.empty() ? pressed : modulus[p]) *
-                                points.area(p) / matter.lattice.spacing);
+        limited.asked.push_back(layer.stiffness(points, p, of_layer));
     }
     limited.stiffest = stiffest_of_points(matter, points, limited.asked, most);
     return limited;
@@ -45,12 +43,11 @@ double area_on(const Aggregate& onto, const SurfacePoints& points, std::size_t p
 std::vector<double> stiffness_on_body(const Aggregate& from, const SurfacePoints& points,
                                       const Aggregate& onto, double contact_stiffness,
                                       Solver solver) {
-    const std::vector<double> modulus = surface_moduli(from, points, solver);
-    const double own = pressed_modulus(from.material, solver),
-                 other = surface_modulus(onto, solver) / onto.lattice.spacing;
+    const SurfaceLayer layer(from, points, solver);
+    const double other = surface_modulus(onto, solver) / onto.lattice.spacing;
     std::vector<double> stiffness;
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const double one = (modulus.empty() ? own : modulus[p]) / from.lattice.spacing;
+        const double one = layer.modulus(p) / from.lattice.spacing;
         const double area = area_on(onto, points, p);
         stiffness.push_back(contact_stiffness * one * other / (one + other) * area);
     }

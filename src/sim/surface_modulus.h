@@ -19,6 +19,28 @@ double pressed_modulus(const Material& material, Solver solver);  // [Pa]
 std::vector<double> surface_moduli(const Aggregate& matter, const SurfacePoints& points,
                                    Solver solver);
 
+// The layer of cells beneath such points.
+class SurfaceLayer {
+  public:
+    SurfaceLayer() = default;
+    SurfaceLayer(const Aggregate& matter, const SurfacePoints& points, Solver solver)
+        : spacing_(matter.lattice.spacing),
+          pressed_(pressed_modulus(matter.material, solver)),
+          modulus_(surface_moduli(matter, points, solver)) {}
+
+    double modulus(std::size_t point) const {  // [Pa]
+        return modulus_.empty() ? pressed_ : modulus_[point];
+    }
+    // So many times as stiff as the layer under what the point stands for [N/m].
+    double stiffness(const SurfacePoints& points, std::size_t point, double times) const {
+        return times * modulus(point) * points.area(point) / spacing_;
+    }
+
+  private:
+    double spacing_ = 1, pressed_ = 0;
+    std::vector<double> modulus_;
+};
+
 // The mean over the body's surface [Pa].
 double surface_modulus(const Aggregate& matter, Solver solver);
 

@@ -6,7 +6,6 @@
 
 #include "base/parallel.h"
 #include "sim/surface_forces.h"
-#include "sim/surface_modulus.h"
 
 namespace swage {
 
@@ -35,19 +34,14 @@ double bounds_travel(const Tool& tool, const Pose& from, const Pose& to) {
 
 ToolPairs::ToolPairs(const Aggregate& matter, const Apparatus& apparatus,
                      const SimSettings& settings, int body)
-    : apparatus_(&apparatus),
-      body_(body),
-      settings_(settings),
-      spacing_(matter.lattice.spacing),
-      pressed_modulus_(pressed_modulus(matter.material, settings.solver)) {
+    : apparatus_(&apparatus), body_(body), settings_(settings), spacing_(matter.lattice.spacing) {
     if (apparatus.tool.empty()) return;
     touch_ = std::make_shared<TouchPoints>(matter);
-    point_modulus_ = surface_moduli(matter, points(), settings_.solver);
+    layer_ = {matter, points(), settings_.solver};
 }
 
 double ToolPairs::point_stiffness(std::size_t point, double tool_says) const {
-    const double modulus = point_modulus_.empty() ? pressed_modulus_ : point_modulus_[point];
-    return settings_.stiffness_of_contacts(tool_says) * modulus * points().area(point) / spacing_;
+    return layer_.stiffness(points(), point, settings_.stiffness_of_contacts(tool_says));
 }
 
 double ToolPairs::stiffness(const Pair& pair) const {
@@ -74,7 +68,7 @@ void ToolPairs::connections_changed(const Aggregate& matter) {
     touch_->connections_changed(matter);
     for (Pair& pair : pair_) pair.gone = pair.gone || !touch_->meets(pair.point);
     if (touch_->size() == before) return;
-    point_modulus_ = surface_moduli(matter, points(), settings_.solver);
+    layer_ = {matter, points(), settings_.solver};
     if (!stiffness_limit_.empty()) find_limits(matter);
     for (std::size_t p = start_position_.size(); p < points().size(); ++p) {
         start_position_.push_back(points().position(std::size_t(p), matter.particle_position));

@@ -12,6 +12,7 @@
 #include "matter/drive.h"
 #include "matter/touch_points.h"
 #include "sim/settings.h"
+#include "sim/surface_modulus.h"
 #include "sim/tool_entry.h"
 
 namespace swage {
@@ -102,11 +103,11 @@ class ToolPairs {
     const Apparatus* apparatus_;
     int body_;
     SimSettings settings_;
-    double spacing_, pressed_modulus_;
-    std::shared_ptr<TouchPoints> touch_;  // null where there is no tool; copied on change
-    // Of bodies of several materials [Pa], and limits [N/m], of each of those points; empty: none.
-    std::vector<double> point_modulus_, stiffness_limit_;
-    double limit_step_ = 0;  // [s]
+    double spacing_;
+    std::shared_ptr<TouchPoints> touch_;   // null where there is no tool; copied on change
+    SurfaceLayer layer_;                   // under those points
+    std::vector<double> stiffness_limit_;  // of each [N/m]; empty: none
+    double limit_step_ = 0;                // [s]
     std::vector<Pair> pair_;
     std::vector<double> clearance_;     // by pair: it cannot touch while particles move by less
     std::vector<Vec3> start_position_;  // of every surface point when the move began
