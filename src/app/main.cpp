@@ -30,7 +30,7 @@ int run_command_line(int argc, char** argv) {
         "swage: a machine shop for meshes. A mesh goes in, is molded into matter, bent,\n"
         "twisted and cut by machines, and comes out as meshes, stills and force curves.");
     app.name("swage");
-    app.set_version_flag("--version", fmt::format("swage {} (build {})", kVersion, kBuildName));
+    app.set_version_flag("-V,--version", fmt::format("swage {} (build {})", kVersion, kBuildName));
     app.require_subcommand(1);
     app.footer(
         "\nExamples:\n"

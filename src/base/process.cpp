@@ -11,12 +11,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 
 extern char** environ;
 
@@ -28,6 +31,15 @@ bool is_executable_file(const std::string& path) {
     struct stat status {};
     return ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
            ::access(path.c_str(), X_OK) == 0;
+}
+
+// Programs that are running.
+std::array<std::atomic<pid_t>, 16> running{};
+
+void exchange_running(pid_t from, pid_t to) {
+    for (std::atomic<pid_t>& one : running) {
+        if (pid_t expected = from; one.compare_exchange_strong(expected, to)) return;
+    }
 }
 
 // Writing to a pipe that nobody reads raises SIGPIPE, whose default ends us. It is held back for
@@ -131,11 +143,18 @@ PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
         process_ = -1;
         fail(ExitCode::output, "cannot start {}: {}", argument[0], std::strerror(error));
     }
+    exchange_running(0, process_);
 }
 
 PipedProgram::~PipedProgram() {
-    if (process_ > 0) ::kill(process_, SIGKILL);
+    if (process_ > 0) ::kill(-process_, SIGKILL);
     finish();
+}
+
+void kill_programs() {
+    for (const std::atomic<pid_t>& one : running) {
+        if (const pid_t process = one; process > 0) ::kill(-process, SIGKILL);
+    }
 }
 
 bool PipedProgram::write(const void* bytes, std::size_t size) {
@@ -157,8 +176,30 @@ bool PipedProgram::write(const void* bytes, std::size_t size) {
 
 int PipedProgram::finish() {
     input_.close();
+    return status_of_end();
+}
+
+int PipedProgram::finish_within(double seconds) {
+    input_.close();
+    constexpr int kLooksPerSecond = 200;
+    for (double looks = seconds * kLooksPerSecond; process_ > 0; --looks) {
+        siginfo_t ended{};
+        const int failed = ::waitid(P_PID, id_t(process_), &ended, WEXITED | WNOHANG | WNOWAIT);
+        if ((failed != 0 && errno != EINTR) || ended.si_pid == process_) break;
+        if (looks <= 0 || asked_to_stop() != 0) {
+            ::kill(-process_, SIGKILL);
+            break;
+        }
+        const timespec pause{0, 1'000'000'000 / kLooksPerSecond};
+        ::nanosleep(&pause, nullptr);
+    }
+    return status_of_end();
+}
+
+int PipedProgram::status_of_end() {
     if (process_ <= 0) return -1;
     const std::optional<int> status = wait_for(process_);
+    exchange_running(process_, 0);
     process_ = -1;
     if (!status) return -1;
     return WIFSIGNALED(*status) ? 128 + WTERMSIG(*status) : WEXITSTATUS(*status);

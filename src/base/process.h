@@ -23,6 +23,9 @@ void expect_children();
 // nobody can know how it ended.
 std::optional<int> wait_for(pid_t child);
 
+// To be called where the process ends without its destructors, also by a signal's handler.
+void kill_programs();
+
 // A running program whose standard input we write. Its standard output is thrown away, its
 // standard error kept. It stands in a process group of its own, so that an interrupt from the
 // terminal reaches only us and we decide how it ends.
@@ -42,12 +45,16 @@ class PipedProgram {
     // Ends the input, waits, and gives the exit status: 128 + n when ended by signal n, -1 when
     // that is not known.
     int finish();
+    // But kills it after so many seconds, or once somebody asks this process to end.
+    int finish_within(double seconds);
 
     // The last lines that the program wrote to standard error; the last non-empty one of them.
     std::string error_tail() const;
     std::string last_error_line() const;
 
   private:
+    int status_of_end();
+
     pid_t process_ = -1;
     FileHandle input_;   // our end of the pipe
     FileHandle errors_;  // a file in memory, so that a talkative program never blocks

@@ -161,6 +161,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     write_png(files.contact_sheet(),
               contact_sheet(thumbnails, sheet_columns(static_cast<int>(thumbnails.size()))));
     if (film) outcome.film = film->finish();
+    if (film && !outcome.film) outcome.warning.push_back(film->warning());
     return outcome;
 }
 

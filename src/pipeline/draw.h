@@ -19,7 +19,8 @@ struct DrawOutcome {
     std::string renderer;  // what OpenGL calls itself
     int width = 0, height = 0;
     FrameRange frames;
-    bool film = false;  // one was written
+    bool film = false;                   // one was written
+    std::vector<std::string> warning{};  // all told already
 };
 
 // Opens and closes an OpenGL context, so that a run that cannot be drawn is refused before it is

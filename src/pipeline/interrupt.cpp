@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "base/process.h"
 
 namespace swage {
 
@@ -35,7 +36,8 @@ std::atomic<bool> frames_at_stake = false;
 extern "C" void take_signal(int signal) {
     // A forked child has no watching thread.
     if (::getpid() != owner) ::_exit(128 + signal);
-    if (signal == SIGHUP && asked_to_stop() != 0) return;  // shell and kernel both send it
+    // Shell and kernel both send the one, and the system the others again and again.
+    if (signal != SIGINT && signal != SIGTERM && asked_to_stop() != 0) return;
     ask_to_stop(signal);
     const char byte = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
@@ -90,10 +92,13 @@ void watch_for_interrupts() {
     action.sa_flags = SA_RESTART;
     ::sigaction(SIGINT, &action, nullptr);
     ::sigaction(SIGTERM, &action, nullptr);
-    // A terminal that closes; nohup ignores it.
-    struct sigaction before = {};
-    if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
-        ::sigaction(SIGHUP, &action, nullptr);
+    // A terminal that closes, which nohup ignores; what batch systems send some time before they
+    // end a job.
+    for (const int signal : {SIGHUP, SIGUSR1, SIGXCPU}) {
+        struct sigaction before = {};
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
+            ::sigaction(signal, &action, nullptr);
+        }
     }
     // A closed pipe and a file as large as it may be are write errors like any other.
     std::signal(SIGPIPE, SIG_IGN);
@@ -110,6 +115,7 @@ void leave_at_once(int code) {
         const std::lock_guard lock(unfinished_mutex);
         if (!unfinished.empty()) remove_temporaries(unfinished, ::getpid());
     }
+    kill_programs();
     ::_exit(code);
 }
 

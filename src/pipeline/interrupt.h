@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SIGINT, SIGTERM and SIGHUP: the first asks the run to end at its next safe point
-// (base/interrupt.h), the second, but for SIGHUP, ends the process at once. What does not come to a
-// safe point in time is ended by a watching thread, which first removes unfinished files; it waits
-// on while finished frames would go with them.
+// SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU: the first asks the run to end at its next safe
+// point (base/interrupt.h), a second SIGINT or SIGTERM ends the process at once. What does not come
+// to a safe point in time is ended by a watching thread, which first removes unfinished files; it
+// waits on while finished frames would go with them.
 #pragma once
 
 #include <filesystem>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -26,6 +27,8 @@ std::string quoted(const std::string& text) {
     }
     return result + "'";
 }
+
+constexpr int kLongest = 30;  // s, that gnuplot may take
 
 constexpr double kLever = 2e-3;  // below it the lattice makes torques of forces, or the reverse
 
@@ -100,19 +103,27 @@ std::string plot_program(const StageCurves& curves, double size, const std::file
 
 bool gnuplot_is_present() { return program_exists("gnuplot"); }
 
-bool draw_plot(const StageCurves& curves, double size, const std::filesystem::path& svg) {
+std::string draw_plot(const StageCurves& curves, double size, const std::filesystem::path& svg) {
     const std::filesystem::path temporary = temporary_for(svg);
-    PipedProgram gnuplot({"gnuplot"});
-    gnuplot.write(plot_program(curves, size, temporary));
-    const int status = gnuplot.finish();
+    std::string why;
     std::error_code error;
-    if (status != 0 || !std::filesystem::exists(temporary, error)) {
-        std::filesystem::remove(temporary, error);
-        log_warning("{}: gnuplot could not draw it: {}", svg.string(), gnuplot.last_error_line());
-        return false;
+    try {
+        PipedProgram gnuplot({"gnuplot", "-d"});  // without what the user has set for other plots
+        gnuplot.write(plot_program(curves, size, temporary));
+        const int status = gnuplot.finish_within(kLongest);
+        if (status == 0 && std::filesystem::exists(temporary, error)) {
+            publish(temporary, svg);
+            return {};
+        }
+        why = status == 128 + SIGKILL ? fmt::format("it was killed, after {} s at most", kLongest)
+                                      : gnuplot.last_error_line();
+    } catch (const Error& failure) {
+        why = failure.what();
     }
-    publish(temporary, svg);
-    return true;
+    std::filesystem::remove(temporary, error);
+    why = fmt::format("{}: gnuplot could not draw it: {}", svg.string(), why);
+    log_warning("{}", why);
+    return why;
 }
 
 }  // namespace swage

@@ -16,7 +16,7 @@ std::string plot_program(const StageCurves& curves, double size, const std::file
 
 bool gnuplot_is_present();
 
-// Writes the SVG whole. False when gnuplot failed; its words go to the log.
-bool draw_plot(const StageCurves& curves, double size, const std::filesystem::path& svg);
+// Writes the SVG whole. What kept it from that, and stands in the log then; empty: nothing.
+std::string draw_plot(const StageCurves& curves, double size, const std::filesystem::path& svg);
 
 }  // namespace swage

@@ -37,7 +37,9 @@ bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory
         fail(ExitCode::output, "{}: is damaged; --fresh throws that run away",
              directory.record().string());
     }
-    return true;
+    const std::string flaw = flaw_of_simulation(scene, directory);
+    if (!flaw.empty()) log_warning("{}, so the run begins anew", flaw);
+    return flaw.empty();
 }
 
 }  // namespace

@@ -7,10 +7,13 @@
 #include "base/file_contents.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/process.h"
 #include "base/text.h"
 #include "geometry/mesh_read.h"
+#include "pipeline/given_record.h"
 #include "pipeline/mesh_bytes.h"
 #include "pipeline/render_record.h"
+#include "scene/overrides.h"
 
 namespace swage {
 
@@ -18,6 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr int kRecordFormat = 1;  // more, once a key goes or means something else
 constexpr std::uint64_t kLongestKeptText = 64 << 10;  // of a scene or machine
 
 std::string hash_of_mesh(TriMesh mesh) {
@@ -134,8 +138,8 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
             add_file(identity, "texture " + material.texture.filename().string(), material.texture);
         }
     }
-    identity.input.push_back({"--set", joined(options.overrides, ", "),
-                              hash_text(hash_of(joined(options.overrides, "\n")))});
+    const std::vector<std::string> set = in_order(options.overrides);
+    identity.input.push_back({"--set", joined(set, ", "), hash_text(hash_of(joined(set, "\n")))});
     identity.stage_key = stage_keys(scene, identity);
     return identity;
 }
@@ -178,7 +182,8 @@ Json drawing_json(const DrawOutcome& drawing) {
     return {{"renderer", drawing.renderer},
             {"size", {drawing.width, drawing.height}},
             {"frames", {drawing.frames.first, drawing.frames.last}},
-            {"film", drawing.film}};
+            {"film", drawing.film},
+            {"warnings", drawing.warning}};
 }
 
 Json seconds_json(const Stopwatch& watch) {
@@ -193,6 +198,7 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
                   const std::vector<InputMesh>& input) {
     Json record;
     record["program"] = "swage";
+    record["format"] = kRecordFormat;
     record["version"] = identity.version;
     record["build"] = identity.build;
     record["state"] = RunState::begun;
@@ -204,7 +210,11 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
     }
     record["threads"] = thread_count();
     for (std::size_t b = 0; b < input.size(); ++b) {
-        record["bodies"].push_back({{"name", scene.body[b].name}, {"mesh", mesh_json(input[b])}});
+        const BodySpec& body = scene.body[b];
+        Json materials = Json::array();  // the body's own first, then those of its insets
+        for (const Material* one : body.materials()) materials.push_back(material_json(*one));
+        record["bodies"].push_back(
+            {{"name", body.name}, {"mesh", mesh_json(input[b])}, {"materials", materials}});
     }
     record["render"] = render_json(scene.render);
     return record;
@@ -235,10 +245,8 @@ bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& fra
         for (int f = frames.first; f <= frames.last; ++f) {
             if (!fs::exists(files.still(f), error)) return false;
         }
-        // Without ffmpeg there was no film then; it is not tried again.
-        const bool had_film = drawing.at("film").get<bool>();
         return fs::exists(files.contact_sheet(), error) &&
-               (!film || !had_film || fs::exists(files.film(), error));
+               (!film || fs::exists(files.film(), error) || !program_exists("ffmpeg"));
     } catch (const Json::exception&) {
         return false;
     }

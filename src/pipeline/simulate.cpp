@@ -122,13 +122,33 @@ bool keep(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& wa
 
 }  // namespace
 
+std::string flaw_of_simulation(const SceneSpec& scene, const RunDirectory& directory) {
+    try {
+        const FrameStore whole(directory.store());
+    } catch (const Error& error) {
+        return error.what();
+    }
+    const auto stages = static_cast<int>(scene.stage.size());
+    for (const fs::path& product : products_of_stages(scene, stages)) {
+        const bool is_mesh = product.parent_path() == "meshes";
+        for (const char* ending : is_mesh ? std::vector{".obj", ".ply"} : std::vector{".csv"}) {
+            const fs::path file = directory.root() / fs::path(product).concat(ending);
+            std::error_code error;
+            if (!fs::exists(file, error)) return file.string() + " is gone";
+        }
+    }
+    return {};
+}
+
 Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
                RunDirectory& directory, Json& record, Stopwatch& watch) {
+    std::vector<std::string> of_plots;  // warnings
     const bool can_plot = gnuplot_is_present();
     if (!can_plot) {
-        log_warning(
+        of_plots.push_back(
             "no program gnuplot was found, so the curves are not plotted "
             "(apt-get install gnuplot-nox)");
+        log_warning("{}", of_plots.back());
     }
     std::optional<Kept> kept = kept_by_earlier_run(directory);
     Reached reached;
@@ -171,16 +191,23 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     const auto is_in_vain = [&] {
         return recorder->frame_count() == 0 || (!has_begun && directory.is_changed());
     };
+    const auto plot = [&](const StageOutcome& of) {
+        if (!can_plot || !of.curves || is_stopping()) return;
+        const auto lap = watch.lap("write");
+        const fs::path svg = directory.root() / "curves" / (of.curves->stage() + ".svg");
+        const std::string why = draw_plot(*of.curves, of.size, svg);
+        if (!why.empty()) of_plots.push_back(why);
+    };
     Ended ended;
+    StageOutcome outcome;
     int kept_stages = reached.stages;  // that are to be gone on from
     while (reached.stages < stages) {
         const StageSpec& stage = scene.stage[static_cast<std::size_t>(reached.stages)];
-        const StageContext context{scene, directory.root(), *recorder, watch, progress,
-                                   begin, can_plot};
+        const StageContext context{scene, directory.root(), *recorder, watch, progress, begin};
+        outcome = {};
         try {
             throw_if_interrupted();
-            StageOutcome outcome =
-                run_stage(stage, recorder->frame_count(), reached.bodies, context);
+            outcome = run_stage(stage, recorder->frame_count(), reached.bodies, context);
             reached.stage.push_back(std::move(outcome.record));
             reached.steps += outcome.steps;
             std::move(outcome.warning.begin(), outcome.warning.end(),
@@ -197,10 +224,9 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             if (is_in_vain() || !ended.stopped) throw;
         }
         if (ended.early()) break;
-        ++reached.stages;
-        if (reached.stages < stages && keep(directory, *recorder, watch, reached)) {
-            kept_stages = reached.stages;
-        }
+        if (++reached.stages == stages) break;
+        if (keep(directory, *recorder, watch, reached)) kept_stages = reached.stages;
+        plot(outcome);
     }
     begin();
     reserve.release();
@@ -209,9 +235,13 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     record["frames"] = recorder->frame_count();
     record["steps"] = reached.steps;
     record["state_hash"] = hash_text(state_hash(reached.bodies));
-    std::vector<std::string> warnings = std::move(reached.start_warning);
-    warnings.insert(warnings.end(), reached.warning.begin(), reached.warning.end());
-    record["warnings"] = warnings;
+    const auto tell_warnings = [&] {
+        Json& told = record["warnings"] = Json::array();
+        for (const auto* all : {&reached.start_warning, &reached.warning, &of_plots}) {
+            for (const std::string& one : *all) told.push_back(one);
+        }
+    };
+    tell_warnings();
     record["state"] = ended.interrupted ? RunState::interrupted
                       : ended.stopped   ? RunState::stopped
                                         : RunState::simulated;
@@ -221,6 +251,12 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         directory.remove_checkpoint();
     } else if (kept_stages > 0) {
         log_info("swage run goes on after stage {} of {}", kept_stages, stages);
+    }
+    // What may fail, and is no loss, comes last.
+    plot(outcome);
+    if (!of_plots.empty()) {
+        tell_warnings();
+        write_record(directory, record, watch);
     }
     return ended;
 }

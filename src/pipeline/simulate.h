@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -23,6 +24,10 @@ struct Ended {
     std::optional<Interrupted> interrupted;
     bool early() const { return stopped || interrupted; }
 };
+
+// What of a whole simulation is not in the directory any more, or not whole, as in "x.obj is gone";
+// empty: nothing.
+std::string flaw_of_simulation(const SceneSpec& scene, const RunDirectory& directory);
 
 // The motion file and run.json stand when it returns. `record`: begin_record's. `at_start`: what
 // can be said before anything is molded.

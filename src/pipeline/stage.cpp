@@ -70,13 +70,6 @@ void write_meshes(const TriMesh& mesh, const fs::path& stem) {
     write_ply(fs::path(stem) += ".ply", mesh);
 }
 
-// `size`: of the work-piece [m].
-void write_curves(const StageCurves& curves, double size, const StageContext& context) {
-    const fs::path stem = context.root / "curves" / curves.stage();
-    write_file_whole(fs::path(stem) += ".csv", csv_text(curves));
-    if (context.can_plot && !is_stopping()) draw_plot(curves, size, fs::path(stem) += ".svg");
-}
-
 // What a blade sweeps as it turns lies between its poses in steps at most this long.
 constexpr int kBladeSteps = 64;  // of a stage, at least
 int blade_steps(const std::vector<Leg>& legs) {
@@ -176,14 +169,16 @@ class StageRun {
         for (std::size_t b = 0; is_whole && b < bodies_.size(); ++b) {
             keep([&] { write_meshes(bodies_[b].deformed(), meshes_[b]); });
         }
-        keep([&] { write_curves(curves, machine_.frame.size.norm(), context_); });
+        const fs::path folder = context_.root / "curves";
+        keep([&] { write_file_whole(folder / (stage_.name + ".csv"), csv_text(curves)); });
         if (body_table_) {
             keep([&] {
-                write_file_whole(context_.root / "curves" / (stage_.name + "-bodies.csv"),
-                                 body_table_->csv_text());
+                write_file_whole(folder / (stage_.name + "-bodies.csv"), body_table_->csv_text());
             });
         }
         finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1, curves);
+        outcome_.curves = std::move(curves);
+        outcome_.size = machine_.frame.size.norm();
         return std::move(outcome_);
     }
 

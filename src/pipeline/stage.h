@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/stopwatch.h"
+#include "pipeline/curves.h"
 #include "pipeline/json.h"
 #include "pipeline/motion_recorder.h"
 #include "pipeline/work_piece.h"
@@ -28,13 +29,14 @@ struct StageContext {
     Stopwatch& watch;
     Progress& progress;
     std::function<void()> begin;  // called once a stage is set up, before its first frame
-    bool can_plot = false;
 };
 
 struct StageOutcome {
     Json record;  // for run.json
     long steps = 0;
     std::vector<std::string> warning;  // all told already
+    std::optional<StageCurves> curves;
+    double size = 0;  // of the work-piece, by which they are plotted [m]
     // The simulation gave up, the disk was full, or somebody asked for it; what was reached is
     // kept.
     std::optional<Error> stopped;

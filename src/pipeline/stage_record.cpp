@@ -2,6 +2,7 @@
 #include "pipeline/stage_record.h"
 
 #include "base/hash.h"
+#include "pipeline/given_record.h"
 #include "pipeline/machine_place.h"
 
 namespace swage {
@@ -99,6 +100,7 @@ Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap
         {"increments", totals.increments},
         {"halvings", totals.halvings},
         {"solver", name_of(end.stage.sim.solver)},
+        {"settings", settings_json(end.stage.sim)},
         {"steps", totals.steps},
         {"steps_implicit_instead", totals.rescued},
         {"steps_rejected", totals.rejected},

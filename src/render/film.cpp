@@ -49,16 +49,16 @@ std::vector<std::uint8_t> padded(const Image& frame) {
 Film::Film(std::filesystem::path file, int width, int height, int frames_per_second)
     : file_(std::move(file)), temporary_(temporary_for(file_)), width_(width), height_(height) {
     if (!program_exists("ffmpeg")) {
-        log_warning(
-            "no film: the program ffmpeg is not in PATH (Debian package ffmpeg); the "
-            "stills are written all the same");
+        give_up(
+            "the program ffmpeg is not in PATH (Debian package ffmpeg); the stills are written "
+            "all the same");
         return;
     }
     try {
         encoder_ = std::make_unique<PipedProgram>(
             encoder_command(temporary_, even(width), even(height), frames_per_second));
     } catch (const Error& error) {
-        log_warning("no film: {}", error.what());
+        give_up(error.what());
     }
 }
 
@@ -70,7 +70,8 @@ Film::~Film() {
 }
 
 void Film::give_up(const std::string& reason) {
-    log_warning("no film: {}", reason);
+    warning_ = "no film: " + reason;
+    log_warning("{}", warning_);
     encoder_.reset();
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);

@@ -25,6 +25,7 @@ class Film {
 
     // The film stands under its name from here on; false when there is none.
     bool finish();
+    const std::string& warning() const { return warning_; }  // why; in the log already
 
   private:
     void give_up(const std::string& reason);
@@ -32,6 +33,7 @@ class Film {
     std::filesystem::path file_, temporary_;
     int width_, height_;
     int frame_count_ = 0;
+    std::string warning_;
     std::unique_ptr<PipedProgram> encoder_;  // null: no film will come
 };
 

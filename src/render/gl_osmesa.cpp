@@ -2,6 +2,7 @@
 // OSMesa draws into memory. Its header pulls in GL/gl.h, whose prototypes clash with a table of
 // functions, so the few entry points and constants are declared here.
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <cstdint>
@@ -44,7 +45,9 @@ class OsMesaProvider final : public GlProvider {
             if (library == nullptr) library = dlopen(name, RTLD_NOW | RTLD_LOCAL);
         }
         if (library == nullptr) {
-            why_not = "libOSMesa is not there";
+            const char* reason = dlerror();
+            why_not = fmt::format("libOSMesa cannot be loaded ({})",
+                                  reason != nullptr ? reason : "it is not there");
             return false;
         }
         const auto create =

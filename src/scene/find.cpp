@@ -45,6 +45,10 @@ AssetPaths find_assets(const std::optional<fs::path>& given) {
         add_root(assets.root, *given);
     }
     if (const char* named = std::getenv("SWAGE_ASSETS"); named != nullptr && *named != '\0') {
+        if (!is_folder(named)) {
+            fail(ExitCode::command_line,
+                 "the folder of assets \"{}\", which SWAGE_ASSETS names, does not exist", named);
+        }
         add_root(assets.root, named);
     }
     std::error_code error;
@@ -104,6 +108,10 @@ std::string no_machine_text(const std::string& wanted, const std::vector<Machine
 }
 
 std::string wrong_root_text(const std::vector<fs::path>& roots) {
+    if (roots.empty()) {
+        return "; none are beside this program: SWAGE_ASSETS (or --assets) has to be the folder "
+               "that holds machines and assets";
+    }
     for (const fs::path& root : roots) {
         const fs::path above = root.parent_path();
         if (root.filename() != "assets" || is_folder(root / "machines") ||

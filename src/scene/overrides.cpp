@@ -58,9 +58,18 @@ std::vector<Node*> chosen(Node& array, const std::string& of, const std::string&
     return found;
 }
 
-// The tables under `key`; a table that is absent is made.
-std::vector<Node*> descended(Node& table, const std::string& key, const Place& place) {
+bool is_choice(const std::string& part) {
+    return part == "*" || part.find_first_not_of("0123456789") == std::string::npos;
+}
+
+// The tables under `key`; one that is absent is made, unless `next` chooses from several.
+std::vector<Node*> descended(Node& table, const std::string& key, const std::string& next,
+                             const Place& place, MistakeList& mistakes) {
     Entry* entry = table.find(key);
+    if (entry == nullptr && is_choice(next)) {
+        mistakes.add(place, fmt::format("there is no {} to set anything of", key));
+        return {};
+    }
     if (entry == nullptr) {
         Node made;
         made.place = place;
@@ -94,7 +103,7 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
             const std::vector<Node*> found =
                 node->kind == Node::Kind::array
                     ? chosen(*node, parts[n - 1], parts[n], place, mistakes)
-                    : descended(*node, parts[n], place);
+                    : descended(*node, parts[n], parts[n + 1], place, mistakes);
             below.insert(below.end(), found.begin(), found.end());
         }
         here = std::move(below);
@@ -108,8 +117,12 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
     const Node value = parse_value(text.substr(equals + 1), place);
     for (Node* node : here) {
         if (node->kind == Node::Kind::array) {
-            mistakes.add(place, fmt::format("which {0}? Write {0}.1.{1}, or {0}.*.{1} for all",
-                                            parts[parts.size() - 2], parts.back()));
+            const std::string& of = parts[parts.size() - 2];
+            mistakes.add(place,
+                         is_choice(parts.back())
+                             ? fmt::format("which key of it? Write {}.{}.KEY", of, parts.back())
+                             : fmt::format("which {0}? Write {0}.1.{1}, or {0}.*.{1} for all", of,
+                                           parts.back()));
             return;
         }
         if (Entry* entry = node->find(parts.back())) {
@@ -123,8 +136,17 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
 
 }  // namespace
 
+std::vector<std::string> in_order(std::vector<std::string> overrides) {
+    const auto key = [](const std::string& text) {
+        return parts_of(text.substr(0, text.find('=')));
+    };
+    std::stable_sort(overrides.begin(), overrides.end(),
+                     [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
+    return overrides;
+}
+
 void apply_overrides(const std::vector<std::string>& overrides, Node& root, MistakeList& mistakes) {
-    for (const std::string& text : overrides) apply(text, root, mistakes);
+    for (const std::string& text : in_order(overrides)) apply(text, root, mistakes);
 }
 
 }  // namespace swage

@@ -88,14 +88,13 @@ TEST_CASE("frames that were finished before a run was asked to stop can be drawn
     CHECK(fs::exists(drawn / "frames/frame_0004.png"));
 }
 
-TEST_CASE("finished frames are kept though what comes after them takes long to stop") {
+TEST_CASE("finished frames are kept though a plot hangs, which ends with the run") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(
         scratch.path(), 3, "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 3\n");
     const fs::path run = scratch.path() / "run";
-    // A plot that is longer at work than the watcher waits for a safe point.
     const fs::path gnuplot = scratch.path() / "gnuplot";
-    put_text(gnuplot, "#!/bin/sh\ntouch plotting\nsleep 3\n");
+    put_text(gnuplot, "#!/bin/sh\necho $$ > pid\nmv pid plotting\nsleep 1000 & wait\n");
     fs::permissions(gnuplot, fs::perms::owner_all);
     RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path(),
                          {{"PATH", scratch.path().string() + ":" + std::getenv("PATH")}});
@@ -109,6 +108,10 @@ TEST_CASE("finished frames are kept though what comes after them takes long to s
     const Json record = Json::parse(bytes_of(run / "run.json"));
     CHECK(record["state"] == "interrupted");
     CHECK(record["frames"] == 4);  // those of the first stage, and none of the second
+    // Whoever is left of it may still be waited for by nobody.
+    const int group = std::stoi(bytes_of(scratch.path() / "plotting"));
+    for (int n = 0; n < 500 && ::kill(-group, 0) == 0; ++n) nap(10);
+    CHECK(::kill(-group, 0) != 0);
     const Outcome render = run_swage({"render", run.string(), "--frames", "4"});
     INFO(render.err);
     CHECK(render.code == 0);

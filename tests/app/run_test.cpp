@@ -64,6 +64,8 @@ TEST_CASE(
     CHECK(pusher.at("force_N").get<double>() > 0);
     CHECK(pusher.at("force_frame") >= 2);
     CHECK(pusher.at("stroke_m").get<double>() > 0);
+    CHECK(record.at("bodies").at(0).at("materials").at(0).at("young_modulus_Pa") == 2e6);
+    CHECK(record.at("stages").at(0).at("settings").at("tolerance") == 0.01);
     // No temporary, no lock, and no more bytes than were told before.
     std::size_t bytes_there = 0;
     for (const auto& [name, bytes] : files_below(run)) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/given_record.h"
+
+#include <cmath>
+
+namespace swage {
+
+namespace {
+
+Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+const char* name_of(Mechanics mechanics) {
+    return mechanics == Mechanics::springs ? "springs" : "cells";
+}
+
+const char* name_of(Elasticity elasticity) {
+    switch (elasticity) {
+        case Elasticity::hencky:
+            return "hencky";
+        case Elasticity::neo_hookean:
+            return "neo-hookean";
+        case Elasticity::storakers:
+            return "storakers";
+    }
+    return "";
+}
+
+}  // namespace
+
+Json material_json(const Material& material) {
+    return {{"name", material.name},
+            {"mechanics", name_of(material.mechanics)},
+            {"elasticity", name_of(material.elasticity)},
+            {"young_modulus_Pa", material.young_modulus},
+            {"poisson_ratio", material.poisson_ratio},
+            {"density_kg_m3", material.density},
+            {"yield_stress_Pa", finite(material.yield_stress)},
+            {"hardening_Pa", material.hardening},
+            {"strength_Pa", finite(material.strength)},
+            {"toughness_J_m2", finite(material.toughness)},
+            {"damping_ratio", material.damping_ratio},
+            {"friction", material.friction},
+            {"static_friction", material.holding_friction()},
+            {"restitution", material.restitution},
+            {"stickiness_Pa", material.stickiness}};
+}
+
+Json settings_json(const SimSettings& settings) {
+    return {{"tolerance", settings.tolerance},
+            {"iteration_limit", settings.iteration_limit},
+            {"halving_limit", settings.halving_limit},
+            {"contact_stiffness", settings.stiffness_of_contacts()},
+            {"grip_stiffness", settings.grip_stiffness},
+            {"self_contact", settings.self_contact},
+            {"step_safety", settings.step_safety},
+            {"retry_limit", settings.retry_limit},
+            {"sleep", settings.sleep},
+            {"medium_density_kg_m3", settings.medium_density},
+            {"drag_coefficient", settings.drag_coefficient},
+            {"directional_drag_Pa_s_m", settings.directional_drag},
+            {"gravity_m_s2", {settings.gravity.x(), settings.gravity.y(), settings.gravity.z()}}};
+}
+
+}  // namespace swage

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plots and films are made by programs that may be absent, slow, or set otherwise by the user.
+#include <filesystem>
+
+#include "base/process.h"
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+bool holds(const Json& warnings, const std::string& text) {
+    for (const Json& one : warnings) {
+        if (one.get<std::string>().find(text) != std::string::npos) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("what other programs could not make is on record, and made once they are there") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path()), out = scratch.path() / "out";
+    const auto run = [&](const std::map<std::string, std::string>& set) {
+        return run_swage({"run", scene.string(), "--out", out.string()}, scratch.path(), set);
+    };
+    CHECK(run({{"PATH", "/nonexistent"}}).code == 0);
+    const Json record = Json::parse(bytes_of(out / "run.json"));
+    CHECK(holds(record.at("warnings"), "gnuplot"));
+    CHECK(holds(record.at("drawing").at("warnings"), "no film"));
+    CHECK_FALSE(fs::exists(out / "film.mp4"));
+
+    const Outcome same = run({{"PATH", "/nonexistent"}});
+    CHECK(same.err.find("already complete") != std::string::npos);
+    if (!program_exists("ffmpeg")) return;
+    CHECK(run({}).code == 0);
+    CHECK(fs::exists(out / "film.mp4"));
+    CHECK(Json::parse(bytes_of(out / "run.json")).at("drawing").at("warnings").empty());
+}
+
+TEST_CASE("a plot does not go by what the user has set for plots") {
+    if (!program_exists("gnuplot")) return;
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    put_text(scratch.path() / "home/.gnuplot", "set xrange [0:1]\nset title 'mine'\n");
+    const auto plot_of = [&](const std::map<std::string, std::string>& set, const char* name) {
+        const fs::path out = scratch.path() / name;
+        CHECK(run_swage({"run", scene.string(), "--no-render", "--out", out.string()},
+                        scratch.path(), set)
+                  .code == 0);
+        return bytes_of(out / "curves/1-bend.svg");
+    };
+    CHECK(plot_of({{"HOME", (scratch.path() / "home").string()}}, "a") == plot_of({}, "b"));
+}
+
+TEST_CASE("a run whose files are gone or cut short is not complete, and is made whole") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path()), out = scratch.path() / "out";
+    const auto run = [&] {
+        return run_swage({"run", scene.string(), "--no-render", "--out", out.string()});
+    };
+    CHECK(run().code == 0);
+    const std::string motion = bytes_of(out / "motion.bin");
+    for (const char* name : {"motion.bin", "meshes/1-bend.ply", "curves/1-bend.csv"}) {
+        INFO(name);
+        const std::string whole = bytes_of(out / name);
+        if (name == std::string("motion.bin")) {
+            fs::resize_file(out / name, 100);
+        } else {
+            fs::remove(out / name);
+        }
+        const Outcome again = run();
+        CHECK(again.code == 0);
+        CHECK(again.err.find(name) != std::string::npos);
+        CHECK(again.err.find("begins anew") != std::string::npos);
+        CHECK(bytes_of(out / name) == whole);
+    }
+    CHECK(run().err.find("already complete") != std::string::npos);
+}
