@@ -12,7 +12,7 @@
 #include "pipeline/action_box.h"
 #include "pipeline/interrupt.h"
 #include "render/camera.h"
-#include "render/canvas.h"
+#include "render/canvas_trial.h"
 #include "render/contact_sheet.h"
 #include "render/film.h"
 #include "render/png.h"
@@ -106,10 +106,7 @@ Quat drawn_from_world(Up up) {
 
 }  // namespace
 
-void check_drawing(const RenderSettings& settings) {
-    const Canvas canvas(settings.gl, thread_count());
-    log_verbose("drawing by {}", canvas.renderer_string());
-}
+void check_drawing(const RenderSettings& settings) { try_canvas(settings.gl, thread_count()); }
 
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
                      const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch) {
@@ -125,6 +122,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     const ActionBox action = find_action(store, settings.tools, turn);
     Renderer renderer(settings, action.bounds, action.ground_height, thread_count(),
                       action.outline);
+    log_verbose("drawing by {}", renderer.renderer_string());
     DrawOutcome outcome{renderer.renderer_string(), settings.width, settings.height, frames, false};
     std::unique_ptr<Film> film;
     if (settings.film) {

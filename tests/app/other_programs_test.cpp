@@ -57,6 +57,19 @@ TEST_CASE("a plot does not go by what the user has set for plots") {
     CHECK(plot_of({{"HOME", (scratch.path() / "home").string()}}, "a") == plot_of({}, "b"));
 }
 
+TEST_CASE(
+    "a driver of OpenGL that is not there or crashes is one clear error, before anything is done") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path()), out = scratch.path() / "out";
+    const Outcome outcome = run_swage({"run", scene.string(), "--out", out.string()},
+                                      scratch.path(), {{"GALLIUM_DRIVER", "swr"}});
+    INFO(outcome.err);
+    if (outcome.code == 0) return;  // drivers that fall back on another
+    CHECK(outcome.code == 5);
+    CHECK(outcome.err.find("OpenGL") != std::string::npos);
+    CHECK_FALSE(fs::exists(out));
+}
+
 TEST_CASE("a run whose files are gone or cut short is not complete, and is made whole") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path()), out = scratch.path() / "out";

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/canvas_trial.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include "base/error.h"
+#include "base/file_contents.h"
+#include "base/file_handle.h"
+#include "base/process.h"
+#include "render/canvas.h"
+
+namespace swage {
+
+namespace {
+
+constexpr std::size_t kLongestReason = 4096;  // which a pipe holds
+
+[[noreturn]] void try_here(GlProviderKind kind, int threads, int to_parent) {
+    try {
+        const Canvas canvas(kind, threads);
+    } catch (const std::exception& error) {
+        const std::size_t size = std::min(std::strlen(error.what()), kLongestReason);
+        [[maybe_unused]] const ssize_t written = ::write(to_parent, error.what(), size);
+    }
+    ::_exit(0);
+}
+
+}  // namespace
+
+void try_canvas(GlProviderKind kind, int threads) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return;  // then it is tried where it is wanted
+    const FileHandle from_child(ends[0]);
+    FileHandle to_parent(ends[1]);
+    expect_children();
+    const pid_t child = ::fork();
+    if (child < 0) return;
+    if (child == 0) try_here(kind, threads, to_parent.id());
+    to_parent.close();
+    const std::optional<int> ended = wait_for(child);
+    std::string reason(kLongestReason, '\0');
+    reason.resize(read_up_to(from_child.id(), reason.data(), reason.size()).value_or(0));
+    if (!reason.empty()) fail(ExitCode::output, "{}", reason);
+    if (ended && WIFSIGNALED(*ended)) {
+        fail(ExitCode::output,
+             "OpenGL crashed as it was opened ({}): does GALLIUM_DRIVER, or another variable that "
+             "drivers read, name one that is not there? --no-render does without it",
+             ::strsignal(WTERMSIG(*ended)));
+    }
+}
+
+}  // namespace swage
