@@ -68,18 +68,24 @@ Json verified_json(const std::vector<Verified>& all) {
                         {"values", values},
                         {"series", series}});
     }
-    return {{"version", SWAGE_VERSION}, {"cases", list}};
+    return {{"version", SWAGE_VERSION}, {"build", kBuildName}, {"cases", list}};
 }
 
 int verify(const VerifyArguments& given) {
     if (!given.out.empty()) make_folder(given.out);
     std::vector<Verified> all;
     bool missed = false;
-    for (const Case& c : chosen_cases(given)) {
-        throw_if_interrupted();
-        log_info("{}: {}", c.name, c.help);
-        all.push_back({c, run_case(c, given.brief)});
-        missed = missed || all.back().result.missed;
+    std::optional<Interrupted> interrupted;  // what was verified before stays
+    try {
+        for (const Case& c : chosen_cases(given)) {
+            throw_if_interrupted();
+            log_info("{}: {}", c.name, c.help);
+            all.push_back({c, run_case(c, given.brief)});
+            missed = missed || all.back().result.missed;
+        }
+    } catch (const Interrupted& early) {
+        interrupted = early;
+        if (all.empty()) throw;
     }
     if (!given.out.empty()) {
         const std::filesystem::path out = given.out;
@@ -93,6 +99,7 @@ int verify(const VerifyArguments& given) {
     } else {
         put_out(verified_text(all));
     }
+    if (interrupted) throw *interrupted;
     return static_cast<int>(missed ? ExitCode::stopped : ExitCode::done);
 }
 
