@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "laws/cell_growth.h"
+#include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
 #include "sim/mixed_batch.h"
 #include "sim/vector_clones.h"
@@ -131,6 +132,17 @@ std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector
         largest[p] = std::sqrt(c.eigenvalues()[2]) - 1;
     }
     return largest;
+}
+
+std::array<PartStress, 2> part_stresses(const Aggregate& matter,
+                                        const std::vector<MaterialLaw>& laws,
+                                        const MixedCell& cell) {
+    const OneMixed one = one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell));
+    std::array<PartStress, 2> part;
+    for (int p = 0; p < 2; ++p) {
+        part[p] = {matrix_of(gradient_of(one, cell, p)), matrix_of(one.found.phase[p].stress)};
+    }
+    return part;
 }
 
 MixedBatches::MixedBatches(const Aggregate& matter, const std::vector<float>& carried) {

@@ -26,6 +26,14 @@ struct MixedBatches {
 std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                                       const MixedCell& cell);
 
+// Gradient, and P = dW/dF per volume of material [Pa], of each of its two materials.
+struct PartStress {
+    Mat3 gradient, stress;
+};
+std::array<PartStress, 2> part_stresses(const Aggregate& matter,
+                                        const std::vector<MaterialLaw>& laws,
+                                        const MixedCell& cell);
+
 class MixedCells {
   public:
     // Cells with `carried` 0 are left out.

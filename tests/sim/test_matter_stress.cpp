@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/matter_stress.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numeric>
+
+#include "tests/catch.h"
+#include "tests/shared/lattice_fixture.h"
+
+using namespace swage;
+using test::deform;
+using test::make_block;
+
+namespace {
+
+constexpr double kModulus = 2e9;
+constexpr int kElasticities = 3;
+const Elasticity kElasticity[kElasticities] = {Elasticity::hencky, Elasticity::neo_hookean,
+                                               Elasticity::storakers};
+
+Material material_of(Elasticity elasticity, double poisson_ratio) {
+    return {.elasticity = elasticity, .young_modulus = kModulus, .poisson_ratio = poisson_ratio};
+}
+
+std::vector<CellId> all_of(const Aggregate& matter) {
+    std::vector<CellId> cells(matter.cell_fill.size());
+    std::iota(cells.begin(), cells.end(), 0);
+    return cells;
+}
+
+// Of a block that is deformed by f all over.
+std::vector<StressSample> bear(const Material& material, const Mat3& f) {
+    Aggregate block = make_block(3, 2, 2, 0.01, material);
+    deform(block, [&](const Vec3& x) -> Vec3 { return f * x; });
+    return stress_samples(block, all_of(block));
+}
+
+Mat3 stretch(double along, double across) { return Vec3(along, across, across).asDiagonal(); }
+
+double equivalent(const std::array<double, 6>& s) {
+    const double mean = (s[0] + s[1] + s[2]) / 3;
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) sum += (s[i] - mean) * (s[i] - mean) + 2 * s[i + 3] * s[i + 3];
+    return std::sqrt(1.5 * sum);
+}
+
+}  // namespace
+
+TEST_CASE("a little stretched matter of any law bears Young's modulus times its strain") {
+    constexpr double kStrain = 1e-5, kRatio = 0.3;
+    for (const Elasticity elasticity : kElasticity) {
+        for (const StressSample& one :
+             bear(material_of(elasticity, kRatio), stretch(1 + kStrain, 1 - kRatio * kStrain))) {
+            CHECK(one.stress[0] == Approx(kModulus * kStrain).epsilon(1e-4));
+            for (int i = 1; i < 6; ++i) {
+                CHECK(std::abs(one.stress[i]) < 1e-4 * kModulus * kStrain);
+            }
+            CHECK(one.volume == 1);
+            CHECK(one.sound);
+        }
+    }
+    Material springs = material_of(Elasticity::hencky, 0.25);
+    springs.mechanics = Mechanics::springs;
+    for (const StressSample& one : bear(springs, stretch(1 + kStrain, 1 - 0.25 * kStrain))) {
+        CHECK(one.stress[0] == Approx(kModulus * kStrain).epsilon(1e-4));
+        CHECK(std::abs(one.stress[1]) < 1e-4 * kModulus * kStrain);
+    }
+}
+
+TEST_CASE("far stretched matter bears Cauchy's stress of its own energy") {
+    for (const double s : {0.7, 1.4}) {
+        const double nu = 0.3, mu = kModulus / 2.6;
+        const double lame = kModulus * nu / (1.3 * 0.4);
+        const Mat3 f = stretch(s, std::pow(s, -nu));
+        const double volume = f.determinant();
+        // E ln s of the volume at rest; the series of the logarithm ends early.
+        CHECK(bear(material_of(Elasticity::hencky, nu), f)[0].stress[0] ==
+              Approx(kModulus * std::log(s) / volume).epsilon(2e-3));
+        CHECK(bear(material_of(Elasticity::storakers, nu), f)[0].stress[0] ==
+              Approx(mu * (s - std::pow(s, -1 - 2 * nu)) * std::pow(s, 2 * nu)).epsilon(1e-10));
+        const auto rubber = bear(material_of(Elasticity::neo_hookean, nu), f)[0].stress;
+        for (int i = 0; i < 2; ++i) {
+            CHECK(rubber[i] ==
+                  Approx(mu * f(i, i) * f(i, i) / volume + (lame + mu) * (volume - 1) - mu)
+                      .epsilon(1e-10));
+        }
+    }
+}
+
+TEST_CASE("stress turns with the matter, and sheared matter bears no pressure") {
+    Mat3 shear = Mat3::Identity();
+    shear(0, 1) = 1e-4;
+    const Mat3 turn = Eigen::AngleAxisd(2.1, Vec3(0.3, -0.5, 0.7).normalized()).matrix();
+    for (const Elasticity elasticity : kElasticity) {
+        const Material material = material_of(elasticity, 0.3);
+        const auto still = bear(material, shear)[0].stress;
+        const auto turned = bear(material, turn * shear)[0].stress;
+        CHECK(still[3] == Approx(kModulus / 2.6 * 1e-4).epsilon(1e-3));
+        CHECK(equivalent(still) == Approx(std::sqrt(3.0) * still[3]).epsilon(1e-4));
+        CHECK(std::abs(still[0] + still[1] + still[2]) < 1e-3 * still[3]);
+        for (int i = 0; i < 6; ++i) CHECK(std::abs(still[i] - turned[i]) < 1e-6 * still[3]);
+    }
+}
+
+TEST_CASE("matter that yields bears no more than its yield stress") {
+    Material metal = material_of(Elasticity::hencky, 0.3);
+    metal.yield_stress = 2e6;
+    for (const StressSample& one : bear(metal, stretch(1.01, 0.996))) {
+        // Of the volume at rest (laws/cell.h), which is 0.2 % less.
+        CHECK(equivalent(one.stress) * 1.01 * 0.996 * 0.996 == Approx(2e6).epsilon(1e-5));
+        CHECK(one.yields_at == 2e6);
+    }
+}
+
+TEST_CASE("parts of a severed cell bear what each of them holds, and no more") {
+    const Material material = material_of(Elasticity::hencky, 0.25);
+    Aggregate block = make_block(4, 2, 2, 0.01, material);
+    test::sever_plane(block, Vec3(0.005, 0, 0), Vec3::UnitX());
+    // The right side is pulled along y, the left lies still.
+    deform(block, [](const Vec3& x) -> Vec3 {
+        return x.x() > 0.005 ? Vec3(x.x() + 0.1, 1.001 * x.y(), x.z()) : x;
+    });
+    int parts = 0;
+    for (const StressSample& one : stress_samples(block, all_of(block))) {
+        if (one.sound) continue;
+        ++parts;
+        const bool right = one.corners & 2;
+        CHECK(one.volume == 0.5);
+        if (right) {
+            CHECK(one.stress[1] > 0.3 * 0.001 * kModulus);
+            CHECK(one.stress[1] < 1.2 * 0.001 * kModulus);
+        } else {
+            CHECK(equivalent(one.stress) < 1e-12 * kModulus);
+        }
+    }
+    CHECK(parts == 8);
+}
