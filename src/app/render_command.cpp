@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 struct RenderArguments {
-    std::string run, out, size, frames, up, gl;
+    std::string run, out, size, frames, up, gl, color;
+    std::vector<double> color_range;
     std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
     std::vector<double> eye, target;                                      // [m]
     std::optional<int> frames_per_second;
@@ -62,6 +63,18 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;
     if (given.no_ground) settings.ground = false;
+    if (!given.color.empty()) {
+        const std::optional<SkinField> before = settings.color;
+        settings.color = skin_field_named(given.color);
+        if (settings.color != before) settings.color_range.reset();
+    }
+    if (!given.color_range.empty()) {
+        if (!settings.color) fail(ExitCode::command_line, "--color-range needs --color");
+        if (!(given.color_range[0] < given.color_range[1])) {
+            fail(ExitCode::command_line, "--color-range: the first has to be less than the second");
+        }
+        settings.color_range = {given.color_range[0], given.color_range[1]};
+    }
     if (!given.gl.empty()) settings.gl = gl_named(given.gl);
     return settings;
 }
@@ -115,6 +128,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
         "  swage render renders/calf-line --camera-azimuth 90 --size 1920x1080 --out /tmp/side\n"
         "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
         "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n"
+        "  swage render renders/plate --color stress --color-range 0 300e6\n"
         "  swage render renders/calf-line --camera-eye 0.5 0.2 0.4 --camera-target 0 0.1 0\n",
         chosen, [] { return render(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
@@ -181,6 +195,20 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(CLI::Range(1, 240));
     command->add_option("--gl", given.gl, "library that draws")
         ->check(CLI::IsMember(std::vector<std::string>(kGlName.begin(), kGlName.end())));
+    std::vector<std::string> colors = {"none"};
+    for (const SkinFieldWords& words : kSkinFieldWords) colors.emplace_back(words.name);
+    command
+        ->add_option("--color", given.color,
+                     "bodies by a field that the run holds ([output] fields in its scene), with a "
+                     "scale; none: as they look (default: as the scene says)")
+        ->check(CLI::IsMember(colors));
+    command
+        ->add_option("--color-range", given.color_range,
+                     "the ends of that scale, stresses in Pa (default: of all frames, from 0 what "
+                     "has no sign)")
+        ->expected(2)
+        ->check(kFinite)
+        ->type_name("LOW HIGH");
     CLI::Option* film =
         command->add_flag("--film", given.film, "a film too, although the scene has film = false");
     command->add_flag("--no-film", given.no_film, "stills only")->excludes(film);

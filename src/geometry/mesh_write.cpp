@@ -328,7 +328,7 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
     beside.stay();
 }
 
-void write_ply(const fs::path& file, const TriMesh& mesh) {
+void write_ply(const fs::path& file, const TriMesh& mesh, const std::vector<VertexValues>& values) {
     check_indices(file, mesh);
     const PolygonCorners polygons = rejoin_polygons(mesh);
     std::size_t most_corners = 0;
@@ -364,6 +364,12 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     }
     const bool chosen =
         images > 1 || (images == 1 && std::count(face_image.begin(), face_image.end(), -1) > 0);
+    for (const VertexValues& one : values) {
+        if (one.value->size() != mesh.position.size())
+            fail(ExitCode::output, "{}: {} values of {} for {} vertices", file.string(),
+                 one.value->size(), one.name, mesh.position.size());
+        if (!one.comment.empty()) bytes += "comment " + one.comment + "\n";
+    }
     bytes +=
         fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
                     mesh.position.size());
@@ -372,6 +378,7 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     if (!uv.empty()) bytes += "property float s\nproperty float t\n";
     if (!mesh.position_color.empty())
         bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    for (const VertexValues& one : values) bytes += "property float " + one.name + "\n";
     const char* count_type = wide ? "uint" : "uchar";
     bytes += fmt::format("element face {}\nproperty list {} int vertex_indices\n", polygons.count(),
                          count_type);
@@ -383,8 +390,8 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
     if (chosen) bytes += "property int texnumber\n";
     bytes += "end_header\n";
 
-    bytes.reserve(bytes.size() + 47 * mesh.position.size() + 8 * polygons.count() +
-                  (corner_uv ? 20 : 4) * polygons.corner.size());
+    bytes.reserve(bytes.size() + (47 + 4 * values.size()) * mesh.position.size() +
+                  8 * polygons.count() + (corner_uv ? 20 : 4) * polygons.corner.size());
     for (std::size_t i = 0; i < mesh.position.size(); ++i) {
         for (int k = 0; k < 3; ++k) pack(bytes, mesh.position[i][k]);
         for (int k = 0; k < 3 && !normal.empty(); ++k)
@@ -394,6 +401,7 @@ void write_ply(const fs::path& file, const TriMesh& mesh) {
             for (int k = 0; k < 3; ++k)
                 pack(bytes,
                      static_cast<std::uint8_t>(std::lround(255 * srgb(mesh.position_color[i][k]))));
+        for (const VertexValues& one : values) pack(bytes, (*one.value)[i]);
     }
     const auto put_count = [&](std::size_t count) {
         if (wide)

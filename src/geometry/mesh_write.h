@@ -19,12 +19,20 @@ namespace swage {
 // moved.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
 
+// A number for each vertex of a mesh.
+struct VertexValues {
+    std::string name;     // of the property
+    std::string comment;  // in the file's header; empty: none
+    const std::vector<float>* value;
+};
+
 // Binary little-endian PLY, places in double precision: polygons, normals where the whole surface
 // is smooth (PLY has one a vertex), colours (8 bit sRGB), texture coordinates at vertices (s, t)
 // when no seam forbids it, else at face corners (texcoord, an empty list where a face has none; in
 // double precision beside polygons of more than three), names of textures and, where not all faces
-// have the one there is, texnumber (-1: none).
-void write_ply(const std::filesystem::path& file, const TriMesh& mesh);
+// have the one there is, texnumber (-1: none). `values`: further numbers, one a vertex, as `float`.
+void write_ply(const std::filesystem::path& file, const TriMesh& mesh,
+               const std::vector<VertexValues>& values = {});
 
 // Files that go with a mesh. Those that were not there before go away with it, unless they are to
 // stay, once the mesh itself stands.

@@ -18,6 +18,7 @@ constexpr double kSkinBytesPerVertex = 140;             // in the motion file, l
 constexpr double kPartBytes = 170e3;                    // there: of a machine's tool, grip or blade
 constexpr double kBallBytes = 1e6;                      // there: of a tool that is a sphere
 constexpr double kToolFileShare = 3;                    // there: of a tool's own mesh file
+constexpr double kFieldBytes = 4;                       // of a vertex, there and in PLY
 constexpr double kFrameBytes = 1000;                    // of poses and curves
 constexpr double kBodyFrameBytes = 400;                 // of its motion
 constexpr double kStageBytes = 60e3, kRunBytes = 20e3;  // of plots and records
@@ -115,8 +116,9 @@ double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, D
     const int kept = std::clamp(static_cast<int>(scene.stage.size()) - 1, 0, 2);
     bytes +=
         std::max(picture_bytes(scene.render, of.stills), kept * checkpoint_bytes(scene, input, of));
-    return bytes + of.frames * (vertices * 12 + kFrameBytes) +
-           vertices * (skins * kSkinBytesPerVertex + meshes * kMeshBytesPerVertex);
+    const double fields = kFieldBytes * static_cast<double>(scene.output.fields.size());
+    return bytes + of.frames * (vertices * (12 + fields) + kFrameBytes) +
+           vertices * (skins * kSkinBytesPerVertex + meshes * (kMeshBytesPerVertex + fields));
 }
 
 }  // namespace swage

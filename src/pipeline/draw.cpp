@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "pipeline/action_box.h"
+#include "pipeline/field_look.h"
 #include "pipeline/interrupt.h"
 #include "render/camera.h"
 #include "render/canvas_trial.h"
@@ -26,8 +27,9 @@ namespace {
 class FrameSource {
   public:
     FrameSource(const FrameStore& store, const RenderSettings& settings,
-                const Quat& drawn_from_world)
+                const Quat& drawn_from_world, const FieldLook* look)
         : store_(store),
+          look_(look),
           tools_(settings.tools),
           ground_(settings.ground),
           drawn_from_world_{drawn_from_world, Vec3::Zero()} {}
@@ -46,6 +48,7 @@ class FrameSource {
                 body.skin = store_.skin(stored.body[b].skin);
                 body.skin_id = stored.body[b].skin;
             }
+            if (look_) look_->dress(stored.body[b], body.skin);
             body.position = std::move(stored.body[b].position);
             picture.item.push_back(
                 {&body.skin, &body.position, drawn_from_world_, std::nullopt, false});
@@ -68,6 +71,7 @@ class FrameSource {
 
   private:
     const FrameStore& store_;
+    const FieldLook* look_;  // null: bodies as they look
     bool tools_, ground_;
     Pose drawn_from_world_;
     struct Body {
@@ -111,6 +115,8 @@ void check_drawing(const RenderSettings& settings) { try_canvas(settings.gl, thr
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
                      const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch) {
     refuse_frames_beyond(store.frame_count(), frames);
+    std::optional<FieldLook> look;
+    if (wanted.color) look.emplace(store, wanted);
     make_folder(files.folder());
     const Quat turn = drawn_from_world(wanted.up);
     RenderSettings settings = wanted;
@@ -123,7 +129,13 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     Renderer renderer(settings, action.bounds, action.ground_height, thread_count(),
                       action.outline);
     log_verbose("drawing by {}", renderer.renderer_string());
-    DrawOutcome outcome{renderer.renderer_string(), settings.width, settings.height, frames, false};
+    DrawOutcome outcome;
+    outcome.renderer = renderer.renderer_string();
+    outcome.width = settings.width;
+    outcome.height = settings.height;
+    outcome.frames = frames;
+    outcome.color = settings.color;
+    if (look) outcome.color_range = look->range();
     std::unique_ptr<Film> film;
     if (settings.film) {
         film = std::make_unique<Film>(files.film(), settings.width, settings.height,
@@ -131,7 +143,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     }
     const std::vector<int> on_sheet = sheet_frames(frames);
     std::vector<Image> thumbnails;
-    FrameSource source(store, settings, turn);
+    FrameSource source(store, settings, turn, look ? &*look : nullptr);
     Progress progress("draw", frames.last - frames.first + 1);
     std::future<void> writing;  // of the picture before, while the next is drawn
     for (int frame = frames.first; frame <= frames.last; ++frame) {
@@ -142,6 +154,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
             Picture picture = source.picture(frame);
             picture.film_share = still_share(settings.camera, frame - 1, store.frame_count());
             image = renderer.draw(picture);
+            if (look) look->add_legend(image);
         }
         const auto lap = watch.lap("wait for files");
         if (writing.valid()) writing.get();

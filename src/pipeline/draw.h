@@ -2,6 +2,8 @@
 // The pictures of a run, drawn from its motion file: stills, film, sheet.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 
 #include "base/stopwatch.h"
@@ -19,8 +21,10 @@ struct DrawOutcome {
     std::string renderer;  // what OpenGL calls itself
     int width = 0, height = 0;
     FrameRange frames;
-    bool film = false;                   // one was written
-    std::vector<std::string> warning{};  // all told already
+    bool film = false;  // one was written
+    std::optional<SkinField> color;
+    std::array<double, 2> color_range{};  // of that
+    std::vector<std::string> warning;     // all told already
 };
 
 // Opens and closes an OpenGL context, so that a run that cannot be drawn is refused before it is

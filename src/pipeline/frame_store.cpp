@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The file: a magic word, then records of kind, size, hash and bytes, each head with a check of its
 // own; the last says that the file is whole. It stands there from the start and moves on with every
-// record, so that it never wants for room.
+// record, so that it never wants for room. Where frames hold fields of the matter the magic word is
+// another, and the first record names them.
 #include "pipeline/frame_store.h"
 
 #include <fcntl.h>
@@ -33,8 +34,10 @@ void visit(Io& io, DrawnPart& part) {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x3630'6567'6177'7300;  // "\0swage06" on a little-endian machine
+constexpr std::uint64_t kFieldMagic = 0x3730'6567'6177'7300;  // "\0swage07"
+bool is_magic(std::uint64_t word) { return word == kMagic || word == kFieldMagic; }
 
-enum RecordKind : std::uint32_t { kSkin = 1, kMachine, kFrame, kImage, kEnd };
+enum RecordKind : std::uint32_t { kSkin = 1, kMachine, kFrame, kImage, kEnd, kFields };
 
 struct RecordHead {
     std::uint32_t kind;
@@ -64,10 +67,29 @@ std::uint64_t chained(std::uint64_t hash, const RecordHead& head) {
     return hasher.value();
 }
 
+std::string bytes_of(const std::vector<SkinField>& fields) {
+    std::vector<std::string> names;
+    for (const SkinField field : fields) names.emplace_back(words_of(field).name);
+    ByteWriter out;
+    out(names);
+    return out.bytes();
+}
+std::vector<SkinField> fields_in(const std::string& bytes) {
+    std::vector<SkinField> fields;
+    ByteReader in(bytes);
+    for (const std::string& name : in.get<std::vector<std::string>>()) {
+        const std::optional<SkinField> field = skin_field_named(name);
+        if (!field) fail(ExitCode::output, "{} is no field that this build of swage knows", name);
+        fields.push_back(*field);
+    }
+    return fields;
+}
+
 // What a motion file holds before a place in it.
 struct Passed {
     int skins = 0, machines = 0, frames = 0;
     std::set<std::uint64_t> image;
+    std::vector<SkinField> field;
 };
 
 // Nothing where that is not what the mark says; `to_the_byte`: or any byte of it is another.
@@ -75,7 +97,7 @@ std::optional<Passed> pass_records(int handle, const MotionMark& mark, bool to_t
     Passed passed;
     std::uint64_t magic = 0, hash = 0, at = sizeof magic;
     char last = 0;
-    if (!read_at(handle, 0, &magic, sizeof magic) || magic != kMagic || mark.size < sizeof magic ||
+    if (!read_at(handle, 0, &magic, sizeof magic) || !is_magic(magic) || mark.size < sizeof magic ||
         !read_at(handle, mark.size - 1, &last, sizeof last)) {
         return std::nullopt;
     }
@@ -87,12 +109,13 @@ std::optional<Passed> pass_records(int handle, const MotionMark& mark, bool to_t
         }
         at += sizeof head;
         if (at > mark.size || head.size > mark.size - at) return std::nullopt;
-        if (to_the_byte) {
+        if (to_the_byte || head.kind == kFields) {
             bytes.resize(head.size);
             if (!read_at(handle, at, bytes.data(), bytes.size()) || hash_of(bytes) != head.hash) {
                 return std::nullopt;
             }
         }
+        if (head.kind == kFields) passed.field = fields_in(bytes);
         passed.skins += head.kind == kSkin;
         passed.machines += head.kind == kMachine;
         passed.frames += head.kind == kFrame;
@@ -100,6 +123,7 @@ std::optional<Passed> pass_records(int handle, const MotionMark& mark, bool to_t
         hash = chained(hash, head);
         at += head.size;
     }
+    if (passed.field.empty() != (magic == kMagic)) return std::nullopt;
     return at == mark.size && hash == mark.hash ? std::optional(passed) : std::nullopt;
 }
 
@@ -144,12 +168,17 @@ bool holds_motion(const fs::path& file, const MotionMark& mark) {
     return handle.is_open() && pass_records(handle.id(), mark, true);
 }
 
-FrameStoreWriter::FrameStoreWriter(const fs::path& file)
-    : file_(file), written_(temporary_for(file)), handle_(created(written_, file)) {
+FrameStoreWriter::FrameStoreWriter(const fs::path& file, const std::vector<SkinField>& fields)
+    : file_(file),
+      written_(temporary_for(file)),
+      handle_(created(written_, file)),
+      fields_(fields.size()) {
     try {
-        write_at(handle_.id(), file_, 0, &kMagic, sizeof kMagic);
-        mark_.size = sizeof kMagic;
+        const std::uint64_t magic = fields.empty() ? kMagic : kFieldMagic;
+        write_at(handle_.id(), file_, 0, &magic, sizeof magic);
+        mark_.size = sizeof magic;
         put_end();
+        if (!fields.empty()) put(kFields, bytes_of(fields));
     } catch (...) {
         drop();
         throw;
@@ -167,6 +196,7 @@ FrameStoreWriter::FrameStoreWriter(const fs::path& file, const fs::path& from,
     if (!passed) fail(ExitCode::output, "{}: cannot be gone on from", from.string());
     skins_ = passed->skins, machines_ = passed->machines, frames_ = passed->frames;
     image_ = passed->image;
+    fields_ = passed->field.size();
     handle_ = is_kept_ ? std::move(there) : created(written_, file);
     try {
         if (!is_kept_) copy_start(there.id(), handle_.id(), file_, mark_.size);
@@ -252,6 +282,13 @@ void FrameStoreWriter::add_frame(const StoredFrame& frame) {
     }
     out(std::uint64_t(frame.pose.size()));
     for (const Pose& pose : frame.pose) out(pose.rotation.coeffs(), pose.translation);
+    for (const StoredBody& body : frame.body) {
+        if (fields_ == 0) break;
+        SkinFieldValues values = body.field;
+        values.resize(fields_);
+        for (std::vector<float>& one : values) one.resize(body.position.size(), 0.0f);
+        out(values);
+    }
     put(kFrame, out.bytes());
     ++frames_;
 }
@@ -278,7 +315,7 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
     handle_ = open_plain_file(file, why);
     if (!handle_.is_open()) give_up(why);
     std::uint64_t magic = 0;
-    if (!read_at(handle_.id(), 0, &magic, sizeof magic) || magic != kMagic) {
+    if (!read_at(handle_.id(), 0, &magic, sizeof magic) || !is_magic(magic)) {
         give_up("is no motion file of the kind that this build of swage writes");
     }
     const auto file_size = static_cast<std::uint64_t>(::lseek(handle_.id(), 0, SEEK_END));
@@ -297,12 +334,15 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
             frame_.push_back(place);
         else if (head.kind == kImage)
             image_.emplace(head.hash, place);
+        else if (head.kind == kFields)
+            field_ = fields_in(bytes_at(place));
         else if (head.kind == kEnd)
             break;
         else
             give_up("is damaged");
         at += head.size;
     }
+    if (field_.empty() != (magic == kMagic)) give_up("is damaged");
 }
 
 std::string FrameStore::bytes_at(const Place& place) const {
@@ -329,6 +369,15 @@ StoredFrame FrameStore::frame(int index) const {
     }
     frame.pose.resize(in.count(0, 1));
     for (Pose& pose : frame.pose) in(pose.rotation.coeffs(), pose.translation);
+    for (StoredBody& body : frame.body) {
+        if (field_.empty()) break;
+        in(body.field);
+        const bool fits = body.field.size() == field_.size() &&
+                          std::all_of(body.field.begin(), body.field.end(), [&](const auto& one) {
+                              return one.size() == body.position.size();
+                          });
+        if (!fits) fail(ExitCode::output, "{}: is damaged", file_.string());
+    }
     return frame;
 }
 

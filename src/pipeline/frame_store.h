@@ -15,6 +15,7 @@
 #include "base/math.h"
 #include "geometry/trimesh.h"
 #include "matter/drive.h"
+#include "matter/skin_field.h"
 
 namespace swage {
 
@@ -29,6 +30,7 @@ struct DrawnPart {
 struct StoredBody {
     int skin = 0;                // which skin
     std::vector<Vec3> position;  // of the skin's vertices [m]; kept to 1e-7 of the body's size
+    SkinFieldValues field = {};  // likewise, of the fields that the file holds
 };
 
 struct StoredFrame {
@@ -47,8 +49,9 @@ bool holds_motion(const std::filesystem::path& file, const MotionMark& mark);
 
 class FrameStoreWriter {
   public:
-    // Writes to a temporary beside `file` until `finish`.
-    explicit FrameStoreWriter(const std::filesystem::path& file);
+    // Writes to a temporary beside `file` until `finish`. `fields`: that bodies have in each frame.
+    explicit FrameStoreWriter(const std::filesystem::path& file,
+                              const std::vector<SkinField>& fields = {});
     // Goes on behind what holds_motion there: in `from` itself, where that was kept, or in a copy
     // where it is `file`.
     FrameStoreWriter(const std::filesystem::path& file, const std::filesystem::path& from,
@@ -82,6 +85,7 @@ class FrameStoreWriter {
     FileHandle handle_;
     MotionMark mark_;  // of what is whole
     int skins_ = 0, machines_ = 0, frames_ = 0;
+    std::size_t fields_ = 0;
     std::set<std::uint64_t> image_;  // that the file holds, by hash
 };
 
@@ -93,6 +97,7 @@ class FrameStore {
     FrameStore& operator=(const FrameStore&) = delete;
 
     int frame_count() const { return static_cast<int>(frame_.size()); }
+    const std::vector<SkinField>& fields() const { return field_; }
     int skin_count() const { return static_cast<int>(skin_.size()); }
     int machine_count() const { return static_cast<int>(machine_.size()); }
     StoredFrame frame(int index) const;
@@ -111,6 +116,7 @@ class FrameStore {
     FileHandle handle_;
     std::vector<Place> skin_, machine_, frame_;
     std::map<std::uint64_t, Place> image_;  // by hash
+    std::vector<SkinField> field_;
 };
 
 }  // namespace swage

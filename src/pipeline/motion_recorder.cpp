@@ -35,7 +35,8 @@ void MotionRecorder::set_machine(const Apparatus& apparatus) {
     machine_id_ = writer_.add_machine(parts);
 }
 
-void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive) {
+void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive,
+                               const std::vector<SkinFieldValues>& fields) {
     StoredFrame frame;
     skin_.resize(bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -47,7 +48,7 @@ void MotionRecorder::add_frame(const std::vector<WorkPiece>& bodies, const Drive
             stored.mesh = piece.skin;
             stored.id = writer_.add_skin(stored.mesh);
         }
-        frame.body.push_back({stored.id, piece.position});
+        frame.body.push_back({stored.id, piece.position, fields.at(b)});
     }
     frame.machine = machine_id_;
     frame.pose = part_poses(drive);

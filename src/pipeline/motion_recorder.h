@@ -14,7 +14,10 @@ std::vector<Pose> part_poses(const Drive& drive);
 
 class MotionRecorder {
   public:
-    explicit MotionRecorder(const std::filesystem::path& file) : writer_(file) {}
+    // `fields`: that each frame is to hold.
+    explicit MotionRecorder(const std::filesystem::path& file,
+                            const std::vector<SkinField>& fields = {})
+        : writer_(file, fields) {}
     // Goes on behind the mark, where the bodies had these skins.
     MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
                    const MotionMark& mark, const std::vector<WorkPiece>& bodies,
@@ -23,7 +26,9 @@ class MotionRecorder {
     ~MotionRecorder();
 
     void set_machine(const Apparatus& apparatus);
-    void add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive);
+    // `fields`: of each body.
+    void add_frame(const std::vector<WorkPiece>& bodies, const Drive& drive,
+                   const std::vector<SkinFieldValues>& fields);
     int frame_count() const { return writer_.frame_count(); }
     // As FrameStoreWriter has these.
     void keep(const std::filesystem::path& as) { writer_.keep(as); }

@@ -18,15 +18,18 @@ Json render_json(const RenderSettings& settings) {
         if (key.target) one["target"] = {(*key.target)[0], (*key.target)[1], (*key.target)[2]};
         camera.push_back(one);
     }
-    return {{"size", {settings.width, settings.height}},
-            {"field_of_view", settings.field_of_view},
-            {"camera", camera},
-            {"frames_per_second", settings.frames_per_second},
-            {"film", settings.film},
-            {"tools", settings.tools},
-            {"ground", settings.ground},
-            {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
-            {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
+    Json json = {{"size", {settings.width, settings.height}},
+                 {"field_of_view", settings.field_of_view},
+                 {"camera", camera},
+                 {"frames_per_second", settings.frames_per_second},
+                 {"film", settings.film},
+                 {"tools", settings.tools},
+                 {"ground", settings.ground},
+                 {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
+                 {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
+    if (settings.color) json["color"] = words_of(*settings.color).name;
+    if (settings.color_range) json["color_range"] = *settings.color_range;
+    return json;
 }
 
 Up up_named(const std::string& name) {
@@ -54,6 +57,10 @@ RenderSettings render_settings_of(const Json& record) {
         // Runs of before this was asked had y.
         settings.up = up_named(json.value("up", "y"));
         settings.gl = gl_named(json.value("gl", "auto"));
+        settings.color = skin_field_named(json.value("color", ""));
+        if (json.contains("color_range")) {
+            settings.color_range = json.at("color_range").get<std::array<double, 2>>();
+        }
         const auto vector_of = [](const Json& three) {
             return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),
                         three.at(2).get<double>());

@@ -179,11 +179,16 @@ Json matter_json(const Aggregate& matter) {
 }
 
 Json drawing_json(const DrawOutcome& drawing) {
-    return {{"renderer", drawing.renderer},
-            {"size", {drawing.width, drawing.height}},
-            {"frames", {drawing.frames.first, drawing.frames.last}},
-            {"film", drawing.film},
-            {"warnings", drawing.warning}};
+    Json json = {{"renderer", drawing.renderer},
+                 {"size", {drawing.width, drawing.height}},
+                 {"frames", {drawing.frames.first, drawing.frames.last}},
+                 {"film", drawing.film},
+                 {"warnings", drawing.warning}};
+    if (drawing.color) {
+        json["color"] = words_of(*drawing.color).name;
+        json["color_range"] = drawing.color_range;
+    }
+    return json;
 }
 
 Json seconds_json(const Stopwatch& watch) {

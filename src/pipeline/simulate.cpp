@@ -166,7 +166,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     const auto recorder =
         kept ? std::make_unique<MotionRecorder>(directory.store(), kept->motion, reached.motion,
                                                 reached.bodies, reached.skin)
-             : std::make_unique<MotionRecorder>(directory.store());
+             : std::make_unique<MotionRecorder>(directory.store(), scene.output.fields);
 
     DiskReserve reserve;
     bool has_begun = false;

@@ -14,6 +14,7 @@
 #include "pipeline/body_table.h"
 #include "pipeline/curves.h"
 #include "pipeline/machine_place.h"
+#include "pipeline/piece_fields.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_machine.h"
@@ -65,9 +66,18 @@ fs::path mesh_stem(const fs::path& root, const std::string& stage,
     return root / "meshes" / (bodies.size() == 1 ? stage : stage + "-" + bodies[body].name);
 }
 
-void write_meshes(const TriMesh& mesh, const fs::path& stem) {
+// OBJ has no place for fields.
+void write_meshes(const TriMesh& mesh, const std::vector<SkinField>& fields,
+                  const SkinFieldValues& values, const fs::path& stem) {
+    std::vector<VertexValues> of_vertices;
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+        const SkinFieldWords& words = words_of(fields[f]);
+        std::string comment = fmt::format("{}: {}", words.name, words.title);
+        if (*words.unit != 0) comment += fmt::format(" [{}]", words.unit);
+        of_vertices.push_back({words.name, std::move(comment), &values[f]});
+    }
     write_obj(fs::path(stem) += ".obj", mesh);
-    write_ply(fs::path(stem) += ".ply", mesh);
+    write_ply(fs::path(stem) += ".ply", mesh, of_vertices);
 }
 
 // What a blade sweeps as it turns lies between its poses in steps at most this long.
@@ -150,8 +160,9 @@ class StageRun {
         context_.recorder.set_machine(machine_.apparatus);
         if (last_frame == 0) {
             last_frame = 1;
-            context_.recorder.add_frame(bodies_, way_.front());
-            if (each_frame()) keep([&] { write_meshes_of(last_frame); });
+            const std::vector<SkinFieldValues> values = fields_now();
+            context_.recorder.add_frame(bodies_, way_.front(), values);
+            if (each_frame()) keep([&] { write_meshes_of(last_frame, values); });
         }
         const Apparatus& apparatus = machine_.apparatus;
         first_ = simulation.start();
@@ -167,7 +178,10 @@ class StageRun {
         // Where memory ran out, matter may stand in the middle of a step.
         const bool is_whole = !outcome_.stopped || outcome_.stopped->code() != ExitCode::resources;
         for (std::size_t b = 0; is_whole && b < bodies_.size(); ++b) {
-            keep([&] { write_meshes(bodies_[b].deformed(), meshes_[b]); });
+            keep([&] {
+                write_meshes(bodies_[b].deformed(), fields(), fields_on_skin(bodies_[b], fields()),
+                             meshes_[b]);
+            });
         }
         const fs::path folder = context_.root / "curves";
         keep([&] { write_file_whole(folder / (stage_.name + ".csv"), csv_text(curves)); });
@@ -190,9 +204,12 @@ class StageRun {
     }
     std::vector<ProbePlace> probes() const { return probe_places(context_.scene.body, bodies_); }
     bool each_frame() const { return context_.scene.output.meshes_per_frame; }
-    void write_meshes_of(int frame) const {
+    const std::vector<SkinField>& fields() const { return context_.scene.output.fields; }
+    std::vector<SkinFieldValues> fields_now() const { return fields_on_skins(bodies_, fields()); }
+    void write_meshes_of(int frame, const std::vector<SkinFieldValues>& values) const {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            write_meshes(bodies_[b].deformed(), meshes_[b] / fmt::format("frame_{:04d}", frame));
+            write_meshes(bodies_[b].deformed(), fields(), values[b],
+                         meshes_[b] / fmt::format("frame_{:04d}", frame));
         }
     }
     // What cannot be written, as on a full disk or for want of memory, ends the stage where it is,
@@ -286,9 +303,13 @@ class StageRun {
     }
 
     void record(int number) {
+        const std::vector<SkinFieldValues> values = [&] {
+            const auto lap = context_.watch.lap("skin");
+            return fields_now();
+        }();
         const auto lap = context_.watch.lap("write");
-        context_.recorder.add_frame(bodies_, ahead_.front());
-        if (each_frame()) write_meshes_of(number);
+        context_.recorder.add_frame(bodies_, ahead_.front(), values);
+        if (each_frame()) write_meshes_of(number, values);
         context_.progress.advance(number - 1, stage_.name);
     }
 

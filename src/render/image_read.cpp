@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one file that sees stb_image.
+// The one file that sees stb: pictures in, and the letters of pictures.
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file_contents.h"
+#include "render/letters.h"
 #include "render/png.h"
 
 namespace {
@@ -45,6 +47,7 @@ void* grown(void* block, std::size_t size) {
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-function"
 #endif
+#include <stb_easy_font.h>
 #include <stb_image.h>
 
 namespace swage {
@@ -128,6 +131,43 @@ Image decode_image(const std::string& bytes, const std::string& name, int larges
         name, largest_side,
         [&](int* w, int* h, int* n) { return stbi_info_from_memory(data, size, w, h, n); },
         [&](int* w, int* h, int* n) { return stbi_load_from_memory(data, size, w, h, n, 3); });
+}
+
+namespace {
+
+// stb writes in what it is given.
+std::string written(const std::string& text) {
+    std::string plain = text;
+    for (char& c : plain) {
+        if (c < ' ' || c > '~') c = '?';
+    }
+    return plain;
+}
+
+}  // namespace
+
+std::vector<LetterPart> letters_of(const std::string& text) {
+    struct Corner {
+        float x, y, z;
+        unsigned char color[4];
+    };
+    constexpr std::size_t kMostParts = 64;  // of a letter
+    std::string plain = written(text);
+    std::vector<Corner> corner(4 * kMostParts * plain.size());
+    const int parts = stb_easy_font_print(0, 0, plain.data(), nullptr, corner.data(),
+                                          static_cast<int>(corner.size() * sizeof(Corner)));
+    std::vector<LetterPart> letters;
+    const auto pixel = [](float at) { return static_cast<int>(std::lround(at)); };
+    for (std::size_t p = 0; p < static_cast<std::size_t>(parts); ++p) {
+        const Corner &low = corner[4 * p], &high = corner[4 * p + 2];
+        letters.push_back({pixel(low.x), pixel(low.y), pixel(high.x), pixel(high.y)});
+    }
+    return letters;
+}
+
+int letters_width(const std::string& text) {
+    std::string plain = written(text);
+    return stb_easy_font_width(plain.data());
 }
 
 }  // namespace swage

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "matter/skin_field.h"
 
 namespace swage {
 
@@ -39,6 +40,8 @@ struct RenderSettings {
     bool ground = true;
     Up up = Up::automatic;
     GlProviderKind gl = GlProviderKind::automatic;
+    std::optional<SkinField> color;                    // bodies by it; none: as they look
+    std::optional<std::array<double, 2>> color_range;  // of its scale, ascending, SI
 };
 
 }  // namespace swage

@@ -154,6 +154,15 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "tools", "draw tools, grips and blades"},
         {"[render]", "ground", "draw a ground under it all; false hides an endless floor too"},
         {"[render]", "gl", "who draws"},
+        {"[render]",
+         "color",
+         "bodies by a field of their matter, which the run then holds as if [output] fields asked "
+         "for it, with a scale; left out, as they look",
+         {},
+         "-"},
+        {"[render]", "color_range",
+         "at the ends of the scale; left out, from 0 (of what has a sign, from the least) to the "
+         "largest of all frames"},
         {"[render]", "field_of_view", "of the camera, vertical"},
         {"[render]", "up",
          "what the pictures have upward; auto: against gravity where all stages that have it "
@@ -175,6 +184,10 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[[render.camera.keys]]", "at", "share of the film", {}, "-"},
 
         {"[output]", "meshes_per_frame", "write the skin of every frame"},
+        {"[output]", "fields",
+         "of the matter, at each vertex of the skin: in meshes/*.ply as properties of these names "
+         "(OBJ has no place for them), in `swage export`, and for pictures by `swage render "
+         "--color`; stresses in Pa"},
     };
     return all;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/read_fields.h"
+
 namespace swage {
 
 namespace {
@@ -126,6 +128,7 @@ void read_render(TableReader& table, RenderSettings& settings) {
                                  settings.gl);
     table.choice<Up>("up", {{"auto", Up::automatic}, {"x", Up::x}, {"y", Up::y}, {"z", Up::z}},
                      settings.up);
+    read_field_color(table, settings);
     table.quantity("field_of_view", Quantity::angle, inside(0, kPi), settings.field_of_view);
     TableReader camera(table.table("camera"), "[render.camera]", table.reading());
     read_camera(camera, settings.camera);

@@ -9,6 +9,7 @@
 #include "scene/document.h"
 #include "scene/overrides.h"
 #include "scene/read_body.h"
+#include "scene/read_fields.h"
 #include "scene/read_inset.h"
 #include "scene/read_material.h"
 #include "scene/read_probe.h"
@@ -179,6 +180,8 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     read_render(render, scene.render);
     if (scene.render.up == Up::automatic) scene.render.up = up_of(scene.stage);
     output.truth("meshes_per_frame", scene.output.meshes_per_frame);
+    read_fields(output, scene.output.fields);
+    add_drawn_field(scene.render, scene.output.fields);
     output.finish();
     refuse_same_files(root, scene);
     report_unknown_sections(document, reading);

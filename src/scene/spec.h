@@ -10,6 +10,7 @@
 
 #include "machines/machine_spec.h"
 #include "matter/material.h"
+#include "matter/skin_field.h"
 #include "mold/mold.h"
 #include "render/settings.h"
 #include "scene/document.h"
@@ -85,6 +86,7 @@ struct StageSpec {
 
 struct OutputSpec {
     bool meshes_per_frame = false;
+    std::vector<SkinField> fields;  // of the matter, at the skin's vertices
 };
 
 struct SceneSpec {

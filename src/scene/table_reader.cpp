@@ -254,6 +254,30 @@ bool TableReader::vector(const std::string& key, Quantity quantity, Vec3& into) 
     return true;
 }
 
+bool TableReader::ends(const std::string& key, Quantity quantity, std::array<double, 2>& into) {
+    describe(key, "[low, high]");
+    const Node* node = find(key);
+    if (node == nullptr) return false;
+    if (node->kind != Node::Kind::array || node->item.size() != 2) {
+        mistake(key, fmt::format("{} has to be two values, the lower first", key));
+        return true;
+    }
+    std::array<double, 2> value{};
+    bool is_right = true;
+    for (std::size_t end = 0; end < 2; ++end) {
+        const Node& item = node->item[end];
+        is_right = number(key, item, quantity, value[end]) &&
+                   is_meant(key, item, quantity, value[end]) && is_right;
+    }
+    if (!is_right) return true;
+    if (value[0] < value[1]) {
+        into = value;
+    } else {
+        mistake(key, fmt::format("{}: the first has to be less than the second", key));
+    }
+    return true;
+}
+
 int TableReader::chosen_name(const std::string& key, const std::vector<std::string>& names,
                              const std::string& usual) {
     describe(key, '"' + joined(names, "\" or \"") + '"', usual.empty() ? "" : '"' + usual + '"');

@@ -70,6 +70,7 @@ class TableReader {
     bool truth(const std::string& key, bool& into);
     bool text(const std::string& key, std::string& into);
     bool vector(const std::string& key, Quantity quantity, Vec3& into);
+    bool ends(const std::string& key, Quantity quantity, std::array<double, 2>& into);
 
     template <typename T>
     bool choice(const std::string& key, const std::vector<std::pair<std::string, T>>& choices,

@@ -27,6 +27,8 @@ const std::string kBrittle =
     "damping_ratio = 0.02\nstrength = \"0.5 MPa\"\ntoughness = \"50 J/m2\"\n";
 const std::string kMold = "[mold]\nacross = 3\n";
 const std::string kBoundary = "[skin]\nkind = \"boundary\"\n";
+const std::string kOutput =
+    "[output]\nmeshes_per_frame = true\nfields = [\"plastic_strain\", \"stress\"]\n";
 std::string floor(int frames) {
     return fmt::format(
         "[[stage]]\nmachine = \"floor\"\ndrop = \"2 mm\"\nframes = {}\nduration = \"4 ms\"\n",
@@ -77,10 +79,9 @@ void check_same(const fs::path& one, const fs::path& other) {
 }
 
 // Two stages; what the second is at shows.
-const std::string kTwo =
-    "[output]\nmeshes_per_frame = true\n"
-    "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 2\n"
-    "[[stage]]\nmachine = \"bend\"\nangle = \"20 deg\"\nframes = 40\n";
+const std::string kTwo = kOutput +
+                         "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 2\n"
+                         "[[stage]]\nmachine = \"bend\"\nangle = \"20 deg\"\nframes = 40\n";
 
 // Ends a run of these by a signal in the middle of the second.
 Outcome end_in_second_stage(int signal, const fs::path& scene, const fs::path& out) {
@@ -106,8 +107,7 @@ TEST_CASE(
         {"springs", kMesh + metal("mechanics = \"springs\"\n") + worked()},
         {"boundary", kMesh + metal("") + kBoundary + worked()},
         {"molded anew", kMesh + metal("") + kBoundary + worked("remold = true\n")},
-        {"meshes of every frame",
-         kMesh + metal("") + "[output]\nmeshes_per_frame = true\n" + worked()},
+        {"meshes of every frame", kMesh + metal("") + kOutput + worked()},
         {"breaks in motion, boundary",
          kMesh + falls(8) + kBrittle + kMold + kBoundary + floor(12) + floor(12) + floor(12)},
         {"breaks in motion, two bodies of two materials, is cut",

@@ -97,6 +97,47 @@ TEST_CASE("a motion file gives back what was put in") {
     CHECK(machine[0].color == Vec3(1, 0, 0));
 }
 
+TEST_CASE("a motion file holds fields where they are asked for, and is what it was where not") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "motion.bin", plain = scratch.path() / "plain.bin";
+    const std::vector<SkinField> fields = {SkinField::stress, SkinField::plastic_strain};
+    const auto with_fields = [&](int number) {
+        StoredFrame frame = some_frame(number);
+        for (StoredBody& body : frame.body) {
+            body.field = {{1, 2, 3, float(number)}, {0, 0.5f, 0, 0.25f}};
+        }
+        return frame;
+    };
+    {
+        FrameStoreWriter writer(file, fields);
+        for (int f = 0; f < 3; ++f) writer.add_frame(with_fields(f));
+        writer.keep(scratch.path() / "kept");
+        const MotionMark mark = writer.mark();
+        CHECK(holds_motion(scratch.path() / "kept", mark));
+        FrameStoreWriter on(file, scratch.path() / "kept", mark);
+        on.add_frame(with_fields(3));
+        on.finish();
+    }
+    const FrameStore store(file);
+    REQUIRE(store.frame_count() == 4);
+    CHECK(store.fields() == fields);
+    for (int f = 0; f < 4; ++f) {
+        for (const StoredBody& body : store.frame(f).body) {
+            CHECK(body.field == with_fields(f).body[0].field);
+        }
+    }
+    // Fields that nobody asked for are not kept.
+    FrameStoreWriter none(plain);
+    none.add_frame(with_fields(0));
+    none.finish();
+    CHECK(FrameStore(plain).fields().empty());
+    CHECK(FrameStore(plain).frame(0).body[0].field.empty());
+    FrameStoreWriter bare(file);
+    bare.add_frame(some_frame(0));
+    bare.finish();
+    CHECK(fs::file_size(file) == fs::file_size(plain));
+}
+
 TEST_CASE("an image within meshes is stored once, for however many skins") {
     const Scratch scratch;
     const fs::path file = scratch.path() / "motion.bin";

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/legend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/color_map.h"
+#include "render/letters.h"
+
+namespace swage {
+
+namespace {
+
+constexpr int kPictureRows = 330;  // of a picture, to each pixel of a letter
+constexpr int kSpaced = 1;         // between letters
+constexpr double kShade = 0.45;    // of the picture, left under the legend
+using Color = std::array<double, 3>;
+constexpr Color kInk = {238, 238, 238}, kGround = {24, 26, 30};
+
+struct Paint {
+    Image& image;
+
+    void fill(int x0, int y0, int x1, int y1, const Color& color, double share = 1) {
+        for (int y = std::max(0, y0); y < std::min(image.height, y1); ++y) {
+            for (int x = std::max(0, x0); x < std::min(image.width, x1); ++x) {
+                const std::size_t at = 3 * (static_cast<std::size_t>(y) * image.width + x);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    image.rgb[at + c] = static_cast<std::uint8_t>(
+                        std::lround(share * color[c] + (1 - share) * image.rgb[at + c]));
+                }
+            }
+        }
+    }
+};
+
+// The top left corner of its line at (x, y).
+void write(Paint& paint, int x, int y, int scale, const std::string& text) {
+    for (const LetterPart& part : letters_of(text)) {
+        paint.fill(x + scale * part.left, y + scale * part.top, x + scale * part.right,
+                   y + scale * part.bottom, kInk);
+    }
+}
+
+// Ten to that, exactly as far as numbers go.
+double power_of_ten(int exponent) {
+    double power = 1;
+    for (int n = 0; n < std::abs(exponent); ++n) power *= 10;
+    return exponent < 0 ? 1 / power : power;
+}
+
+int exponent_of(double value) {
+    int exponent = 0;
+    while (power_of_ten(exponent + 1) <= value && exponent < 300) ++exponent;
+    while (power_of_ten(exponent) > value && exponent > -300) --exponent;
+    return exponent;
+}
+
+// With so many decimals, and no minus before nothing.
+std::string decimal(double value, int decimals) {
+    std::string text = fmt::format("{:.{}f}", value, std::clamp(decimals, 0, 12));
+    const bool is_nothing = text.find_first_not_of("-0.") == std::string::npos;
+    return is_nothing && text.front() == '-' ? text.substr(1) : text;
+}
+
+struct Prefix {
+    const char* name;
+    int exponent;
+};
+Prefix prefix_of(double most) {
+    constexpr Prefix kPrefix[] = {{"G", 9}, {"M", 6}, {"k", 3}, {"", 0}, {"m", -3}};
+    for (const Prefix& one : kPrefix) {
+        if (most >= power_of_ten(one.exponent)) return one;
+    }
+    return {"", 0};
+}
+
+}  // namespace
+
+Legend make_legend(const std::string& title, const std::string& unit, double low, double high) {
+    Legend legend{title, {}};
+    const double most = std::max(std::abs(low), std::abs(high));
+    if (!unit.empty()) {
+        const Prefix prefix = prefix_of(most);
+        legend.title += fmt::format(" [{}{}]", prefix.name, unit);
+        low /= power_of_ten(prefix.exponent);
+        high /= power_of_ten(prefix.exponent);
+    }
+    const double span = high - low;
+    if (!(span > 0)) return legend;
+    int exponent = exponent_of(span / 5);
+    double step = power_of_ten(exponent);
+    for (const int times : {2, 5, 10}) {
+        if (span / step <= 7) break;
+        step = times * power_of_ten(exponent);
+    }
+    if (step >= power_of_ten(exponent + 1)) ++exponent;
+    constexpr double kRoom = 0.1;  // of the bar, that a number takes
+    const auto first = static_cast<long>(std::ceil(low / step - 1e-9));
+    const auto last = static_cast<long>(std::floor(high / step + 1e-9));
+    for (long n = first; n <= last && n - first < 20; ++n) {
+        const double share = (static_cast<double>(n) * step - low) / span;
+        const bool at_end = std::min(share, 1 - share) < 1e-9;
+        if (!at_end && (share < kRoom || share > 1 - kRoom)) continue;
+        legend.tick.push_back({share, decimal(static_cast<double>(n) * step, -exponent)});
+    }
+    // Ends that are not round, to three digits of the span.
+    const int decimals = std::max(-exponent, 2 - exponent_of(span));
+    if (legend.tick.empty() || legend.tick.front().share > 1e-9) {
+        legend.tick.insert(legend.tick.begin(), {0, decimal(low, decimals)});
+    }
+    if (legend.tick.back().share < 1 - 1e-9) legend.tick.push_back({1, decimal(high, decimals)});
+    return legend;
+}
+
+void draw_legend(const Legend& legend, Image& image) {
+    const int scale = std::max(1, (image.height + kPictureRows / 2) / kPictureRows);
+    const int pad = 5 * scale, bar = 8 * scale, tick = 2 * scale;
+    const auto width_of = [&](const std::string& text) { return scale * letters_width(text); };
+    int ends = 0;  // of the numbers at the bar's ends, what stands out beside it
+    for (const Legend::Tick& one : legend.tick) ends = std::max(ends, width_of(one.text) / 2);
+    const int length = std::max(image.width * 2 / 5, width_of(legend.title));
+    const int left = (image.width - length) / 2;
+    const int height = pad + kLetterLine * scale + bar + 2 * tick + kLetterLine * scale;
+    const int top = image.height - height - pad;
+    if (left < ends + 2 * pad || top < image.height / 2) return;
+
+    Paint paint{image};
+    paint.fill(left - ends - pad, top, left + length + ends + pad, top + height, kGround,
+               1 - kShade);
+    write(paint, left, top + pad, scale, legend.title);
+    const int y = top + pad + kLetterLine * scale;
+    for (int x = 0; x < length; ++x) {
+        paint.fill(left + x, y, left + x + 1, y + bar, mapped_color((x + 0.5) / length));
+    }
+    int written = 0;  // up to there
+    for (const Legend::Tick& one : legend.tick) {
+        const int x = left + static_cast<int>(std::lround(one.share * (length - scale)));
+        const int width = width_of(one.text), from = x + scale / 2 - width / 2;
+        if (from < written) continue;
+        paint.fill(x, y + bar, x + scale, y + bar + tick, kInk);
+        write(paint, from, y + bar + 2 * tick, scale, one.text);
+        written = from + width + pad;
+    }
+}
+
+}  // namespace swage

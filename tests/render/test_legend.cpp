@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/legend.h"
+
+#include <cmath>
+
+#include "render/color_map.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+Image grey(int width, int height) {
+    return {width, height, std::vector<std::uint8_t>(std::size_t(3) * width * height, 128)};
+}
+
+double brightness(const std::array<double, 3>& srgb) {
+    double sum = 0;
+    const double share[] = {0.2126, 0.7152, 0.0722};
+    for (int c = 0; c < 3; ++c) sum += share[c] * std::pow(srgb[c] / 255, 2.2);
+    return std::cbrt(sum);
+}
+
+}  // namespace
+
+TEST_CASE("the colour map grows brighter in even steps") {
+    constexpr int kSteps = 20;
+    const double all = brightness(mapped_color(1)) - brightness(mapped_color(0));
+    for (int n = 0; n < kSteps; ++n) {
+        const double step = brightness(mapped_color((n + 1.0) / kSteps)) -
+                            brightness(mapped_color(double(n) / kSteps));
+        CHECK(step == Approx(all / kSteps).epsilon(0.4));
+    }
+    CHECK(mapped_color(-1) == mapped_color(0));
+    CHECK(mapped_color(2) == mapped_color(1));
+}
+
+TEST_CASE("a scale has round numbers, the ends of its range and the unit that suits it") {
+    const Legend stress = make_legend("stress", "Pa", 0, 223.07e6);
+    CHECK(stress.title == "stress [MPa]");
+    std::vector<std::string> text;
+    for (const Legend::Tick& tick : stress.tick) {
+        text.push_back(tick.text);
+        CHECK(tick.share == Approx(std::stod(tick.text) / 223.07).margin(1e-3));
+    }
+    CHECK(text == std::vector<std::string>{"0", "50", "100", "150", "200", "223"});
+
+    const Legend strain = make_legend("plastic strain", "", 0, 0.31);
+    CHECK(strain.title == "plastic strain");
+    CHECK(strain.tick[1].text == "0.05");
+    CHECK(strain.tick.back().text == "0.310");
+
+    const Legend pressure = make_legend("pressure", "Pa", -1500, 2000);
+    CHECK(pressure.title == "pressure [kPa]");
+    CHECK(pressure.tick.front().text == "-1.5");
+    CHECK(pressure.tick.back().text == "2.0");
+    CHECK(make_legend("stress", "Pa", 0, 1.2e9).title == "stress [GPa]");
+}
+
+TEST_CASE("a legend changes nothing above it, and nothing of a picture too small for it") {
+    const Legend legend = make_legend("von Mises stress", "Pa", 0, 2e8);
+    Image image = grey(640, 360);
+    draw_legend(legend, image);
+    int changed = 0;
+    for (int y = 0; y < 360; ++y) {
+        for (int x = 0; x < 640; ++x) {
+            if (image.pixel(x, y)[0] == 128 && image.pixel(x, y)[1] == 128) continue;
+            ++changed;
+            REQUIRE(y > 300);
+        }
+    }
+    CHECK(changed > 5000);
+    Image small = grey(60, 40);
+    draw_legend(legend, small);
+    CHECK(small.rgb == grey(60, 40).rgb);
+}
