@@ -44,7 +44,8 @@ struct Track {
     std::vector<int> skin;
     std::vector<std::uint64_t> shape;  // hash of places and skin
     std::vector<std::array<Float3, 2>> extent;
-    std::vector<int> look;  // all that its polygons have
+    std::vector<std::vector<std::uint64_t>> field;  // hashes of each one's values and the skin
+    std::vector<int> look;                          // all that its polygons have
     bool all_have_looks = true, is_open = false, has_normals = true, has_uv = false,
          has_colors = false;
 };
@@ -174,6 +175,13 @@ class Exporter {
             extent[0] = i == 0 ? p : extent[0].cwiseMin(p).eval();
             extent[1] = i == 0 ? p : extent[1].cwiseMax(p).eval();
         }
+        track.field.resize(body.field.size());
+        for (std::size_t n = 0; n < body.field.size(); ++n) {
+            Hasher values;
+            values.add_bytes(&body.skin, sizeof body.skin);
+            values.add_bytes(body.field[n].data(), body.field[n].size() * sizeof(float));
+            track.field[n].push_back(values.value());
+        }
         track.skin.push_back(body.skin);
         track.shape.push_back(shape.value());
         track.extent.push_back(extent);
@@ -242,6 +250,7 @@ class Exporter {
         if (track.has_colors) write_colors(out, body);
         if (track.has_normals) write_normals(out, body, moves);
         if (track.has_uv) write_uv(out, body);
+        write_fields(out, body);
         out.line("uniform token subdivisionScheme = \"none\"");
         write_looks(out, body, materials);
         out.close();
@@ -325,6 +334,18 @@ class Exporter {
                 out.number(known.index[i] < 0 ? none : known.index[i]);
             });
         });
+    }
+
+    void write_fields(UsdText& out, std::size_t body) {
+        for (std::size_t n = 0; n < store_.fields().size(); ++n) {
+            const std::string name = words_of(store_.fields()[n]).name;
+            const std::vector<int> times = changes(track_[body].field[n], frames_.first, true);
+            out.value("float[] primvars:" + name, "vertex", times, [&](int frame) {
+                throw_if_interrupted();
+                const std::vector<float> value = store_.frame(frame - 1).body.at(body).field[n];
+                out.list(value.size(), [&](std::size_t i) { out.number(value[i]); });
+            });
+        }
     }
 
     void write_looks(UsdText& out, std::size_t body, const std::string& materials) {

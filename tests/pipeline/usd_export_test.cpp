@@ -99,6 +99,36 @@ struct Motion {
 
 }  // namespace
 
+TEST_CASE("fields of the matter are values of the vertices in USD") {
+    const Scratch scratch;
+    const TriMesh mesh = colored();
+    const auto values = [&](int frame) {  // the same in the first two
+        std::vector<float> all(mesh.position.size(), 0.25f);
+        all[1] = static_cast<float>(std::max(2, frame));
+        return all;
+    };
+    {
+        FrameStoreWriter writer(scratch.path() / "motion.bin",
+                                {SkinField::plastic_strain, SkinField::pressure});
+        writer.add_skin(mesh);
+        for (int f = 1; f <= 4; ++f) {
+            StoredFrame now;
+            now.body = {{0, mesh.position, {values(f), values(5)}}};
+            writer.add_frame(now);
+        }
+        writer.finish();
+    }
+    const fs::path file = scratch.path() / "out" / "x.usda";
+    export_usd(FrameStore(scratch.path() / "motion.bin"), {"run", {"one"}, 24}, {1, 4}, file);
+    const Usda usd(bytes_of(file));
+    for (int f = 1; f <= 4; ++f) {
+        CHECK(usd.numbers("/run/one.primvars:plastic_strain", f) == values(f));
+        CHECK(usd.numbers("/run/one.primvars:pressure", f) == values(5));
+    }
+    CHECK(bytes_of(file).find("primvars:plastic_strain (interpolation = \"vertex\")") !=
+          std::string::npos);
+}
+
 TEST_CASE("of a run in USD every frame has the faces and the places of its skins") {
     const Motion motion;
     const Usda usd = motion.written();
