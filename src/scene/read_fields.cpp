@@ -36,7 +36,8 @@ void read_fields(TableReader& output, std::vector<SkinField>& fields) {
         } else if (!field) {
             const std::string said = item.kind == Node::Kind::text ? item.text : "";
             output.reading().mistakes.add(
-                item.place, fmt::format("fields: \"{}\" is not one of {}{}", said,
+                item.place, fmt::format("fields: {} is not one of {}{}",
+                                        said.empty() ? kind_text(item) : '"' + said + '"',
                                         joined(names, ", "), did_you_mean(said, names)));
         }
     }

@@ -121,7 +121,7 @@ TEST_CASE("a field that is misspelled, and a range that is none, are told at the
          {"small.toml:13:9: color = \"plastic_strian\" is not one of",
           "did you mean \"plastic_strain\"?", "color_range: the first has to be less",
           "small.toml:16:11: fields: \"stres\" is not one of plastic_strain, stress",
-          "did you mean \"stress\"?"}) {
+          "did you mean \"stress\"?", "fields: a whole number is not one of"}) {
         INFO(told);
         INFO(outcome.err);
         CHECK(outcome.err.find(told) != std::string::npos);
