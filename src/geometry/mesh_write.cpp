@@ -143,7 +143,7 @@ std::vector<Vec2> uv_of_positions(const TriMesh& mesh) {
 
 // Of each part, whether it makes a surface only with others, along edges that it shares with them.
 std::vector<char> parts_of_one_surface(const TriMesh& mesh) {
-    std::vector<char> joined(mesh.part_name.size(), 0);
+    std::vector<char> joined(std::max<std::size_t>(1, mesh.part_name.size()), 0);
     if (mesh.triangle_part.empty() || joined.size() < 2) return joined;
     for_each_edge(edge_uses(mesh.triangle, mesh.position.size()), [&](auto uses) {
         const auto part_of = [&](const EdgeUse& use) { return mesh.triangle_part[use.triangle]; };
@@ -157,22 +157,25 @@ std::vector<char> parts_of_one_surface(const TriMesh& mesh) {
     return joined;
 }
 
-// Each part's polygons together, the parts of one surface before all others: a reader that knows no
-// objects yet (`o`) takes their groups (`g`) for one.
-std::vector<std::size_t> in_order_of_parts(const TriMesh& mesh, const PolygonCorners& polygons,
+// Each object's polygons together, and in it each part's, the parts of one surface before all
+// others: a reader that knows no objects yet (`o`) takes their groups (`g`) for one.
+std::vector<std::size_t> in_order_of_parts(const TriMesh& mesh, const MeshObjects& objects,
+                                           const PolygonCorners& polygons,
                                            const std::vector<char>& joined) {
     std::vector<std::size_t> order(polygons.count());
     std::iota(order.begin(), order.end(), 0);
-    if (mesh.triangle_part.empty()) return order;
-    const auto part_of = [&](std::size_t p) {
-        return mesh.triangle_part[polygons.corner[polygons.first[p]] / 3];
+    const auto value_of = [&](const std::vector<int>& of_triangle, std::size_t p) {
+        return of_triangle.empty() ? 0 : of_triangle[polygons.corner[polygons.first[p]] / 3];
     };
-    std::vector<int> place(mesh.part_name.size(), -1);
+    const auto part_of = [&](std::size_t p) { return value_of(mesh.triangle_part, p); };
+    std::vector<int> place(joined.size(), -1);
     int next = 1;
     for (const std::size_t p : order)
         if (int& at = place.at(part_of(p)); at < 0) at = joined[part_of(p)] ? 0 : next++;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
-        return place[part_of(p)] < place[part_of(q)];
+        const int p_object = value_of(objects.triangle, p),
+                  q_object = value_of(objects.triangle, q);
+        return p_object != q_object ? p_object < q_object : place[part_of(p)] < place[part_of(q)];
     });
     return order;
 }
@@ -256,7 +259,7 @@ std::vector<std::string> copy_textures(const fs::path& file,
     return names;
 }
 
-void write_obj(const fs::path& file, const TriMesh& mesh) {
+void write_obj(const fs::path& file, const TriMesh& mesh, const MeshObjects& objects) {
     check_indices(file, mesh);
     const PolygonCorners polygons = rejoin_polygons(mesh);
     const bool has_uv = !mesh.triangle_uv.empty(), has_normal = !mesh.triangle_smooth.empty();
@@ -300,12 +303,19 @@ void write_obj(const fs::path& file, const TriMesh& mesh) {
 
     const std::vector<std::string> part_name = unique_names(mesh.part_name, "part");
     const std::vector<char> joined = parts_of_one_surface(mesh);
-    int part = -1, material = -1;
-    for (const std::size_t p : in_order_of_parts(mesh, polygons, joined)) {
+    const std::vector<std::string> object_name = unique_names(objects.name, "piece");
+    const bool has_objects = !objects.triangle.empty();
+    int object = -1, part = -1, material = -1;
+    for (const std::size_t p : in_order_of_parts(mesh, objects, polygons, joined)) {
         const int t = polygons.corner[polygons.first[p]] / 3;
+        if (has_objects && objects.triangle[t] != object) {
+            object = objects.triangle[t];
+            part = mesh.part_name.size() > 1 ? -1 : 0;
+            text.put("o " + object_name.at(object) + "\n");
+        }
         if (!mesh.triangle_part.empty() && mesh.triangle_part[t] != part) {
             part = mesh.triangle_part[t];
-            text.put((joined[part] ? "g " : "o ") + part_name.at(part) + "\n");
+            text.put((has_objects || joined[part] ? "g " : "o ") + part_name.at(part) + "\n");
         }
         if (!mesh.triangle_material.empty() && mesh.triangle_material[t] != material) {
             material = mesh.triangle_material[t];

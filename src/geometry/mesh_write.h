@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/mesh_objects.h"
 #include "geometry/trimesh.h"
 
 namespace swage {
@@ -16,8 +17,9 @@ namespace swage {
 // back to the same double. A part that is closed by itself is an object (o); those that bound
 // something only together are groups (g) of one, which come first. With materials, writes the .mtl
 // of the same name, without blanks, and copies of the textures beside it, so that the folder can be
-// moved.
-void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
+// moved. `objects`: others than its parts, which are groups of these then.
+void write_obj(const std::filesystem::path& file, const TriMesh& mesh,
+               const MeshObjects& objects = {});
 
 // A number for each vertex of a mesh.
 struct VertexValues {

@@ -25,6 +25,7 @@
 #include "sim/advance.h"
 #include "sim/sever.h"
 #include "skin/cut_mesh.h"
+#include "skin/skin_pieces.h"
 
 namespace swage {
 
@@ -67,7 +68,7 @@ fs::path mesh_stem(const fs::path& root, const std::string& stage,
 }
 
 // OBJ has no place for fields.
-void write_meshes(const TriMesh& mesh, const std::vector<SkinField>& fields,
+void write_meshes(const WorkPiece& body, const std::vector<SkinField>& fields,
                   const SkinFieldValues& values, const fs::path& stem) {
     std::vector<VertexValues> of_vertices;
     for (std::size_t f = 0; f < fields.size(); ++f) {
@@ -76,7 +77,9 @@ void write_meshes(const TriMesh& mesh, const std::vector<SkinField>& fields,
         if (*words.unit != 0) comment += fmt::format(" [{}]", words.unit);
         of_vertices.push_back({words.name, std::move(comment), &values[f]});
     }
-    write_obj(fs::path(stem) += ".obj", mesh);
+    const TriMesh mesh = body.deformed();
+    const std::vector<int> piece = skin_pieces(body.skin, body.mount, body.matter);
+    write_obj(fs::path(stem) += ".obj", mesh, objects_of_pieces(mesh, piece, body.label));
     write_ply(fs::path(stem) += ".ply", mesh, of_vertices);
 }
 
@@ -179,7 +182,7 @@ class StageRun {
         const bool is_whole = !outcome_.stopped || outcome_.stopped->code() != ExitCode::resources;
         for (std::size_t b = 0; is_whole && b < bodies_.size(); ++b) {
             keep([&] {
-                write_meshes(bodies_[b].deformed(), fields(), fields_on_skin(bodies_[b], fields()),
+                write_meshes(bodies_[b], fields(), fields_on_skin(bodies_[b], fields()),
                              meshes_[b]);
             });
         }
@@ -208,7 +211,7 @@ class StageRun {
     std::vector<SkinFieldValues> fields_now() const { return fields_on_skins(bodies_, fields()); }
     void write_meshes_of(int frame, const std::vector<SkinFieldValues>& values) const {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            write_meshes(bodies_[b].deformed(), fields(), values[b],
+            write_meshes(bodies_[b], fields(), values[b],
                          meshes_[b] / fmt::format("frame_{:04d}", frame));
         }
     }

@@ -219,6 +219,7 @@ void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matt
 WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const SkinSettings& skin) {
     WorkPiece piece;
     piece.name = body.name;
+    piece.label = body.label();
     piece.matter = mold_body(input, body, piece.finding);
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;

@@ -48,7 +48,7 @@ Aggregate mold_body(const InputMesh& input, const BodySpec& body,
                     std::vector<std::string>& findings);
 
 struct WorkPiece {
-    std::string name;
+    std::string name, label;  // label: of its objects and looks
     Aggregate matter;
     TriMesh skin;  // its positions: as mounted
     Mount mount;

@@ -91,9 +91,9 @@ void visit(Io& io, Mount& mount) {
 
 template <typename Io>
 void visit(Io& io, WorkPiece& piece) {
-    auto& [name, matter, skin, mount, look, position, followed, finding, probe, is_torn, whole_skin,
-           whole_mount, whole_position] = piece;
-    io(name, matter, skin, mount, probe);
+    auto& [name, label, matter, skin, mount, look, position, followed, finding, probe, is_torn,
+           whole_skin, whole_mount, whole_position] = piece;
+    io(name, label, matter, skin, mount, probe);
     std::optional<TriMesh> like;
     if (look) like = look->mesh();
     io(like, position, followed, finding, is_torn, whole_skin, whole_mount, whole_position);

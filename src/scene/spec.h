@@ -61,6 +61,10 @@ struct BodySpec {
     std::vector<ProbeSpec> probe;
     MoldSettings mold;
 
+    // Of its objects and looks in files: what its mesh is called, where nobody named it.
+    std::string label() const {
+        return name == BodySpec().name && !mesh.file.empty() ? mesh.file.stem().string() : name;
+    }
     std::vector<const Material*> materials() const {  // its own first
         std::vector<const Material*> all{&material};
         for (const InsetSpec& one : inset) all.push_back(&one.material);

@@ -17,6 +17,7 @@ class PieceMap {
   public:
     explicit PieceMap(const Aggregate& matter) : matter_(matter), pieces_(find_pieces(matter)) {}
 
+    const Pieces& pieces() const { return pieces_; }
     int piece_of(const BodyPlace& place) const;  // of the particle that weighs most
     // Corners of the cell that belong to one piece and hang together with the one next to the
     // place.

@@ -35,6 +35,12 @@ TEST_CASE("a cut through what has flowed unevenly has flat faces") {
         area[parts.triangle_component[t]] += own.norm();
     }
     for (int part : {0, 1}) CHECK(sum[part].norm() > 0.999 * area[part]);
+    // Each of the two is an object.
+    CHECK(mesh.part_name == std::vector<std::string>{"gear_piece_1", "gear_piece_2"});
+    const int first = parts.triangle_component[0];
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        CHECK((mesh.triangle_part[t] == 0) == (parts.triangle_component[t] == first));
+    }
 }
 
 TEST_CASE("a blade severs as much in one frame as in forty, and nothing more on its way up") {

@@ -59,6 +59,36 @@ TEST_CASE("an object of an OBJ stands in one place, wherever its triangles are i
     CHECK(statements(bytes_of(folder / "a.obj")) == "o part_0;o part_1;");
 }
 
+TEST_CASE("pieces of a mesh are objects of an OBJ, called after what they are pieces of") {
+    const Folder folder;
+    const auto written = [&](const TriMesh& mesh, const std::vector<int>& of_box) {
+        std::vector<int> piece;
+        for (std::size_t t = 0; t < mesh.triangle.size(); ++t) piece.push_back(of_box[t / 12]);
+        write_obj(folder / "a.obj", mesh, objects_of_pieces(mesh, piece, "ball"));
+        CHECK(read_quietly(folder / "a.obj").triangle.size() == mesh.triangle.size());
+        return statements(bytes_of(folder / "a.obj"));
+    };
+    TriMesh mesh = boxes_at({0, 9, 18});
+    // In one piece, or each part in one of its own, it is as it was.
+    CHECK(written(mesh, {0, 0, 0}) == "o part_0;o part_1;o part_2;");
+    CHECK(written(mesh, {2, 0, 1}) == "o part_0;o part_1;o part_2;");
+    CHECK(written(mesh, {0, 0, 1}) == "o part_0;o part_1;o part_2;");
+    // Parts that hold together are the body; a part by itself has its own pieces.
+    for (std::size_t t = 24; t < 36; ++t) mesh.triangle_part[t] = 1;
+    CHECK(written(mesh, {0, 0, 1}) == "o ball_piece_1;g part_0;g part_1;o ball_piece_2;g part_1;");
+    mesh.triangle_part.assign(mesh.triangle.size(), 0);
+    for (std::size_t t = 0; t < 12; ++t) mesh.triangle_part[t] = 1;
+    CHECK(written(mesh, {0, 2, 1}) ==
+          "o part_1;g part_1;o part_0_piece_1;g part_0;o part_0_piece_2;g part_0;");
+    mesh.part_name = {"rod"};
+    mesh.triangle_part.assign(mesh.triangle.size(), 0);
+    CHECK(written(mesh, {2, 1, 0}) == "o rod_piece_1;o rod_piece_2;o rod_piece_3;");
+    CHECK(read_quietly(folder / "a.obj").position.size() == mesh.position.size());
+    mesh.part_name.clear(), mesh.triangle_part.clear();
+    CHECK(written(mesh, {1, 0, 1}) == "o ball_piece_1;o ball_piece_2;");
+    CHECK(written(mesh, {0, 0, 0}).empty());
+}
+
 TEST_CASE("files that an OBJ names have no blanks in their names") {
     const Folder folder;
     std::filesystem::create_directory(folder / "out");
