@@ -110,6 +110,15 @@ void paint(TriMesh& skin, const Vec3& color, bool metal) {
     skin.position_color.clear();
 }
 
+// Every body has a look of a name of its own, that those of several files can be told apart.
+void name_looks(TriMesh& skin, const std::string& label) {
+    if (skin.material.empty()) skin.material.emplace_back();
+    if (skin.triangle_material.empty()) skin.triangle_material.resize(skin.triangle.size(), 0);
+    for (SurfaceMaterial& look : skin.material) {
+        if (look.name.empty()) look.name = label;
+    }
+}
+
 void lay_boundary(WorkPiece& piece) {
     BoundarySkin anew = boundary_skin(piece.matter, piece.look.get());
     piece.skin = std::move(anew.mesh);
@@ -224,11 +233,13 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
         if (body.color) paint(like, *body.color, body.metal);
+        name_looks(like, piece.label);
         piece.look = std::make_shared<const NewLook>(like);
         lay_boundary(piece);
     } else {
         piece.skin = skin.divide ? divided_skin(input.mesh, piece.matter) : input.mesh;
         if (body.color) paint(piece.skin, *body.color, body.metal);
+        name_looks(piece.skin, piece.label);
         piece.mount = mount_mesh(piece.skin.position, piece.matter, skin.kind);
     }
     piece.probe = mount_probes(body, input.to_mold(), piece.matter);

@@ -110,6 +110,32 @@ Sums sums_of(const Aggregate& m) {
 
 }  // namespace
 
+TEST_CASE("a look without a name is called after the body, or the file of one without") {
+    for (SkinKind kind : {SkinKind::mount, SkinKind::boundary}) {
+        for (bool is_painted : {false, true}) {
+            InputMesh input;
+            input.mesh = box_mesh({0, 0, 0}, {0.3, 0.1, 0.1});
+            BodySpec body;
+            body.mesh.file = "/meshes/beam.stl";
+            body.mold.across = 2;
+            if (is_painted) body.color = Vec3(0.5, 0, 0);
+            const auto looks = [&] {
+                const WorkPiece piece = make_work_piece(input, body, {kind});
+                std::vector<std::string> names;
+                for (const SurfaceMaterial& look : piece.skin.material) names.push_back(look.name);
+                CHECK(piece.skin.triangle_material.size() == piece.skin.triangle.size());
+                return names;
+            };
+            CHECK(looks() == std::vector<std::string>{"beam"});
+            body.name = "left";
+            CHECK(looks() == std::vector<std::string>{"left"});
+            input.mesh.material.resize(1);
+            input.mesh.material[0].name = "oak";
+            CHECK(looks() == std::vector<std::string>{is_painted ? "left" : "oak"});
+        }
+    }
+}
+
 TEST_CASE("a body starts where it is told to, turned about its middle, with its skin") {
     StartSpec start;
     start.at = Vec3(1, 2, 3);
