@@ -66,7 +66,8 @@ bool touches_from_within(const Shell& a, Shell& b) {
 
 class Settler {
   public:
-    Settler(TriMesh& mesh, std::vector<std::string>& account) : mesh_(mesh), account_(account) {}
+    Settler(TriMesh& mesh, double crease_angle, std::vector<std::string>& account)
+        : mesh_(mesh), crease_angle_(crease_angle), account_(account) {}
 
     // Why it could not be done; the mesh is then as it was.
     std::optional<std::string> run() {
@@ -94,7 +95,7 @@ class Settler {
         mesh_ = join_shells(mesh_, parts);
         if (united_) {
             mesh_.triangle_polygon.clear();
-            if (mesh_.smooth_normal.empty()) smooth_by_crease_angle(mesh_);
+            if (mesh_.smooth_normal.empty()) smooth_by_crease_angle(mesh_, crease_angle_);
         }
         return std::nullopt;
     }
@@ -390,6 +391,7 @@ class Settler {
     }
 
     TriMesh& mesh_;
+    double crease_angle_;
     std::vector<std::string>& account_;
     std::vector<Shell> shells_;
     std::vector<std::pair<int, int>> meeting_, apart_;
@@ -401,8 +403,9 @@ class Settler {
 
 }  // namespace
 
-std::optional<std::string> settle_bodies(TriMesh& mesh, std::vector<std::string>& account) {
-    return Settler(mesh, account).run();
+std::optional<std::string> settle_bodies(TriMesh& mesh, double crease_angle,
+                                         std::vector<std::string>& account) {
+    return Settler(mesh, crease_angle, account).run();
 }
 
 }  // namespace swage

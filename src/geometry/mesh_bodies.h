@@ -14,6 +14,7 @@ namespace swage {
 // stays one), leaves out a body inside another of the same sense, unites bodies that cross (each
 // less its cavities) and cavities that do. Adds a sentence to `account` for each kind of change.
 // Where that cannot be done, the mesh stays as it is and the reason is returned.
-std::optional<std::string> settle_bodies(TriMesh& mesh, std::vector<std::string>& account);
+std::optional<std::string> settle_bodies(TriMesh& mesh, double crease_angle,
+                                         std::vector<std::string>& account);
 
 }  // namespace swage

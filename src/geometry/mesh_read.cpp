@@ -178,8 +178,8 @@ bool is_mesh_file_name(const fs::path& file) {
     return format_of(file, ignored);
 }
 
-TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
-                  std::vector<std::string>* finding) {
+TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<std::string>* finding,
+                  double crease_angle) {
     const std::string name = file.string();
     if (name.find('\0') != std::string::npos || file.empty())
         fail(ExitCode::mesh, "a mesh file needs a name");
@@ -242,7 +242,7 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits,
         RawMesh raw = from_bytes(body);
         bytes = {};
         check_raw(raw);
-        TriMesh mesh = weld(raw);
+        TriMesh mesh = weld(raw, crease_angle);
         if (finding != nullptr) {
             finding->insert(finding->end(), raw.finding.begin(), raw.finding.end());
         } else {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/crease_angle.h"
 #include "geometry/trimesh.h"
 
 namespace swage {
@@ -22,13 +23,13 @@ struct ReadLimits {
 // OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS and 3MF, told apart by the name's ending. Lengths are
 // taken as metres (glTF is in metres; DAE and 3MF are scaled by the unit they state). Equal
 // positions are welded; texture coordinates, colours, materials, parts, polygons and shading (from
-// the file's normals, else by a crease angle of 40 degrees) are kept. Node transforms are applied,
-// and what scales, shifts or turns the image of an OBJ or glTF material.
+// the file's normals or groups, else by `crease_angle` [rad]) are kept. Node transforms are
+// applied, and what scales, shifts or turns the image of an OBJ or glTF material.
 //
 // `finding` receives one sentence for everything that the file held and the mesh does not, or that
 // was odd; without it they are logged as warnings. Throws Error(mesh): the file, the reason.
 TriMesh read_mesh(const std::filesystem::path& file, const ReadLimits& limits = {},
-                  std::vector<std::string>* finding = nullptr);
+                  std::vector<std::string>* finding = nullptr, double crease_angle = kCreaseAngle);
 
 // Whether the name ends like a mesh file that can be read: one of these.
 inline constexpr const char* kMeshKinds = "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS, 3MF";

@@ -121,6 +121,6 @@ void check_raw(const RawMesh& mesh);
 
 // Welds equal positions and builds the value that the program works on. Takes the arrays out of
 // `mesh`, adds to its findings.
-TriMesh weld(RawMesh& mesh);
+TriMesh weld(RawMesh& mesh, double crease_angle);
 
 }  // namespace swage

@@ -112,7 +112,7 @@ void keep_own_normals(TriMesh& mesh, const std::vector<Vec3>& given) {
 
 // Corners at one place whose normals agree share a group. Triangles without normals have it as they
 // would in a file that gives none.
-void smooth(const RawMesh& raw, TriMesh& mesh) {
+void smooth(const RawMesh& raw, double crease_angle, TriMesh& mesh) {
     const std::size_t count = raw.triangle_normal.size();
     std::vector<std::array<Vec3, 3>> normal(count);
     std::vector<char> has_normals(mesh.triangle.size(), 0);
@@ -120,7 +120,7 @@ void smooth(const RawMesh& raw, TriMesh& mesh) {
     const auto with = std::count(has_normals.begin(), has_normals.end(), 1);
     if (with < static_cast<std::ptrdiff_t>(mesh.triangle.size())) {
         if (raw.triangle_smooth.empty()) {
-            smooth_by_crease_angle(mesh);
+            smooth_by_crease_angle(mesh, crease_angle);
         } else {
             smooth_by_face_groups(mesh, raw.triangle_smooth);
         }
@@ -249,7 +249,7 @@ std::vector<int> renumbered(std::vector<int> polygon) {
 
 }  // namespace
 
-TriMesh weld(RawMesh& raw) {
+TriMesh weld(RawMesh& raw, double crease_angle) {
     TriMesh mesh;
     // Only vertices that faces use, in the file's order: strays would spoil the box.
     std::vector<char> used(raw.position.size(), 0);
@@ -330,7 +330,7 @@ TriMesh weld(RawMesh& raw) {
                 std::make_shared<const std::string>(std::move(m.texture_bytes));
         mesh.material.push_back(std::move(material));
     }
-    smooth(raw, mesh);
+    smooth(raw, crease_angle, mesh);
     return mesh;
 }
 

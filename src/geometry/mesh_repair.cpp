@@ -57,7 +57,8 @@ void turn_normals(TriMesh& mesh) {
 
 class Repairer {
   public:
-    explicit Repairer(const TriMesh& input) : mesh_(input) {}
+    Repairer(const TriMesh& input, double crease_angle)
+        : mesh_(input), crease_angle_(crease_angle) {}
 
     Repair run() {
         Repair repair = repaired();
@@ -86,7 +87,7 @@ class Repairer {
                  "no volume can be made of this mesh: all of it is as thin as a gap");
         if (count_edges(mesh_).unbalanced > 0) {
             wrap("its surface cannot be oriented, or more than two triangles meet at an edge");
-        } else if (const auto reason = settle_bodies(mesh_, account_)) {
+        } else if (const auto reason = settle_bodies(mesh_, crease_angle_, account_)) {
             wrap(*reason);
         }
         if (!account_.empty()) drop_unused_positions(mesh_);
@@ -105,7 +106,7 @@ class Repairer {
         std::vector<std::string> told = account_;
         const double volume = signed_volume(input);
         drop_repeated_corners();
-        if (const auto reason = settle_bodies(mesh_, account_)) {
+        if (const auto reason = settle_bodies(mesh_, crease_angle_, account_)) {
             log_warning("repair: the mesh is left as it is, for {}", *reason);
             return {std::move(input), std::move(told)};
         }
@@ -417,7 +418,7 @@ class Repairer {
                 wrapped.material[0].embedded_texture.reset();
                 wrapped.triangle_material.assign(wrapped.triangle.size(), 0);
             }
-            smooth_by_crease_angle(wrapped);
+            smooth_by_crease_angle(wrapped, crease_angle_);
             say(fmt::format(
                 "wrapped the whole mesh anew, {} outside of it and over openings below {}, because "
                 "{}: {} became {}, the volume enclosed {} (before, with its faults: {}); texture "
@@ -436,11 +437,14 @@ class Repairer {
     }
 
     TriMesh mesh_;
+    double crease_angle_;
     std::vector<std::string> account_;
 };
 
 }  // namespace
 
-Repair repair_mesh(const TriMesh& mesh) { return Repairer(mesh).run(); }
+Repair repair_mesh(const TriMesh& mesh, double crease_angle) {
+    return Repairer(mesh, crease_angle).run();
+}
 
 }  // namespace swage

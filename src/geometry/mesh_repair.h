@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/crease_angle.h"
 #include "geometry/trimesh.h"
 
 namespace swage {
@@ -23,6 +24,8 @@ struct Repair {
 // Of a mesh that already bounds a volume only surfaces given more than once and the bodies are put
 // right; if they are, or cannot be, it comes back as it is, cavities included (closed surfaces
 // inside another that face inwards).
-Repair repair_mesh(const TriMesh& mesh);
+// `crease_angle`: beyond which edges of what is made anew are sharp, as they are where they are
+// read [rad].
+Repair repair_mesh(const TriMesh& mesh, double crease_angle = kCreaseAngle);
 
 }  // namespace swage

@@ -39,12 +39,12 @@ bool looks_the_same(const TriMesh& a, const TriMesh& b) {
 
 // A mesh that does not bound a volume is repaired, and one whose bodies make it a wrong one. A
 // block is molded over the box alone.
-void make_solid(InputMesh& input, MoldKind kind) {
+void make_solid(InputMesh& input, MoldKind kind, double crease_angle = kCreaseAngle) {
     if (kind == MoldKind::block || input.report.is_one_body()) return;
     if (!input.report.bounds_a_volume()) {
         for (const std::string& finding : input.report.finding) log_warning("{}", finding);
     }
-    Repair repaired = repair_mesh(input.mesh);
+    Repair repaired = repair_mesh(input.mesh, crease_angle);
     input.repair = repaired.account;
     for (const std::string& act : repaired.account) log_info("repaired: {}", act);
     if (repaired.account.empty()) return;
@@ -145,9 +145,10 @@ int part_skin(WorkPiece& piece) {
 
 }  // namespace
 
-InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length) {
+InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length,
+                             double crease_angle) {
     InputMesh input;
-    input.mesh = read_mesh(file, {}, &input.finding);
+    input.mesh = read_mesh(file, {}, &input.finding, crease_angle);
     if (length) {
         input.scale = scale_to(*length, input.mesh);
         if (input.scale != 1) {
@@ -165,11 +166,11 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
     return input;
 }
 
-InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind) {
-    InputMesh input = read_mesh_as_it_is(spec.file, spec.length);
+InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle) {
+    InputMesh input = read_mesh_as_it_is(spec.file, spec.length, crease_angle);
     log_info("{}: {}", spec.file.filename().string(), summary_line(input.report));
     for (const std::string& finding : input.finding) log_warning("{}", finding);
-    make_solid(input, kind);
+    make_solid(input, kind, crease_angle);
     return input;
 }
 
@@ -183,7 +184,7 @@ TriMesh WorkPiece::deformed() const {
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene) {
     std::vector<InputMesh> input;
     for (const BodySpec& body : scene.body) {
-        input.push_back(read_input_mesh(body.mesh, body.mold.kind));
+        input.push_back(read_input_mesh(body.mesh, body.mold.kind, scene.skin.crease_angle));
     }
     return input;
 }
@@ -257,7 +258,7 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
     input.mesh = piece.deformed();
     input.report = check_mesh(input.mesh);
     // Pieces that touch where they were cut are no bodies to be united.
-    if (!input.report.bounds_a_volume()) make_solid(input, body.mold.kind);
+    if (!input.report.bounds_a_volume()) make_solid(input, body.mold.kind, skin.crease_angle);
     BodySpec as_it_stands = body;
     as_it_stands.start = {};
     as_it_stands.probe.clear();

@@ -33,11 +33,13 @@ struct InputMesh {
 };
 
 // Reads, scales to `length` (the longest side of the box [m]) and reports. Throws Error(mesh).
-InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length);
+// `crease_angle`: as SkinSettings has it.
+InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<double> length,
+                             double crease_angle = kCreaseAngle);
 
 // The same, and makes sure that it can be molded. Logs one line always, and the account of a
 // repair.
-InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind);
+InputMesh read_input_mesh(const MeshSpec& spec, MoldKind kind, double crease_angle = kCreaseAngle);
 
 // The meshes of all bodies of a scene.
 std::vector<InputMesh> read_input_meshes(const SceneSpec& scene);

@@ -80,6 +80,10 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[skin]", "divide",
          "halve the edges of the mesh that are longer than a cell and a half, so that its faces "
          "can bend; false: its own vertices and no others; not for kind = \"boundary\""},
+        {"[skin]", "crease_angle",
+         "between faces, beyond which an edge is sharp where the file has neither normals nor "
+         "smoothing groups; 180 deg: none is; not for kind = \"boundary\"",
+         "angle, 0 deg to 180 deg"},
 
         {"[[stage]]", "machine",
          "one that `swage machines` lists, or a file of your own; its "

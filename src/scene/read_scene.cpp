@@ -46,6 +46,13 @@ void read_skin(TableReader& table, SkinSettings& skin) {
                    "divide has no effect with kind = \"boundary\": such a skin is made "
                    "anew, of voxels");
     }
+    if (table.quantity("crease_angle", Quantity::angle, between(0, kPi + 1e-12),
+                       skin.crease_angle) &&
+        skin.kind == SkinKind::boundary) {
+        table.warn("crease_angle",
+                   "crease_angle has no effect with kind = \"boundary\": such a skin is made "
+                   "anew, of voxels");
+    }
     table.finish();
 }
 

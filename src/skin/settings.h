@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "geometry/crease_angle.h"
+
 namespace swage {
 
 enum class SkinKind {
@@ -15,6 +17,8 @@ inline constexpr double kLongestSkinEdge = 1.5;
 struct SkinSettings {
     SkinKind kind = SkinKind::mount;
     bool divide = true;  // a mesh with edges too long to follow the matter, before it is mounted
+    // Beyond which edges are sharp where the file does not say [rad].
+    double crease_angle = kCreaseAngle;
 };
 
 }  // namespace swage

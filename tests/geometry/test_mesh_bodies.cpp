@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the repair makes of bodies that cross, touch and lie in each other.
+#include "geometry/crease_angle.h"
 #include "geometry/mesh_bodies.h"
 
 #include <Eigen/Geometry>
@@ -436,7 +437,7 @@ TEST_CASE("too many bodies that cross are left as they are, for that reason") {
     }
     const TriMesh before = star;
     std::vector<std::string> account;
-    const auto reason = settle_bodies(star, account);
+    const auto reason = settle_bodies(star, kCreaseAngle, account);
     REQUIRE(reason);
     CHECK(*reason == "more than 5000 pairs of its parts cross or touch each other");
     CHECK(star.triangle == before.triangle);

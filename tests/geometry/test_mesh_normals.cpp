@@ -62,6 +62,23 @@ TriMesh read_obj_of(const Folder& folder, const TriMesh& mesh, const CornerNorma
 
 }  // namespace
 
+TEST_CASE("edges are sharp beyond the crease angle where a file says nothing of smoothing") {
+    const Folder folder;
+    // A roof: its two slopes meet at 60 degrees.
+    const std::string roof =
+        "v 0 0 0\nv 2 0 0\nv 2 1 0.57735026918962576\nv 0 1 0.57735026918962576\nv 2 2 0\n"
+        "v 0 2 0\n";
+    const std::string faces = "f 1 2 3 4\nf 4 3 5 6\n";
+    const auto groups = [&](const std::string& text, double degrees) {
+        const auto file = folder.write("roof.obj", text);
+        return read_mesh(file, {}, nullptr, degrees * kPi / 180).smooth_group_count;
+    };
+    CHECK(read_quietly(folder.write("roof.obj", roof + faces)).smooth_group_count == 8);
+    CHECK(groups(roof + faces, 59) == 8);
+    CHECK(groups(roof + faces, 61) == 6);
+    CHECK(groups(roof + "s 1\n" + faces, 0) == 6);  // what it says counts
+}
+
 TEST_CASE("a file's own normals are those that corners shade by, and that are written") {
     const Folder folder;
     const TriMesh ball = ball_mesh(8, 0.3);
