@@ -24,6 +24,7 @@
 #include "pipeline/stiffness_note.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
+#include "skin/cut_layout.h"
 #include "skin/cut_mesh.h"
 #include "skin/skin_pieces.h"
 
@@ -77,10 +78,13 @@ void write_meshes(const WorkPiece& body, const std::vector<SkinField>& fields,
         if (*words.unit != 0) comment += fmt::format(" [{}]", words.unit);
         of_vertices.push_back({words.name, std::move(comment), &values[f]});
     }
-    const TriMesh mesh = body.deformed();
+    TriMesh mesh = body.deformed();
+    write_ply(fs::path(stem) += ".ply", mesh, of_vertices);
+    mesh.position = body.skin.position;
+    lay_out_cuts(mesh);
+    mesh.position = body.position;
     const std::vector<int> piece = skin_pieces(body.skin, body.mount, body.matter);
     write_obj(fs::path(stem) += ".obj", mesh, objects_of_pieces(mesh, piece, body.label));
-    write_ply(fs::path(stem) += ".ply", mesh, of_vertices);
 }
 
 // What a blade sweeps as it turns lies between its poses in steps at most this long.

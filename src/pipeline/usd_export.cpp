@@ -19,6 +19,7 @@
 #include "pipeline/interrupt.h"
 #include "pipeline/made_folder.h"
 #include "pipeline/run_directory.h"
+#include "skin/cut_layout.h"
 
 namespace swage {
 
@@ -136,6 +137,7 @@ class Exporter {
         const int id = track_[body].skin[std::size_t(frame - frames_.first)];
         if (skin_.id != id) {
             skin_.mesh = store_.skin(id);
+            lay_out_cuts(skin_.mesh);
             skin_.polygons = rejoin_polygons(skin_.mesh);
             skin_.id = id;
         }
