@@ -13,7 +13,7 @@ layout(std140) uniform Frame {
     vec4 key;        // directions towards the lights
     vec4 fill;
     vec4 rim;
-    vec4 ground;     // height, where its shadows start to fade, where it ends
+    vec4 ground;     // height, where its shadows start to fade, where it ends, 1: nothing is behind
     vec4 shadow;     // texel [stage], texel [texture], penumbra [texture] a unit of depth, least one
 };
 

@@ -20,5 +20,5 @@ void main() {
     vec3 light = backdrop(sight(gl_FragCoord.xy), gl_FragCoord.xy);
     light *= mix(vec3(1.0), share, near);
     light *= 1.0 + 0.22 * exp(-0.30 * distance2) * near;
-    pixel_color = developed(light, gl_FragCoord.xy);
+    pixel_color = ground.w > 0.0 ? caught(share, near) : developed(light, gl_FragCoord.xy);
 }

@@ -34,6 +34,12 @@ vec3 surroundings(vec3 direction, float roughness) {
     return light;
 }
 
+// Where nothing is behind, the ground is as black and as dense as what it keeps of the light:
+// premultiplied, as all of a picture is until it is read back.
+vec4 caught(vec3 share, float near) {
+    return vec4(0.0, 0.0, 0.0, near * (1.0 - min(dot(share, vec3(1.0 / 3.0)), 1.0)));
+}
+
 // The backdrop: one seamless sweep of paper from floor to wall, darker to the corners.
 vec3 backdrop(vec3 direction, vec2 pixel) {
     float height = smoothstep(-0.75, 0.35, direction.y);

@@ -11,12 +11,12 @@ float brightness(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
 
 void main() {
     vec2 at = gl_FragCoord.xy * size.zw;
-    vec3 here = texture(picture, at).rgb;
+    vec4 here = texture(picture, at);
     float nw = brightness(texture(picture, at + vec2(-1.0, 1.0) * size.zw).rgb);
     float ne = brightness(texture(picture, at + vec2(1.0, 1.0) * size.zw).rgb);
     float sw = brightness(texture(picture, at + vec2(-1.0, -1.0) * size.zw).rgb);
     float se = brightness(texture(picture, at + vec2(1.0, -1.0) * size.zw).rgb);
-    float m = brightness(here);
+    float m = brightness(here.rgb);
     float low = min(m, min(min(nw, ne), min(sw, se)));
     float high = max(m, max(max(nw, ne), max(sw, se)));
     bool flat_here = high - low < max(0.04, 0.1 * high);
@@ -24,10 +24,10 @@ void main() {
     vec2 along = vec2((sw + se) - (nw + ne), (ne + se) - (nw + sw));
     float small = 1.0 / (min(abs(along.x), abs(along.y)) + max(0.03 * (nw + ne + sw + se), 0.008));
     vec2 by = flat_here ? vec2(0.0) : clamp(along * small, -8.0, 8.0) * size.zw;
-    vec3 inner = 0.5 * (texture(picture, at - by / 6.0).rgb + texture(picture, at + by / 6.0).rgb);
-    vec3 outer = 0.5 * inner +
-                 0.25 * (texture(picture, at - 0.5 * by).rgb + texture(picture, at + 0.5 * by).rgb);
-    float o = brightness(outer);
-    vec3 result = o < low || o > high ? inner : outer;
-    pixel_color = vec4(flat_here ? here : result, 1.0);
+    vec4 inner = 0.5 * (texture(picture, at - by / 6.0) + texture(picture, at + by / 6.0));
+    vec4 outer = 0.5 * inner +
+                 0.25 * (texture(picture, at - 0.5 * by) + texture(picture, at + 0.5 * by));
+    float o = brightness(outer.rgb);
+    vec4 result = o < low || o > high ? inner : outer;
+    pixel_color = flat_here ? here : result;
 }

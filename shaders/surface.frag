@@ -59,11 +59,18 @@ void main() {
     vec3 r = reflect(-v, n);
     float seen_mirror = clamp(seen.x * (0.55 + 0.45 * seen.y), 0.0, 1.0);
     light += surroundings(r, roughness) * environment_share(f0, roughness, nv) * seen_mirror;
+    float near = 0.0;
     if (endless.w > 0.0) {
         float out_of_action = smoothstep(ground.y, 6.0, length(position));
         float to_its_edge = smoothstep(0.6, 0.98, distance(position, endless.xyz) / endless.w);
         light = mix(light, backdrop(sight(gl_FragCoord.xy), gl_FragCoord.xy),
                     max(out_of_action, to_its_edge));
+        near = 1.0 - max(out_of_action, to_its_edge);
     }
     pixel_color = developed(light, gl_FragCoord.xy);
+    if (endless.w > 0.0 && ground.w > 0.0) {
+        vec3 from_key = KEY * nl, from_rest = ambient(n);
+        pixel_color =
+            caught((from_key * seen.y + from_rest * seen.x) / (from_key + from_rest), near);
+    }
 }

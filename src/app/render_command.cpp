@@ -23,9 +23,10 @@ namespace fs = std::filesystem;
 namespace {
 
 struct RenderArguments {
-    std::string run, out, size, frames, up, gl, color;
+    std::string run, out, size, frames, up, gl, background, color;
     std::vector<double> color_range;
     std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
+    std::optional<double> light_azimuth, light_elevation;                 // likewise
     std::vector<double> eye, target;                                      // [m]
     std::optional<int> frames_per_second;
     bool film = false, no_film = false, no_tools = false, no_ground = false, json = false;
@@ -59,6 +60,14 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     }
     if (!given.up.empty()) settings.up = up_named(given.up);
     if (given.frames_per_second) settings.frames_per_second = *given.frames_per_second;
+    if (given.light_azimuth) settings.light.azimuth = *given.light_azimuth * kDegree;
+    if (given.light_elevation) settings.light.elevation = *given.light_elevation * kDegree;
+    if (!given.background.empty()) settings.background = background_named(given.background);
+    const bool is_clear = settings.background == Background::transparent;
+    if (is_clear && given.film) {
+        fail(ExitCode::command_line, "--film: a film cannot be transparent; leave one of both out");
+    }
+    if (is_clear) settings.film = false;
     if (given.film) settings.film = true;
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;
@@ -176,6 +185,23 @@ void add_render_command(CLI::App& app, Action& chosen) {
     }
     command->add_option("--camera-up", given.up, "what the pictures have upward")
         ->check(CLI::IsMember({"x", "y", "z"}));
+    command
+        ->add_option("--light-azimuth", given.light_azimuth,
+                     "where the lamp stands that throws the shadows, from the film's first view "
+                     "toward its right; -45.8 where the scene says nothing")
+        ->check(kFinite)
+        ->type_name("DEG");
+    command
+        ->add_option("--light-elevation", given.light_elevation,
+                     "how high it stands; 51.6 where the scene says nothing")
+        ->check(kFinite & CLI::Range(5.0, 90.0))
+        ->type_name("DEG");
+    command
+        ->add_option("--background", given.background,
+                     "transparent: stills with alpha, for compositing, of the ground only its "
+                     "shadows; no film")
+        ->check(CLI::IsMember(
+            std::vector<std::string>(kBackgroundName.begin(), kBackgroundName.end())));
     command->add_option("--field-of-view", given.field_of_view, "vertical")
         ->check(kFinite & CLI::Range(1.0, 170.0))
         ->type_name("DEG");

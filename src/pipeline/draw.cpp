@@ -96,6 +96,19 @@ std::vector<int> sheet_frames(const FrameRange& frames) {
     return chosen;
 }
 
+// What is clear is grey on a sheet.
+Image on_paper(const Image& image) {
+    constexpr int kPaper = 150;
+    Image laid = image;
+    for (std::size_t i = 0; i < image.alpha.size(); ++i) {
+        for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
+            const int color = image.alpha[i] * image.rgb[c] + (255 - image.alpha[i]) * kPaper;
+            laid.rgb[c] = static_cast<std::uint8_t>((color + 127) / 255);
+        }
+    }
+    return laid;
+}
+
 int sheet_columns(int pictures) {
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(pictures) - 1e-9)));
 }
@@ -162,7 +175,8 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
             write_png(files.still(frame), image);
             if (film) film->add(image);
             if (std::binary_search(on_sheet.begin(), on_sheet.end(), frame)) {
-                thumbnails.push_back(thumbnail(image, kSheetPictureWidth, kSheetPictureWidth));
+                thumbnails.push_back(
+                    thumbnail(on_paper(image), kSheetPictureWidth, kSheetPictureWidth));
             }
         });
         progress.advance(frame - frames.first + 1);

@@ -18,15 +18,18 @@ Json render_json(const RenderSettings& settings) {
         if (key.target) one["target"] = {(*key.target)[0], (*key.target)[1], (*key.target)[2]};
         camera.push_back(one);
     }
-    Json json = {{"size", {settings.width, settings.height}},
-                 {"field_of_view", settings.field_of_view},
-                 {"camera", camera},
-                 {"frames_per_second", settings.frames_per_second},
-                 {"film", settings.film},
-                 {"tools", settings.tools},
-                 {"ground", settings.ground},
-                 {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
-                 {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
+    Json json = {
+        {"size", {settings.width, settings.height}},
+        {"field_of_view", settings.field_of_view},
+        {"camera", camera},
+        {"frames_per_second", settings.frames_per_second},
+        {"film", settings.film},
+        {"tools", settings.tools},
+        {"ground", settings.ground},
+        {"background", kBackgroundName[static_cast<std::size_t>(settings.background)]},
+        {"light", {{"azimuth", settings.light.azimuth}, {"elevation", settings.light.elevation}}},
+        {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
+        {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
     if (settings.color) json["color"] = words_of(*settings.color).name;
     if (settings.color_range) json["color_range"] = *settings.color_range;
     return json;
@@ -41,6 +44,10 @@ GlProviderKind gl_named(const std::string& name) {
     const auto at = std::find(kGlName.begin(), kGlName.end(), name);
     return at != kGlName.end() ? static_cast<GlProviderKind>(at - kGlName.begin())
                                : GlProviderKind::automatic;
+}
+
+Background background_named(const std::string& name) {
+    return name == kBackgroundName[1] ? Background::transparent : Background::studio;
 }
 
 RenderSettings render_settings_of(const Json& record) {
@@ -60,6 +67,11 @@ RenderSettings render_settings_of(const Json& record) {
         settings.color = skin_field_named(json.value("color", ""));
         if (json.contains("color_range")) {
             settings.color_range = json.at("color_range").get<std::array<double, 2>>();
+        }
+        settings.background = background_named(json.value("background", "studio"));
+        if (json.contains("light")) {
+            settings.light.azimuth = json.at("light").at("azimuth").get<double>();
+            settings.light.elevation = json.at("light").at("elevation").get<double>();
         }
         const auto vector_of = [](const Json& three) {
             return Vec3(three.at(0).get<double>(), three.at(1).get<double>(),

@@ -15,5 +15,6 @@ RenderSettings render_settings_of(const Json& record);
 
 Up up_named(const std::string& name);              // automatic: no such name
 GlProviderKind gl_named(const std::string& name);  // likewise
+Background background_named(const std::string& name);
 
 }  // namespace swage

@@ -31,13 +31,20 @@ void add_chunk(std::string& out, const char* name, const std::string& body) {
 }
 
 std::string filtered_rows(const Image& image) {
-    const std::size_t stride = 3 * static_cast<std::size_t>(image.width);
+    const std::size_t width = static_cast<std::size_t>(image.width);
+    const std::size_t stride = (image.alpha.empty() ? 3 : 4) * width;
     constexpr char kFilterUp = 2;
     std::string rows((stride + 1) * static_cast<std::size_t>(image.height), kFilterUp);
     const std::vector<std::uint8_t> nothing(stride, 0);
     const std::uint8_t* above = nothing.data();
+    std::vector<std::uint8_t> all;
+    for (std::size_t i = 0; i < image.alpha.size(); ++i) {
+        all.insert(all.end(), &image.rgb[3 * i], &image.rgb[3 * i] + 3);
+        all.push_back(image.alpha[i]);
+    }
+    const std::vector<std::uint8_t>& bytes = image.alpha.empty() ? image.rgb : all;
     for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
-        const std::uint8_t* row = image.rgb.data() + y * stride;
+        const std::uint8_t* row = bytes.data() + y * stride;
         char* out = rows.data() + y * (stride + 1) + 1;
         for (std::size_t i = 0; i < stride; ++i) out[i] = static_cast<char>(row[i] - above[i]);
         above = row;
@@ -60,7 +67,8 @@ std::string encode_png(const Image& image) {
     std::string header;
     add_number(header, static_cast<std::uint32_t>(image.width));
     add_number(header, static_cast<std::uint32_t>(image.height));
-    header += {8, 2, 0, 0, 0};  // bits, RGB, deflate, adaptive filters, no interlace
+    const char kind = image.alpha.empty() ? 2 : 6;
+    header += {8, kind, 0, 0, 0};  // bits, RGB or RGBA, deflate, adaptive filters, no interlace
     std::string out = "\x89PNG\r\n\x1a\n";
     out.reserve(packed.size() + 128);
     add_chunk(out, "IHDR", header);

@@ -295,11 +295,19 @@ Image Renderer::Parts::read_back(const Target& target) const {
     if (gl.GetError() != GL_NO_ERROR) fail(ExitCode::output, "OpenGL failed to draw a picture");
     Image image{target.width, target.height, {}};
     image.rgb.resize(3 * width * height);
+    const bool is_clear = settings.background == Background::transparent;
+    if (is_clear) image.alpha.resize(width * height);
     for (std::size_t y = 0; y < height; ++y) {  // OpenGL's first row is the lowest
         const std::uint8_t* from = &rgba[4 * width * (height - 1 - y)];
         std::uint8_t* to = &image.rgb[3 * width * y];
         for (std::size_t x = 0; x < width; ++x) {
             for (std::size_t c = 0; c < 3; ++c) to[3 * x + c] = from[4 * x + c];
+            if (!is_clear) continue;
+            const int alpha = image.alpha[width * y + x] = from[4 * x + 3];
+            for (std::size_t c = 0; c < 3 && alpha > 0; ++c) {
+                const int color = (255 * from[4 * x + c] + alpha / 2) / alpha;
+                to[3 * x + c] = static_cast<std::uint8_t>(std::min(color, 255));
+            }
         }
     }
     return image;

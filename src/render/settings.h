@@ -18,6 +18,16 @@ inline constexpr std::array<const char*, 4> kUpName = {"auto", "x", "y", "z"};  
 enum class GlProviderKind { automatic, osmesa, egl };
 inline constexpr std::array<const char*, 3> kGlName = {"auto", "osmesa", "egl"};  // in that order
 
+// What is behind the bodies: paper, or nothing, and of the ground its shadows alone.
+enum class Background { studio, transparent };
+inline constexpr std::array<const char*, 2> kBackgroundName = {"studio", "transparent"};
+
+// Where the lamp stands that throws the shadows; the others turn with it about up.
+struct LightPlace {
+    double azimuth = -0.80;   // from the film's first view, toward its right
+    double elevation = 0.90;  // above the horizon, 5 degrees to pi/2
+};
+
 // A camera that looks at the framed action from an angle. `at` is the share of the film, 0 to 1;
 // between keys the values move smoothly.
 struct CameraKey {
@@ -38,6 +48,8 @@ struct RenderSettings {
     bool film = true;                               // also write film.mp4
     bool tools = true;                              // draw tools, grips and blades
     bool ground = true;
+    Background background = Background::studio;
+    LightPlace light;
     Up up = Up::automatic;
     GlProviderKind gl = GlProviderKind::automatic;
     std::optional<SkinField> color;                    // bodies by it; none: as they look

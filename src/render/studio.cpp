@@ -8,8 +8,7 @@ namespace swage {
 
 namespace {
 
-// Relative to the film's first view [rad].
-constexpr double kKeyAzimuth = -0.80, kKeyElevation = 0.90;
+// Relative to the film's first view, with the key lamp where it usually is [rad].
 constexpr double kFillAzimuth = 0.95, kFillElevation = 0.25;
 constexpr double kRimAzimuth = 2.55, kRimElevation = 0.55;
 
@@ -98,15 +97,18 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     const auto size = [](int w, int h) { return glm::dvec4(w, h, 1.0 / w, 1.0 / h); };
     frame.size = size(settings.width, settings.height);
     frame.half_size = size((settings.width + 1) / 2, (settings.height + 1) / 2);
-    frame.key = four(towards(front + kKeyAzimuth, kKeyElevation), 0);
-    frame.fill = four(towards(front + kFillAzimuth, kFillElevation), 0);
-    frame.rim = four(towards(front + kRimAzimuth, kRimElevation), 0);
-    frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, 0);
+    const double key = front + settings.light.azimuth;
+    const double turned = front + (settings.light.azimuth - LightPlace().azimuth);
+    frame.key = four(towards(key, settings.light.elevation), 0);
+    frame.fill = four(towards(turned + kFillAzimuth, kFillElevation), 0);
+    frame.rim = four(towards(turned + kRimAzimuth, kRimElevation), 0);
+    const bool is_clear = settings.background == Background::transparent;
+    frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, is_clear ? 1 : 0);
 
     Box mapped = stage.box(casting);
     const Vec3 middle = mapped.center();
     if (settings.ground) mapped.grow({middle.x(), ground, middle.z()});
-    const ShadowBox map = fit_shadow(mapped, orbit_rotation(front + kKeyAzimuth, kKeyElevation));
+    const ShadowBox map = fit_shadow(mapped, orbit_rotation(key, settings.light.elevation));
     frame.shadow_from_stage = map.map_from_stage;
     frame.shadow = glm::dvec4(map.side / kShadowMapSide, 1.0 / kShadowMapSide,
                               kLampSize * map.depth / map.side, 1.5 / kShadowMapSide);

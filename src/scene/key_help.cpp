@@ -157,6 +157,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "film", "write film.mp4 too"},
         {"[render]", "tools", "draw tools, grips and blades"},
         {"[render]", "ground", "draw a ground under it all; false hides an endless floor too"},
+        {"[render]", "background",
+         "transparent: stills have alpha, of the ground only its shadows, and there is no film"},
         {"[render]", "gl", "who draws"},
         {"[render]",
          "color",
@@ -173,6 +175,7 @@ const std::vector<KeyHelp>& scene_key_help() {
          "agree, "
          "else y"},
         {"[render]", "camera", "where one looks from"},
+        {"[render]", "light", "where it comes from", "section"},
 
         {"[render.camera]", "azimuth",
          "about the upward axis; y up: from z toward x, z up: from x toward y"},
@@ -186,6 +189,15 @@ const std::vector<KeyHelp>& scene_key_help() {
          "a step short of the first"},
         {"[render.camera]", "keys", "instead of all that: the same keys at several times"},
         {"[[render.camera.keys]]", "at", "share of the film", {}, "-"},
+
+        {"[render.light]",
+         "azimuth",
+         "of the lamp that throws the shadows, about the upward axis from the film's first view "
+         "toward its right; the other lamps turn with it",
+         {},
+         "-45.8 deg"},
+        {"[render.light]", "elevation", "of that lamp, above the horizon", "angle, 5 deg to 90 deg",
+         "51.6 deg"},
 
         {"[output]", "meshes_per_frame", "write the skin of every frame"},
         {"[output]", "fields",

@@ -93,7 +93,7 @@ std::vector<SectionReference> scene_key_reference() {
     SceneSpec scene;
     read_scene_document(
         document_of("{ inset = [{}], body = [{}], probe = [{}], stage = [{ load = [{}] }], "
-                    "render = { camera = { keys = [{}] } } }"),
+                    "render = { camera = { keys = [{}] }, light = {} } }"),
         {}, reading, scene);
     return reference(reading, scene_key_help());
 }

@@ -66,6 +66,13 @@ void read_view(TableReader& table, CameraKey& key) {
     key.target = target;
 }
 
+void read_light(TableReader& table, LightPlace& light) {
+    const Range above_ground = between(5 * kPi / 180 - 1e-12, kPi / 2 + 1e-12);
+    table.quantity("azimuth", Quantity::angle, {}, light.azimuth);
+    table.quantity("elevation", Quantity::angle, above_ground, light.elevation);
+    table.finish();
+}
+
 void read_camera(TableReader& table, std::vector<CameraKey>& camera) {
     CameraKey fixed;
     read_view(table, fixed);
@@ -118,9 +125,18 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera) {
 void read_render(TableReader& table, RenderSettings& settings) {
     read_size(table, settings);
     table.whole("fps", 1, 240, settings.frames_per_second);
-    table.truth("film", settings.film);
+    const bool says_film = table.truth("film", settings.film);
     table.truth("tools", settings.tools);
     table.truth("ground", settings.ground);
+    table.choice<Background>(
+        "background", {{"studio", Background::studio}, {"transparent", Background::transparent}},
+        settings.background);
+    if (settings.background == Background::transparent) {
+        if (says_film && settings.film) {
+            table.mistake("film", "a film cannot be transparent: its stills can, without it");
+        }
+        settings.film = false;
+    }
     table.choice<GlProviderKind>("gl",
                                  {{"auto", GlProviderKind::automatic},
                                   {"osmesa", GlProviderKind::osmesa},
@@ -133,6 +149,8 @@ void read_render(TableReader& table, RenderSettings& settings) {
     TableReader camera(table.table("camera"), "[render.camera]", table.reading());
     read_camera(camera, settings.camera);
     camera.finish();
+    TableReader light(table.table("light"), "[render.light]", table.reading());
+    read_light(light, settings.light);
     table.finish();
 }
 

@@ -136,3 +136,22 @@ TEST_CASE("what a drawing that was killed left unfinished goes with the next") {
         CHECK(name.find(".part") == std::string::npos);
     }
 }
+
+TEST_CASE("transparent stills have alpha and no film, and a film with them is refused") {
+    const DrawableRun drawable;
+    const fs::path out = drawable.out();
+    const auto draw = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", drawable.run().string(), "--out", out.string(),
+                                   "--frames", "2", "--background", "transparent"});
+        return run_swage(more);
+    };
+    const Outcome refused = draw({"--film"});
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("a film cannot be transparent") != std::string::npos);
+    const Outcome outcome = draw({"--light-azimuth", "40", "--light-elevation", "10"});
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK_FALSE(fs::exists(out / "film.mp4"));
+    CHECK(bytes_of(out / "frames/frame_0002.png").at(25) == 6);  // RGBA
+    CHECK(draw({"--light-elevation", "2"}).code == 2);
+}
