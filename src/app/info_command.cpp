@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "geometry/mesh_check.h"
+#include "geometry/mesh_numbered.h"
 #include "geometry/mesh_repair.h"
 #include "pipeline/run_record.h"
 
@@ -30,7 +31,14 @@ std::vector<std::string> repairs_of(const InputMesh& input) {
     }
 }
 
-std::string text_of(const std::string& file, const InputMesh& input,
+// Pieces that touch, as after a cut, are manifold only where places that coincide stay apart.
+bool is_manifold_as_numbered(const std::string& file, const MeshReport& welded) {
+    if (welded.manifold) return true;
+    const MeshReport own = check_mesh(read_as_numbered(file));
+    return own.watertight && own.manifold;
+}
+
+std::string text_of(const std::string& file, const InputMesh& input, bool is_manifold,
                     const std::vector<std::string>& repairs) {
     const MeshReport& report = input.report;
     const Vec3 size = report.box.empty() ? Vec3::Zero().eval() : report.box.size();
@@ -42,7 +50,9 @@ std::string text_of(const std::string& file, const InputMesh& input,
     line("triangles", count_text(static_cast<double>(report.triangles)));
     line("components", std::to_string(report.components));
     line("watertight", yes_no(report.watertight));
-    line("manifold", yes_no(report.manifold));
+    const bool differs = is_manifold != report.manifold;
+    line("manifold", yes_no(is_manifold) + (differs ? ", by its vertex numbers" : ""));
+    if (differs) line("by place", "not manifold");
     line("oriented", yes_no(report.oriented));
     line("volume", report.bounds_a_volume() ? volume_text(report.volume) : "encloses none");
     line("area", area_text(report.area));
@@ -69,13 +79,15 @@ std::string text_of(const std::string& file, const InputMesh& input,
 int info(const InfoArguments& given) {
     const InputMesh input = read_mesh_as_it_is(given.file, std::nullopt);
     const std::vector<std::string> repairs = repairs_of(input);
+    const bool is_manifold = is_manifold_as_numbered(given.file, input.report);
     if (given.json) {
         Json json = mesh_json(input);
         json["file"] = given.file;
         json["repairs"] = repairs;
+        json["manifold_as_numbered"] = is_manifold;
         put_json(json);
     } else {
-        put_out(text_of(given.file, input, repairs));
+        put_out(text_of(given.file, input, is_manifold, repairs));
     }
     return 0;
 }

@@ -27,6 +27,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/process.h"
+#include "geometry/mesh_numbered.h"
 #include "geometry/mesh_read_child.h"
 
 namespace swage {
@@ -171,15 +172,9 @@ bool receive(int pipe, const ReadLimits& limits, std::string& bytes, bool& too_l
     return true;
 }
 
-}  // namespace
-
-bool is_mesh_file_name(const fs::path& file) {
-    MeshFormat ignored;
-    return format_of(file, ignored);
-}
-
-TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<std::string>* finding,
-                  double crease_angle) {
+// What `make` has of the mesh as its file holds it.
+template <typename Make>
+TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& make) {
     const std::string name = file.string();
     if (name.find('\0') != std::string::npos || file.empty())
         fail(ExitCode::mesh, "a mesh file needs a name");
@@ -242,16 +237,39 @@ TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<st
         RawMesh raw = from_bytes(body);
         bytes = {};
         check_raw(raw);
+        return make(raw);
+    } catch (const Error& error) {
+        fail(ExitCode::mesh, "{}: {}", name, error.what());
+    }
+}
+
+}  // namespace
+
+bool is_mesh_file_name(const fs::path& file) {
+    MeshFormat ignored;
+    return format_of(file, ignored);
+}
+
+TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<std::string>* finding,
+                  double crease_angle) {
+    return read_with(file, limits, [&](RawMesh& raw) {
         TriMesh mesh = weld(raw, crease_angle);
         if (finding != nullptr) {
             finding->insert(finding->end(), raw.finding.begin(), raw.finding.end());
         } else {
-            for (const std::string& text : raw.finding) log_warning("{}: {}", name, text);
+            for (const std::string& text : raw.finding) log_warning("{}: {}", file.string(), text);
         }
         return mesh;
-    } catch (const Error& error) {
-        fail(ExitCode::mesh, "{}: {}", name, error.what());
-    }
+    });
+}
+
+TriMesh read_as_numbered(const fs::path& file) {
+    return read_with(file, {}, [](RawMesh& raw) {
+        TriMesh mesh;
+        mesh.position = std::move(raw.position);
+        mesh.triangle = std::move(raw.triangle);
+        return mesh;
+    });
 }
 
 }  // namespace swage

@@ -83,3 +83,20 @@ TEST_CASE("a blade severs a body that comes under it when another has been cut")
     CHECK(stage.at("severed") > 40);  // 33 in the first
     CHECK(stage.at("pieces") == 3);
 }
+
+TEST_CASE("info calls what touches manifold by its numbers, and not by place") {
+    const Scratch scratch;
+    const fs::path file = scratch.path() / "two.obj";
+    // Two tetrahedra with an edge at one place.
+    const std::string corner = "v 0 0 0\nv 0 0 1\n";
+    put_text(file, corner + "v 1 0 0\nv 0 1 0\n" + corner + "v -1 0 0\nv 0 -1 0\n" +
+                       "f 1 4 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 5 8 7\nf 5 7 6\nf 5 6 8\nf 6 7 8\n");
+    const std::string told = run_swage({"info", file.string()}).out;
+    CHECK(told.find("manifold     yes, by its vertex numbers\n") != std::string::npos);
+    CHECK(told.find("by place     not manifold\n") != std::string::npos);
+    const Json json = Json::parse(run_swage({"info", file.string(), "--json"}).out);
+    CHECK(json.at("manifold") == false);
+    CHECK(json.at("manifold_as_numbered") == true);
+    CHECK(run_swage({"info", SWAGE_SOURCE_DIR "/assets/meshes/bar.obj"}).out.find("by place") ==
+          std::string::npos);
+}
