@@ -7,9 +7,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
+#include "base/noise.h"
 #include "sim/lattice_sweep.h"
 #include "sim/vector_sums.h"
 
@@ -20,14 +20,6 @@ namespace {
 constexpr int kProducts = 24;
 constexpr double kRoom = 2.0;    // what pressed matter may become stiffer by
 constexpr double kNudge = 1e-6;  // [spacings], the farthest that any particle is moved
-
-// The same noise for the same number, -1 to 1 (S. Vigna's splitmix64).
-double noise(std::uint64_t n) {
-    n = (n + 1) * 0x9e3779b97f4a7c15ull;
-    n = (n ^ (n >> 30)) * 0xbf58476d1ce4e5b9ull;
-    n = (n ^ (n >> 27)) * 0x94d049bb133111ebull;
-    return static_cast<double>((n ^ (n >> 31)) >> 11) * 0x1p-52 - 1;
-}
 
 template <typename Act>
 void for_each_particle(std::size_t count, const Act& act) {
