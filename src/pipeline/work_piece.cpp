@@ -120,7 +120,7 @@ void name_looks(TriMesh& skin, const std::string& label) {
 }
 
 void lay_boundary(WorkPiece& piece) {
-    BoundarySkin anew = boundary_skin(piece.matter, piece.look.get());
+    BoundarySkin anew = boundary_skin(piece.matter, piece.look.get(), piece.roughness);
     piece.skin = std::move(anew.mesh);
     piece.mount = std::move(anew.mount);
 }
@@ -137,7 +137,8 @@ int part_skin(WorkPiece& piece) {
         piece.whole_skin = piece.skin;
         piece.whole_mount = piece.mount;
     }
-    BrokenSkin broken = break_skin(*piece.whole_skin, piece.whole_mount, piece.matter);
+    BrokenSkin broken =
+        break_skin(*piece.whole_skin, piece.whole_mount, piece.matter, piece.roughness);
     piece.skin = std::move(broken.mesh);
     piece.mount = std::move(broken.mount);
     return broken.open_faces;
@@ -230,6 +231,7 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     WorkPiece piece;
     piece.name = body.name;
     piece.label = body.label();
+    piece.roughness = skin.roughness;
     piece.matter = mold_body(input, body, piece.finding);
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;

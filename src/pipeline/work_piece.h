@@ -62,6 +62,7 @@ struct WorkPiece {
     // Once a blade's path was curved: the skin is not cut along it, so triangles may be torn there,
     // now and in every later stage. A boundary is made anew instead.
     bool is_torn = false;
+    double roughness = 0;  // of faces where matter breaks by load (SkinSettings)
     // Once matter broke by load: what a mounted skin was made from since.
     std::optional<TriMesh> whole_skin;
     Mount whole_mount;

@@ -84,6 +84,9 @@ const std::vector<KeyHelp>& scene_key_help() {
          "between faces, beyond which an edge is sharp where the file has neither normals nor "
          "smoothing groups; 180 deg: none is; not for kind = \"boundary\"",
          "angle, 0 deg to 180 deg"},
+        {"[skin]", "roughness",
+         "of faces where matter broke by load, in cells: how far off the planes between particles "
+         "they lie; 0: on them"},
 
         {"[[stage]]", "machine",
          "one that `swage machines` lists, or a file of your own; its "

@@ -53,6 +53,7 @@ void read_skin(TableReader& table, SkinSettings& skin) {
                    "crease_angle has no effect with kind = \"boundary\": such a skin is made "
                    "anew, of voxels");
     }
+    table.quantity("roughness", Quantity::number, between(0, kMostRoughness), skin.roughness);
     table.finish();
 }
 

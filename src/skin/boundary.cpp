@@ -194,10 +194,11 @@ void part_touching(const Aggregate& matter, const VoxelSurface& surface,
 
 }  // namespace
 
-BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look) {
+BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look, double roughness) {
     const SurfaceSamples samples(matter);
     VoxelSurface surface = voxel_surface(matter, samples);
-    const std::vector<Vec3> place = place_points(matter, samples, surface);
+    const std::vector<Vec3> place =
+        place_points(matter, samples, surface, Warp(matter.lattice, roughness));
     const Pieces pieces = find_pieces(matter);
     drop_crumbs(matter, pieces, place, surface);
 

@@ -19,7 +19,8 @@ struct BoundarySkin {
 // Closed and oriented. Looks as `look` has it; without that it has two materials, "boundary" and
 // kCutMaterial, which faces have where matter was severed. Its volume at molding is the matter's.
 // Pieces that hold next to no material are left out. Only what hangs together with what counts, not
-// where it is.
-BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look = nullptr);
+// where it is. `roughness`: as SkinSettings has it.
+BoundarySkin boundary_skin(const Aggregate& matter, const NewLook* look = nullptr,
+                           double roughness = 0);
 
 }  // namespace swage

@@ -25,6 +25,8 @@ namespace swage {
 namespace {
 
 constexpr double kSamePlace = 1e-3;  // of a square's side
+constexpr int kParts = 3;            // of a rough square's side
+constexpr double kFree = 0.5;        // spacings from the surface, beyond which it leads no point
 
 int open_edges(const TriMesh& mesh) {
     int open = 0;
@@ -35,11 +37,13 @@ int open_edges(const TriMesh& mesh) {
 
 class Breaker {
   public:
-    Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter)
+    Breaker(const TriMesh& whole, const Mount& mount, const Aggregate& matter, double roughness)
         : whole_(whole),
           matter_(matter),
+          warp_(matter.lattice, roughness),
+          parts_(warp_.is_none() ? 1 : kParts),
           faces_(faces_to_part(matter, mount)),
-          skin_(whole, mount, matter, faces_) {}
+          skin_(whole, mount, matter, faces_, warp_) {}
 
     BrokenSkin run() {
         prepare_attributes();
@@ -109,7 +113,7 @@ class Breaker {
     }
     Vec2 on_square(const Face& face, int v) const {
         const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
-        const Vec3& p = skin_.mesh.position[v];
+        const Vec3& p = skin_.straight(v);
         return {along_side(a, face.site[a], p[a]), along_side(b, face.site[b], p[b])};
     }
 
@@ -124,30 +128,74 @@ class Breaker {
         return std::nullopt;
     }
 
-    // A corner of squares that lies inside the mesh.
-    int inner_corner(const std::array<int, 3>& plane, int beside) {
-        const auto known = corner_.find(plane);
-        if (known != corner_.end()) return known->second;
-        Vec3 place;
-        for (int d = 0; d < 3; ++d) place[d] = skin_.diced().planes.at(d, plane[d]);
-        return corner_[plane] = skin_.add_vertex(place, plane, Eigen::Vector3f::Ones(), beside);
-    }
-    // Counter-clockwise from the low one. `beside`: a vertex next to it along the rim, or -1.
-    int corner_at(const Face& face, int n, int beside) {
+    // Points of squares are numbered along each axis: `parts_` from one plane to the next.
+    Vec3i low_point(const Face& face) const {
         const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
-        std::array<int, 3> plane;
-        plane[face.axis] = face.site[face.axis];
-        plane[a] = face.site[a] - (n == 0 || n == 3);
-        plane[b] = face.site[b] - (n == 0 || n == 1);
-        return inner_corner(plane, beside);
+        Vec3i point = parts_ * face.site;
+        point[a] -= parts_, point[b] -= parts_;
+        return point;
+    }
+    // On the rim, counter-clockwise from the low one.
+    Vec3i rim_point(const Face& face, int n) const {
+        const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
+        const int side = n / parts_ % 4, on = n % parts_;
+        Vec3i point = low_point(face);
+        point[a] += side == 0 ? on : side == 1 ? parts_ : side == 2 ? parts_ - on : 0;
+        point[b] += side == 0 ? 0 : side == 1 ? on : side == 2 ? parts_ : parts_ - on;
+        return point;
+    }
+    // One that lies inside the mesh. `beside`: a vertex next to it along the rim, or -1.
+    int vertex_at(const Vec3i& point, int beside) {
+        const auto [known, fresh] = point_.emplace(std::array{point[0], point[1], point[2]}, -1);
+        if (!fresh) return known->second;
+        PartedSkin::Place place;
+        for (int d = 0; d < 3; ++d) {
+            const int number = floor_ratio(point[d]), on = point[d] - parts_ * number;
+            const MiddlePlanes& planes = skin_.diced().planes;
+            const double low = planes.at(d, number);
+            place.plane[d] = on == 0 ? number : kNoPlane;
+            place.straight[d] =
+                on == 0 ? low : low + on * (planes.at(d, number + 1) - low) / parts_;
+        }
+        return known->second = add_vertex(place, point, beside);
+    }
+    int floor_ratio(int point) const {
+        return point >= 0 ? point / parts_ : -((parts_ - 1 - point) / parts_);
     }
 
-    // `site`: of the cell in whose middle the place is.
-    bool is_inside(const Vec3& place, const Vec3i& site) {
+    // `point`: any three numbers that tell it.
+    int add_vertex(PartedSkin::Place& place, const Vec3i& point, int beside) {
+        place.at_molding = place_inside(place.straight, point);
+        return skin_.add_vertex(place, Eigen::Vector3f::Ones(), beside);
+    }
+
+    // At molding. Near the surface, whose faces follow the warp as well as flat ones can, it is as
+    // far off these as in straight space.
+    Vec3 place_inside(const Vec3& straight, const Vec3i& point) {
+        if (warp_.is_none()) return straight;
+        const Vec3 free = warp_.rough(straight) + warp_.grain(point);
+        const TriMesh& surface = skin_.diced().straight_mesh;
+        const TriangleTree::Nearest nearest = tree().nearest(straight);
+        Vec3 on = Vec3::Zero(), off = straight;
+        for (int k = 0; k < 3; ++k) {
+            const int v = surface.triangle[nearest.triangle][k];
+            on += nearest.weight[k] * skin_.diced().position[v];
+            off -= nearest.weight[k] * surface.position[v];
+        }
+        const double share = std::min(1.0, off.norm() / (kFree * warp_.spacing()));
+        return on + off + share * (free - (on + off));
+    }
+
+    const TriangleTree& tree() {
+        if (!tree_) tree_ = std::make_unique<TriangleTree>(skin_.diced().straight_mesh);
+        return *tree_;
+    }
+
+    // `site`: of the cell in whose middle the place is, in straight space.
+    bool is_inside(const Vec3& straight, const Vec3i& site) {
         const CellId cell = matter_.lattice.cell_at(site);
         if (cell >= 0 && matter_.cell_fill[cell] > 0.9999f) return true;
-        if (!tree_) tree_ = std::make_unique<TriangleTree>(whole_);
-        return tree_->winding_number(place) > 0.5;
+        return tree().winding_number(straight) > 0.5;
     }
 
     // On a square's rim.
@@ -206,8 +254,11 @@ class Breaker {
             site[face.axis] = face.site[face.axis];
             site[a] = face.site[a] - 1, site[b] = face.site[b] - 1;
             if (!is_inside(low, site)) return true;
-            for (int n = 0; n < 4; ++n) {
-                segments.push_back({corner_at(face, n, -1), corner_at(face, (n + 1) % 4, -1)});
+            int from = vertex_at(rim_point(face, 0), -1);
+            for (int n = 1; n <= 4 * parts_; ++n) {
+                const int to = vertex_at(rim_point(face, n), -1);
+                segments.push_back({from, to});
+                from = to;
             }
             return true;
         }
@@ -217,9 +268,9 @@ class Breaker {
             const Event& next = events[(n + 1) % events.size()];
             if (here.balance > 0) continue;
             int from = here.vertex;
-            const double end = next.at > here.at ? next.at : next.at + 4;
-            for (int corner = static_cast<int>(std::floor(here.at)) + 1; corner < end; ++corner) {
-                const int to = corner_at(face, corner % 4, from);
+            const double end = (next.at > here.at ? next.at : next.at + 4) * parts_;
+            for (int n = static_cast<int>(std::floor(here.at * parts_)) + 1; n < end; ++n) {
+                const int to = vertex_at(rim_point(face, n), from);
                 segments.push_back({from, to});
                 from = to;
             }
@@ -243,10 +294,34 @@ class Breaker {
         }
     }
 
+    // Of a square that is inside the mesh as a whole, each part along its shorter diagonal.
+    std::vector<Corners> fill_whole(const Face& face) {
+        const int a = (face.axis + 1) % 3, b = (face.axis + 2) % 3;
+        const Vec3i low = low_point(face);
+        std::vector<Corners> triangles;
+        for (int j = 0; j < parts_; ++j) {
+            for (int i = 0; i < parts_; ++i) {
+                std::array<int, 4> v;
+                for (int k = 0; k < 4; ++k) {
+                    Vec3i point = low;
+                    point[a] += i + (k == 1 || k == 2), point[b] += j + (k > 1);
+                    v[k] = vertex_at(point, -1);
+                }
+                const std::vector<Vec3>& p = skin_.mesh.position;
+                if ((p[v[2]] - p[v[0]]).norm() <= (p[v[3]] - p[v[1]]).norm()) {
+                    triangles.insert(triangles.end(), {{v[0], v[1], v[2]}, {v[0], v[2], v[3]}});
+                } else {
+                    triangles.insert(triangles.end(), {{v[0], v[1], v[3]}, {v[1], v[2], v[3]}});
+                }
+            }
+        }
+        return triangles;
+    }
+
     // Triangles within closed loops; where the plane's own fill does not serve, each by itself.
-    std::vector<Corners> fill(const Face& face, const std::vector<Segment>& segments) const {
+    std::vector<Corners> fill(const Face& face, const std::vector<Segment>& segments) {
         Section section;
-        section.spacing = 4;  // no points inside
+        section.spacing = parts_ == 1 ? 4 : 1.0 / parts_;  // 4: no points inside
         std::map<int, int> number;
         std::vector<int> vertex;
         for (const Segment& s : segments) {
@@ -259,7 +334,8 @@ class Breaker {
         }
         std::vector<Corners> triangles;
         const std::optional<SectionTriangles> filled = fill_section(section);
-        if (filled && filled->added.empty()) {
+        if (filled && (parts_ > 1 || filled->added.empty())) {
+            for (const Vec2& at : filled->added) vertex.push_back(inner_vertex(face, at));
             for (const Corners& t : filled->triangle) {
                 triangles.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
             }
@@ -283,7 +359,25 @@ class Breaker {
         return triangles;
     }
 
+    int inner_vertex(const Face& face, const Vec2& at) {
+        const std::array<int, 2> side = {(face.axis + 1) % 3, (face.axis + 2) % 3};
+        const MiddlePlanes& planes = skin_.diced().planes;
+        PartedSkin::Place place;
+        place.plane = {kNoPlane, kNoPlane, kNoPlane};
+        place.plane[face.axis] = face.site[face.axis];
+        place.straight[face.axis] = planes.at(face.axis, face.site[face.axis]);
+        Vec3i point = low_point(face);
+        for (int n = 0; n < 2; ++n) {
+            const int d = side[n];
+            const double low = planes.at(d, face.site[d] - 1);
+            place.straight[d] = low + at[n] * (planes.at(d, face.site[d]) - low);
+            point[d] += static_cast<int>(std::lround(at[n] * parts_));
+        }
+        return add_vertex(place, point, -1);
+    }
+
     void close(const Face& face, std::vector<Segment>& segments, int part) {
+        const bool is_whole = parts_ > 1 && segments.empty();
         if (!go_round(face, segments)) {
             ++result_.open_faces;
             return;
@@ -291,23 +385,29 @@ class Breaker {
         if (segments.empty()) return;
         Vec3i upper = face.site;
         ++upper[face.axis];
-        for (const Corners& t : fill(face, segments)) {
+        for (const Corners& t : is_whole ? fill_whole(face) : fill(face, segments)) {
             add(face.site, face.axis, t, part);
             add(upper, 3 + face.axis, {t[0], t[2], t[1]}, part);
         }
     }
 
-    // `way`: which of the six that it looks; faces are smooth among those that look the same.
+    // `way`: which of the six that it looks; faces are smooth among those that look the same, but
+    // for rough ones, which have facets.
     void add(const Vec3i& site, int way, const Corners& raw, int part) {
         TriMesh& mesh = skin_.mesh;
         Corners own, smooth;
         for (int k = 0; k < 3; ++k) {
             own[k] = skin_.copy_of(raw[k], site);
+            if (parts_ > 1) {
+                smooth[k] = mesh.smooth_group_count;
+                continue;
+            }
             const auto [at, fresh] =
                 smooth_.emplace(std::array{own[k], way}, mesh.smooth_group_count);
             mesh.smooth_group_count += fresh && !mesh.triangle_smooth.empty();
             smooth[k] = at->second;
         }
+        mesh.smooth_group_count += parts_ > 1 && !mesh.triangle_smooth.empty();
         mesh.triangle.push_back(own);
         skin_.add_site(site);
         mesh.triangle_material.push_back(material_);
@@ -320,9 +420,11 @@ class Breaker {
 
     const TriMesh& whole_;
     const Aggregate& matter_;
+    const Warp warp_;
+    const int parts_;  // of a square's side
     const std::vector<Face> faces_;
     PartedSkin skin_;
-    std::map<std::array<int, 3>, int> corner_;
+    std::map<std::array<int, 3>, int> point_;   // vertices inside
     std::map<std::array<int, 2>, int> smooth_;  // of new faces, by vertex and way
     std::vector<std::vector<Segment>> rim_;
     std::vector<int> part_;  // of the mesh, at each broken face
@@ -335,8 +437,9 @@ class Breaker {
 
 bool is_broken(const Aggregate& matter) { return !broken_faces(matter).empty(); }
 
-BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter) {
-    return Breaker(whole, mount, matter).run();
+BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter,
+                      double roughness) {
+    return Breaker(whole, mount, matter, roughness).run();
 }
 
 }  // namespace swage

@@ -20,7 +20,9 @@ bool is_broken(const Aggregate& matter);
 
 // `whole`: the skin while it was, its positions those at molding, and its mount. A crack that ends
 // inside the body is a slit there, its two faces joined at its end. Old vertices keep their
-// numbers.
-BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter);
+// numbers. `roughness`: as SkinSettings has it; where new vertices lie hangs on nothing else that
+// broke.
+BrokenSkin break_skin(const TriMesh& whole, const Mount& mount, const Aggregate& matter,
+                      double roughness = 0);
 
 }  // namespace swage

@@ -10,6 +10,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "base/parallel.h"
 #include "geometry/edge_attributes.h"
 #include "skin/thick_triangles.h"
 
@@ -21,6 +22,8 @@ using Segment = std::array<int, 2>;
 
 // Of what is made triangles of at once.
 constexpr std::size_t kMostCorners = 40;
+// Of edges where space is warped, in spacings: over shorter ones a warp is nearly straight.
+constexpr double kLongest = 0.6;
 
 // A convex part of a triangle of the mesh, without vertices but at its corners: lines that only a
 // triangulation needs would be split too, and where they run close together so are slivers made.
@@ -35,7 +38,8 @@ struct Piece {
 
 class Dicer {
   public:
-    Dicer(const TriMesh& mesh, const Lattice& lattice) : old_(mesh), lattice_(lattice) {
+    Dicer(const TriMesh& mesh, const Lattice& lattice, const Warp& warp)
+        : old_(mesh), lattice_(lattice), warp_(warp) {
         edge_.assign(mesh.position.size(), {-1, -1});
         skin_.mesh = mesh;
         skin_.planes = MiddlePlanes(lattice);
@@ -53,9 +57,11 @@ class Dicer {
                      old_.triangle_smooth.empty() ? -1 : old_.triangle_smooth[t][k]});
             }
         }
+        if (!warp_.is_none()) pieces = divide(std::move(pieces));
+        straighten(pieces);
         for (int axis = 0; axis < 3; ++axis) {
             on_edge_.clear();
-            skin_.planes.choose(axis, skin_.mesh.position, old_.triangle);
+            skin_.planes.choose(axis, skin_.straight, skin_.straight_mesh.triangle);
             std::vector<Piece> split;
             for (const Piece& piece : pieces) split_along(axis, piece, split);
             pieces = std::move(split);
@@ -67,10 +73,78 @@ class Dicer {
     }
 
   private:
+    // Into triangles with no edge above kLongest. Each edge is halved by its own length alone, so
+    // that neighbours fit.
+    std::vector<Piece> divide(std::vector<Piece> pieces) {
+        std::vector<Piece> out;
+        while (!pieces.empty()) {
+            Piece piece = std::move(pieces.back());
+            pieces.pop_back();
+            const int k = longest_edge(piece);
+            if (k < 0) {
+                out.push_back(std::move(piece));
+                continue;
+            }
+            const Corner &a = piece.corner[k], &b = piece.corner[(k + 1) % 3],
+                         &c = piece.corner[(k + 2) % 3];
+            const Corner middle =
+                a.vertex < b.vertex ? halve(piece.parent, a, b) : halve(piece.parent, b, a);
+            pieces.push_back({{a, middle, c}, piece.parent});
+            pieces.push_back({{middle, b, c}, piece.parent});
+        }
+        std::stable_sort(out.begin(), out.end(),
+                         [](const Piece& p, const Piece& q) { return p.parent < q.parent; });
+        return out;
+    }
+
+    // The side of a triangle that is to be halved, or -1. Of sides that are as long as each other
+    // the one farther along the axes: on both faces of a cut it is the same.
+    int longest_edge(const Piece& piece) const {
+        double longest = kLongest * lattice_.spacing;
+        Vec3 middle = Vec3::Zero();
+        int side = -1;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 &p = skin_.mesh.position[piece.corner[k].vertex],
+                       &q = skin_.mesh.position[piece.corner[(k + 1) % 3].vertex];
+            const double length = (q - p).norm();
+            const Vec3 own = p + q;
+            const bool is_farther =
+                std::lexicographical_compare(middle.begin(), middle.end(), own.begin(), own.end());
+            if (length < longest || (length == longest && (side < 0 || !is_farther))) continue;
+            longest = length, middle = own, side = k;
+        }
+        return side;
+    }
+
+    Corner halve(int parent, const Corner& a, const Corner& b) {
+        const int from = a.vertex, to = b.vertex;
+        const auto [v, fresh] = vertex_on(from, to, parent, 0.5);
+        if (fresh) {
+            TriMesh& mesh = skin_.mesh;
+            mesh.position.push_back(0.5 * (mesh.position[from] + mesh.position[to]));
+            skin_.plane.push_back({kNoPlane, kNoPlane, kNoPlane});
+        }
+        return with_attributes(v, a, b, 0.5);
+    }
+
+    void straighten(const std::vector<Piece>& pieces) {
+        constexpr std::size_t kPlaces = 256;
+        const std::vector<Vec3>& position = skin_.mesh.position;
+        skin_.straight.resize(position.size());
+        parallel_each(position.size(), kPlaces,
+                      [&](std::size_t v) { skin_.straight[v] = warp_.straight(position[v]); });
+        skin_.position = position;
+        skin_.straight_mesh.position = skin_.straight;
+        for (const Piece& piece : pieces) {
+            const auto& c = piece.corner;
+            skin_.straight_mesh.triangle.push_back({c[0].vertex, c[1].vertex, c[2].vertex});
+        }
+    }
+
     int lowest_plane(int axis, const Piece& piece) const {
         double low = std::numeric_limits<double>::infinity();
         for (const Corner& c : piece.corner) {
-            low = std::min(low, skin_.mesh.position[c.vertex][axis]);
+            low = std::min(low, skin_.straight[c.vertex][axis]);
         }
         int number =
             static_cast<int>(std::floor((low - lattice_.origin[axis]) / lattice_.spacing - 0.5)) -
@@ -91,7 +165,7 @@ class Dicer {
     Piece split_at(int axis, int number, Piece& piece) {
         const double height = skin_.planes.at(axis, number);
         const auto is_upper = [&](const Corner& c) {
-            return !(skin_.mesh.position[c.vertex][axis] < height);
+            return !(skin_.straight[c.vertex][axis] < height);
         };
         Piece lower{{}, piece.parent, piece.site}, upper = lower;
         for (std::size_t k = 0; k < piece.corner.size(); ++k) {
@@ -113,30 +187,44 @@ class Dicer {
     Corner cross(int axis, int number, double height, int parent, const Corner& a,
                  const Corner& b) {
         const int from = a.vertex, to = b.vertex;
-        TriMesh& mesh = skin_.mesh;
-        const double h0 = mesh.position[from][axis], h1 = mesh.position[to][axis];
+        const double h0 = skin_.straight[from][axis], h1 = skin_.straight[to][axis];
         const double share = (height - h0) / (h1 - h0);
-        const std::uint64_t key =
-            static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to);
-        const auto [entry, fresh] = on_edge_.emplace(key, static_cast<int>(mesh.position.size()));
-        const int v = entry->second;
+        const auto [v, fresh] = vertex_on(from, to, parent, share);
         if (fresh) {
-            const Vec3 p = mesh.position[from], q = mesh.position[to];
-            Vec3 at = p + share * (q - p);
+            const auto between = [&](const std::vector<Vec3>& place) -> Vec3 {
+                return place[from] + share * (place[to] - place[from]);
+            };
+            Vec3 at = between(skin_.straight);
             at[axis] = height;
-            mesh.position.push_back(at);
             std::array<int, 3> plane = skin_.plane[from];
             for (int d = 0; d < 3; ++d) {
                 if (skin_.plane[to][d] != plane[d]) plane[d] = kNoPlane;
-                if (plane[d] != kNoPlane) mesh.position.back()[d] = p[d];
+                if (plane[d] != kNoPlane) at[d] = skin_.straight[from][d];
             }
             plane[axis] = number;
             skin_.plane.push_back(plane);
+            skin_.straight.push_back(at);
+            const Vec3 place = warp_.is_none() ? at : between(skin_.mesh.position);
+            skin_.mesh.position.push_back(place);
+        }
+        return with_attributes(v, a, b, share);
+    }
+
+    // The new vertex on an edge, low number first, and whether it is not yet there.
+    std::pair<int, bool> vertex_on(int from, int to, int parent, double share) {
+        TriMesh& mesh = skin_.mesh;
+        const std::uint64_t key =
+            static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to);
+        const auto [entry, fresh] = on_edge_.emplace(key, static_cast<int>(mesh.position.size()));
+        if (fresh) {
             edge_.push_back(old_edge(from, to));
             skin_.on_triangle.push_back(parent);
             const Eigen::Vector3f color = attributes_.color(from, to, share);
             if (!mesh.position_color.empty()) mesh.position_color.push_back(color);
         }
+        return {entry->second, fresh};
+    }
+    Corner with_attributes(int v, const Corner& a, const Corner& b, double share) {
         const bool is_smooth = !old_.triangle_smooth.empty();
         return {v, attributes_.uv(v, a.uv, b.uv, share),
                 is_smooth ? attributes_.smooth(v, a.smooth, b.smooth, share) : -1};
@@ -254,6 +342,7 @@ class Dicer {
             if (v >= old && number[v] < 0) continue;
             number[v] = static_cast<int>(count);
             skin_.mesh.position[count] = skin_.mesh.position[v];
+            skin_.straight[count] = skin_.straight[v];
             skin_.plane[count] = skin_.plane[v];
             if (v >= old) skin_.on_triangle[count - old] = skin_.on_triangle[v - old];
             if (!skin_.mesh.position_color.empty()) {
@@ -262,6 +351,7 @@ class Dicer {
             ++count;
         }
         skin_.mesh.position.resize(count);
+        skin_.straight.resize(count);
         skin_.plane.resize(count);
         skin_.on_triangle.resize(count - old);
         if (!skin_.mesh.position_color.empty()) skin_.mesh.position_color.resize(count);
@@ -322,6 +412,7 @@ class Dicer {
 
     const TriMesh& old_;
     const Lattice& lattice_;
+    const Warp& warp_;
     DicedSkin skin_;
     EdgeAttributes attributes_{skin_.mesh};
     std::vector<Segment> edge_;  // a vertex each: the old edge that it was made on, or -1, -1
@@ -330,9 +421,9 @@ class Dicer {
 
 }  // namespace
 
-DicedSkin dice_skin(const TriMesh& mesh, const Lattice& lattice,
+DicedSkin dice_skin(const TriMesh& mesh, const Lattice& lattice, const Warp& warp,
                     const std::function<bool(const Vec3i&)>& wanted) {
-    return Dicer(mesh, lattice).run(wanted);
+    return Dicer(mesh, lattice, warp).run(wanted);
 }
 
 }  // namespace swage

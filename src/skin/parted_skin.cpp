@@ -2,6 +2,7 @@
 #include "skin/parted_skin.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/edges.h"
@@ -88,8 +89,8 @@ PartedSkin::Uncracked::Uncracked(const Aggregate& cracked)
     : matter(without_cracks(cracked)), pieces(matter) {}
 
 PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter,
-                       const std::vector<BrokenFace>& faces)
-    : matter_(matter) {
+                       const std::vector<BrokenFace>& faces, const Warp& warp)
+    : matter_(matter), is_rough_(!warp.is_none()) {
     std::unordered_set<std::uint64_t> beside;  // cubes at broken faces
     for (const BrokenFace& face : faces) {
         broken_.insert(key_of(face.site, face.axis));
@@ -97,10 +98,11 @@ PartedSkin::PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Agg
         ++upper[face.axis];
         beside.insert({key_of(face.site, 0), key_of(upper, 0)});
     }
-    diced_ = dice_skin(whole, matter.lattice,
+    diced_ = dice_skin(whole, matter.lattice, warp,
                        [&](const Vec3i& site) { return beside.contains(key_of(site, 0)); });
     mesh = diced_.mesh;
     plane_ = diced_.plane;
+    straight_ = diced_.straight;
     site_ = diced_.site;
     mount.kind = whole_mount.kind;
     if (is_cut(whole_mount)) uncracked_ = std::make_unique<Uncracked>(matter);
@@ -192,8 +194,24 @@ int PartedSkin::copy_of(int v, const Vec3i& site) {
     return copy;
 }
 
+// Of a vertex of a triangle that was left whole: the cube that it lies in. It may be nearer to
+// another's particle.
+Vec3i PartedSkin::cube_around(int v) const {
+    const MiddlePlanes& planes = diced_.planes;
+    Vec3i site;
+    for (int d = 0; d < 3; ++d) {
+        const double at = straight_[v][d];
+        site[d] = static_cast<int>(
+            std::lround((at - matter_.lattice.origin[d]) / matter_.lattice.spacing));
+        while (planes.at(d, site[d]) <= at) ++site[d];
+        while (planes.at(d, site[d] - 1) > at) --site[d];
+    }
+    return site;
+}
+
 // It follows the corners of its cell that hang together with its group.
 void PartedSkin::take_sides(int copy, int v, const Vec3i& site, Mask group) {
+    if (is_rough_ && site == kNoSite) return take_sides(copy, v, cube_around(v), group);
     const Vec3i cell = matter_.lattice.cell_site(mount.cell[copy]);
     Vec3i low = site;
     for (int d = 0; d < 3; ++d) {
@@ -218,7 +236,7 @@ void PartedSkin::take_sides(int copy, int v, const Vec3i& site, Mask group) {
     }
     side &= whole_side_[v];
     if (side == 0) {
-        if (uncracked_) change_cell(copy, v, site, group);
+        if (uncracked_ || is_rough_) change_cell(copy, v, site, group);
         return;
     }
     if (uncracked_) {  // cracks that go on through the other side of a cut part nothing there
@@ -249,7 +267,7 @@ void PartedSkin::change_cell(int copy, int v, const Vec3i& site, Mask group) {
                 if (c >> d & 1) continue;
                 const Vec3i lower = at + corner_step(c), upper = lower + Vec3i::Unit(d);
                 if (joined(lower, d)) uncracked.unite(number(lower), number(upper));
-                if (uncracked_->matter.connection[d].weight[corner[c]] > 0) {
+                if (!uncracked_ || uncracked_->matter.connection[d].weight[corner[c]] > 0) {
                     uncut.unite(number(lower), number(upper));
                 }
             }
@@ -298,22 +316,24 @@ void PartedSkin::part_vertices() {
     }
 }
 
-int PartedSkin::add_vertex(const Vec3& place, const std::array<int, 3>& plane,
-                           const Eigen::Vector3f& color, int beside) {
+int PartedSkin::add_vertex(const Place& place, const Eigen::Vector3f& color, int beside) {
     const std::size_t v = mesh.position.size();
-    mesh.position.push_back(place);
+    const Vec3& at = place.at_molding;
+    mesh.position.push_back(at);
     if (!mesh.position_color.empty()) mesh.position_color.push_back(color);
     if (beside >= 0) {
         const int source = source_[beside];
         const BodyPlace near{mount.reference[beside], whole_cell_[source], whole_side_[source],
                              mount.hold[source]};
-        mount_beside(place, {&near, 1});
+        mount_beside(at, {&near, 1});
     } else {
-        mount.add({place, carrying_cell(matter_, place)});
+        mount.add({at, carrying_cell(matter_, at)});
     }
     source_.push_back(static_cast<int>(v));
     plane_.resize(v + 1, {kNoPlane, kNoPlane, kNoPlane});
-    plane_[v] = plane;
+    plane_[v] = place.plane;
+    straight_.resize(v + 1);
+    straight_[v] = place.straight;
     used_.resize(v + 1, 0);
     whole_side_.resize(v + 1, kAllCorners);
     whole_side_[v] = mount.side[v];
@@ -362,7 +382,9 @@ std::array<int, 3> PartedSkin::common_planes(int v, int w) const {
 }
 
 int PartedSkin::half_way(int low, int high) {
-    return add_vertex(0.5 * (mesh.position[low] + mesh.position[high]), common_planes(low, high),
+    const Vec3 &from = straight_[source_[low]], &to = straight_[source_[high]];
+    return add_vertex({0.5 * (from + to), 0.5 * (mesh.position[low] + mesh.position[high]),
+                       common_planes(low, high)},
                       halves_.color(low, high, 0.5), low);
 }
 

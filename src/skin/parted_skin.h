@@ -34,16 +34,20 @@ class PartedSkin {
   public:
     // `faces`: those of faces_to_part().
     PartedSkin(const TriMesh& whole, const Mount& whole_mount, const Aggregate& matter,
-               const std::vector<BrokenFace>& faces);
+               const std::vector<BrokenFace>& faces, const Warp& warp);
 
     const DicedSkin& diced() const { return diced_; }
     bool joined(const Vec3i& lower, int axis) const;
     const std::array<int, 3>& plane(int v) const { return plane_[v]; }
+    const Vec3& straight(int v) const { return straight_[v]; }
 
-    // A new vertex, not yet parted; place at molding [m]. Where blades have cut it is on the side
-    // of vertex `beside`, if there is one.
-    int add_vertex(const Vec3& place, const std::array<int, 3>& plane, const Eigen::Vector3f& color,
-                   int beside = -1);
+    // Where a new vertex is [m].
+    struct Place {
+        Vec3 straight, at_molding;
+        std::array<int, 3> plane;
+    };
+    // Not yet parted. Where blades have cut it is on the side of vertex `beside`, if there is one.
+    int add_vertex(const Place& place, const Eigen::Vector3f& color, int beside = -1);
     // The copy of a vertex that those have who hang together with the cube at `site`.
     int copy_of(int v, const Vec3i& site);
     // To be called for each triangle that is added to the mesh.
@@ -69,6 +73,7 @@ class PartedSkin {
     void mount_beside(const Vec3& place, std::span<const BodyPlace> others);
     Mask group_of(int v, const Vec3i& site) const;
     static Mask all_around(const std::array<int, 3>& plane);
+    Vec3i cube_around(int v) const;
     void take_sides(int copy, int v, const Vec3i& site, Mask group);
     void change_cell(int copy, int v, const Vec3i& site, Mask group);
     void part_vertices();
@@ -77,10 +82,12 @@ class PartedSkin {
     void bisect(std::size_t t, int k, int middle);
 
     const Aggregate& matter_;
+    const bool is_rough_;
     std::unique_ptr<Uncracked> uncracked_;      // where blades have cut
     std::unordered_set<std::uint64_t> broken_;  // faces; looked up only
     DicedSkin diced_;
     std::vector<std::array<int, 3>> plane_;  // of vertices, copies left out
+    std::vector<Vec3> straight_;             // likewise
     std::vector<int> source_;                // of each copy the vertex
     std::vector<Vec3i> site_;                // a triangle each
     std::vector<char> used_;

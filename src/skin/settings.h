@@ -14,11 +14,17 @@ enum class SkinKind {
 // Of a mesh that is divided, over a cell's.
 inline constexpr double kLongestSkinEdge = 1.5;
 
+// More would turn places inside out (skin/warp.cpp).
+inline constexpr double kMostRoughness = 0.28;
+
 struct SkinSettings {
     SkinKind kind = SkinKind::mount;
     bool divide = true;  // a mesh with edges too long to follow the matter, before it is mounted
     // Beyond which edges are sharp where the file does not say [rad].
     double crease_angle = kCreaseAngle;
+    // How far off the planes half-way between particles faces lie where matter broke by load, in
+    // spacings; 0: on them.
+    double roughness = 0.25;
 };
 
 }  // namespace swage

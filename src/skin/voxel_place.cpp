@@ -22,8 +22,13 @@ constexpr int kSlidingRings = 4;  // around a cut, of points that make room for 
 
 class Placer {
   public:
-    Placer(const Aggregate& matter, const SurfaceSamples& samples, const VoxelSurface& surface)
-        : matter_(matter), surface_(surface), samples_(samples), a_(matter.lattice.spacing) {}
+    Placer(const Aggregate& matter, const SurfaceSamples& samples, const VoxelSurface& surface,
+           const Warp& warp)
+        : matter_(matter),
+          surface_(surface),
+          samples_(samples),
+          warp_(warp),
+          a_(matter.lattice.spacing) {}
 
     std::vector<Vec3> run() {
         start();
@@ -36,6 +41,7 @@ class Placer {
         // The steps of a cut take longer to even out, for only then no triangle is folded.
         for (int round = 0; round < kCutRounds && any_cut(); ++round) settle(true, true);
         unfold();
+        if (!warp_.is_none()) roughen();
         make_up_volume();
         unfold();
         return std::move(place_);
@@ -261,6 +267,34 @@ class Placer {
         }
     }
 
+    bool broke_by_load(const VoxelFace& face) const {
+        const int axis = face.direction % 3;
+        const auto corner = matter_.lattice.cell_corners(face.cell);
+        const ParticleId lower = corner[face.corner & ~(1 << axis)];
+        const auto& damage = matter_.connection[axis].damage;
+        return face.cut && !damage.empty() && damage[lower] >= 1;
+    }
+
+    // Points of faces that no blade made; on the outer surface along it.
+    void roughen() {
+        std::vector<char> broke(count(), 0), blade(count(), 0);
+        for (const VoxelFace& face : surface_.face) {
+            if (!face.cut) continue;
+            std::vector<char>& kind = broke_by_load(face) ? broke : blade;
+            for (int p : face.point) kind[p] = 1;
+        }
+        for (std::size_t s = 0; s < count(); ++s) {
+            if (!broke[s] || blade[s]) continue;
+            Vec3& p = place_[s];
+            const HalfSite& at = surface_.site[s];
+            Vec3 way = warp_.rough(p) + warp_.grain({at[0], at[1], at[2]}) - p;
+            if (outer_[s] && exact_[s]) way = free_part(s, way);
+            if (outer_[s] && !exact_[s]) way -= way.dot(normal_[s]) * normal_[s];
+            p += way;
+            if (outer_[s] && !exact_[s]) samples_.project(facing_[s], p, normal_[s]);
+        }
+    }
+
     double volume() const {
         const Vec3 center = place_.front();
         double six = 0;
@@ -301,6 +335,7 @@ class Placer {
     const Aggregate& matter_;
     const VoxelSurface& surface_;
     const SurfaceSamples& samples_;
+    const Warp& warp_;
     const double a_;
     const bool any_dropped_ = std::any_of(surface_.kept.begin(), surface_.kept.end(),
                                           [](CornerMask kept) { return kept != kAllCorners; });
@@ -314,9 +349,9 @@ class Placer {
 }  // namespace
 
 std::vector<Vec3> place_points(const Aggregate& matter, const SurfaceSamples& samples,
-                               const VoxelSurface& surface) {
+                               const VoxelSurface& surface, const Warp& warp) {
     if (surface.face.empty()) return {};
-    return Placer(matter, samples, surface).run();
+    return Placer(matter, samples, surface, warp).run();
 }
 
 }  // namespace swage

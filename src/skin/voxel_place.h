@@ -6,12 +6,14 @@
 
 #include "matter/aggregate.h"
 #include "skin/voxel_surface.h"
+#include "skin/warp.h"
 
 namespace swage {
 
 // One place [m] for each site: on the body's true surface where that is known; on smooth cut faces
-// half-way between the particles that were severed. The enclosed volume is the matter's.
+// half-way between the particles that were severed; where they broke by load, off that by the warp.
+// The enclosed volume is the matter's.
 std::vector<Vec3> place_points(const Aggregate& matter, const SurfaceSamples& samples,
-                               const VoxelSurface& surface);
+                               const VoxelSurface& surface, const Warp& warp);
 
 }  // namespace swage

@@ -48,7 +48,7 @@ TEST_CASE("what is left of a surface shades as before, diced, cut or broken") {
     Fixture f(test::sphere_mesh(.14, 1));
     const TriMesh whole = f.mesh;
     SECTION("diced") {
-        const DicedSkin diced = dice_skin(whole, f.matter.lattice, [](auto&) { return true; });
+        const DicedSkin diced = dice_skin(whole, f.matter.lattice, {}, [](auto&) { return true; });
         CHECK(diced.mesh.triangle.size() > 2 * whole.triangle.size());
         CHECK(worst_shade(diced.mesh, whole) < 1e-6);
     }
