@@ -3,6 +3,7 @@
 #include <set>
 
 #include "geometry/triangle_tree.h"
+#include "skin/boundary.h"
 #include "skin/divided_mesh.h"
 #include "skin/settings.h"
 #include "skin/warp.h"
@@ -223,4 +224,42 @@ TEST_CASE("what a blade has cut and load breaks roughly is closed, all volume ke
     CHECK(f.broken.open_faces == 0);
     CHECK(test::is_closed(f.broken.mesh));
     CHECK(signed_volume(f.broken.mesh) == Approx(whole).epsilon(1e-9));
+}
+
+TEST_CASE("a boundary is rough where load broke it, and plane where a blade did") {
+    Aggregate matter = test::body(GENERATE(0, 1)).matter;
+    const Vec3 n = Vec3(1, .31, -.44).normalized(), point(.0371, .011, -.0083);
+    SECTION("blade") {
+        test::sever_plane(matter, point, n);
+        const TriMesh plain = boundary_skin(matter).mesh;
+        CHECK(boundary_skin(matter, nullptr, kRough).mesh.position == plain.position);
+    }
+    SECTION("load") {
+        test::break_along(matter, point, n);
+        const TriMesh plain = boundary_skin(matter).mesh;
+        const TriMesh rough = boundary_skin(matter, nullptr, kRough).mesh;
+        CHECK(test::is_closed(rough));
+        CHECK(surface_components(rough).count == 2);
+        CHECK(signed_volume(rough) == Approx(signed_volume(plain)).epsilon(1e-3));
+        REQUIRE(rough.triangle.size() == plain.triangle.size());
+        const auto off = [&](const TriMesh& mesh) {
+            double most = 0;
+            for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+                for (int v : mesh.triangle[t]) {
+                    if (!is_cut(mesh, t)) continue;
+                    most = std::max(most, std::abs(n.dot(mesh.position[v] - point)));
+                }
+            }
+            return most / matter.lattice.spacing;
+        };
+        CHECK(off(rough) > off(plain) + .1);
+        CHECK(off(rough) < off(plain) + kRough * 1.4);
+        // Between the two pieces there is nothing.
+        std::map<std::array<double, 3>, int> uses;
+        for (std::size_t t = 0; t < rough.triangle.size(); ++t) {
+            if (!is_cut(rough, t)) continue;
+            for (int k = 0; k < 3; ++k) ++uses[key(rough.position[rough.triangle[t][k]])];
+        }
+        CHECK(std::all_of(uses.begin(), uses.end(), [](auto& use) { return use.second % 2 == 0; }));
+    }
 }
