@@ -6,6 +6,7 @@
 #include "skin/boundary.h"
 #include "skin/divided_mesh.h"
 #include "skin/settings.h"
+#include "skin/thick_triangles.h"
 #include "skin/warp.h"
 #include "tests/skin/broken_fixture.h"
 
@@ -32,6 +33,16 @@ std::vector<double> volumes(const TriMesh& mesh, const Components& parts) {
 
 bool is_cut(const TriMesh& mesh, std::size_t t) {
     return mesh.material[mesh.triangle_material[t]].name == kCutMaterial;
+}
+
+// Of the triangles, those thinner than a thousandth of `a`.
+double share_of_slivers(const TriMesh& mesh, double a) {
+    const auto is_thin = [&](const Corners& c) {
+        const Vec3 &p = mesh.position[c[0]], &q = mesh.position[c[1]], &r = mesh.position[c[2]];
+        return thickness(p, q, r) < 1e-3 * a;
+    };
+    const auto thin = std::count_if(mesh.triangle.begin(), mesh.triangle.end(), is_thin);
+    return static_cast<double>(thin) / static_cast<double>(mesh.triangle.size());
 }
 
 // How often a segment goes through a triangle, both without their ends and rims.
@@ -123,6 +134,7 @@ TEST_CASE("rough faces close pieces of all the volume, none inside out") {
     CHECK(test::is_closed(mesh));
     CHECK(signed_volume(mesh) == Approx(whole).epsilon(1e-9));
     for (double volume : volumes(mesh, surface_components(mesh))) CHECK(volume > -1e-9 * a * a * a);
+    CHECK(share_of_slivers(mesh, a) < .01);
     for (std::size_t v = 0; v < f.mesh.position.size(); ++v) {
         CHECK(mesh.position[v] == f.mesh.position[v]);
     }
