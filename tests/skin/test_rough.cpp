@@ -209,6 +209,30 @@ TEST_CASE("what breaks later moves no rough face") {
     CHECK(std::includes(after.begin(), after.end(), before.begin(), before.end()));
 }
 
+TEST_CASE("rough faces of a sheet or bar stay within it") {
+    const double a = .05;
+    const int thick = GENERATE(1, 2, 6);
+    const double out = a * GENERATE(0., .3, -.3);
+    Aggregate matter = test::make_block(12, thick, 8, a, Material{});
+    if (out < 0) std::fill(matter.cell_fill.begin(), matter.cell_fill.end(), .5f);
+    const Vec3 half = a * Vec3(6, .5 * thick, 4) + Vec3::Constant(out);
+    Fixture f(std::move(matter), divide_edges(box_mesh(-half, half), GENERATE(9., .075)));
+    f.mount = mount_mesh(f.mesh.position, f.matter, SkinKind::mount);
+    const double whole = signed_volume(f.mesh);
+    test::break_at_random(f.matter, GENERATE(.3, 1.));
+    f.break_it(kRough);
+    const TriMesh& mesh = f.broken.mesh;
+    CHECK(f.broken.open_faces == 0);
+    CHECK(test::is_closed(mesh));
+    CHECK(signed_volume(mesh) == Approx(whole).epsilon(1e-9));
+    double beyond = 0;
+    for (const Vec3& p : mesh.position) {
+        beyond = std::max(beyond, (p.cwiseAbs() - half).maxCoeff());
+    }
+    CHECK(beyond < 1e-12);
+    for (double volume : volumes(mesh, surface_components(mesh))) CHECK(volume > -1e-9 * a * a * a);
+}
+
 TEST_CASE("rubble of rough faces does not go through itself") {
     Fixture f = test::body(GENERATE(0, 1));
     f.mesh = divide_edges(f.mesh, 1.5 * f.matter.lattice.spacing);
