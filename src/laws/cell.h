@@ -24,7 +24,8 @@
 // eta_d times: with these a cell bends and twists as a slice of a beam does. Strain and modes are
 // functions of C and F^T Q alone, which a rotation leaves as they are: none is ever split off.
 //
-// Plastic flow after von Mises, of mean and deviations by one factor w, with linear hardening:
+// Plastic flow after von Mises, of mean and deviations by one factor w, with linear hardening, or
+// on a line of a flow curve (laws/cell_return.h):
 //
 //     s = 2 mu dev E
 //     t^2 = 3/2 [s : s + 4 mu f^2 W_q / V]                   equivalent stress [Pa]
@@ -58,8 +59,7 @@
 
 #include <array>
 
-#include "laws/cell_moduli.h"
-#include "laws/lane_tensor.h"
+#include "laws/cell_return.h"
 
 namespace swage {
 
@@ -364,39 +364,16 @@ SWAGE_INLINE Symmetric<N> taken_back(const CellHistory<N>& history) {
 
 // Trial state and return.
 template <typename N>
-struct CellFlowed {
+struct CellFlowed : CellReturn<N> {
     Symmetric<N> distortion;   // dev E before the return
     CellModes<N> modes;        // q before the return
     CellModes<N> mode_stress;  // of these
-    N over;                    // stress beyond the yield surface, before the return [Pa]
-    N kept;                    // w
-    N d_alpha;
 };
 
 template <typename N>
 SWAGE_INLINE Symmetric<N> deviator(const Symmetric<N>& e) {
     const N third = (1.0 / 3) * trace(e);
     return {e.xx - third, e.yy - third, e.zz - third, e.xy, e.yz, e.zx};
-}
-
-// The trial state's distance from the yield surface, in flow: dev E squared, and f^2 times
-// twice W_q.
-template <typename N>
-struct CellReturn {
-    N over;  // by how much the trial stress is [Pa]
-    N d_alpha, kept;
-};
-template <typename N>
-SWAGE_INLINE CellReturn<N> return_cell(const CellModuli& law, const N& distortion,
-                                       const N& mode_energy, const N& alpha) {
-    const double volume = law.spacing * law.spacing * law.spacing;
-    const N stress =
-        root((6 * law.shear * law.shear) * distortion + (3 * law.shear / volume) * mode_energy) +
-        1e-300;
-    const N over = stress - law.yield_stress - law.hardening * alpha;
-    const N flows = larger(over, 0.0 * over);
-    return {over, (1 / (3 * law.shear + law.hardening)) * flows,
-            1.0 - (3 * law.shear / (3 * law.shear + law.hardening)) * flows / stress};
 }
 
 // `strain`, `modes`: E and F_e^T Q.
@@ -408,12 +385,9 @@ SWAGE_INLINE CellFlowed<N> flow_cell(const CellModuli& law, const CellHistory<N>
     r.distortion = deviator(strain);
     r.modes = modes - history.modes;
     r.mode_stress = mode_stress(law, taken_back(history), r.modes);
-    const CellReturn<N> back =
+    static_cast<CellReturn<N>&>(r) =
         return_cell(law, contract(r.distortion, r.distortion),
                     mode_share(fill) * product(r.mode_stress, r.modes), history.alpha);
-    r.over = back.over;
-    r.kept = back.kept;
-    r.d_alpha = back.d_alpha;
     return r;
 }
 

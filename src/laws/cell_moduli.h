@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "laws/flow_curve.h"
 
 namespace swage {
 
@@ -24,12 +25,14 @@ struct CellModuli {
     double hardening;     // H [Pa]
     double foam_power;    // m of laws/cell_foam.h
     double foam_least;    // J below which that law goes on in a straight line
+    FlowCurve curve;      // instead of sigma_y + H alpha where it is not empty
 };
 
 inline constexpr double kMostStiffened = 1000;
 
 inline CellModuli cell_moduli(double young_modulus, double poisson_ratio, double spacing,
-                              double yield_stress = 0, double hardening = 0) {
+                              double yield_stress = 0, double hardening = 0,
+                              const std::vector<FlowPoint>& curve = {}) {
     const double mu = young_modulus / (2 * (1 + poisson_ratio));
     const double m = 1 / (1 - 2 * poisson_ratio);
     const double edge =
@@ -42,7 +45,8 @@ inline CellModuli cell_moduli(double young_modulus, double poisson_ratio, double
             yield_stress,
             hardening,
             m,
-            portable::pow(kMostStiffened, -1 / (m + 1))};
+            portable::pow(kMostStiffened, -1 / (m + 1)),
+            flow_curve(curve, mu)};
 }
 
 }  // namespace swage

@@ -85,6 +85,12 @@ template <typename N>
 SWAGE_INLINE Dual<N> constant(const N& v) {
     return {v, N{}};
 }
+// On one line a return stays as long as what changes is small.
+template <typename N>
+SWAGE_INLINE FlowLine<Dual<N>> line_at(const FlowCurve& curve, const Dual<N>& reached) {
+    const FlowLine<N> line = line_at(curve, reached.value);
+    return {constant(line.stress), constant(line.slope)};
+}
 template <typename N>
 SWAGE_INLINE Triple<Dual<N>> constant(const Triple<N>& v) {
     return {constant(v.x), constant(v.y), constant(v.z)};

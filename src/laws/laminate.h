@@ -204,8 +204,8 @@ SWAGE_INLINE Columns<N> about_jump_slope(const Phase<N> (&m)[2], const Triple<N>
         if (m[p].kind == CellKind::yielding) {
             const CellFlowed<N>& s = r.phase[p].flowed;
             kept = s.kept;
-            const N stress = s.over + law.yield_stress + law.hardening * m[p].history.alpha;
-            const N share_left = kept - (1 - 3 * law.shear / (3 * law.shear + law.hardening));
+            const N stress = s.over + s.line.stress + s.line.slope * m[p].history.alpha;
+            const N share_left = kept - (1.0 - 3 * law.shear / (3 * law.shear + s.line.slope));
             flows = s.over > none
                         ? (12 * law.shear * law.shear * law.shear) * share_left / (stress * stress)
                         : none;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plasticity after von Mises with linear isotropic hardening, for a cell of 24 connections (12
-// edges, 12 face diagonals):
+// Plasticity after von Mises with isotropic hardening, linear or along a flow curve
+// (laws/flow_curve.h), for a cell of 24 connections (12 edges, 12 face diagonals):
 //
 //     e_b = ln(d / reference_length)         strain of a connection
 //     theta = ln(det F) / 3                  change of size, F the cell's mean gradient
@@ -32,6 +32,8 @@
 
 #include <cmath>
 
+#include "laws/flow_curve.h"
+
 namespace swage {
 
 inline constexpr double kEdgeShare = 0.25;  // in S
@@ -49,6 +51,7 @@ struct Yield {
     double yield_stress;   // sigma_y [Pa]
     double hardening;      // H [Pa]
     double shear_modulus;  // mu [Pa]
+    FlowCurve curve = {};  // instead of sigma_y + H alpha where it is not empty
 };
 
 // S at which a cell that has never yielded begins to.
@@ -60,8 +63,11 @@ inline double yield_distortion(const Yield& law) {
 // d_alpha for the distortion S; zero inside the yield surface.
 inline double flow(const Yield& law, double distortion, double alpha) {
     const double q = law.shear_modulus * std::sqrt(3 * distortion);
-    const double over = q - law.yield_stress - law.hardening * alpha;
-    return over > 0 ? over / (3 * law.shear_modulus + law.hardening) : 0;
+    const FlowLine<double> line = law.curve.empty()
+                                      ? FlowLine<double>{law.yield_stress, law.hardening}
+                                      : line_at(law.curve, q + 3 * law.shear_modulus * alpha);
+    const double over = q - line.stress - line.slope * alpha;
+    return over > 0 ? over / (3 * law.shear_modulus + line.slope) : 0;
 }
 
 // The share of each s_b that flows.

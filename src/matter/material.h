@@ -4,6 +4,10 @@
 
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "laws/flow_curve.h"
 
 namespace swage {
 
@@ -31,6 +35,9 @@ struct Material {
     double yield_stress = std::numeric_limits<double>::infinity();  // [Pa], > 0; inf: never yields
     double hardening =
         0;  // [Pa] of stress per plastic strain, >= 0; 1 to 5 yield stresses for metals
+    // Instead of hardening: the stress over the plastic strain, from yield_stress at 0 on, in
+    // straight lines, flat behind the last; empty: none.
+    std::vector<FlowPoint> flow_curve = {};
     // Both or neither. Stress at which a bar that is pulled breaks [Pa], > 0 and below a tenth of
     // young_modulus; inf: never. Energy of a new crack, both its faces together [J/m2], > 0.
     double strength = std::numeric_limits<double>::infinity();
@@ -46,6 +53,10 @@ struct Material {
     // Tension that it holds once it touches other matter or a tool [Pa], >= 0.
     double stickiness = 0;
 
+    void flow_along(std::vector<FlowPoint> curve) {
+        yield_stress = curve.front().stress, hardening = 0;
+        flow_curve = std::move(curve);
+    }
     double holding_friction() const {
         return static_friction > friction ? static_friction : friction;
     }

@@ -8,12 +8,18 @@
 namespace swage {
 
 template <typename Io>
+void visit(Io& io, FlowPoint& point) {
+    auto& [strain, stress] = point;
+    io(strain, stress);
+}
+template <typename Io>
 void visit(Io& io, Material& material) {
     auto& [name, mechanics, elasticity, young_modulus, poisson_ratio, density, yield_stress,
-           hardening, strength, toughness, damping_ratio, friction, static_friction, restitution,
-           stickiness] = material;
+           hardening, flow_curve, strength, toughness, damping_ratio, friction, static_friction,
+           restitution, stickiness] = material;
     io(name, mechanics, elasticity, young_modulus, poisson_ratio, density, yield_stress, hardening,
-       strength, toughness, damping_ratio, friction, static_friction, restitution, stickiness);
+       flow_curve, strength, toughness, damping_ratio, friction, static_friction, restitution,
+       stickiness);
 }
 
 template <typename Io>

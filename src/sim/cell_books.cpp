@@ -143,11 +143,11 @@ SWAGE_INLINE void add_flow(BookTask& task) {
             continue;
         }
         // The stress that did the flow's work is the one after the return, less what hardening
-        // stores: linear hardening is booked as lost.
-        const V lost = volume * c.fill * r.d_alpha *
-                       (law.yield_stress + law.hardening * (c.history.alpha + 0.5 * r.d_alpha));
+        // stores: hardening is booked as lost.
+        const V flowed = volume * c.fill * r.d_alpha;
         for (int l = 0; l < count; ++l) {
-            if (flows[l] > 0) task.sum += lost[l];
+            if (!(flows[l] > 0)) continue;
+            task.sum += flowed[l] * mean_flow_stress(law, c.history.alpha[l], r.d_alpha[l]);
         }
         const CellHistory<V> after = flowed_on(c.history, r, c.gradient, c.sums);
         if (task.growths) add_growths(task, begin, count, c, after, flows);

@@ -115,8 +115,9 @@ double most_distorted(const Aggregate& matter, const CellRun& run) {
 
 CellFlow::CellFlow(const Aggregate& matter) {
     if (!std::isfinite(matter.material.yield_stress)) return;
-    law_ = {matter.material.yield_stress, matter.material.hardening,
-            lattice_stiffness(matter.material.young_modulus, 1.0)};
+    const double shear = lattice_stiffness(matter.material.young_modulus, 1.0);
+    law_ = {matter.material.yield_stress, matter.material.hardening, shear,
+            flow_curve(matter.material.flow_curve, shear)};
     yield_distortion_ = yield_distortion(law_);
     for (auto& strain : strain_) strain.resize(matter.particle_count());
     history_changed(matter);

@@ -79,10 +79,7 @@ struct Crushed {
 
     // Of the cell's own law: what it holds, and besides what the flow on trial takes.
     double stored() const { return strain_energy(*law, strain); }
-    double spent() const {
-        const double over = std::max(0.0, flowed.over);
-        return stored() - over * over / (2 * (3 * law->shear + law->hardening));
-    }
+    double spent() const { return stored() - saved_by_flow(*law, history.alpha, flowed); }
 
     double energy() const {
         return volume * (guard.energy - (fades ? guard.share * stored() : 0.0));

@@ -19,10 +19,10 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
                               : foam                                  ? CellKind::foam
                               : std::isfinite(m.yield_stress)         ? CellKind::yielding
                                                                       : CellKind::elastic;
-        const bool yields = kind == CellKind::yielding;
+        const bool yields = kind == CellKind::yielding, flows = yields && flow == Flow::trial;
         laws.push_back({cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
-                                    yields && flow == Flow::trial ? m.yield_stress : kNeverYields,
-                                    yields ? m.hardening : 0),
+                                    flows ? m.yield_stress : kNeverYields, yields ? m.hardening : 0,
+                                    flows ? m.flow_curve : std::vector<FlowPoint>()),
                         kind});
     }
     return laws;

@@ -202,9 +202,8 @@ double MixedCells::commit(Aggregate& matter, const std::vector<MaterialLaw>& law
             const CellFlowed<double>& r = one.found.phase[p].flowed;
             if (one.phase[p].kind != CellKind::yielding || !(r.d_alpha > 0)) continue;
             const CellModuli& law = *one.phase[p].law;
-            lost +=
-                volume * one.phase[p].fill * r.d_alpha *
-                (law.yield_stress + law.hardening * (one.phase[p].history.alpha + 0.5 * r.d_alpha));
+            lost += volume * one.phase[p].fill * r.d_alpha *
+                    mean_flow_stress(law, one.phase[p].history.alpha, r.d_alpha);
             const CellHistory<double> after =
                 flowed_on(one.phase[p].history, r, one.found.phase[p].gradient, one.sums);
             const auto now = numbers_of(after);

@@ -15,6 +15,17 @@ namespace {
 
 constexpr double kSpacing = 0.3;
 const CellModuli kLaw = cell_moduli(7.0, 0.3, kSpacing);
+// As steep at first as the matter is stiff, then level, then rising again.
+const std::vector<FlowPoint> kCurve = {{0, 0.02},   {0.005, 0.05}, {0.02, 0.05},
+                                       {0.05, 0.1}, {0.2, 0.13},   {1, 0.2}};
+double stress_on_curve(double alpha) {
+    for (std::size_t n = 1; n < kCurve.size(); ++n) {
+        const auto& [from, low] = kCurve[n - 1];
+        const auto& [to, high] = kCurve[n];
+        if (alpha < to) return low + (high - low) * (alpha - from) / (to - from);
+    }
+    return kCurve.back().stress;
+}
 
 using Corners = Eigen::Matrix<double, 3, 8>;
 
@@ -85,8 +96,7 @@ double energy(const CellModuli& law, const Cell& cell, const Corners& x) {
         kVolume * cell.fill *
             (law.shear * w * contract(r.distortion, r.distortion) + 0.5 * law.bulk * size * size) +
         0.5 * fill3 * w * product(r.mode_stress, r.modes);
-    const double flowed =
-        r.d_alpha * (law.yield_stress + law.hardening * (cell.history.alpha + 0.5 * r.d_alpha));
+    const double flowed = r.d_alpha * mean_flow_stress(law, cell.history.alpha, r.d_alpha);
     return stored + kVolume * cell.fill * flowed;
 }
 
@@ -152,15 +162,16 @@ Cell random_cell(Draw& draw) {
 
 TEST_CASE("forces of a cell are minus the gradient of its energy, flowing or not, rubber or not") {
     Draw draw;
-    CellModuli yielding = kLaw, elastic = kLaw;
+    CellModuli yielding = kLaw, elastic = kLaw, curved = kLaw;
     yielding.yield_stress = 0.05;
     yielding.hardening = 0.3;
+    curved.curve = flow_curve(kCurve, kLaw.shear);
     elastic.yield_stress = 1e100;
     int flowed = 0;
     for (int n = 0; n < 60; ++n) {
         Cell cell = random_cell(draw);
         cell.rubber = n % 3 == 2;
-        const CellModuli& law = n % 3 == 1 ? yielding : elastic;
+        const CellModuli& law = n % 3 != 1 ? elastic : n % 6 == 1 ? yielding : curved;
         if (n % 3 == 1) {
             cell.history.alpha = draw(0, 0.1);
             cell.history.stretch = random_stretch(draw, n % 2 ? 0.03 : 1.5);
@@ -295,8 +306,10 @@ TEST_CASE("after the return the cell stands on its yield surface and pushes as i
 TEST_CASE("however far it has flowed matter bears what its hardening says") {
     CellModuli law = kLaw;
     law.yield_stress = 0.01;
-    for (double hardening : {0.0, 0.02}) {
+    for (const auto& [hardening, curve] :
+         {std::pair(0.0, false), std::pair(0.02, false), std::pair(0.0, true)}) {
         law.hardening = hardening;
+        law.curve = flow_curve(curve ? kCurve : std::vector<FlowPoint>{}, kLaw.shear);
         // Pressed to e^-3 of its height, and sheared by 6 heights.
         for (bool sheared : {false, true}) {
             Cell cell;
@@ -317,8 +330,9 @@ TEST_CASE("however far it has flowed matter bears what its hardening says") {
                         .finished();
                 const Mat3 stress =
                     elastic * matrix_of(cell_stress(law, s.strain, r.kept)) * elastic.transpose();
+                const double alpha = cell.history.alpha + r.d_alpha;
                 const double limit =
-                    law.yield_stress + hardening * (cell.history.alpha + r.d_alpha);
+                    curve ? stress_on_curve(alpha) : law.yield_stress + hardening * alpha;
                 const double bears =
                     sheared ? std::sqrt(3) * stress(0, 1) : stress(1, 1) - stress(0, 0);
                 INFO(sheared << " " << n);
@@ -328,6 +342,32 @@ TEST_CASE("however far it has flowed matter bears what its hardening says") {
             CHECK(cell.history.alpha == Approx(sheared ? 6 / std::sqrt(3) : 3).epsilon(2e-2));
         }
     }
+}
+
+TEST_CASE("one step over many points of a flow curve ends where many small ones do") {
+    CellModuli law = kLaw;
+    law.curve = flow_curve(kCurve, kLaw.shear);
+    const auto drawn = [](double strain) {
+        const double thin = std::exp(-0.5 * strain);
+        return Corners(Vec3(std::exp(strain), thin, thin).asDiagonal() * cube());
+    };
+    Cell one, many;
+    double work = 0;
+    constexpr int kSteps = 1000;
+    constexpr double kStrain = 0.08;
+    const auto flow_on = [&](Cell& cell, double strain) {
+        const State s = state_of(cell, drawn(strain));
+        const CellFlowed<double> r = flow_of(law, cell, s);
+        const double took = r.d_alpha * mean_flow_stress(law, cell.history.alpha, r.d_alpha);
+        cell.history = flowed_on(cell.history, r, s.gradient, s.sums);
+        return took;
+    };
+    for (int n = 1; n <= kSteps; ++n) work += flow_on(many, kStrain * n / kSteps);
+    CHECK(flow_on(one, kStrain) == Approx(work).epsilon(1e-7));
+    CHECK(one.history.alpha > kCurve[3].strain);
+    CHECK(one.history.alpha == Approx(many.history.alpha).epsilon(1e-7));
+    const Corners f = force(law, one, drawn(kStrain)), g = force(law, many, drawn(kStrain));
+    CHECK((f - g).norm() < 1e-6 * f.norm());
 }
 
 TEST_CASE("what was drawn bends as the longer brick that it is") {

@@ -36,7 +36,7 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
     InsetSpec inset;
     inset.from = {0.2, 0.3, 0.3}, inset.to = {0.45, 0.8, 0.8};
     inset.material.name = "core";
-    inset.material.yield_stress = 1e5;
+    inset.material.flow_along({{0, 1e5}, {0.1, 2e5}});
     body.inset.push_back(inset);
     WorkPiece piece = make_work_piece(input, body, {skin});
     Aggregate& m = piece.matter;
@@ -147,6 +147,8 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
         CHECK(after.matter.cell_centroid.all() == before.matter.cell_centroid.all());
         CHECK(after.matter.cell_material == before.matter.cell_material);
         CHECK(after.matter.inset.at(0).yield_stress == 1e5);
+        CHECK(after.matter.inset.at(0).flow_curve.at(1).strain == 0.1);
+        CHECK(after.matter.inset.at(0).flow_curve.at(1).stress == 2e5);
         CHECK(after.matter.lattice.cell_row_begin == before.matter.lattice.cell_row_begin);
         CHECK(after.matter.branch_memory.at(0).branches.time ==
               before.matter.branch_memory.at(0).branches.time);

@@ -102,6 +102,37 @@ TEST_CASE("hardening raises the stress with the plastic strain") {
     }
 }
 
+TEST_CASE("springs flow along a flow curve, in one step as in many") {
+    Material metal = kMetal;
+    metal.flow_along({{0, 1e3}, {0.004, 1.3e3}, {0.01, 1.3e3}, {0.015, 1.6e3}, {0.1, 2e3}});
+    const auto on_curve = [&](double strain) {
+        std::size_t n = 1;
+        while (metal.flow_curve[n].strain < strain) ++n;
+        const auto& [from, low] = metal.flow_curve[n - 1];
+        const auto& [to, high] = metal.flow_curve[n];
+        return low + (high - low) * (strain - from) / (to - from);
+    };
+    constexpr double kStrain = 0.02;
+    double last[2], gone[2];
+    for (int steps : {1, 50}) {
+        Aggregate m = make_block(2, 2, 2, 0.1, metal);
+        CellFlow flow(m);
+        for (int n = 1; n <= steps; ++n) {
+            const double e = kStrain * n / steps;
+            Mat3 gradient = Mat3::Identity();
+            gradient.diagonal() = Vec3(1 + e, 1 / std::sqrt(1 + e), 1 / std::sqrt(1 + e));
+            strain_uniformly(m, gradient);
+            flow.commit(m);
+        }
+        last[steps > 1] = von_mises(stress_of(m, flow));
+        gone[steps > 1] = m.cell_history.hardening()[0];
+        CHECK(last[steps > 1] == Approx(on_curve(gone[steps > 1])).epsilon(0.03));
+    }
+    CHECK(gone[0] > 0.016);
+    CHECK(gone[0] == Approx(gone[1]).epsilon(1e-4));
+    CHECK(last[0] == Approx(last[1]).epsilon(1e-3));
+}
+
 TEST_CASE("rotation does not flow") {
     Aggregate m = make_block(2, 2, 2, 0.1, kMetal);
     strain_uniformly(m, Quat(Eigen::AngleAxisd(2, Vec3(1, 2, 3).normalized())).toRotationMatrix());

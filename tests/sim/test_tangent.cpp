@@ -56,6 +56,11 @@ double dot(const Vec3Array& a, const Vec3Array& b) {
 const Material kMaterials[] = {
     {.young_modulus = 1e5, .poisson_ratio = 0.4},
     {.young_modulus = 1e5, .poisson_ratio = 0.3, .yield_stress = 2e3, .hardening = 1e4},
+    // No cell comes to one of its points here, where the tangent jumps.
+    {.young_modulus = 1e5,
+     .poisson_ratio = 0.3,
+     .yield_stress = 2e3,
+     .flow_curve = {{0, 2e3}, {0.011, 4e3}, {0.023, 4e3}, {0.047, 4.5e3}, {0.3, 6e3}}},
     {.elasticity = Elasticity::neo_hookean, .young_modulus = 1e5, .poisson_ratio = 0.45},
     {.elasticity = Elasticity::storakers, .young_modulus = 1e5, .poisson_ratio = 0.3},
 };

@@ -75,10 +75,11 @@ TEST_CASE("cells of two materials push by minus the gradient of their energy") {
 }
 
 TEST_CASE("the tangent of cells of two materials is how their forces change, flow included") {
-    Material yields = stiff(), rubbery = rubber();
+    Material yields = stiff(), curved = stiff(), rubbery = rubber();
     yields.yield_stress = 3e4, yields.hardening = 1e5;
-    for (const Material& outside : {soft(), yields, rubbery}) {
-        for (const Material& inside : {stiff(), yields}) {
+    curved.flow_along({{0, 3e4}, {3e-3, 4e4}, {6e-3, 4e4}, {0.02, 5e4}, {0.1, 6e4}});
+    for (const Material& outside : {soft(), yields, curved, rubbery}) {
+        for (const Material& inside : {stiff(), yields, curved}) {
             Aggregate m = bar_with_ball(outside, inside);
             shake(m, 0.02);
             LatticeForces forces(m);
