@@ -31,6 +31,11 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[material]", "yield_stress", "where it begins to flow (von Mises)",
          "stress, more than 0 Pa, or inf", "inf"},
         {"[material]", "hardening", "rise of the yield stress per plastic strain"},
+        {"[material]", "flow_curve",
+         "instead of yield_stress and hardening: true stress over plastic (logarithmic) strain, "
+         "straight from point to point and flat behind the last; or as K (e0 + e)^n, A + B e^n, "
+         "s0 + Q (1 - exp(-b e))",
+         "[[0, stress], [strain, stress], ...], {K, e0, n}, {A, B, n} or {s0, Q, b}"},
         {"[material]", "strength", "stress at which a pulled bar breaks; goes with toughness",
          "stress, more than 0 Pa and less than a tenth of young_modulus, or inf", "inf"},
         {"[material]", "toughness", "energy of a new crack, both its faces together"},

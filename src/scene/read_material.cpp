@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "laws/internal_damping.h"
+#include "scene/read_flow_curve.h"
 
 namespace swage {
 
@@ -21,24 +22,6 @@ constexpr double kMostStrength = 0.1;  // of young_modulus
 // Beyond all matter, and far from where numbers end.
 constexpr Range kStiffness = {.low = 1e-3, .high = 1e15};  // [Pa]
 constexpr Range kDensity = {.low = 1e-3, .high = 1e9};     // [kg/m3]
-
-// Materials that never yield say so by leaving yield_stress out; a scene turns a yielding one into
-// such by `yield_stress = inf`, or in quotes as every other stress, with a unit or without.
-bool is_infinite(const Node* node) {
-    if (node == nullptr) return false;
-    if (node->kind == Node::Kind::real) return std::isinf(node->number) && node->number > 0;
-    if (node->kind != Node::Kind::text) return false;
-    std::string_view text = node->text;
-    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-    if (text.starts_with('+')) text.remove_prefix(1);
-    if (!text.starts_with("inf")) return false;
-    try {
-        parse_quantity("1 " + std::string(text.substr(3)), Quantity::stress);
-        return true;
-    } catch (const TextError&) {
-        return false;
-    }
-}
 
 constexpr std::pair<const char*, Elasticity> kElasticity[] = {
     {"hencky", Elasticity::hencky},
@@ -123,12 +106,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     }
     const bool has_density =
         table.quantity("density", Quantity::density, kDensity, material.density);
-    if (is_infinite(table.find("yield_stress"))) {
-        material.yield_stress = std::numeric_limits<double>::infinity();
-    } else {
-        table.quantity("yield_stress", Quantity::stress, above(0), material.yield_stress);
-    }
-    table.quantity("hardening", Quantity::stress, between(0, kStiffness.high), material.hardening);
+    read_flow(table, material);
     read_fracture(table, material);
     table.quantity("damping_ratio", Quantity::number, between(0, kMostDampingRatio),
                    material.damping_ratio);
@@ -207,8 +185,8 @@ void read_material(TableReader& table, const AssetPaths& assets,
         if (asks_elasticity) {
             table.mistake("elasticity",
                           name +
-                              " matter does not yield: leave yield_stress out (or inf), or "
-                              "use elasticity = \"hencky\"");
+                              " matter does not yield: leave yield_stress out (or inf), and "
+                              "flow_curve, or use elasticity = \"hencky\"");
         }
     }
     if (table.find("hardening") != nullptr && std::isinf(material.yield_stress)) {

@@ -181,15 +181,22 @@ bool TableReader::quantity(const std::string& key, Quantity quantity, const Rang
                            double& into) {
     if (reading_.describes) describe_quantity(key, quantity, range, into);
     const Node* node = find(key);
-    if (node == nullptr) return false;
+    if (node != nullptr) value(key, *node, quantity, range, into);
+    return node != nullptr;
+}
+
+bool TableReader::value(const std::string& key, const Node& node, Quantity quantity,
+                        const Range& range, double& into) {
     double value = 0;
-    if (!number(key, *node, quantity, value)) return true;
+    if (!number(key, node, quantity, value)) return false;
     if (!range.holds(value)) {
-        mistake(key, fmt::format("{} = {} is out of range: it has to be {}", key,
-                                 quantity_text(value, quantity), range.text(quantity)));
-    } else if (is_meant(key, *node, quantity, value, range.low == 0 && range.low_open)) {
-        into = value;
+        reading_.mistakes.add(node.place,
+                              fmt::format("{} = {} is out of range: it has to be {}", key,
+                                          quantity_text(value, quantity), range.text(quantity)));
+        return false;
     }
+    if (!is_meant(key, node, quantity, value, range.low == 0 && range.low_open)) return false;
+    into = value;
     return true;
 }
 

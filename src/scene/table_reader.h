@@ -86,6 +86,10 @@ class TableReader {
         return find(key) != nullptr;
     }
 
+    // The same of a value that stands inside that of a key; whether it is right.
+    bool value(const std::string& key, const Node& node, Quantity quantity, const Range& range,
+               double& into);
+
     const Node* find(const std::string& key);  // any kind; null when absent
 
     // What a look-up that is none of the above takes (see Reading::forms).

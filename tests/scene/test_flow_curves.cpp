@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "laws/flow_forms.h"
+#include "tests/scene/bad_scene.h"
+
+using namespace swage;
+using namespace swage::test;
+
+TEST_CASE("a flow curve that is none is refused at its place, with what is wanted") {
+    check_all({
+        {"a curve beside what it says",
+         material("yield_stress = 3\nhardening = 1\nflow_curve = [[0, 3], [1, 4]]"),
+         {"5:16: yield_stress stands beside flow_curve", "6:13: hardening stands beside"}},
+        {"a curve that is none",
+         material("flow_curve = \"250 MPa\""),
+         {"5:14: flow_curve is a text; wanted is a list of points [strain, \"stress\"], such as"}},
+        {"a curve of one point",
+         material("flow_curve = [[0, \"250 MPa\"]]"),
+         {"5:14: flow_curve: it needs two points at least"}},
+        {"a point that is no pair",
+         material("flow_curve = [[0, \"250 MPa\"], [0.1]]"),
+         {"5:31: flow_curve: each point is a pair"}},
+        {"a curve that begins late",
+         material("flow_curve = [[0.002, \"250 MPa\"], [0.1, \"300 MPa\"]]"),
+         {"5:16: flow_curve: the first point is where matter begins to flow"}},
+        {"a curve that goes back",
+         material("flow_curve = [[0, \"250 MPa\"], [0.1, \"300 MPa\"], [0.1, \"310 MPa\"]]"),
+         {"5:50: flow_curve: a strain of 0.1 behind one of 0.1: they have to rise"}},
+        {"a curve that falls",
+         material("flow_curve = [[0, \"250 MPa\"], [0.1, \"240 MPa\"]]"),
+         {"5:37: flow_curve: the stress falls from 250 MPa to 240 MPa: matter that softens"}},
+        {"strain in percent",
+         material("flow_curve = [[0, \"250 MPa\"], [20, \"300 MPa\"]]"),
+         {"5:32: flow_curve = 20 is out of range: it has to be 0 to 10"}},
+        {"a curve of another quantity",
+         material("flow_curve = [[0, \"250 MPa\"], [0.1, \"3 mm\"]]"),
+         {"5:40: flow_curve: \"3 mm\" is a length; a stress is wanted"}},
+        {"a form that is none",
+         material("flow_curve = {C = 3}"),
+         {"5:14: flow_curve is a list of points"}},
+        {"half a form",
+         material("flow_curve = {K = \"500 MPa\", n = 0.2}"),
+         {"5:14: flow_curve needs \"e0\": as in flow_curve = {K = "}},
+        {"a form with more than it takes",
+         material("flow_curve = {K = \"500 MPa\", e0 = 0.01, n = 0.2, m = 0.1}"),
+         {"5:50: unknown key \"m\" in flow_curve"}},
+        {"a form out of range",
+         material("flow_curve = {A = \"90 MPa\", B = \"292 MPa\", n = 0.01}"),
+         {"5:48: n = 0.01 is out of range: it has to be 0.1 to 1"}},
+        {"foam that is told a curve",
+         material("elasticity = \"storakers\"\nflow_curve = [[0, 3], [1, 4]]"),
+         {"storakers matter does not yield"}},
+    });
+}
+
+namespace {
+
+// A scene of this section [material], beside a file of materials that has one with a curve.
+SceneReading read_with(const Scratch& scratch, const std::string& section) {
+    scratch.write("materials.toml", R"([drawn]
+young_modulus = "200 GPa"
+density = 7800
+flow_curve = [[0, "200 MPa"], [0.1, "300 MPa"]]
+)");
+    const Parts parts = with(&Parts::material, "[material]\n" + section);
+    return read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+}
+Material material_of(const std::string& section) {
+    const Scratch scratch;
+    const SceneReading reading = read_with(scratch, section);
+    INFO(section << told(reading.mistakes, scratch.folder()));
+    REQUIRE(reading.scene);
+    return reading.scene->work_piece().material;
+}
+
+}  // namespace
+
+TEST_CASE("a flow curve reaches its material point by point, and a form as points along it") {
+    const Material points = material_of(
+        "name = \"structural_steel\"\nflow_curve = [[0, \"250 MPa\"], [0.02, 3e8], [1, 3e8]]\n");
+    REQUIRE(points.flow_curve.size() == 3);
+    CHECK(points.flow_curve[1].strain == 0.02);
+    CHECK(points.flow_curve[1].stress == 3e8);
+    CHECK(points.yield_stress == 250e6);
+    CHECK(points.hardening == 0);
+
+    const auto at = [](const Material& m, double strain) {
+        std::size_t n = 1;
+        while (m.flow_curve[n].strain < strain) ++n;
+        const auto& [from, low] = m.flow_curve[n - 1];
+        const auto& [to, high] = m.flow_curve[n];
+        return low + (high - low) * (strain - from) / (to - from);
+    };
+    const std::string start = "young_modulus = 2e11\ndensity = 7800\nflow_curve = ";
+    const Material swift = material_of(start + "{K = \"530 MPa\", e0 = 0.004, n = 0.23}\n");
+    CHECK(swift.yield_stress == Approx(530e6 * std::pow(0.004, 0.23)));
+    CHECK(at(swift, 0.3) == Approx(530e6 * std::pow(0.304, 0.23)).epsilon(kFormError));
+    const Material ludwik = material_of(start + "{A = \"90 MPa\", B = \"292 MPa\", n = 0.31}\n");
+    CHECK(ludwik.yield_stress == Approx(90e6));
+    CHECK(at(ludwik, 0.3) == Approx(90e6 + 292e6 * std::pow(0.3, 0.31)).epsilon(kFormError));
+    const Material voce = material_of(start + "{s0 = \"140 MPa\", Q = \"160 MPa\", b = 9}\n");
+    CHECK(voce.yield_stress == Approx(140e6));
+    CHECK(at(voce, 0.3) == Approx(300e6 - 160e6 * std::exp(-2.7)).epsilon(kFormError));
+}
+
+TEST_CASE("what a scene says of yielding takes the place of a named material's curve") {
+    CHECK(material_of("name = \"drawn\"\n").flow_curve.size() == 2);
+    const Material never = material_of("name = \"drawn\"\nyield_stress = inf\n");
+    CHECK(never.flow_curve.empty());
+    CHECK_FALSE(never.yields());
+    const Material linear = material_of("name = \"drawn\"\nyield_stress = 1e8\nhardening = 1e9\n");
+    CHECK(linear.flow_curve.empty());
+    CHECK(linear.yield_stress == 1e8);
+    CHECK(linear.hardening == 1e9);
+    // And the reverse.
+    CHECK(
+        material_of("name = \"structural_steel\"\nflow_curve = [[0, 1e8], [1, 2e8]]\n").hardening ==
+        0);
+
+    const Scratch scratch;
+    SceneReading reading = read_with(scratch, "name = \"drawn\"\nyield_stress = 1e8\n");
+    CHECK(
+        told(reading.mistakes, scratch.folder())
+            .starts_with("s.toml:5:16: warning: yield_stress takes the place of the flow_curve of "
+                         "drawn"));
+    reading = read_with(scratch, "name = \"drawn\"\nhardening = 1e8\n");
+    CHECK(told(reading.mistakes, scratch.folder())
+              .starts_with("s.toml:5:13: drawn hardens by its flow_curve: say yield_stress"));
+}
