@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/make_shape.h"
+#include "laws/flow_forms.h"
 #include "mold/mold.h"
 #include "verify/case.h"
 #include "verify/stand.h"
@@ -53,6 +54,65 @@ void far_flow(bool brief, Values& values) {
             values.add(
                 relative(std::string("force, ") + what, across, stress / length, force, 0.002));
         }
+    }
+}
+
+// A cube of metal that hardens as K (e0 + e)^n, its ends held along x alone, in log strains: the
+// force is stress exp(-strain), strain that of plastic flow and stress / E. It is greatest where
+// the stress rises as much as it is, at a strain of about n - e0. The work of flow is the integral.
+void power_law(bool brief, Values& values) {
+    constexpr int kFrames = 50;
+    constexpr double kStrongest = 0.004, kStart = 0.01, kPower = 0.2, kFarthest = 0.25;
+    const SwiftForm form{kStrongest, kStart, kPower};
+    const auto strain_at = [&](double flowed) { return flowed + form(flowed); };  // E is 1
+    const auto force_at = [&](double flowed) {
+        return form(flowed) * std::exp(-strain_at(flowed));
+    };
+    // Where a function of the flow, which changes its sign once, does.
+    const auto found = [](const auto& above) {
+        double low = 0, high = 1;
+        while (high - low > 1e-12) (above(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+        return low;
+    };
+    const double strongest = found([&](double flowed) {
+        const double rise = kPower * form(flowed) / (kStart + flowed);
+        return rise / (1 + rise) < form(flowed);
+    });
+    const double last = found([&](double flowed) { return strain_at(flowed) > kFarthest; });
+    for (int across : {2, 4}) {
+        if (brief && across > 2) break;
+        Material material = unit_material(0.3);
+        material.flow_along(points_of(form));
+        Stand stand(block_of({1, 1, 1}, 1.0 / across, material), 1e-5);
+        for (int side : {-1, 1}) {
+            stand.grip(end_face(stand.matter, side * Vec3::UnitX()), Vec3::UnitX());
+        }
+        const Drive start = stand.drive;
+        std::array<double, kFrames + 1> force{};
+        FrameReport r;
+        for (int frame = 1; frame <= kFrames; ++frame) {
+            Drive to = stand.drive;
+            const double grown = std::expm1(kFarthest * frame / kFrames);
+            for (int side : {0, 1}) {
+                to.world_from_grip[side].translation =
+                    start.world_from_grip[side].translation + Vec3((side - 0.5) * grown, 0, 0);
+            }
+            r = stand.move(to);
+            force[frame] = std::abs(r.load[1].force.x());
+        }
+        // By the parabola through the largest and those beside it.
+        const auto at = std::max_element(force.begin() + 2, force.end() - 1);
+        const double bend = at[1] - 2 * at[0] + at[-1], lean = 0.5 * (at[1] - at[-1]);
+        const double strain = kFarthest / kFrames * (at - force.begin() - lean / bend);
+        values.add(relative("greatest force", across, force_at(strongest),
+                            at[0] - 0.5 * lean * lean / bend, 1e-4));
+        values.add(
+            relative("strain at the greatest force", across, strain_at(strongest), strain, 2e-3));
+        values.add(relative("force at the end", across, force_at(last), force[kFrames], 1e-4));
+        const double rise = kPower + 1;
+        const double work =
+            kStrongest / rise * (std::pow(kStart + last, rise) - std::pow(kStart, rise));
+        values.add(relative("work of flow", across, work, r.plastic, 2e-4));
     }
 }
 
@@ -144,6 +204,8 @@ void taylor_bar(bool brief, Values& values) {
 void add_large_flow_cases(std::vector<Case>& cases) {
     cases.push_back({"far-flow", "a block pressed to a quarter and drawn to twice its length",
                      "stress times section", 0, true, far_flow});
+    cases.push_back({"power-law", "a block of metal that hardens by a power, drawn past its most",
+                     "Swift 1952; Considere 1885", 0, true, power_law});
     cases.push_back({"necking", "a bar drawn until it necks", "Considere 1885", 0, true, necking});
     cases.push_back({"taylor-bar", "a copper rod hits a rigid wall at 227 m/s",
                      "Kamoulakos 1990; Zhu & Cescotto 1995; Camacho & Ortiz 1997", 0, true,
