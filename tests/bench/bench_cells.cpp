@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nanoseconds for one evaluation of the forces inside the matter: a cell by the cell law, elastic,
-// rubber, foam and flowing, in blocks and balls and by each width of vectors that the machine has;
-// a connection by springs; two threads against one; bytes. Medians, beside the bars that were set.
-// Arguments: the numbers of cells to try, or none for 1e4, 1e5 and 1e6.
+// rubber, foam, flowing and flowing along a curve of some 400 points, in blocks and balls and by
+// each width of vectors that the machine has; a connection by springs; two threads against one;
+// bytes. Medians, beside the bars that were set. Arguments: the numbers of cells to try, or none
+// for 1e4, 1e5 and 1e6.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "base/parallel.h"
 #include "geometry/make_shape.h"
+#include "laws/flow_forms.h"
 #include "mold/mold.h"
 #include "sim/lattice_forces.h"
 #include "sim/vector_clones.h"
@@ -81,6 +83,11 @@ Material flowing() {
     m.hardening = 1e4;
     return m;
 }
+Material curved() {
+    Material m = kElastic;
+    m.flow_along(points_of(SwiftForm{6e3, 0.004, 0.2}));
+    return m;
+}
 
 double cell_ns(Aggregate& matter) {
     LatticeForces forces(matter);
@@ -94,16 +101,18 @@ double cell_ns(Aggregate& matter) {
 void kernels(double cells) {
     for (const std::string shape : {"bar", "sphere"}) {
         Aggregate elastic = molded(shape, cells, kElastic);
-        Aggregate soft = elastic, foamy = elastic, flows = elastic;
+        Aggregate soft = elastic, foamy = elastic, flows = elastic, curves = elastic;
         soft.material = rubber();
         foamy.material = foam();
         flows.material = flowing();
+        curves.material = curved();
         for (int width : {8, 4}) {
             limit_vector_width(width);
             if (vector_width() != width) continue;
-            fmt::print("{:<8}{:>9} cells, vectors of {}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}\n",
-                       shape, elastic.cell_fill.size(), width, cell_ns(elastic), cell_ns(soft),
-                       cell_ns(foamy), cell_ns(flows));
+            fmt::print(
+                "{:<8}{:>9} cells, vectors of {}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}\n",
+                shape, elastic.cell_fill.size(), width, cell_ns(elastic), cell_ns(soft),
+                cell_ns(foamy), cell_ns(flows), cell_ns(curves));
         }
         limit_vector_width(0);
     }
@@ -116,7 +125,7 @@ int main(int argc, char** argv) {
     for (int n = 1; n < argc; ++n) sizes.push_back(std::atof(argv[n]));
     if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
     set_thread_count(1);
-    fmt::print("ns a cell, guard included{:>22}{:>10}{:>10}{:>10}\n", "elastic", "rubber", "foam",
-               "flowing");
+    fmt::print("ns a cell, guard included{:>22}{:>10}{:>10}{:>10}{:>10}\n", "elastic", "rubber",
+               "foam", "flowing", "curve");
     for (double cells : sizes) kernels(cells);
 }
