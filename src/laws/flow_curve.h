@@ -58,12 +58,20 @@ SWAGE_INLINE const FlowPart* part_at(const FlowCurve& curve, double reached) {
 SWAGE_INLINE FlowLine<double> line_at(const FlowCurve& curve, double reached) {
     return part_at(curve, reached)->line;
 }
+// Lanes are halved together: their searches do not wait for each other.
 template <LaneVector V>
 SWAGE_INLINE FlowLine<V> line_at(const FlowCurve& curve, const V& reached) {
+    constexpr int kWidth = kWidthOf<V>;
+    const FlowPart* part[kWidth];
+    for (int l = 0; l < kWidth; ++l) part[l] = curve.data();
+    for (std::size_t left = curve.size(); left > 1;) {
+        const std::size_t half = left / 2;
+        for (int l = 0; l < kWidth; ++l) part[l] += part[l][half].reached < reached[l] ? half : 0;
+        left -= half;
+    }
     FlowLine<V> r;
-    for (int l = 0; l < kWidthOf<V>; ++l) {
-        const FlowLine<double> line = line_at(curve, reached[l]);
-        r.stress[l] = line.stress, r.slope[l] = line.slope;
+    for (int l = 0; l < kWidth; ++l) {
+        r.stress[l] = part[l]->line.stress, r.slope[l] = part[l]->line.slope;
     }
     return r;
 }
