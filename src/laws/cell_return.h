@@ -35,10 +35,10 @@ SWAGE_INLINE CellReturn<N> return_cell(const CellModuli& law, const N& distortio
     const N stress =
         root((6 * law.shear * law.shear) * distortion + (3 * law.shear / volume) * mode_energy) +
         1e-300;
-    if (law.curve.empty()) {
-        return return_to(law, FlowLine<double>{law.yield_stress, law.hardening}, stress, alpha);
+    if (!law.curve.empty()) [[unlikely]] {
+        return return_to(law, line_at(law.curve, stress + (3 * law.shear) * alpha), stress, alpha);
     }
-    return return_to(law, line_at(law.curve, stress + (3 * law.shear) * alpha), stress, alpha);
+    return return_to(law, FlowLine<double>{law.yield_stress, law.hardening}, stress, alpha);
 }
 
 // What flow takes per d_alpha [Pa].

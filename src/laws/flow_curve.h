@@ -58,10 +58,11 @@ SWAGE_INLINE const FlowPart* part_at(const FlowCurve& curve, double reached) {
 SWAGE_INLINE FlowLine<double> line_at(const FlowCurve& curve, double reached) {
     return part_at(curve, reached)->line;
 }
-// Lanes are halved together: their searches do not wait for each other.
-template <LaneVector V>
-SWAGE_INLINE FlowLine<V> line_at(const FlowCurve& curve, const V& reached) {
-    constexpr int kWidth = kWidthOf<V>;
+// Of several at a time, whose searches do not wait for each other. NOTE: kept out of the loops over
+// cells, which it would slow where nothing flows along a curve.
+template <int kWidth>
+[[gnu::noinline]] void find_lines(const FlowCurve& curve, const double (&reached)[kWidth],
+                                  FlowLine<double> (&line)[kWidth]) {
     const FlowPart* part[kWidth];
     for (int l = 0; l < kWidth; ++l) part[l] = curve.data();
     for (std::size_t left = curve.size(); left > 1;) {
@@ -69,10 +70,17 @@ SWAGE_INLINE FlowLine<V> line_at(const FlowCurve& curve, const V& reached) {
         for (int l = 0; l < kWidth; ++l) part[l] += part[l][half].reached < reached[l] ? half : 0;
         left -= half;
     }
+    for (int l = 0; l < kWidth; ++l) line[l] = part[l]->line;
+}
+template <LaneVector V>
+SWAGE_INLINE FlowLine<V> line_at(const FlowCurve& curve, const V& reached) {
+    constexpr int kWidth = kWidthOf<V>;
+    double at[kWidth];
+    FlowLine<double> line[kWidth];
+    for (int l = 0; l < kWidth; ++l) at[l] = reached[l];
+    find_lines(curve, at, line);
     FlowLine<V> r;
-    for (int l = 0; l < kWidth; ++l) {
-        r.stress[l] = part[l]->line.stress, r.slope[l] = part[l]->line.slope;
-    }
+    for (int l = 0; l < kWidth; ++l) r.stress[l] = line[l].stress, r.slope[l] = line[l].slope;
     return r;
 }
 
