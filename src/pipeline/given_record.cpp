@@ -28,6 +28,8 @@ const char* name_of(Elasticity elasticity) {
 }  // namespace
 
 Json material_json(const Material& material) {
+    Json curve = Json::array();  // of flow; [] where the hardening is linear
+    for (const auto& [strain, stress] : material.flow_curve) curve.push_back({strain, stress});
     return {{"name", material.name},
             {"mechanics", name_of(material.mechanics)},
             {"elasticity", name_of(material.elasticity)},
@@ -36,6 +38,7 @@ Json material_json(const Material& material) {
             {"density_kg_m3", material.density},
             {"yield_stress_Pa", finite(material.yield_stress)},
             {"hardening_Pa", material.hardening},
+            {"flow_curve_Pa", curve},
             {"strength_Pa", finite(material.strength)},
             {"toughness_J_m2", finite(material.toughness)},
             {"damping_ratio", material.damping_ratio},

@@ -20,16 +20,22 @@ constexpr double kShade = 0.45;    // of the picture, left under the legend
 using Color = std::array<double, 3>;
 constexpr Color kInk = {238, 238, 238}, kGround = {24, 26, 30};
 
+std::uint8_t rounded(double value) { return static_cast<std::uint8_t>(std::lround(value)); }
+
+// Colours over what is there, of which `share` may let something through.
 struct Paint {
     Image& image;
 
     void fill(int x0, int y0, int x1, int y1, const Color& color, double share = 1) {
         for (int y = std::max(0, y0); y < std::min(image.height, y1); ++y) {
             for (int x = std::max(0, x0); x < std::min(image.width, x1); ++x) {
-                const std::size_t at = 3 * (static_cast<std::size_t>(y) * image.width + x);
+                const std::size_t pixel = static_cast<std::size_t>(y) * image.width + x;
+                const double below =
+                    (1 - share) * (image.alpha.empty() ? 1 : image.alpha[pixel] / 255.0);
+                if (!image.alpha.empty()) image.alpha[pixel] = rounded(255 * (share + below));
                 for (std::size_t c = 0; c < 3; ++c) {
-                    image.rgb[at + c] = static_cast<std::uint8_t>(
-                        std::lround(share * color[c] + (1 - share) * image.rgb[at + c]));
+                    std::uint8_t& value = image.rgb[3 * pixel + c];
+                    value = rounded((share * color[c] + below * value) / (share + below));
                 }
             }
         }

@@ -35,7 +35,7 @@ std::array<double, 6> turned_back(const Mat3& p, const Mat3& f) {
 
 double yields_at(const MaterialLaw& law, double plastic_strain) {
     if (law.kind != CellKind::yielding) return std::numeric_limits<double>::infinity();
-    return law.moduli.yield_stress + law.moduli.hardening * plastic_strain;
+    return mean_flow_stress(law.moduli, plastic_strain, 0);
 }
 
 class Sampler {

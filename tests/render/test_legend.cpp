@@ -74,3 +74,17 @@ TEST_CASE("a legend changes nothing above it, and nothing of a picture too small
     draw_legend(legend, small);
     CHECK(small.rgb == grey(60, 40).rgb);
 }
+
+TEST_CASE("over a picture that lets through a legend stands as over what is behind it") {
+    const Legend legend = make_legend("von Mises stress", "Pa", 0, 2e8);
+    Image solid = grey(640, 360), clear = grey(640, 360);
+    for (std::uint8_t& value : clear.rgb) value = 7;  // of what is not there
+    clear.alpha.assign(std::size_t(640) * 360, 0);
+    draw_legend(legend, solid);
+    draw_legend(legend, clear);
+    for (std::size_t n = 0; n < solid.rgb.size(); ++n) {
+        const double alpha = clear.alpha[n / 3] / 255.0,
+                     over = alpha * clear.rgb[n] + (1 - alpha) * 128;
+        REQUIRE(std::abs(over - solid.rgb[n]) < 2);
+    }
+}
