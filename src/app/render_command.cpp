@@ -63,11 +63,10 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (given.light_azimuth) settings.light.azimuth = *given.light_azimuth * kDegree;
     if (given.light_elevation) settings.light.elevation = *given.light_elevation * kDegree;
     if (!given.background.empty()) settings.background = background_named(given.background);
-    const bool is_clear = settings.background == Background::transparent;
-    if (is_clear && given.film) {
-        fail(ExitCode::command_line, "--film: a film cannot be transparent; leave one of both out");
+    if (settings.background == Background::transparent && given.film) {
+        fail(ExitCode::command_line,
+             "--film: a film cannot be transparent; it can with --background studio");
     }
-    if (is_clear) settings.film = false;
     if (given.film) settings.film = true;
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;

@@ -16,7 +16,8 @@ struct StressSample {
     CornerMask corners = kAllCorners;  // that it is of
     std::uint8_t material = 0;         // as cell_material
     bool sound = true;                 // as cell_is_sound(); else it is of what springs still bear
-    Vec3 place = Vec3::Zero();         // centroid at molding, in cells from the lattice's origin
+    // At molding, in cells from the lattice's origin: the centroid; of springs the cell's middle.
+    Vec3 place = Vec3::Zero();
     double volume = 0;                 // in cells
     // Cauchy's, xx, yy, zz, xy, yz, zx [Pa]: of what is sound along axes that turn with it, so that
     // neighbours in a bent body can be compared; else along the world's.

@@ -10,6 +10,7 @@
 
 #include "pipeline/frame_store.h"
 #include "pipeline/json.h"
+#include "pipeline/plot.h"
 #include "pipeline/work_piece.h"
 
 namespace swage {
@@ -23,7 +24,8 @@ struct Reached {
     long steps = 0;
     std::vector<std::pair<std::string, double>> seconds;  // by phase
     MotionMark motion;
-    std::vector<int> skin;  // of each body: its number in the motion file
+    std::vector<int> skin;        // of each body: its number in the motion file
+    std::vector<StagePlot> plot;  // of each stage, which may not have been drawn yet
 };
 
 // Of a run that has finished so many stages: what made it what it is until then, and which build

@@ -22,7 +22,9 @@ constexpr double kFieldBytes = 4;                       // of a vertex, there an
 constexpr double kFrameBytes = 1000;                    // of poses and curves
 constexpr double kBodyFrameBytes = 400;                 // of its motion
 constexpr double kStageBytes = 60e3, kRunBytes = 20e3;  // of plots and records
-constexpr double kBrokenVertices = 3;                   // a cell, on the faces where matter broke
+// A cell, on the faces where matter broke, plane and rough.
+constexpr double kBrokenVertices = 3, kRoughVertices = 7;
+constexpr double kCurvePointBytes = 90;  // of a flow curve in run.json
 // In a checkpoint, beside the matter.
 constexpr double kKeptBytesPerVertex = 230, kLookBytesPerVertex = 200;
 constexpr double kKeptBytesPerParticle = 30;
@@ -96,7 +98,8 @@ double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& in
 
 double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of) {
     const bool breaks = scene.any_material([](const Material& m) { return m.breaks(); });
-    if (breaks) of.vertices += kBrokenVertices * of.cells;
+    if (breaks)
+        of.vertices += (scene.skin.roughness > 0 ? kRoughVertices : kBrokenVertices) * of.cells;
     const double vertices = of.vertices;
     double skins = 1;  // stored: where matter may part in every frame
     double bytes = kRunBytes;
@@ -109,6 +112,11 @@ double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, D
         if (breaks || !stage.machine.blade.empty()) skins += stage.frames;
     }
     for (const InputMesh& one : input) bytes += texture_bytes(one.mesh);
+    for (const BodySpec& body : scene.body) {
+        for (const Material* one : body.materials()) {
+            bytes += kCurvePointBytes * static_cast<double>(one->flow_curve.size());
+        }
+    }
     const double meshes =
         scene.output.meshes_per_frame ? of.frames : static_cast<double>(scene.stage.size());
     // Pictures are drawn when nothing is left to go on from, of which there are two while the

@@ -150,7 +150,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     outcome.color = settings.color;
     if (look) outcome.color_range = look->range();
     std::unique_ptr<Film> film;
-    if (settings.film) {
+    if (settings.has_film()) {
         film = std::make_unique<Film>(files.film(), settings.width, settings.height,
                                       settings.frames_per_second);
     }

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "base/process.h"
 #include "base/text.h"
@@ -72,7 +73,7 @@ std::string graph(const StageCurves& curves, const std::string& label,
 
 }  // namespace
 
-std::string plot_program(const StageCurves& curves, double size, const std::filesystem::path& svg) {
+StagePlot plot_of(const StageCurves& curves, double size) {
     const double most_force = most_of(curves, &LoadCurve::force) * size;
     const double most_torque = most_of(curves, &LoadCurve::torque);
     std::string force, torque;
@@ -85,10 +86,9 @@ std::string plot_program(const StageCurves& curves, double size, const std::file
     const int panels = !force.empty() + !torque.empty();
     std::string program = fmt::format(
         "set terminal svg size 900,{} noenhanced font 'sans-serif,14' background '#ffffff'\n"
-        "set output {}\n"
         "set grid linecolor '#dddddd'\nset border linecolor '#444444'\n"
         "set key top left\nset yrange [0:*]\nset xlabel {}\n",
-        panels == 2 ? 900 : 500, quoted(svg.string()), quoted(plot_axis(curves).label));
+        panels == 2 ? 900 : 500, quoted(plot_axis(curves).label));
     const std::string title = quoted(curves.stage() + ": what the matter felt");
     if (panels == 2) {
         program += "set multiplot layout 2,1 title " + title + "\n";
@@ -98,19 +98,23 @@ std::string plot_program(const StageCurves& curves, double size, const std::file
     program += force + torque;
     if (panels == 0) program += "set yrange [0:1]\nplot [0:1] 0 title 'nothing was felt'\n";
     if (panels == 2) program += "unset multiplot\n";
-    return program + "set output\n";
+    return {curves.stage(), program + "set output\n"};
 }
 
 bool gnuplot_is_present() { return program_exists("gnuplot"); }
 
-std::string draw_plot(const StageCurves& curves, double size, const std::filesystem::path& svg) {
+std::string draw_plot(const StagePlot& plot, const std::filesystem::path& svg) {
     const std::filesystem::path temporary = temporary_for(svg);
+    // In a file: a pipe that is not read would hold us up.
+    const std::filesystem::path program = std::filesystem::path(temporary).concat(".gp");
     std::string why;
     std::error_code error;
     try {
-        PipedProgram gnuplot({"gnuplot", "-d"});  // without what the user has set for other plots
-        gnuplot.write(plot_program(curves, size, temporary));
+        write_file_whole(program, "set output " + quoted(temporary.string()) + "\n" + plot.program);
+        // -d: without what the user has set for other plots.
+        PipedProgram gnuplot({"gnuplot", "-d", program.string()});
         const int status = gnuplot.finish_within(kLongest);
+        std::filesystem::remove(program, error);
         if (status == 0 && std::filesystem::exists(temporary, error)) {
             publish(temporary, svg);
             return {};
@@ -121,6 +125,8 @@ std::string draw_plot(const StageCurves& curves, double size, const std::filesys
         why = failure.what();
     }
     std::filesystem::remove(temporary, error);
+    std::filesystem::remove(program, error);
+    if (asked_to_stop() != 0) return {};
     why = fmt::format("{}: gnuplot could not draw it: {}", svg.string(), why);
     log_warning("{}", why);
     return why;

@@ -37,9 +37,17 @@ bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory
         fail(ExitCode::output, "{}: is damaged; --fresh throws that run away",
              directory.record().string());
     }
-    const std::string flaw = flaw_of_simulation(scene, directory);
-    if (!flaw.empty()) log_warning("{}, so the run begins anew", flaw);
-    return flaw.empty();
+    try {
+        const FrameStore whole(directory.store());
+    } catch (const Error& error) {
+        log_warning("{}, so the run begins anew", error.what());
+        return false;
+    }
+    const std::filesystem::path missing = missing_product(scene, directory);
+    if (!missing.empty()) {
+        fail(ExitCode::output, "{}: is gone; --fresh makes all of the run anew", missing.string());
+    }
+    return true;
 }
 
 }  // namespace
@@ -71,7 +79,8 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
         may_be_done && !directory.is_changed() ? read_record(directory.record()) : std::nullopt;
     const bool simulated = earlier && is_simulated(*earlier, scene, directory);
     if (simulated) directory.remove_checkpoint();
-    if (simulated && (!options.draw || is_drawn(*earlier, files, wanted, scene.render.film))) {
+    if (simulated &&
+        (!options.draw || is_drawn(*earlier, files, wanted, scene.render.has_film()))) {
         log_info("{}: already complete", directory.root().string());
         outcome.record = *earlier;
         outcome.was_complete = true;

@@ -13,7 +13,6 @@
 #include "pipeline/given_record.h"
 #include "pipeline/mesh_bytes.h"
 #include "pipeline/render_record.h"
-#include "scene/overrides.h"
 
 namespace swage {
 
@@ -138,8 +137,8 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
             add_file(identity, "texture " + material.texture.filename().string(), material.texture);
         }
     }
-    const std::vector<std::string> set = in_order(options.overrides);
-    identity.input.push_back({"--set", joined(set, ", "), hash_text(hash_of(joined(set, "\n")))});
+    identity.input.push_back({"--set", joined(options.overrides, ", "),
+                              hash_text(hash_of(joined(options.overrides, "\n")))});
     identity.stage_key = stage_keys(scene, identity);
     return identity;
 }
@@ -183,6 +182,7 @@ Json drawing_json(const DrawOutcome& drawing) {
                  {"size", {drawing.width, drawing.height}},
                  {"frames", {drawing.frames.first, drawing.frames.last}},
                  {"film", drawing.film},
+                 {"ffmpeg", program_exists("ffmpeg")},
                  {"warnings", drawing.warning}};
     if (drawing.color) {
         json["color"] = words_of(*drawing.color).name;
@@ -250,8 +250,11 @@ bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& fra
         for (int f = frames.first; f <= frames.last; ++f) {
             if (!fs::exists(files.still(f), error)) return false;
         }
+        // What ffmpeg failed to make once is not tried again.
+        const bool may_come = drawing.at("film").get<bool>() ||
+                              (!drawing.at("ffmpeg").get<bool>() && program_exists("ffmpeg"));
         return fs::exists(files.contact_sheet(), error) &&
-               (!film || fs::exists(files.film(), error) || !program_exists("ffmpeg"));
+               (!film || !may_come || fs::exists(files.film(), error));
     } catch (const Json::exception&) {
         return false;
     }

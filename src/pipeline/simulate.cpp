@@ -122,19 +122,14 @@ bool keep(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& wa
 
 }  // namespace
 
-std::string flaw_of_simulation(const SceneSpec& scene, const RunDirectory& directory) {
-    try {
-        const FrameStore whole(directory.store());
-    } catch (const Error& error) {
-        return error.what();
-    }
+fs::path missing_product(const SceneSpec& scene, const RunDirectory& directory) {
     const auto stages = static_cast<int>(scene.stage.size());
     for (const fs::path& product : products_of_stages(scene, stages)) {
         const bool is_mesh = product.parent_path() == "meshes";
         for (const char* ending : is_mesh ? std::vector{".obj", ".ply"} : std::vector{".csv"}) {
             const fs::path file = directory.root() / fs::path(product).concat(ending);
             std::error_code error;
-            if (!fs::exists(file, error)) return file.string() + " is gone";
+            if (!fs::exists(file, error)) return file;
         }
     }
     return {};
@@ -191,27 +186,35 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     const auto is_in_vain = [&] {
         return recorder->frame_count() == 0 || (!has_begun && directory.is_changed());
     };
-    const auto plot = [&](const StageOutcome& of) {
-        if (!can_plot || !of.curves || is_stopping()) return;
+    // Also of stages that an earlier run did not come to plot.
+    std::size_t plotted = 0;
+    const std::size_t of_earlier = reached.plot.size();
+    const auto draw_plots = [&] {
+        if (!can_plot) return;
         const auto lap = watch.lap("write");
-        const fs::path svg = directory.root() / "curves" / (of.curves->stage() + ".svg");
-        const std::string why = draw_plot(*of.curves, of.size, svg);
-        if (!why.empty()) of_plots.push_back(why);
+        std::error_code error;
+        for (; plotted < reached.plot.size() && asked_to_stop() == 0; ++plotted) {
+            const StagePlot& plot = reached.plot[plotted];
+            const fs::path svg = directory.root() / "curves" / (plot.name + ".svg");
+            const bool stands = plotted < of_earlier && fs::exists(svg, error);
+            const std::string why = stands ? "" : draw_plot(plot, svg);
+            if (!why.empty()) of_plots.push_back(why);
+        }
     };
     Ended ended;
-    StageOutcome outcome;
     int kept_stages = reached.stages;  // that are to be gone on from
     while (reached.stages < stages) {
         const StageSpec& stage = scene.stage[static_cast<std::size_t>(reached.stages)];
         const StageContext context{scene, directory.root(), *recorder, watch, progress, begin};
-        outcome = {};
         try {
             throw_if_interrupted();
-            outcome = run_stage(stage, recorder->frame_count(), reached.bodies, context);
+            StageOutcome outcome =
+                run_stage(stage, recorder->frame_count(), reached.bodies, context);
             reached.stage.push_back(std::move(outcome.record));
             reached.steps += outcome.steps;
             std::move(outcome.warning.begin(), outcome.warning.end(),
                       std::back_inserter(reached.warning));
+            if (outcome.plot) reached.plot.push_back(std::move(*outcome.plot));
             ended = {outcome.stopped, outcome.interrupted};
         } catch (const Interrupted& interrupted) {
             // While the stage was set up.
@@ -226,7 +229,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         if (ended.early()) break;
         if (++reached.stages == stages) break;
         if (keep(directory, *recorder, watch, reached)) kept_stages = reached.stages;
-        plot(outcome);
+        draw_plots();
     }
     begin();
     reserve.release();
@@ -253,7 +256,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         log_info("swage run goes on after stage {} of {}", kept_stages, stages);
     }
     // What may fail, and is no loss, comes last.
-    plot(outcome);
+    draw_plots();
     if (!of_plots.empty()) {
         tell_warnings();
         write_record(directory, record, watch);

@@ -3,8 +3,8 @@
 // scene in the same directory got to.
 #pragma once
 
+#include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -25,9 +25,8 @@ struct Ended {
     bool early() const { return stopped || interrupted; }
 };
 
-// What of a whole simulation is not in the directory any more, or not whole, as in "x.obj is gone";
-// empty: nothing.
-std::string flaw_of_simulation(const SceneSpec& scene, const RunDirectory& directory);
+// A mesh or a table of a whole simulation that is not there any more; empty: all are.
+std::filesystem::path missing_product(const SceneSpec& scene, const RunDirectory& directory);
 
 // The motion file and run.json stand when it returns. `record`: begin_record's. `at_start`: what
 // can be said before anything is molded.

@@ -198,8 +198,7 @@ class StageRun {
             });
         }
         finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1, curves);
-        outcome_.curves = std::move(curves);
-        outcome_.size = machine_.frame.size.norm();
+        outcome_.plot = plot_of(curves, machine_.frame.size.norm());
         return std::move(outcome_);
     }
 

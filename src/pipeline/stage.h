@@ -14,9 +14,9 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/stopwatch.h"
-#include "pipeline/curves.h"
 #include "pipeline/json.h"
 #include "pipeline/motion_recorder.h"
+#include "pipeline/plot.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
 
@@ -35,8 +35,7 @@ struct StageOutcome {
     Json record;  // for run.json
     long steps = 0;
     std::vector<std::string> warning;  // all told already
-    std::optional<StageCurves> curves;
-    double size = 0;  // of the work-piece, by which they are plotted [m]
+    std::optional<StagePlot> plot;          // of its curves
     // The simulation gave up, the disk was full, or somebody asked for it; what was reached is
     // kept.
     std::optional<Error> stopped;

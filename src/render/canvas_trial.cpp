@@ -2,6 +2,8 @@
 #include "render/canvas_trial.h"
 
 #include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +15,7 @@
 #include "base/error.h"
 #include "base/file_contents.h"
 #include "base/file_handle.h"
+#include "base/interrupt.h"
 #include "base/process.h"
 #include "render/canvas.h"
 
@@ -23,6 +26,7 @@ namespace {
 constexpr std::size_t kLongestReason = 4096;  // which a pipe holds
 
 [[noreturn]] void try_here(GlProviderKind kind, int threads, int to_parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     try {
         const Canvas canvas(kind, threads);
     } catch (const std::exception& error) {
@@ -48,11 +52,13 @@ void try_canvas(GlProviderKind kind, int threads) {
     std::string reason(kLongestReason, '\0');
     reason.resize(read_up_to(from_child.id(), reason.data(), reason.size()).value_or(0));
     if (!reason.empty()) fail(ExitCode::output, "{}", reason);
-    if (ended && WIFSIGNALED(*ended)) {
+    throw_if_interrupted();
+    if (ended && *ended != 0) {
         fail(ExitCode::output,
-             "OpenGL crashed as it was opened ({}): does GALLIUM_DRIVER, or another variable that "
-             "drivers read, name one that is not there? --no-render does without it",
-             ::strsignal(WTERMSIG(*ended)));
+             "OpenGL {} as it was opened: does GALLIUM_DRIVER, or another variable that drivers "
+             "read, name one that is not there? --no-render does without it",
+             WIFSIGNALED(*ended) ? fmt::format("crashed ({})", ::strsignal(WTERMSIG(*ended)))
+                                 : fmt::format("ended its process ({})", WEXITSTATUS(*ended)));
     }
 }
 

@@ -45,7 +45,7 @@ struct RenderSettings {
     double field_of_view = 0.6;                     // vertical, 0 to pi exclusive
     std::vector<CameraKey> camera = {CameraKey{}};  // sorted by `at`
     int frames_per_second = 30;                     // of the film, 1 to 240
-    bool film = true;                               // also write film.mp4
+    bool film = true;                               // also write film.mp4, of what is not clear
     bool tools = true;                              // draw tools, grips and blades
     bool ground = true;
     Background background = Background::studio;
@@ -54,6 +54,8 @@ struct RenderSettings {
     GlProviderKind gl = GlProviderKind::automatic;
     std::optional<SkinField> color;                    // bodies by it; none: as they look
     std::optional<std::array<double, 2>> color_range;  // of its scale, ascending, SI
+
+    bool has_film() const { return film && background != Background::transparent; }
 };
 
 }  // namespace swage

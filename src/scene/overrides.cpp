@@ -136,17 +136,8 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
 
 }  // namespace
 
-std::vector<std::string> in_order(std::vector<std::string> overrides) {
-    const auto key = [](const std::string& text) {
-        return parts_of(text.substr(0, text.find('=')));
-    };
-    std::stable_sort(overrides.begin(), overrides.end(),
-                     [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
-    return overrides;
-}
-
 void apply_overrides(const std::vector<std::string>& overrides, Node& root, MistakeList& mistakes) {
-    for (const std::string& text : in_order(overrides)) apply(text, root, mistakes);
+    for (const std::string& text : overrides) apply(text, root, mistakes);
 }
 
 }  // namespace swage

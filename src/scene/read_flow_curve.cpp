@@ -15,6 +15,7 @@ constexpr const char* kWanted =
     "a list of points [strain, \"stress\"], such as [[0, \"250 MPa\"], [0.1, \"400 MPa\"]], or "
     "one of the forms {K, e0, n}, {A, B, n} and {s0, Q, b}";
 constexpr double kMostStrain = 10;                      // of a point: more is meant in percent
+constexpr double kLeastStep = 1e-9;                     // between points
 constexpr Range kStress = {.low = 1e-3, .high = 1e15};  // [Pa]
 constexpr double kLeastPower = 0.1;  // of Ludwik's form, which is too steep at its beginning
 
@@ -42,10 +43,11 @@ std::vector<FlowPoint> read_points(TableReader& table, const Node& list) {
                            "the first point is where matter begins to flow: its "
                            "plastic strain has to be 0");
         }
-        if (!point.empty() && !(next.strain > point.back().strain)) {
+        if (!point.empty() && !(next.strain - point.back().strain > kLeastStep)) {
             return mistake(item.item[0],
-                           fmt::format("a strain of {:g} behind one of {:g}: they have to rise",
-                                       next.strain, point.back().strain));
+                           fmt::format("a strain of {:g} behind one of {:g}: they have to rise, by "
+                                       "more than {:g}",
+                                       next.strain, point.back().strain, kLeastStep));
         }
         if (!point.empty() && next.stress < point.back().stress) {
             return mistake(

@@ -131,11 +131,8 @@ void read_render(TableReader& table, RenderSettings& settings) {
     table.choice<Background>(
         "background", {{"studio", Background::studio}, {"transparent", Background::transparent}},
         settings.background);
-    if (settings.background == Background::transparent) {
-        if (says_film && settings.film) {
-            table.mistake("film", "a film cannot be transparent: its stills can, without it");
-        }
-        settings.film = false;
+    if (settings.background == Background::transparent && says_film && settings.film) {
+        table.mistake("film", "a film cannot be transparent: its stills can, without it");
     }
     table.choice<GlProviderKind>("gl",
                                  {{"auto", GlProviderKind::automatic},

@@ -8,6 +8,7 @@
 #include "laws/laminate.h"
 #include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
+#include "sim/fracture_laws.h"
 #include "sim/lattice_sweep.h"
 #include "sim/material_laws.h"
 #include "sim/mixed_cells.h"
@@ -41,7 +42,10 @@ double yields_at(const MaterialLaw& law, double plastic_strain) {
 class Sampler {
   public:
     explicit Sampler(const Aggregate& matter)
-        : matter_(matter), law_(material_laws(matter)), stiffness_(lattice_stiffness(matter)) {}
+        : matter_(matter),
+          law_(material_laws(matter)),
+          fracture_(matter),
+          stiffness_(lattice_stiffness(matter)) {}
 
     void add(CellId cell, std::vector<StressSample>& to) const {
         const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
@@ -149,9 +153,12 @@ class Sampler {
         const double distance = way.norm();
         if (!(distance > 0)) return Mat3::Zero();
         const double lost = all.damage.empty() || distance < length ? 0 : all.damage[lower];
-        const double tension = stiffness_ * cell_share(c.direction) *
-                               stiffness_in(matter_, cell, two, c.direction) * (1 - lost) *
-                               (distance - length);
+        double held =
+            (1 - lost) * stiffness_in(matter_, cell, two, c.direction, fracture_.breaking());
+        if (!fracture_.holding().empty()) {
+            held += stiffness_in(matter_, cell, two, c.direction, fracture_.holding());
+        }
+        const double tension = stiffness_ * cell_share(c.direction) * held * (distance - length);
         return tension / distance * (way * way.transpose());
     }
 
@@ -162,6 +169,7 @@ class Sampler {
 
     const Aggregate& matter_;
     const std::vector<MaterialLaw> law_;
+    const FractureLaws fracture_;
     const double stiffness_;
 };
 

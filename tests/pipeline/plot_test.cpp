@@ -27,7 +27,7 @@ StageCurves squeeze(const std::string& name) {
 }  // namespace
 
 TEST_CASE("a plot shows what was felt, names its axes with units, and nothing else") {
-    const std::string program = plot_program(squeeze("1-squeeze"), 0.1, "out.svg");
+    const std::string program = plot_of(squeeze("1-squeeze"), 0.1).program;
     CHECK(program.find("stroke of ram''s head [mm]") != std::string::npos);
     CHECK(program.find("[N]") != std::string::npos);
     CHECK(program.find("idle_roller") == std::string::npos);
@@ -44,7 +44,7 @@ TEST_CASE("a plot leaves out what is nothing beside the rest: torques of forces,
         report.load[0].force = {0, -force, 0};
         report.load[0].torque = {torque, 0, 0};
         curves.add(2, report);
-        return plot_program(curves, size, "out.svg");
+        return plot_of(curves, size).program;
     };
     const auto shows = [](const std::string& program, const char* unit) {
         return program.find(unit) != std::string::npos;
@@ -66,7 +66,7 @@ TEST_CASE("gnuplot draws every plot, an empty one too") {
     const std::filesystem::path svg = scratch.path() / "it's a plot.svg";
     for (const StageCurves& curves :
          {squeeze("1-squeeze"), StageCurves("2-rest", 6, {{"ram", Pose{}}})}) {
-        REQUIRE(draw_plot(curves, 0.1, svg).empty());
+        REQUIRE(draw_plot(plot_of(curves, 0.1), svg).empty());
         std::ifstream in(svg);
         std::stringstream text;
         text << in.rdbuf();

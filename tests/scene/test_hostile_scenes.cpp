@@ -2,7 +2,6 @@
 // Scene files that are hardly scenes: empty, damaged, no text, no files.
 #include <sys/stat.h>
 
-#include "scene/overrides.h"
 #include "tests/scene/bad_scene.h"
 
 using namespace swage;
@@ -167,14 +166,6 @@ TEST_CASE("an override of one of several that are not there says so") {
           "--set stage.1.load.1.pressure=1 MPa: there is no load to set anything of\n");
     CHECK(told_of("probe.*.at=[0,0,0]").find("there is no probe") != std::string::npos);
     CHECK(told_of("stage.1=3").find("Write stage.1.KEY") != std::string::npos);
-}
-
-TEST_CASE("overrides of different keys may come in any order, of one key the last counts") {
-    const std::vector<std::string> one = {"stage.1.frames=3", "mold.across=2", "mold.across=3"},
-                                   other = {"mold.across=2", "mold.across=3", "stage.1.frames=3"};
-    CHECK(in_order(one) == in_order(other));
-    CHECK(in_order(one) == other);
-    CHECK(in_order({"a.b.c=1", "a.b=2"}).front() == "a.b=2");
 }
 
 TEST_CASE("blanks around the parts of an override's key are not of it") {

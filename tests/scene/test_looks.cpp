@@ -15,14 +15,14 @@ TEST_CASE("a scene says where light comes from, what is behind and which edges a
     };
     const SceneSpec plain = read("");
     CHECK(plain.render.background == Background::studio);
-    CHECK(plain.render.film);
+    CHECK(plain.render.has_film());
     CHECK(plain.skin.crease_angle == kCreaseAngle);
     const SceneSpec scene = read(
         "[skin]\ncrease_angle = \"70 deg\"\n[render]\nbackground = \"transparent\"\n"
         "light = { azimuth = \"30 deg\", elevation = \"20 deg\" }\n");
     CHECK(scene.skin.crease_angle == Approx(70 * kPi / 180));
     CHECK(scene.render.background == Background::transparent);
-    CHECK_FALSE(scene.render.film);
+    CHECK_FALSE(scene.render.has_film());
     CHECK(scene.render.light.azimuth == Approx(kPi / 6));
     CHECK(scene.render.light.elevation == Approx(kPi / 9));
 }
