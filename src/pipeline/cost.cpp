@@ -188,6 +188,8 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
             const double steps = more_steps(scene, solver) * scene.duration_of(stage) *
                                  steps_per_second(scene, cost, matter, stage.sim);
             cost.steps += steps, work += law_share(scene) * steps;
+            const bool breaks = scene.any_material([](const Material& m) { return m.breaks(); });
+            if (breaks && cost.slow.empty()) cost.slow = "what goes to pieces that meet";
         }
     }
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;

@@ -118,7 +118,19 @@ TEST_CASE("what a run writes is told with tools, textures and skins that are sto
     CHECK(bar.cost().disk_bytes > pressed + stage.frames * skin);
     stage.machine.blade.clear();
     bar.scene.body[0].material.strength = 1e6;
-    CHECK(bar.cost().disk_bytes > pressed + stage.frames * skin);
+    const double rough = bar.cost().disk_bytes;
+    CHECK(rough > pressed + stage.frames * skin);
+    bar.scene.skin.roughness = 0;
+    CHECK(rough > bar.cost().disk_bytes + stage.frames * skin);
+}
+
+TEST_CASE("what may go to pieces, which then meet, is said to take longer than can be told") {
+    BarScene bar(6);
+    bar.scene.stage[0].duration = 1;
+    bar.scene.stage[0].sim.solver = Solver::explicit_steps;
+    CHECK(bar.cost().slow.empty());
+    bar.scene.body[0].material.strength = 1e6;
+    CHECK(bar.cost().slow == "what goes to pieces that meet");
 }
 
 TEST_CASE("what a run keeps to go on from is told, and counts where nothing else is as large") {
