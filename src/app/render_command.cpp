@@ -29,7 +29,8 @@ struct RenderArguments {
     std::optional<double> light_azimuth, light_elevation;                 // likewise
     std::vector<double> eye, target;                                      // [m]
     std::optional<int> frames_per_second;
-    bool film = false, no_film = false, no_tools = false, no_ground = false, json = false;
+    bool film = false, no_film = false, no_tools = false, no_ground = false, no_legend = false,
+         json = false;
 };
 
 // As the run's scene says; what is given on the command line takes the place of that alone.
@@ -71,6 +72,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (given.no_film) settings.film = false;
     if (given.no_tools) settings.tools = false;
     if (given.no_ground) settings.ground = false;
+    if (given.no_legend) settings.legend = false;
     if (!given.color.empty()) {
         const std::optional<SkinField> before = settings.color;
         settings.color = skin_field_named(given.color);
@@ -239,6 +241,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_flag("--no-film", given.no_film, "stills only")->excludes(film);
     command->add_flag("--no-tools", given.no_tools, "the work-piece alone");
     command->add_flag("--no-ground", given.no_ground, "no ground, and no floor that stands for it");
+    command->add_flag("--no-legend", given.no_legend, "no scale of what --color shows");
     command->add_flag("--json", given.json, "print one JSON object");
 }
 

@@ -16,6 +16,7 @@
 #include "render/canvas_trial.h"
 #include "render/contact_sheet.h"
 #include "render/film.h"
+#include "render/legend.h"
 #include "render/png.h"
 #include "render/renderer.h"
 
@@ -133,6 +134,8 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     make_folder(files.folder());
     const Quat turn = drawn_from_world(wanted.up);
     RenderSettings settings = wanted;
+    const bool has_legend = look && settings.legend;
+    if (has_legend) settings.free_below = legend_share(settings.height);
     for (CameraKey& key : settings.camera) {
         for (std::optional<Vec3>* place : {&key.eye, &key.target}) {
             if (*place) *place = turn * **place;
@@ -167,7 +170,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
             Picture picture = source.picture(frame);
             picture.film_share = still_share(settings.camera, frame - 1, store.frame_count());
             image = renderer.draw(picture);
-            if (look) look->add_legend(image);
+            if (has_legend) look->add_legend(image);
         }
         const auto lap = watch.lap("wait for files");
         if (writing.valid()) writing.get();

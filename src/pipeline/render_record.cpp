@@ -26,6 +26,7 @@ Json render_json(const RenderSettings& settings) {
         {"film", settings.film},
         {"tools", settings.tools},
         {"ground", settings.ground},
+        {"legend", settings.legend},
         {"background", kBackgroundName[static_cast<std::size_t>(settings.background)]},
         {"light", {{"azimuth", settings.light.azimuth}, {"elevation", settings.light.elevation}}},
         {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
@@ -68,6 +69,7 @@ RenderSettings render_settings_of(const Json& record) {
         if (json.contains("color_range")) {
             settings.color_range = json.at("color_range").get<std::array<double, 2>>();
         }
+        settings.legend = json.value("legend", true);
         settings.background = background_named(json.value("background", "studio"));
         if (json.contains("light")) {
             settings.light.azimuth = json.at("light").at("azimuth").get<double>();

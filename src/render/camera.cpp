@@ -53,7 +53,7 @@ std::vector<Vec3> corners_of(const Box& box) {
 
 Lens lens_of(const RenderSettings& settings) {
     const double tangent = std::tan(0.5 * settings.field_of_view);
-    return {tangent * settings.width / settings.height, tangent};
+    return {tangent * settings.width / settings.height, tangent, settings.free_below};
 }
 
 Mat3 orbit_rotation(double azimuth, double elevation) {
@@ -79,6 +79,7 @@ View look_at(const Vec3& eye, const Vec3& target) {
 Framing frame_points(const std::vector<Vec3>& points, const Vec3& center,
                      const Mat3& world_from_view, const Lens& lens) {
     const double tx = lens.tangent_x / kFramingMargin, ty = lens.tangent_y / kFramingMargin;
+    const double below = ty - 2 * lens.free_below * lens.tangent_y;  // ty of the lower half
     // With the eye at (cx, cy, cz), a corner is inside the pyramid when |x - cx| <= tx (cz - z)
     // and the same for y: four upper bounds over the corners, met by the least cz.
     const double none = -std::numeric_limits<double>::infinity();
@@ -88,9 +89,9 @@ Framing frame_points(const std::vector<Vec3>& points, const Vec3& center,
         right = std::max(right, p.x() + tx * p.z());
         left = std::max(left, -p.x() + tx * p.z());
         top = std::max(top, p.y() + ty * p.z());
-        bottom = std::max(bottom, -p.y() + ty * p.z());
+        bottom = std::max(bottom, -p.y() + below * p.z());
     }
-    const double distance = std::max((right + left) / (2 * tx), (top + bottom) / (2 * ty));
+    const double distance = std::max((right + left) / (2 * tx), (top + bottom) / (ty + below));
     const Vec3 shift = {0.5 * (right - left), 0.5 * (top - bottom), 0};
     return {distance, center + world_from_view * shift};
 }
@@ -196,7 +197,10 @@ View CameraPath::orbit(const std::vector<double>& value) const {
     const Framing framing = frame_points(outline_, bounds_.center(), rotation, lens_);
     const Vec3 aim = {value[3], value[4], value[5]};
     const Vec3 middle = framing.target + value[6] * (aim - framing.target);
-    return {middle + distance_ / std::exp(value[2]) * rotation.col(2), rotation};
+    const double distance = distance_ / std::exp(value[2]);
+    // What is named is looked at straight.
+    const double lift = (1 - value[6]) * lens_.free_below * lens_.tangent_y * distance;
+    return {middle + distance * rotation.col(2) - lift * rotation.col(1), rotation};
 }
 
 View CameraPath::at(double film_share) const {

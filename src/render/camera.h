@@ -20,6 +20,7 @@ struct View {
 // A pyramid of sight: tangents of half the angles.
 struct Lens {
     double tangent_x, tangent_y;
+    double free_below = 0;  // of the height, that what is framed is kept off at the bottom
 };
 Lens lens_of(const RenderSettings& settings);
 
@@ -31,7 +32,7 @@ Mat3 orbit_rotation(double azimuth, double elevation);
 View look_at(const Vec3& eye, const Vec3& target);
 
 // The distance to the point `center`, along the view, from which all the given points are seen with
-// a margin, and the sideways shift of the eye that centres them.
+// a margin, and the sideways shift of the eye that centres them in the whole picture.
 struct Framing {
     double distance;
     Vec3 target;  // the point looked at, as deep as `center`

@@ -42,6 +42,15 @@ struct Paint {
     }
 };
 
+struct LegendSize {
+    int scale, pad, bar, tick, height;  // [pixel]
+};
+LegendSize size_in(int picture_height) {
+    const int scale = std::max(1, (picture_height + kPictureRows / 2) / kPictureRows);
+    const int pad = 5 * scale, bar = 8 * scale, tick = 2 * scale;
+    return {scale, pad, bar, tick, pad + 2 * kLetterLine * scale + bar + 2 * tick};
+}
+
 // The top left corner of its line at (x, y).
 void write(Paint& paint, int x, int y, int scale, const std::string& text) {
     for (const LetterPart& part : letters_of(text)) {
@@ -121,15 +130,19 @@ Legend make_legend(const std::string& title, const std::string& unit, double low
     return legend;
 }
 
+double legend_share(int picture_height) {
+    const LegendSize size = size_in(picture_height);
+    const int rows = size.height + size.pad;
+    return 2 * rows > picture_height ? 0 : double(rows) / picture_height;
+}
+
 void draw_legend(const Legend& legend, Image& image) {
-    const int scale = std::max(1, (image.height + kPictureRows / 2) / kPictureRows);
-    const int pad = 5 * scale, bar = 8 * scale, tick = 2 * scale;
+    const auto [scale, pad, bar, tick, height] = size_in(image.height);
     const auto width_of = [&](const std::string& text) { return scale * letters_width(text); };
     int ends = 0;  // of the numbers at the bar's ends, what stands out beside it
     for (const Legend::Tick& one : legend.tick) ends = std::max(ends, width_of(one.text) / 2);
     const int length = std::max(image.width * 2 / 5, width_of(legend.title));
     const int left = (image.width - length) / 2;
-    const int height = pad + kLetterLine * scale + bar + 2 * tick + kLetterLine * scale;
     const int top = image.height - height - pad;
     if (left < ends + 2 * pad || top < image.height / 2) return;
 
@@ -141,14 +154,20 @@ void draw_legend(const Legend& legend, Image& image) {
     for (int x = 0; x < length; ++x) {
         paint.fill(left + x, y, left + x + 1, y + bar, mapped_color((x + 0.5) / length));
     }
+    const auto at = [&](const Legend::Tick& one) {
+        return left + static_cast<int>(std::lround(one.share * (length - scale)));
+    };
+    const auto begin_of = [&](const Legend::Tick& one) {
+        return at(one) + scale / 2 - width_of(one.text) / 2;
+    };
+    const int last = begin_of(legend.tick.back());
     int written = 0;  // up to there
     for (const Legend::Tick& one : legend.tick) {
-        const int x = left + static_cast<int>(std::lround(one.share * (length - scale)));
-        const int width = width_of(one.text), from = x + scale / 2 - width / 2;
-        if (from < written) continue;
-        paint.fill(x, y + bar, x + scale, y + bar + tick, kInk);
+        const int from = begin_of(one), to = from + width_of(one.text) + pad;
+        if (from < written || (to > last && from < last)) continue;  // the end has its number
+        paint.fill(at(one), y + bar, at(one) + scale, y + bar + tick, kInk);
         write(paint, from, y + bar + 2 * tick, scale, one.text);
-        written = from + width + pad;
+        written = to;
     }
 }
 

@@ -165,6 +165,7 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "film", "write film.mp4 too"},
         {"[render]", "tools", "draw tools, grips and blades"},
         {"[render]", "ground", "draw a ground under it all; false hides an endless floor too"},
+        {"[render]", "legend", "put a scale of what color shows on the stills"},
         {"[render]", "background",
          "transparent: stills have alpha, of the ground only its shadows, and there is no film"},
         {"[render]", "gl", "who draws"},

@@ -18,7 +18,8 @@ constexpr double kLatticePoisson = 0.25;  // of central springs, whatever is ask
 constexpr double kPoissonSlack = 0.005;
 constexpr double kMuchFriction = 2;
 constexpr double kRubberPoisson = 0.4;
-constexpr double kMostStrength = 0.1;  // of young_modulus
+constexpr double kMostStrength = 0.1;                   // of young_modulus
+constexpr double kLeastYield = 1e-5, kMostYield = 0.2;  // likewise, of what there is
 // Beyond all matter, and far from where numbers end.
 constexpr Range kStiffness = {.low = 1e-3, .high = 1e15};  // [Pa]
 constexpr Range kDensity = {.low = 1e-3, .high = 1e9};     // [kg/m3]
@@ -188,6 +189,15 @@ void read_material(TableReader& table, const AssetPaths& assets,
                               " matter does not yield: leave yield_stress out (or inf), and "
                               "flow_curve, or use elasticity = \"hencky\"");
         }
+    }
+    for (const char* key : {"yield_stress", "flow_curve"}) {
+        const double share = material.yield_stress / material.young_modulus;
+        if (table.find(key) == nullptr || std::isinf(share)) continue;
+        if (share > kLeastYield && share < kMostYield) continue;
+        table.warn(key, fmt::format("{} makes it flow at {}, {:.1e} of young_modulus: is a unit "
+                                    "missing or a wrong one? What yields does at {:g} to {:g}",
+                                    key, quantity_text(material.yield_stress, Quantity::stress),
+                                    share, kLeastYield, kMostYield));
     }
     if (table.find("hardening") != nullptr && std::isinf(material.yield_stress)) {
         table.warn("hardening", "hardening has no effect without yield_stress");

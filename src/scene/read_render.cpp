@@ -128,6 +128,7 @@ void read_render(TableReader& table, RenderSettings& settings) {
     const bool says_film = table.truth("film", settings.film);
     table.truth("tools", settings.tools);
     table.truth("ground", settings.ground);
+    table.truth("legend", settings.legend);
     table.choice<Background>(
         "background", {{"studio", Background::studio}, {"transparent", Background::transparent}},
         settings.background);

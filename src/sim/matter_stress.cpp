@@ -34,8 +34,10 @@ std::array<double, 6> turned_back(const Mat3& p, const Mat3& f) {
     return components(0.5 * (stress + stress.transpose()));
 }
 
-double yields_at(const MaterialLaw& law, double plastic_strain) {
-    if (law.kind != CellKind::yielding) return std::numeric_limits<double>::infinity();
+// Springs harden beyond their law as they flow far.
+double yields_at(const MaterialLaw& law, Mechanics mechanics, double plastic_strain) {
+    if (law.kind != CellKind::yielding || mechanics == Mechanics::springs)
+        return std::numeric_limits<double>::infinity();
     return mean_flow_stress(law.moduli, plastic_strain, 0);
 }
 
@@ -75,7 +77,7 @@ class Sampler {
         one.material = static_cast<std::uint8_t>(material);
         one.place = matter_.lattice.cell_site(cell).cast<double>() + Vec3::Constant(0.5);
         one.plastic_strain = plastic_strain;
-        one.yields_at = yields_at(law_[material], plastic_strain);
+        one.yields_at = yields_at(law_[material], matter_.material.mechanics, plastic_strain);
         return one;
     }
 

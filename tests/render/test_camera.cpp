@@ -49,6 +49,31 @@ TEST_CASE("all corners of the action are in the picture, and fill it", "[camera]
     }
 }
 
+TEST_CASE("what is to be free at the bottom of a picture is, and the rest is filled", "[camera]") {
+    for (const Box& box : kBoxes) {
+        for (const auto& [width, height] : {std::pair(1280, 720), {200, 800}}) {
+            RenderSettings settings;
+            settings.width = width;
+            settings.height = height;
+            settings.free_below = 0.2;
+            const View view = CameraPath(settings, box).at(0);
+            const glm::dmat4 m =
+                clip_from_view(lens_of(settings), depth_range(box, view)) * view_from_world(view);
+            double lowest = 1, highest = -1, aside = 0;
+            for (const Vec3& corner : corners_of(box)) {
+                const glm::dvec4 c = m * glm::dvec4(to_glm(corner), 1);
+                lowest = std::min(lowest, c.y / c.w), highest = std::max(highest, c.y / c.w);
+                aside = std::max(aside, std::abs(c.x / c.w));
+            }
+            const double room = 1 - 1 / kFramingMargin;
+            CHECK(lowest > -1 + 2 * 0.2 + room - 1e-6);
+            CHECK(highest < 1 - room + 1e-6);
+            CHECK(std::max((highest - lowest) / (2 - 0.4 - 2 * room), aside * kFramingMargin) ==
+                  Approx(1).epsilon(0.02));
+        }
+    }
+}
+
 TEST_CASE("zoom 2 stands twice as near", "[camera]") {
     const Box box = kBoxes[0];
     RenderSettings settings;

@@ -88,3 +88,19 @@ TEST_CASE("over a picture that lets through a legend stands as over what is behi
         REQUIRE(std::abs(over - solid.rgb[n]) < 2);
     }
 }
+
+TEST_CASE("a narrow scale has the numbers of both its ends") {
+    Legend legend = make_legend("pressure", "Pa", -2e8, 2e8);
+    const auto drawn = [](const Legend& of) {
+        Image image = grey(1080, 1920);
+        draw_legend(of, image);
+        return image.rgb;
+    };
+    const auto all = drawn(legend);
+    Legend without = legend;
+    without.tick.back().text = "";
+    CHECK(drawn(without) != all);
+    without = legend;
+    without.tick.front().text = "";
+    CHECK(drawn(without) != all);
+}

@@ -129,3 +129,18 @@ TEST_CASE("what a scene says of yielding takes the place of a named material's c
     CHECK(told(reading.mistakes, scratch.folder())
               .starts_with("s.toml:5:13: drawn hardens by its flow_curve: say yield_stress"));
 }
+
+TEST_CASE("what flows at next to no stress, or at as much as it is stiff, lacks a unit") {
+    const Scratch scratch;
+    const auto warned = [&](const std::string& more) {
+        const SceneReading reading =
+            read_with(scratch, "young_modulus = \"200 GPa\"\ndensity = 7800\n" + more);
+        return told(reading.mistakes, scratch.folder()).find("is a unit missing") !=
+               std::string::npos;
+    };
+    CHECK(warned("flow_curve = [[0, 200], [0.1, 300]]\n"));
+    CHECK(warned("flow_curve = [[0, \"200 GPa\"], [0.1, \"300 GPa\"]]\n"));
+    CHECK(warned("yield_stress = 200\n"));
+    CHECK_FALSE(warned("yield_stress = \"200 MPa\"\n"));
+    CHECK_FALSE(warned("yield_stress = inf\n"));
+}

@@ -113,6 +113,15 @@ TEST_CASE("matter that yields bears no more than its yield stress") {
     }
 }
 
+TEST_CASE("springs are not told to bear less than they do where they have hardened by themselves") {
+    Material metal = material_of(Elasticity::hencky, 0.25);
+    metal.mechanics = Mechanics::springs;
+    metal.yield_stress = 2e6;
+    for (const StressSample& one : bear(metal, stretch(1.01, 0.996))) {
+        CHECK(std::isinf(one.yields_at));
+    }
+}
+
 TEST_CASE("parts of a severed cell bear what each of them holds, and no more") {
     const Material material = material_of(Elasticity::hencky, 0.25);
     Aggregate block = make_block(4, 2, 2, 0.01, material);
