@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/failure.h"
+#include "base/units.h"
 #include "geometry/mesh_write.h"
 #include "machines/legs.h"
 #include "pipeline/body_table.h"
@@ -393,7 +394,8 @@ StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkP
             }
         }
         bodies = std::move(anew);
-        log_info("{}: molded anew: {} particles", stage.name, particle_count(bodies));
+        log_info("{}: molded anew: {} particles, cells of {}", stage.name, particle_count(bodies),
+                 quantity_text(bodies.front().matter.lattice.spacing, Quantity::length));
     }
     StageOutcome outcome = StageRun(stage, bodies, context).run(last_frame);
     outcome.warning.insert(outcome.warning.begin(), told.begin(), told.end());
