@@ -57,7 +57,11 @@ FieldLook::FieldLook(const FrameStore& store, const RenderSettings& settings)
     look_.name = words_of(field_).name;
     look_.color = Vec3::Ones();
     look_.roughness = kMatt;
-    look_.embedded_texture = std::make_shared<const std::string>(encode_png(color_strip()));
+    look_.embedded_texture = std::make_shared<const std::string>(encode_png(color_strip(scale())));
+}
+
+ColorScale FieldLook::scale() const {
+    return color_scale(range_[0], range_[1], words_of(field_).is_signed);
 }
 
 void FieldLook::dress(const StoredBody& body, TriMesh& skin) const {
@@ -75,7 +79,9 @@ void FieldLook::dress(const StoredBody& body, TriMesh& skin) const {
 
 void FieldLook::add_legend(Image& image) const {
     const SkinFieldWords& words = words_of(field_);
-    draw_legend(make_legend(words.title, words.unit, range_[0], range_[1]), image);
+    Legend legend = make_legend(words.title, words.unit, range_[0], range_[1]);
+    legend.scale = scale();
+    draw_legend(legend, image);
 }
 
 }  // namespace swage

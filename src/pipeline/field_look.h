@@ -5,6 +5,7 @@
 #include <array>
 
 #include "pipeline/frame_store.h"
+#include "render/color_map.h"
 #include "render/image.h"
 #include "render/settings.h"
 
@@ -22,6 +23,8 @@ class FieldLook {
     void add_legend(Image& image) const;
 
   private:
+    ColorScale scale() const;
+
     SkinField field_;
     std::size_t number_ = 0;  // among the file's
     std::array<double, 2> range_{};

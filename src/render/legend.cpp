@@ -95,7 +95,7 @@ Prefix prefix_of(double most) {
 }  // namespace
 
 Legend make_legend(const std::string& title, const std::string& unit, double low, double high) {
-    Legend legend{title, {}};
+    Legend legend{title, {}, {}};
     const double most = std::max(std::abs(low), std::abs(high));
     if (!unit.empty()) {
         const Prefix prefix = prefix_of(most);
@@ -152,7 +152,8 @@ void draw_legend(const Legend& legend, Image& image) {
     write(paint, left, top + pad, scale, legend.title);
     const int y = top + pad + kLetterLine * scale;
     for (int x = 0; x < length; ++x) {
-        paint.fill(left + x, y, left + x + 1, y + bar, mapped_color((x + 0.5) / length));
+        paint.fill(left + x, y, left + x + 1, y + bar,
+                   mapped_color(legend.scale, (x + 0.5) / length));
     }
     const auto at = [&](const Legend::Tick& one) {
         return left + static_cast<int>(std::lround(one.share * (length - scale)));

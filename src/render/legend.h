@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/color_map.h"
 #include "render/image.h"
 
 namespace swage {
@@ -16,6 +17,7 @@ struct Legend {
     };
     std::string title;  // with its unit
     std::vector<Tick> tick;
+    ColorScale scale = {};
 };
 
 // With round numbers, and the ends of the range where these leave room. `unit` is SI ("Pa"), or

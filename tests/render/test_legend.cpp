@@ -25,14 +25,31 @@ double brightness(const std::array<double, 3>& srgb) {
 
 TEST_CASE("the colour map grows brighter in even steps") {
     constexpr int kSteps = 20;
-    const double all = brightness(mapped_color(1)) - brightness(mapped_color(0));
+    const double all = brightness(mapped_color({}, 1)) - brightness(mapped_color({}, 0));
     for (int n = 0; n < kSteps; ++n) {
-        const double step = brightness(mapped_color((n + 1.0) / kSteps)) -
-                            brightness(mapped_color(double(n) / kSteps));
+        const double step = brightness(mapped_color({}, (n + 1.0) / kSteps)) -
+                            brightness(mapped_color({}, double(n) / kSteps));
         CHECK(step == Approx(all / kSteps).epsilon(0.4));
     }
-    CHECK(mapped_color(-1) == mapped_color(0));
-    CHECK(mapped_color(2) == mapped_color(1));
+    CHECK(mapped_color({}, -1) == mapped_color({}, 0));
+    CHECK(mapped_color({}, 2) == mapped_color({}, 1));
+}
+
+TEST_CASE("of what may be less than nothing, nothing is the palest, and both sides go on alike") {
+    const ColorScale scale = color_scale(-1, 3, true);
+    const auto color_at = [&](double value) { return mapped_color(scale, (value + 1) / 4); };
+    const auto nothing = color_at(0);
+    CHECK(nothing == std::array<double, 3>{0xf7, 0xf7, 0xf7});
+    for (const double size : {0.25, 0.5, 1.0}) {
+        const auto less = color_at(-size), more = color_at(size);
+        CHECK(less[2] > less[0]);
+        CHECK(more[0] > more[2]);
+        CHECK(brightness(less) < brightness(nothing));
+        CHECK(brightness(less) == Approx(brightness(more)).epsilon(0.1));
+    }
+    // Where all is on one side, or nothing is less than nothing, even steps show more.
+    CHECK_FALSE(color_scale(1, 3, true).diverges);
+    CHECK_FALSE(color_scale(-1, 3, false).diverges);
 }
 
 TEST_CASE("a scale has round numbers, the ends of its range and the unit that suits it") {
