@@ -9,8 +9,9 @@
 //                                      homogeneous deformation", J. Inst. Metals 74, 1948
 //
 // The lines stay within kFormError of the form up to a strain of kFormEnd, and are flat from there
-// on: some 150 to 700 points, thousands where a form is very steep. NOTE: a law of its own for each form would ask for a power in every
-// round of a search, in every cell, to gain what no data sheet knows.
+// on: some 150 to 700 points, thousands where a form is very steep. NOTE: a law of its own for each
+// form would ask for a power in every round of a search, in every cell, to gain what no data sheet
+// knows.
 #pragma once
 
 #include <algorithm>

@@ -18,7 +18,7 @@ struct StressSample {
     bool sound = true;                 // as cell_is_sound(); else it is of what springs still bear
     // At molding, in cells from the lattice's origin: the centroid; of springs the cell's middle.
     Vec3 place = Vec3::Zero();
-    double volume = 0;                 // in cells
+    double volume = 0;  // in cells
     // Cauchy's, xx, yy, zz, xy, yz, zx [Pa]: of what is sound along axes that turn with it, so that
     // neighbours in a bent body can be compared; else along the world's.
     std::array<double, 6> stress{};

@@ -98,8 +98,8 @@ double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& in
 
 double disk_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input, DiskShare of) {
     const bool breaks = scene.any_material([](const Material& m) { return m.breaks(); });
-    if (breaks)
-        of.vertices += (scene.skin.roughness > 0 ? kRoughVertices : kBrokenVertices) * of.cells;
+    const double broken = scene.skin.roughness > 0 ? kRoughVertices : kBrokenVertices;
+    if (breaks) of.vertices += broken * of.cells;
     const double vertices = of.vertices;
     double skins = 1;  // stored: where matter may part in every frame
     double bytes = kRunBytes;

@@ -112,7 +112,7 @@ std::string draw_plot(const StagePlot& plot, const std::filesystem::path& svg) {
     try {
         write_file_whole(program, "set output " + quoted(temporary.string()) + "\n" + plot.program);
         // -d: without what the user has set for other plots.
-        PipedProgram gnuplot({"gnuplot", "-d", program.string()});
+        PipedProgram gnuplot({"gnuplot", "-d", std::filesystem::absolute(program).string()});
         const int status = gnuplot.finish_within(kLongest);
         std::filesystem::remove(program, error);
         if (status == 0 && std::filesystem::exists(temporary, error)) {

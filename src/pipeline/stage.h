@@ -35,7 +35,7 @@ struct StageOutcome {
     Json record;  // for run.json
     long steps = 0;
     std::vector<std::string> warning;  // all told already
-    std::optional<StagePlot> plot;          // of its curves
+    std::optional<StagePlot> plot;     // of its curves
     // The simulation gave up, the disk was full, or somebody asked for it; what was reached is
     // kept.
     std::optional<Error> stopped;

@@ -161,6 +161,7 @@ void draw_legend(const Legend& legend, Image& image) {
     const auto begin_of = [&](const Legend::Tick& one) {
         return at(one) + scale / 2 - width_of(one.text) / 2;
     };
+    if (legend.tick.empty()) return;
     const int last = begin_of(legend.tick.back());
     int written = 0;  // up to there
     for (const Legend::Tick& one : legend.tick) {

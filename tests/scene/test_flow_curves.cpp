@@ -44,7 +44,7 @@ TEST_CASE("a flow curve that is none is refused at its place, with what is wante
          material("flow_curve = {K = \"500 MPa\", n = 0.2}"),
          {"5:14: flow_curve needs \"e0\": as in flow_curve = {K = "}},
         {"a form with more than it takes",
-         material("flow_curve = {K = \"500 MPa\", e0 = 0.01, n = 0.2, m = 0.1}"),
+         material("flow_curve = {K = \"0.5 MPa\", e0 = 0.01, n = 0.2, m = 0.1}"),
          {"5:50: unknown key \"m\" in flow_curve"}},
         {"a form out of range",
          material("flow_curve = {A = \"90 MPa\", B = \"292 MPa\", n = 0.01}"),

@@ -17,7 +17,7 @@ file = "../meshes/calf.obj"
 length = "40 cm"              # scales the longest side of the box
 [material]
 name = "rubber"               # any field may be given or overridden
-yield_stress = "3 MPa"
+yield_stress = "0.3 MPa"
 [mold]
 across = 6
 [skin]
@@ -54,7 +54,7 @@ TEST_CASE("the sample scene reads whole, in SI") {
     CHECK(scene.work_piece().mesh.length.value() == Approx(0.4));
     CHECK(scene.work_piece().material.name == "rubber");
     CHECK(scene.work_piece().material.young_modulus == Approx(2e6));
-    CHECK(scene.work_piece().material.yield_stress == Approx(3e6));
+    CHECK(scene.work_piece().material.yield_stress == Approx(3e5));
     CHECK(scene.work_piece().mold.across.value() == 6);
     CHECK_FALSE(scene.work_piece().mold.spacing.has_value());
     CHECK(scene.skin.kind == SkinKind::mount);
