@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -26,18 +27,32 @@ namespace {
 
 constexpr int kPatienceMilliseconds = 1500;   // until a safe point
 constexpr int kFarewellMilliseconds = 30000;  // from there, to write what is finished
+constexpr long kOneAsking = 250;              // ms, in which whoever asks asks once
 
 int wake_pipe[2] = {-1, -1};
 pid_t owner = 0;
 std::mutex unfinished_mutex;
 fs::path unfinished;
 std::atomic<bool> frames_at_stake = false;
+std::atomic<long> first_asked = 0;  // [ms]
+
+long milliseconds_now() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * 1000 + now.tv_nsec / 1'000'000;
+}
 
 extern "C" void take_signal(int signal) {
     // A forked child has no watching thread.
     if (::getpid() != owner) ::_exit(128 + signal);
-    // Shell and kernel both send the one, and the system the others again and again.
-    if (signal != SIGINT && signal != SIGTERM && asked_to_stop() != 0) return;
+    if (asked_to_stop() == 0) {
+        first_asked = milliseconds_now();
+    } else {
+        // Shell and kernel both send the one, and the system the others again and again; `timeout`
+        // sends its signal to the process and to its group.
+        const bool insists = signal == SIGINT || signal == SIGTERM;
+        if (!insists || milliseconds_now() - first_asked < kOneAsking) return;
+    }
     ask_to_stop(signal);
     const char byte = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);

@@ -122,6 +122,26 @@ TEST_CASE("finished frames are kept though a plot hangs, which ends with the run
     CHECK(fs::exists(run / "curves/1-bend.svg"));
 }
 
+TEST_CASE("who asks a run to end by two signals at a time, as timeout does, asks once") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 2000);
+    const fs::path run = scratch.path() / "run";
+    RunningSwage running({"run", scene.string(), "--no-render", "--out", run.string()},
+                         scratch.path());
+    REQUIRE(wait_for(run / "curves", running));
+    nap(300);
+    for (int n = 0; n < 3; ++n) {
+        running.signal(SIGTERM);
+        nap(5);
+    }
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    CHECK(outcome.code == 128 + SIGTERM);
+    REQUIRE(fs::exists(run / "run.json"));
+    CHECK(Json::parse(bytes_of(run / "run.json"))["state"] == "interrupted");
+    CHECK(fs::exists(run / "motion.bin"));
+}
+
 TEST_CASE("a second run in the same directory is refused while the first goes on") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 200);
