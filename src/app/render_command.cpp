@@ -66,7 +66,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (!given.background.empty()) settings.background = background_named(given.background);
     if (settings.background == Background::transparent && given.film) {
         fail(ExitCode::command_line,
-             "--film: a film cannot be transparent; it can with --background studio");
+             "--film: a film cannot be transparent; --background studio makes one that is not");
     }
     if (given.film) settings.film = true;
     if (given.no_film) settings.film = false;
@@ -138,7 +138,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
         "  swage render renders/calf-line --camera-azimuth 90 --size 1920x1080 --out /tmp/side\n"
         "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
         "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n"
-        "  swage render renders/plate --color stress --color-range 0 300e6\n"
+        "  swage render renders/wrench-stress --color stress --color-range 0 300e6\n"
         "  swage render renders/calf-line --camera-eye 0.5 0.2 0.4 --camera-target 0 0.1 0\n",
         chosen, [] { return render(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");

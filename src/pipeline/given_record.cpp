@@ -3,27 +3,13 @@
 
 #include <cmath>
 
+#include "matter/material_names.h"
+
 namespace swage {
 
 namespace {
 
 Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
-const char* name_of(Mechanics mechanics) {
-    return mechanics == Mechanics::springs ? "springs" : "cells";
-}
-
-const char* name_of(Elasticity elasticity) {
-    switch (elasticity) {
-        case Elasticity::hencky:
-            return "hencky";
-        case Elasticity::neo_hookean:
-            return "neo-hookean";
-        case Elasticity::storakers:
-            return "storakers";
-    }
-    return "";
-}
 
 }  // namespace
 
@@ -31,8 +17,8 @@ Json material_json(const Material& material) {
     Json curve = Json::array();  // of flow; [] where the hardening is linear
     for (const auto& [strain, stress] : material.flow_curve) curve.push_back({strain, stress});
     return {{"name", material.name},
-            {"mechanics", name_of(material.mechanics)},
-            {"elasticity", name_of(material.elasticity)},
+            {"mechanics", name_in(kMechanicsNames, material.mechanics)},
+            {"elasticity", name_in(kElasticityNames, material.elasticity)},
             {"young_modulus_Pa", material.young_modulus},
             {"poisson_ratio", material.poisson_ratio},
             {"density_kg_m3", material.density},

@@ -120,6 +120,14 @@ void name_looks(TriMesh& skin, const std::string& label) {
     }
 }
 
+// NOTE: where its layers are filled in part at both ends, what is pressed flows too soon, by up to
+// 8 % of the force at four cells.
+double in_whole_layers(double spacing, double thickness) {
+    constexpr double kFewest = 3;  // of less the spacing would change by more than a sixth
+    const double layers = std::round(thickness / spacing);
+    return layers < kFewest ? spacing : thickness / layers;
+}
+
 void lay_boundary(WorkPiece& piece) {
     BoundarySkin anew = boundary_skin(piece.matter, piece.look.get(), piece.roughness);
     piece.skin = std::move(anew.mesh);
@@ -254,14 +262,6 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     if (!stands || start.moves()) place_at_start(start, input.to_mold(), piece.matter);
     if (!stands) follow_matter(piece);
     return piece;
-}
-
-// NOTE: where its layers are filled in part at both ends, what is pressed flows too soon, by up to
-// 8 % of the force at four cells.
-double in_whole_layers(double spacing, double thickness) {
-    constexpr double kFewest = 3;  // of less the spacing would change by more than a sixth
-    const double layers = std::round(thickness / spacing);
-    return layers < kFewest ? spacing : thickness / layers;
 }
 
 WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSettings& skin) {

@@ -4,7 +4,7 @@
 //
 // Sources: S. van der Walt, N. Smith, "viridis", matplotlib 1.5, 2015 (CC0): every tenth of it, and
 // straight lines in sRGB between, which is off by no more than 2 of 255. C. Brewer, "RdBu" of
-// eleven classes, ColorBrewer 2.0, 2013, likewise.
+// eleven classes, ColorBrewer 2.0, 2013, its classes taken as points with straight lines between.
 #pragma once
 
 #include <array>

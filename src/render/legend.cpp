@@ -15,7 +15,6 @@ namespace swage {
 namespace {
 
 constexpr int kPictureRows = 330;  // of a picture, to each pixel of a letter
-constexpr int kSpaced = 1;         // between letters
 constexpr double kShade = 0.45;    // of the picture, left under the legend
 using Color = std::array<double, 3>;
 constexpr Color kInk = {238, 238, 238}, kGround = {24, 26, 30};

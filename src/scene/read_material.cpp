@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "laws/internal_damping.h"
+#include "matter/material_names.h"
 #include "scene/read_flow_curve.h"
 
 namespace swage {
@@ -23,16 +24,6 @@ constexpr double kLeastYield = 1e-6, kMostYield = 0.2;  // likewise, of what the
 // Beyond all matter, and far from where numbers end.
 constexpr Range kStiffness = {.low = 1e-3, .high = 1e15};  // [Pa]
 constexpr Range kDensity = {.low = 1e-3, .high = 1e9};     // [kg/m3]
-
-constexpr std::pair<const char*, Elasticity> kElasticity[] = {
-    {"hencky", Elasticity::hencky},
-    {"neo-hookean", Elasticity::neo_hookean},
-    {"storakers", Elasticity::storakers}};
-std::string name_of(Elasticity elasticity) {
-    return std::find_if(std::begin(kElasticity), std::end(kElasticity),
-                        [&](const auto& one) { return one.second == elasticity; })
-        ->first;
-}
 
 // Strength and toughness make sense together only; `strength = inf` takes both away.
 void read_fracture(TableReader& table, Material& material) {
@@ -71,7 +62,7 @@ void read_fracture(TableReader& table, Material& material) {
         table.mistake("strength",
                       fmt::format("{} matter does not break: leave strength out (or inf), or use "
                                   "elasticity = \"hencky\"",
-                                  name_of(material.elasticity)));
+                                  name_in(kElasticityNames, material.elasticity)));
     }
 }
 
@@ -95,8 +86,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     const bool has_modulus =
         table.quantity("young_modulus", Quantity::stress, kStiffness, material.young_modulus);
     table.quantity("poisson_ratio", Quantity::number, between(0, 0.49), material.poisson_ratio);
-    table.choice<Elasticity>("elasticity", {std::begin(kElasticity), std::end(kElasticity)},
-                             material.elasticity);
+    table.choice<Elasticity>("elasticity", kElasticityNames, material.elasticity);
     if (material.mechanics == Mechanics::cells && material.elasticity == Elasticity::neo_hookean &&
         material.poisson_ratio < kRubberPoisson) {
         table.warn("elasticity",
@@ -165,9 +155,7 @@ void read_material(TableReader& table, const AssetPaths& assets,
         }
         is_custom = false;
     }
-    table.choice<Mechanics>("mechanics",
-                            {{"cells", Mechanics::cells}, {"springs", Mechanics::springs}},
-                            material.mechanics);
+    table.choice<Mechanics>("mechanics", kMechanicsNames, material.mechanics);
     read_material_numbers(table, is_custom, material);
     if (material.mechanics == Mechanics::springs && table.find("poisson_ratio") != nullptr &&
         std::abs(material.poisson_ratio - kLatticePoisson) > kPoissonSlack) {
@@ -180,7 +168,7 @@ void read_material(TableReader& table, const AssetPaths& assets,
         table.warn("elasticity", "elasticity has no effect on springs");
     }
     if (material.elasticity != Elasticity::hencky && std::isfinite(material.yield_stress)) {
-        const std::string name = name_of(material.elasticity);
+        const std::string name = name_in(kElasticityNames, material.elasticity);
         // A rubber or foam that is told to yield is taken as what can.
         material.elasticity = Elasticity::hencky;
         if (asks_elasticity) {

@@ -36,8 +36,9 @@ std::array<double, 6> turned_back(const Mat3& p, const Mat3& f) {
 
 // Springs harden beyond their law as they flow far.
 double yields_at(const MaterialLaw& law, Mechanics mechanics, double plastic_strain) {
-    if (law.kind != CellKind::yielding || mechanics == Mechanics::springs)
+    if (law.kind != CellKind::yielding || mechanics == Mechanics::springs) {
         return std::numeric_limits<double>::infinity();
+    }
     return mean_flow_stress(law.moduli, plastic_strain, 0);
 }
 

@@ -3,23 +3,9 @@
 
 #include <algorithm>
 
+#include "matter/mixed_place.h"
+
 namespace swage {
-
-namespace {
-
-// On which side of the boundary the place lies, -0.5 to 0.5 in the cell. For a plane across a box
-// the middle of both materials' centroids, less that of all, is on the boundary.
-int material_at(const MixedCell& cell, const Vec3& place) {
-    const double all = double(cell.fill[0]) + double(cell.fill[1]);
-    Vec3 on = Vec3::Zero();
-    for (int m : {0, 1}) on += (1 - cell.fill[m] / all) * cell.centroid[m].cast<double>();
-    const Vec3 normal = cell.normal.cast<double>(),
-               way = (cell.centroid[1] - cell.centroid[0]).cast<double>();
-    const double beyond = normal.dot(place - on);
-    return cell.material[(beyond > 0) == (normal.dot(way) > 0) ? 1 : 0];
-}
-
-}  // namespace
 
 double pressed_modulus(const Material& material, Solver solver) {
     const double nu = material.mechanics == Mechanics::springs ? 0.25 : material.poisson_ratio;

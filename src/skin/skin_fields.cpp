@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "matter/mixed_place.h"
 
 namespace swage {
 
@@ -96,13 +97,7 @@ class Fitter {
     std::uint8_t material_at(CellId cell, const Vec3& local) const {
         const MixedCell* const two = matter_.mixed_at(cell);
         if (two == nullptr) return static_cast<std::uint8_t>(matter_.material_number(cell));
-        // A plane across a box lies between the middles of its parts as their volumes do.
-        const Vec3 low = two->centroid[0].cast<double>(), high = two->centroid[1].cast<double>();
-        const double share = two->fill[0] / (double(two->fill[0]) + two->fill[1]);
-        const Vec3 normal = two->normal.cast<double>();
-        const double way = normal.dot(high - low);
-        const double off = normal.dot(local - Vec3::Constant(0.5) - low) - share * way;
-        return two->material[off * way > 0 ? 1 : 0];
+        return static_cast<std::uint8_t>(swage::material_at(*two, local - Vec3::Constant(0.5)));
     }
 
     // Whether two parts of cells have a corner in common.

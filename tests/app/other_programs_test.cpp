@@ -36,14 +36,20 @@ TEST_CASE("what other programs could not make is on record, and made once they a
 
     const Outcome same = run({{"PATH", "/nonexistent"}});
     CHECK(same.err.find("already complete") != std::string::npos);
-    if (!program_exists("ffmpeg")) return;
+    if (!program_exists("ffmpeg")) {
+        WARN("the rest skipped: ffmpeg is not installed");
+        return;
+    }
     CHECK(run({}).code == 0);
     CHECK(fs::exists(out / "film.mp4"));
     CHECK(Json::parse(bytes_of(out / "run.json")).at("drawing").at("warnings").empty());
 }
 
 TEST_CASE("a plot does not go by what the user has set for plots") {
-    if (!program_exists("gnuplot")) return;
+    if (!program_exists("gnuplot")) {
+        WARN("skipped: gnuplot is not installed");
+        return;
+    }
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path());
     put_text(scratch.path() / "home/.gnuplot", "set xrange [0:1]\nset title 'mine'\n");
