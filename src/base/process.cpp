@@ -6,6 +6,8 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -100,6 +102,13 @@ std::optional<int> wait_for(pid_t child) {
         ended = ::waitpid(child, &status, 0);
     } while (ended < 0 && errno == EINTR);
     return ended == child ? std::optional(status) : std::nullopt;
+}
+
+void become_child(pid_t parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1);  // it was too late for that
+    const rlimit none = {0, 0};
+    ::setrlimit(RLIMIT_CORE, &none);
 }
 
 PipedProgram::PipedProgram(const std::vector<std::string>& argument) {

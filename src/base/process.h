@@ -22,6 +22,9 @@ void expect_children();
 // Waits for a child of this process and gives what waitpid() says of it; nothing, and errno, where
 // nobody can know how it ended.
 std::optional<int> wait_for(pid_t child);
+// First thing in a forked child that starts no program: it ends with its parent, and leaves no
+// image of its memory where it crashes.
+void become_child(pid_t parent);
 
 // To be called where the process ends without its destructors, also by a signal's handler.
 void kill_programs();

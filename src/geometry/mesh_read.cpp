@@ -5,7 +5,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -24,6 +23,7 @@
 
 #include "base/error.h"
 #include "base/file_contents.h"
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/process.h"
@@ -106,8 +106,7 @@ void set_limit(__rlimit_resource what, std::uint64_t value) {
 // loop, never returns; the heap is made safe for forks by glibc.
 [[noreturn]] void run_child(MeshSource& source, int pipe, int file, const ReadLimits& limits,
                             std::uint64_t memory_limit, pid_t parent) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(1);
+    become_child(parent);
     for (const int signal :
          {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGPIPE})
         std::signal(signal, SIG_DFL);
@@ -119,7 +118,6 @@ void set_limit(__rlimit_resource what, std::uint64_t value) {
     if (low > 3) ::close_range(3, low - 1, 0);
     if (high > low + 1) ::close_range(std::max(3u, low + 1), high - 1, 0);
     ::close_range(std::max(3u, high + 1), ~0u, 0);
-    set_limit(RLIMIT_CORE, 0);
     set_limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::max(1, limits.cpu_seconds)));
     if (!kSanitized) set_limit(RLIMIT_AS, memory_limit);
     try {
@@ -146,7 +144,8 @@ void set_limit(__rlimit_resource what, std::uint64_t value) {
     ::_exit(0);
 }
 
-// Everything the child sends until it closes the pipe; false when time or room runs out.
+// Everything the child sends until it closes the pipe; false when time or room runs out, or when
+// somebody asks to stop.
 bool receive(int pipe, const ReadLimits& limits, std::string& bytes, bool& too_large) {
     using Clock = std::chrono::steady_clock;
     const auto deadline = Clock::now() + std::chrono::seconds(std::max(1, limits.wall_seconds));
@@ -154,7 +153,7 @@ bool receive(int pipe, const ReadLimits& limits, std::string& bytes, bool& too_l
     std::size_t have = 0;
     for (;;) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
-        if (left.count() <= 0) return false;
+        if (left.count() <= 0 || asked_to_stop() != 0) return false;
         pollfd wait = {pipe, POLLIN, 0};
         const int ready =
             ::poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), 1000)));
@@ -212,6 +211,7 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
     if (!ended)
         fail(ExitCode::resources, "{}: nobody knows how its reader ended: {}", name,
              std::strerror(errno));
+    throw_if_interrupted();  // which a terminal tells the reader too
     const int outcome = *ended;
     const double limit_gib = static_cast<double>(limits.memory_bytes) / (1 << 30);
     if (too_large || (WIFEXITED(outcome) && WEXITSTATUS(outcome) == kOutOfMemory))

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,8 +24,8 @@ namespace {
 
 constexpr std::size_t kLongestReason = 4096;  // which a pipe holds
 
-[[noreturn]] void try_here(GlProviderKind kind, int threads, int to_parent) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+[[noreturn]] void try_here(GlProviderKind kind, int threads, int to_parent, pid_t parent) {
+    become_child(parent);
     try {
         const Canvas canvas(kind, threads);
     } catch (const std::exception& error) {
@@ -44,9 +43,10 @@ void try_canvas(GlProviderKind kind, int threads) {
     const FileHandle from_child(ends[0]);
     FileHandle to_parent(ends[1]);
     expect_children();
+    const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0) return;
-    if (child == 0) try_here(kind, threads, to_parent.id());
+    if (child == 0) try_here(kind, threads, to_parent.id(), parent);
     to_parent.close();
     const std::optional<int> ended = wait_for(child);
     std::string reason(kLongestReason, '\0');
