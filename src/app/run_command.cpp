@@ -25,8 +25,8 @@ int run(const RunArguments& given) {
     options.fresh = given.fresh;
     options.go_on = given.go_on;
     options.insist = given.force;
-    const RunOutcome outcome = run_scene(scene, options);
-    if (given.json) put_json(outcome.record);
+    const Json record = run_scene(scene, options);
+    if (given.json) put_json(record);
     return 0;
 }
 

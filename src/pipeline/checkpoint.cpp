@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3230'7063'6177'7300;  // "\0swacp02" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3330'7063'6177'7300;  // "\0swacp03" on a little-endian machine
 
 template <typename Io>
 void visit_json(Io& io, Json& json) {
@@ -54,19 +54,13 @@ void visit(Io& io, MotionMark& mark) {
 }
 
 template <typename Io>
-void visit(Io& io, StagePlot& plot) {
-    auto& [name, program] = plot;
-    io(name, program);
-}
-
-template <typename Io>
 void visit(Io& io, Reached& reached) {
-    auto& [stages, bodies, matter, stage, start_warning, warning, steps, seconds, motion, skin,
-           plot] = reached;
+    auto& [stages, bodies, matter, stage, start_warning, warning, steps, seconds, motion, skin] =
+        reached;
     io(stages, bodies);
     visit_json(io, matter);
     visit_json(io, stage);
-    io(start_warning, warning, steps, seconds, motion, skin, plot);
+    io(start_warning, warning, steps, seconds, motion, skin);
 }
 
 void write_checkpoint(const fs::path& file, const StageKeys& keys, const Reached& reached) {

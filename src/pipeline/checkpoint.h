@@ -10,7 +10,6 @@
 
 #include "pipeline/frame_store.h"
 #include "pipeline/json.h"
-#include "pipeline/plot.h"
 #include "pipeline/work_piece.h"
 
 namespace swage {
@@ -24,8 +23,7 @@ struct Reached {
     long steps = 0;
     std::vector<std::pair<std::string, double>> seconds;  // by phase
     MotionMark motion;
-    std::vector<int> skin;        // of each body: its number in the motion file
-    std::vector<StagePlot> plot;  // of each stage, which may not have been drawn yet
+    std::vector<int> skin;  // of each body: its number in the motion file
 };
 
 // Of a run that has finished so many stages: what made it what it is until then, and which build

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -14,6 +15,8 @@
 #include "base/text.h"
 
 namespace swage {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -45,35 +48,57 @@ double most_of(const StageCurves& curves, std::vector<Vec3> LoadCurve::*felt) {
 std::string graph(const StageCurves& curves, const std::string& label,
                   std::vector<Vec3> LoadCurve::*felt) {
     const PlotAxis axis = plot_axis(curves);
-    std::vector<std::string> lines;
+    std::string program;
+    std::vector<std::string> plots;
     for (std::size_t n = 0; n < curves.load().size(); ++n) {
         const LoadCurve& load = curves.load()[n];
         if (std::all_of((load.*felt).begin(), (load.*felt).end(),
                         [](const Vec3& v) { return v.isZero(0); })) {
             continue;
         }
-        std::string data = fmt::format("$load{} << EOD\n", n);
+        program += fmt::format("$load{} << EOD\n", n);
         for (std::size_t row = 0; row < curves.rows(); ++row) {
-            data += fmt::format("{:.9g} {:.9g}\n", axis.value[row], (load.*felt)[row].norm());
+            program += fmt::format("{:.9g} {:.9g}\n", axis.value[row], (load.*felt)[row].norm());
         }
-        lines.push_back(data + "EOD\n");
-        lines.push_back(fmt::format("$load{} using 1:2 with lines linetype {} linewidth 2 title {}",
+        program += "EOD\n";
+        plots.push_back(fmt::format("$load{} using 1:2 with lines linetype {} linewidth 2 title {}",
                                     n, n + 1, quoted(load.name)));
     }
-    if (lines.empty()) return {};
-    std::string program;
-    std::vector<std::string> plots;
-    for (std::size_t n = 0; n < lines.size(); n += 2) {
-        program += lines[n];
-        plots.push_back(lines[n + 1]);
-    }
+    if (plots.empty()) return {};
     return program + "set ylabel " + quoted(label) + "\n" + "plot " + joined(plots, ", \\\n     ") +
            "\n";
 }
 
+// Writes the SVG whole. What kept it from that; empty: nothing, or somebody who asked the process
+// to end.
+std::string draw_plot(const fs::path& program, const fs::path& svg) {
+    const fs::path temporary = temporary_for(svg);
+    std::string why;
+    std::error_code error;
+    try {
+        // -d: without what the user has set for other plots.
+        PipedProgram gnuplot({"gnuplot", "-d", "-e",
+                              "set output " + quoted(fs::absolute(temporary).string()),
+                              fs::absolute(program).string()});
+        const int status = gnuplot.finish_within(kLongest);
+        if (status == 0 && fs::exists(temporary, error)) {
+            publish(temporary, svg);
+            fs::remove(program, error);
+            return {};
+        }
+        why = status == 128 + SIGKILL ? fmt::format("it was killed, after {} s at most", kLongest)
+                                      : gnuplot.last_error_line();
+    } catch (const Error& failure) {
+        why = failure.what();
+    }
+    fs::remove(temporary, error);
+    if (asked_to_stop() != 0) return {};
+    return fmt::format("{}: gnuplot could not draw it: {}", svg.string(), why);
+}
+
 }  // namespace
 
-StagePlot plot_of(const StageCurves& curves, double size) {
+std::string plot_program(const StageCurves& curves, double size) {
     const double most_force = most_of(curves, &LoadCurve::force) * size;
     const double most_torque = most_of(curves, &LoadCurve::torque);
     std::string force, torque;
@@ -98,38 +123,43 @@ StagePlot plot_of(const StageCurves& curves, double size) {
     program += force + torque;
     if (panels == 0) program += "set yrange [0:1]\nplot [0:1] 0 title 'nothing was felt'\n";
     if (panels == 2) program += "unset multiplot\n";
-    return {curves.stage(), program + "set output\n"};
+    return program + "set output\n";
 }
 
-bool gnuplot_is_present() { return program_exists("gnuplot"); }
+fs::path plot_program_of(const fs::path& csv) { return fs::path(csv).replace_extension(".gp"); }
 
-std::string draw_plot(const StagePlot& plot, const std::filesystem::path& svg) {
-    const std::filesystem::path temporary = temporary_for(svg);
-    // In a file: a pipe that is not read would hold us up.
-    const std::filesystem::path program = std::filesystem::path(temporary).concat(".gp");
-    std::string why;
-    std::error_code error;
-    try {
-        write_file_whole(program, "set output " + quoted(temporary.string()) + "\n" + plot.program);
-        // -d: without what the user has set for other plots.
-        PipedProgram gnuplot({"gnuplot", "-d", std::filesystem::absolute(program).string()});
-        const int status = gnuplot.finish_within(kLongest);
-        std::filesystem::remove(program, error);
-        if (status == 0 && std::filesystem::exists(temporary, error)) {
-            publish(temporary, svg);
-            return {};
+Plots::Plots(fs::path folder, std::vector<std::string> names)
+    : folder_(std::move(folder)), names_(std::move(names)) {}
+
+bool Plots::has_undrawn() const {
+    std::error_code unknown;
+    return std::any_of(names_.begin(), names_.end(), [&](const std::string& name) {
+        return fs::exists(folder_ / (name + ".gp"), unknown);
+    });
+}
+
+void Plots::draw() {
+    std::error_code unknown;
+    for (const std::string& name : names_) {
+        const fs::path program = folder_ / (name + ".gp");
+        if (asked_to_stop() != 0) return;
+        if (missed_ || tried_.count(name) > 0 || !fs::exists(program, unknown)) continue;
+        if (!program_exists("gnuplot")) {
+            missed_ = true;
+            tell(
+                "no program gnuplot was found, so the curves are not plotted (apt-get install "
+                "gnuplot-nox; swage run then draws what is missing)");
+            return;
         }
-        why = status == 128 + SIGKILL ? fmt::format("it was killed, after {} s at most", kLongest)
-                                      : gnuplot.last_error_line();
-    } catch (const Error& failure) {
-        why = failure.what();
+        tried_.insert(name);
+        std::string why = draw_plot(program, folder_ / (name + ".svg"));
+        if (!why.empty()) tell(std::move(why));
     }
-    std::filesystem::remove(temporary, error);
-    std::filesystem::remove(program, error);
-    if (asked_to_stop() != 0) return {};
-    why = fmt::format("{}: gnuplot could not draw it: {}", svg.string(), why);
-    log_warning("{}", why);
-    return why;
+}
+
+void Plots::tell(std::string warning) {
+    log_warning("{}", warning);
+    warnings_.push_back(std::move(warning));
 }
 
 }  // namespace swage

@@ -50,9 +50,15 @@ bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory
     return true;
 }
 
+Plots plots_of(const SceneSpec& scene, const RunDirectory& directory) {
+    std::vector<std::string> names;
+    for (const StageSpec& stage : scene.stage) names.push_back(stage.name);
+    return {directory.root() / "curves", names};
+}
+
 }  // namespace
 
-RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
+Json run_scene(const SceneSpec& scene, const RunOptions& options) {
     Stopwatch watch;
     const FrameRange wanted = wanted_frames(scene, options);
     std::vector<InputMesh> input;
@@ -74,17 +80,27 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     RunDirectory directory(options.out, identity, options.fresh, options.go_on);
     const DrawnFiles files{directory.root()};
 
-    RunOutcome outcome;
+    Json record;
     const std::optional<Json> earlier =
         may_be_done && !directory.is_changed() ? read_record(directory.record()) : std::nullopt;
     const bool simulated = earlier && is_simulated(*earlier, scene, directory);
-    if (simulated) directory.remove_checkpoint();
-    if (simulated &&
-        (!options.draw || is_drawn(*earlier, files, wanted, scene.render.has_film()))) {
-        log_info("{}: already complete", directory.root().string());
-        outcome.record = *earlier;
-        outcome.was_complete = true;
-        return outcome;
+    // What may fail, and is no loss, comes after everything else of the simulation.
+    Plots plots = plots_of(scene, directory);
+    const auto draw_plots = [&] {
+        const auto lap = watch.lap("plot");
+        plots.draw();
+        record["plots"]["warnings"] = plots.warnings();
+        write_record(directory, record, watch);
+        throw_if_interrupted();
+    };
+    if (simulated) {
+        directory.remove_checkpoint();
+        record = *earlier;
+        if (plots.has_undrawn()) draw_plots();
+        if (!options.draw || is_drawn(record, files, wanted, scene.render.has_film())) {
+            log_info("{}: already complete", directory.root().string());
+            return record;
+        }
     }
     if (may_be_done) refuse_early();
     throw_if_interrupted();
@@ -92,29 +108,28 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
     Ended ended;
     if (simulated) {
         log_info("{}: already simulated", directory.root().string());
-        outcome.record = *earlier;
     } else {
-        outcome.record = begin_record(scene, options, identity, input);
-        ended = simulate(scene, input, cost.warning, directory, outcome.record, watch);
+        record = begin_record(scene, options, identity, input);
+        ended = simulate(scene, input, cost.warning, directory, plots, record, watch);
     }
-    const int reached = outcome.record.at("frames").get<int>();
+    const int reached = record.at("frames").get<int>();
     if (ended.interrupted) {
         log_text(fmt::format("{} of {} frames are finished; swage render {} draws them", reached,
                              frame_count(scene), directory.root().string()));
         throw *ended.interrupted;
     }
     const auto draw = [&] {
+        if (!simulated) draw_plots();
         if (!options.draw || wanted.first > reached) return;
         const FrameStore store(directory.store());
         const FrameRange drawn{wanted.first, std::min(wanted.last, reached)};
-        outcome.record["drawing"] =
-            drawing_json(draw_run(store, scene.render, drawn, files, watch));
+        record["drawing"] = drawing_json(draw_run(store, scene.render, drawn, files, watch));
     };
     if (ended.stopped) {
         // What ended the run is its outcome, whether that can be drawn and told or not.
         try {
             draw();
-            write_record(directory, outcome.record, watch);
+            write_record(directory, record, watch);
         } catch (const std::exception& error) {
             const std::optional<Error> failure = failure_of(error);
             if (!failure) throw;
@@ -123,10 +138,10 @@ RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options) {
         throw *ended.stopped;
     }
     draw();
-    outcome.record["state"] = RunState::complete;
-    write_record(directory, outcome.record, watch);
+    record["state"] = RunState::complete;
+    write_record(directory, record, watch);
     log_info("{}: done", directory.root().string());
-    return outcome;
+    return record;
 }
 
 }  // namespace swage

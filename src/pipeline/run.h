@@ -9,13 +9,8 @@
 
 namespace swage {
 
-struct RunOutcome {
-    Json record;                // run.json
-    bool was_complete = false;  // nothing was left to do
-};
-
-// Throws Error (see base/error.h for the codes) and Interrupted; the files that exist are whole.
+// Returns what run.json holds. Throws Error (see base/error.h for the codes) and Interrupted; the files that exist are whole.
 // When the simulation gives up, what was reached is written and drawn before Error(stopped).
-RunOutcome run_scene(const SceneSpec& scene, const RunOptions& options);
+Json run_scene(const SceneSpec& scene, const RunOptions& options);
 
 }  // namespace swage

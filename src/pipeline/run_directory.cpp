@@ -138,7 +138,8 @@ void remove_later_products(const fs::path& root, const std::vector<fs::path>& ke
             const fs::path ending = it->path().extension();
             const bool is_folder = it->is_directory(error);
             const bool is_of_stage = is_folder || ending == ".obj" || ending == ".mtl" ||
-                                     ending == ".ply" || ending == ".csv" || ending == ".svg";
+                                     ending == ".ply" || ending == ".csv" || ending == ".svg" ||
+                                     ending == ".gp";
             const fs::path name = is_folder ? it->path().filename() : it->path().stem();
             if (is_of_stage && !is_kept(folder / name)) {
                 others.push_back(it->path());

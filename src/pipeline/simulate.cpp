@@ -13,9 +13,9 @@
 #include "pipeline/checkpoint.h"
 #include "pipeline/cost.h"
 #include "pipeline/disk_reserve.h"
-#include "pipeline/plot.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
+#include "scene/product_names.h"
 
 namespace swage {
 
@@ -88,13 +88,9 @@ std::vector<fs::path> products_of_stages(const SceneSpec& scene, int count) {
     std::vector<fs::path> products;
     for (int s = 0; s < count; ++s) {
         const StageSpec& stage = scene.stage[static_cast<std::size_t>(s)];
-        products.push_back(curves / stage.name);
-        if (stage.sim.solver != Solver::quasistatic) {
-            products.push_back(curves / (stage.name + "-bodies"));
-        }
-        if (scene.body.size() == 1) products.push_back(meshes / stage.name);
-        for (std::size_t b = 0; scene.body.size() > 1 && b < scene.body.size(); ++b) {
-            products.push_back(meshes / (stage.name + "-" + scene.body[b].name));
+        for (const std::string& table : table_names(stage)) products.push_back(curves / table);
+        for (const BodySpec& body : scene.body) {
+            products.push_back(meshes / mesh_name(scene, stage, body));
         }
     }
     return products;
@@ -136,15 +132,7 @@ fs::path missing_product(const SceneSpec& scene, const RunDirectory& directory) 
 }
 
 Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               RunDirectory& directory, Json& record, Stopwatch& watch) {
-    std::vector<std::string> of_plots;  // warnings
-    const bool can_plot = gnuplot_is_present();
-    if (!can_plot) {
-        of_plots.push_back(
-            "no program gnuplot was found, so the curves are not plotted "
-            "(apt-get install gnuplot-nox)");
-        log_warning("{}", of_plots.back());
-    }
+               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch) {
     std::optional<Kept> kept = kept_by_earlier_run(directory);
     Reached reached;
     if (!kept || directory.is_changed()) {
@@ -186,21 +174,6 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     const auto is_in_vain = [&] {
         return recorder->frame_count() == 0 || (!has_begun && directory.is_changed());
     };
-    // Also of stages that an earlier run did not come to plot.
-    std::size_t plotted = 0;
-    const std::size_t of_earlier = reached.plot.size();
-    const auto draw_plots = [&] {
-        if (!can_plot) return;
-        const auto lap = watch.lap("write");
-        std::error_code error;
-        for (; plotted < reached.plot.size() && asked_to_stop() == 0; ++plotted) {
-            const StagePlot& plot = reached.plot[plotted];
-            const fs::path svg = directory.root() / "curves" / (plot.name + ".svg");
-            const bool stands = plotted < of_earlier && fs::exists(svg, error);
-            const std::string why = stands ? "" : draw_plot(plot, svg);
-            if (!why.empty()) of_plots.push_back(why);
-        }
-    };
     Ended ended;
     int kept_stages = reached.stages;  // that are to be gone on from
     while (reached.stages < stages) {
@@ -214,7 +187,6 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             reached.steps += outcome.steps;
             std::move(outcome.warning.begin(), outcome.warning.end(),
                       std::back_inserter(reached.warning));
-            if (outcome.plot) reached.plot.push_back(std::move(*outcome.plot));
             ended = {outcome.stopped, outcome.interrupted};
         } catch (const Interrupted& interrupted) {
             // While the stage was set up.
@@ -229,7 +201,8 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         if (ended.early()) break;
         if (++reached.stages == stages) break;
         if (keep(directory, *recorder, watch, reached)) kept_stages = reached.stages;
-        draw_plots();
+        const auto lap = watch.lap("plot");
+        plots.draw();
     }
     begin();
     reserve.release();
@@ -238,13 +211,10 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     record["frames"] = recorder->frame_count();
     record["steps"] = reached.steps;
     record["state_hash"] = hash_text(state_hash(reached.bodies));
-    const auto tell_warnings = [&] {
-        Json& told = record["warnings"] = Json::array();
-        for (const auto* all : {&reached.start_warning, &reached.warning, &of_plots}) {
-            for (const std::string& one : *all) told.push_back(one);
-        }
-    };
-    tell_warnings();
+    Json& told = record["warnings"] = Json::array();
+    for (const auto* all : {&reached.start_warning, &reached.warning}) {
+        for (const std::string& one : *all) told.push_back(one);
+    }
     record["state"] = ended.interrupted ? RunState::interrupted
                       : ended.stopped   ? RunState::stopped
                                         : RunState::simulated;
@@ -254,12 +224,6 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         directory.remove_checkpoint();
     } else if (kept_stages > 0) {
         log_info("swage run goes on after stage {} of {}", kept_stages, stages);
-    }
-    // What may fail, and is no loss, comes last.
-    draw_plots();
-    if (!of_plots.empty()) {
-        tell_warnings();
-        write_record(directory, record, watch);
     }
     return ended;
 }

@@ -11,6 +11,7 @@
 #include "base/interrupt.h"
 #include "base/stopwatch.h"
 #include "pipeline/json.h"
+#include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/start_warnings.h"
 #include "pipeline/work_piece.h"
@@ -28,9 +29,10 @@ struct Ended {
 // A mesh or a table of a whole simulation that is not there any more; empty: all are.
 std::filesystem::path missing_product(const SceneSpec& scene, const RunDirectory& directory);
 
-// The motion file and run.json stand when it returns. `record`: begin_record's. `at_start`: what
-// can be said before anything is molded.
+// The motion file and run.json stand when it returns, and the plots of all stages but the last that
+// it did are tried. `record`: begin_record's. `at_start`: what can be said before anything is
+// molded.
 Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               RunDirectory& directory, Json& record, Stopwatch& watch);
+               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch);
 
 }  // namespace swage

@@ -23,6 +23,7 @@
 #include "pipeline/start_overlap.h"
 #include "pipeline/start_warnings.h"
 #include "pipeline/stiffness_note.h"
+#include "scene/product_names.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
 #include "skin/cut_layout.h"
@@ -62,12 +63,6 @@ class WarningBook {
     std::map<std::string, std::vector<int>> frames_;
     std::vector<std::string> order_;
 };
-
-// Where a body's meshes go: under the stage's name, and its own where there are several.
-fs::path mesh_stem(const fs::path& root, const std::string& stage,
-                   const std::vector<WorkPiece>& bodies, std::size_t body) {
-    return root / "meshes" / (bodies.size() == 1 ? stage : stage + "-" + bodies[body].name);
-}
 
 // OBJ has no place for fields.
 void write_meshes(const WorkPiece& body, const std::vector<SkinField>& fields,
@@ -152,8 +147,8 @@ class StageRun {
             outcome_.warning.push_back(fmt::format("{}: {}", stage.name, warning));
             log_warning("{}", outcome_.warning.back());
         }
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-            meshes_.push_back(mesh_stem(context.root, stage.name, bodies, b));
+        for (const BodySpec& body : context.scene.body) {
+            meshes_.push_back(context.root / "meshes" / mesh_name(context.scene, stage, body));
         }
     }
 
@@ -192,14 +187,19 @@ class StageRun {
             });
         }
         const fs::path folder = context_.root / "curves";
-        keep([&] { write_file_whole(folder / (stage_.name + ".csv"), csv_text(curves)); });
+        const fs::path table = folder / (stage_.name + ".csv");
+        keep([&] { write_file_whole(table, csv_text(curves)); });
+        keep([&] {
+            write_file_whole(plot_program_of(table),
+                             plot_program(curves, machine_.frame.size.norm()));
+        });
         if (body_table_) {
             keep([&] {
-                write_file_whole(folder / (stage_.name + "-bodies.csv"), body_table_->csv_text());
+                write_file_whole(folder / (body_table_name(stage_) + ".csv"),
+                                 body_table_->csv_text());
             });
         }
         finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1, curves);
-        outcome_.plot = plot_of(curves, machine_.frame.size.norm());
         return std::move(outcome_);
     }
 

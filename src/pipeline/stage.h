@@ -16,7 +16,6 @@
 #include "base/stopwatch.h"
 #include "pipeline/json.h"
 #include "pipeline/motion_recorder.h"
-#include "pipeline/plot.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
 
@@ -35,7 +34,6 @@ struct StageOutcome {
     Json record;  // for run.json
     long steps = 0;
     std::vector<std::string> warning;  // all told already
-    std::optional<StagePlot> plot;     // of its curves
     // The simulation gave up, the disk was full, or somebody asked for it; what was reached is
     // kept.
     std::optional<Error> stopped;

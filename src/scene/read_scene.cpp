@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "scene/document.h"
 #include "scene/overrides.h"
+#include "scene/product_names.h"
 #include "scene/read_body.h"
 #include "scene/read_fields.h"
 #include "scene/read_inset.h"
@@ -103,15 +104,15 @@ void refuse_same_files(TableReader& root, const SceneSpec& scene) {
         }
     };
     for (const StageSpec& stage : scene.stage) {
-        std::vector<std::string> tables = {"curves/" + stage.name + ".csv"};
-        if (stage.sim.solver != Solver::quasistatic) {
-            tables.push_back("curves/" + stage.name + "-bodies.csv");
+        std::vector<std::string> tables;
+        for (const std::string& name : table_names(stage)) {
+            tables.push_back("curves/" + name + ".csv");
         }
         refuse_same(tables, fmt::format("stage \"{}\"", stage.name));
         for (const BodySpec& body : scene.body) {
             std::string what = fmt::format("stage \"{}\"", stage.name);
             if (has_several) what = fmt::format("body \"{}\" of {}", body.name, what);
-            const std::string stem = has_several ? stage.name + "-" + body.name : stage.name;
+            const std::string stem = mesh_name(scene, stage, body);
             std::vector<std::string> files = {stem + ".obj", stem + ".mtl", stem + ".ply"};
             if (scene.output.meshes_per_frame) files.push_back(stem);
             refuse_same(files, what);

@@ -2,6 +2,8 @@
 #include <signal.h>
 
 #include <chrono>
+#include <fstream>
+#include <string>
 #include <thread>
 
 #include "base/process.h"
@@ -122,6 +124,29 @@ TEST_CASE("finished frames are kept though a plot hangs, which ends with the run
     CHECK(fs::exists(run / "curves/1-bend.svg"));
 }
 
+TEST_CASE("a run that is asked to stop while its last plot is drawn is not done") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    const fs::path run = scratch.path() / "run";
+    const fs::path gnuplot = scratch.path() / "gnuplot";
+    put_text(gnuplot, "#!/bin/sh\ntouch plotting\nsleep 1000 & wait\n");
+    fs::permissions(gnuplot, fs::perms::owner_all);
+    RunningSwage running({"run", scene.string(), "--no-render", "--out", run.string()},
+                         scratch.path(),
+                         {{"PATH", scratch.path().string() + ":" + std::getenv("PATH")}});
+    REQUIRE(wait_for(scratch.path() / "plotting", running));
+    running.signal(SIGINT);
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    CHECK(outcome.code == 128 + SIGINT);
+    check_only_whole_files(run);
+    REQUIRE(fs::exists(run / "run.json"));
+    CHECK(Json::parse(bytes_of(run / "run.json"))["state"] == "simulated");
+    if (!swage::program_exists("gnuplot")) return;
+    CHECK(run_swage({"run", scene.string(), "--no-render", "--out", run.string()}).code == 0);
+    CHECK(fs::exists(run / "curves/1-bend.svg"));
+}
+
 TEST_CASE("who asks a run to end by two signals at a time, as timeout does, asks once") {
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path(), 2000);
@@ -140,6 +165,36 @@ TEST_CASE("who asks a run to end by two signals at a time, as timeout does, asks
     REQUIRE(fs::exists(run / "run.json"));
     CHECK(Json::parse(bytes_of(run / "run.json"))["state"] == "interrupted");
     CHECK(fs::exists(run / "motion.bin"));
+}
+
+// As a terminal does: to the process and to what it has started.
+TEST_CASE("who asks a program to end while it reads a mesh is not told that the file is damaged") {
+    const int signal = GENERATE(SIGINT, SIGTERM);
+    const Scratch scratch;
+    const fs::path mesh = scratch.path() / "long.obj";
+    std::string text;
+    for (int n = 0; n < 500'000; ++n) {
+        text += "v " + std::to_string(n) + " " + std::to_string(n % 7) + " 0\n";
+    }
+    for (int n = 1; n + 2 <= 500'000; ++n) {
+        text += "f " + std::to_string(n) + " " + std::to_string(n + 1) + " " +
+                std::to_string(n + 2) + "\n";
+    }
+    put_text(mesh, text);
+    RunningSwage running({"info", mesh.string()}, scratch.path());
+    const std::string pid = std::to_string(running.pid());
+    const fs::path children = fs::path("/proc") / pid / "task" / pid / "children";
+    std::string child;
+    for (int n = 0; n < 500 && child.empty() && running.is_running(); ++n) {
+        nap(2);
+        std::ifstream(children) >> child;
+    }
+    running.signal(signal);
+    if (!child.empty()) ::kill(std::stoi(child), signal);
+    const Outcome outcome = running.wait();
+    INFO(outcome.err);
+    CHECK(outcome.code == 128 + signal);
+    CHECK(outcome.err.find("damaged") == std::string::npos);
 }
 
 TEST_CASE("a second run in the same directory is refused while the first goes on") {

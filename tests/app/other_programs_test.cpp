@@ -30,19 +30,26 @@ TEST_CASE("what other programs could not make is on record, and made once they a
     };
     CHECK(run({{"PATH", "/nonexistent"}}).code == 0);
     const Json record = Json::parse(bytes_of(out / "run.json"));
-    CHECK(holds(record.at("warnings"), "gnuplot"));
+    CHECK(holds(record.at("plots").at("warnings"), "gnuplot"));
+    CHECK(fs::exists(out / "curves/1-bend.gp"));
     CHECK(holds(record.at("drawing").at("warnings"), "no film"));
     CHECK_FALSE(fs::exists(out / "film.mp4"));
 
     const Outcome same = run({{"PATH", "/nonexistent"}});
     CHECK(same.err.find("already complete") != std::string::npos);
-    if (!program_exists("ffmpeg")) {
-        WARN("the rest skipped: ffmpeg is not installed");
+    if (!program_exists("ffmpeg") || !program_exists("gnuplot")) {
+        WARN("the rest skipped: ffmpeg or gnuplot is not installed");
         return;
     }
     CHECK(run({}).code == 0);
     CHECK(fs::exists(out / "film.mp4"));
-    CHECK(Json::parse(bytes_of(out / "run.json")).at("drawing").at("warnings").empty());
+    CHECK(fs::exists(out / "curves/1-bend.svg"));
+    CHECK_FALSE(fs::exists(out / "curves/1-bend.gp"));
+    const Json now = Json::parse(bytes_of(out / "run.json"));
+    CHECK(now.at("drawing").at("warnings").empty());
+    CHECK(now.at("plots").at("warnings").empty());
+    CHECK(now.at("state") == "complete");
+    CHECK(now.at("seconds").at("simulate") == record.at("seconds").at("simulate"));
 }
 
 TEST_CASE("a plot does not go by what the user has set for plots") {

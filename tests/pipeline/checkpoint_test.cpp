@@ -93,7 +93,6 @@ Reached reached_with(std::vector<WorkPiece> bodies) {
     reached.start_warning = {"coarse"};
     reached.warning = {"odd \xff text", ""};
     reached.steps = 12345678901;
-    reached.plot = {{"1-bend", "plot 0\n"}};
     reached.seconds = {{"mold", 0.5}};
     reached.motion = {1234, 5678};
     reached.skin.assign(reached.bodies.size(), 3);

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/atomic_file.h"
 #include "base/process.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
@@ -27,7 +28,7 @@ StageCurves squeeze(const std::string& name) {
 }  // namespace
 
 TEST_CASE("a plot shows what was felt, names its axes with units, and nothing else") {
-    const std::string program = plot_of(squeeze("1-squeeze"), 0.1).program;
+    const std::string program = plot_program(squeeze("1-squeeze"), 0.1);
     CHECK(program.find("stroke of ram''s head [mm]") != std::string::npos);
     CHECK(program.find("[N]") != std::string::npos);
     CHECK(program.find("idle_roller") == std::string::npos);
@@ -44,7 +45,7 @@ TEST_CASE("a plot leaves out what is nothing beside the rest: torques of forces,
         report.load[0].force = {0, -force, 0};
         report.load[0].torque = {torque, 0, 0};
         curves.add(2, report);
-        return plot_of(curves, size).program;
+        return plot_program(curves, size);
     };
     const auto shows = [](const std::string& program, const char* unit) {
         return program.find(unit) != std::string::npos;
@@ -58,15 +59,22 @@ TEST_CASE("a plot leaves out what is nothing beside the rest: torques of forces,
 }
 
 TEST_CASE("gnuplot draws every plot, an empty one too") {
-    if (!gnuplot_is_present()) {
+    if (!program_exists("gnuplot")) {
         WARN("skipped: gnuplot is not installed");
         return;
     }
     const Scratch scratch;
     const std::filesystem::path svg = scratch.path() / "it's a plot.svg";
+    const std::filesystem::path program = scratch.path() / "it's a plot.gp";
     for (const StageCurves& curves :
          {squeeze("1-squeeze"), StageCurves("2-rest", 6, {{"ram", Pose{}}})}) {
-        REQUIRE(draw_plot(plot_of(curves, 0.1), svg).empty());
+        Plots plots(scratch.path(), {"none", "it's a plot"});
+        CHECK_FALSE(plots.has_undrawn());
+        write_file_whole(program, plot_program(curves, 0.1));
+        CHECK(plots.has_undrawn());
+        plots.draw();
+        CHECK(plots.warnings().empty());
+        CHECK_FALSE(std::filesystem::exists(program));
         std::ifstream in(svg);
         std::stringstream text;
         text << in.rdbuf();
