@@ -4,9 +4,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -20,6 +25,19 @@ namespace {
     const int reason = errno;
     ::unlink(temporary.c_str());
     fail(ExitCode::output, "{}: cannot {}: {}", file.string(), act, std::strerror(reason));
+}
+
+// ".frame_0001.part1234.png" of the process 1234. 0: of this process, or of one that is no more.
+bool is_temporary(const std::string& name, long pid) {
+    const std::size_t part = name.rfind(".part");
+    if (name.empty() || name[0] != '.' || part == std::string::npos) return false;
+    std::size_t end = part + 5;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+    const std::string digits = name.substr(part + 5, end - part - 5);
+    if (digits.empty() || (end < name.size() && name[end] != '.')) return false;
+    if (pid != 0) return digits == std::to_string(pid);
+    const long owner = std::strtol(digits.c_str(), nullptr, 10);
+    return owner == ::getpid() || (::kill(static_cast<pid_t>(owner), 0) != 0 && errno == ESRCH);
 }
 
 }  // namespace
@@ -66,6 +84,16 @@ void write_file_whole(const fs::path& file, std::string_view bytes) {
     WholeFile whole(file);
     whole.put(bytes);
     whole.finish();
+}
+
+void remove_temporaries(const fs::path& directory, long pid) {
+    std::error_code ignored;
+    std::vector<fs::path> found;
+    for (fs::recursive_directory_iterator it(directory, ignored), end; !ignored && it != end;
+         it.increment(ignored)) {
+        if (is_temporary(it->path().filename().string(), pid)) found.push_back(it->path());
+    }
+    for (const fs::path& file : found) fs::remove(file, ignored);
 }
 
 }  // namespace swage

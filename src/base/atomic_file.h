@@ -33,4 +33,8 @@ class WholeFile {
 std::filesystem::path temporary_for(const std::filesystem::path& file);
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& file);
 
+// Removes temporaries that the process `pid` has left in a directory tree; 0: this one, and any
+// that is no more.
+void remove_temporaries(const std::filesystem::path& directory, long pid);
+
 }  // namespace swage

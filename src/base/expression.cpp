@@ -244,7 +244,7 @@ class Reader {
         if (is_called && function != nullptr) {
             write(word, from);
             write("(", next);
-            bracket_.push_back({next, true});
+            open_bracket(next, true);
             at_ = next + 1;
         } else if (is_called && (variable != variables_.end() || word == "pi")) {
             refuse(from, fmt::format("\"{0}\" is no function; to multiply write {0}*(...)", word));
@@ -277,8 +277,7 @@ class Reader {
         }
         const char sign = rest[0];
         if (sign == '(') {
-            bracket_.push_back({at_, false});
-            if (bracket_.size() > kDeepest) refuse(at_, "too many brackets in brackets");
+            open_bracket(at_, false);
         } else if (sign == ')') {
             if (bracket_.empty()) refuse(at_, "this bracket was never opened");
             bracket_.pop_back();
@@ -296,6 +295,11 @@ class Reader {
         write(std::string_view(&sign, 1), at_);
         ++at_;
         if (sign == '+' || sign == '-') refuse_sign_of_nothing(sign);
+    }
+
+    void open_bracket(std::size_t at, bool of_function) {
+        bracket_.push_back({at, of_function});
+        if (bracket_.size() > kDeepest) refuse(at, "too many brackets in brackets");
     }
 
     // muparser knows no words for it where the sign is that of a number.

@@ -250,6 +250,11 @@ bool is_mesh_file_name(const fs::path& file) {
     return format_of(file, ignored);
 }
 
+bool keeps_numbers_beside(const fs::path& file) {
+    MeshFormat format;
+    return format_of(file, format) && format == MeshFormat::gltf;
+}
+
 TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<std::string>* finding,
                   double crease_angle) {
     return read_with(file, limits, [&](RawMesh& raw) {

@@ -34,5 +34,7 @@ TriMesh read_mesh(const std::filesystem::path& file, const ReadLimits& limits = 
 // Whether the name ends like a mesh file that can be read: one of these.
 inline constexpr const char* kMeshKinds = "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS, 3MF";
 bool is_mesh_file_name(const std::filesystem::path& file);
+// Whether its numbers may lie in other files.
+bool keeps_numbers_beside(const std::filesystem::path& file);
 
 }  // namespace swage

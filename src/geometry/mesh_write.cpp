@@ -370,7 +370,7 @@ void write_ply(const fs::path& file, const TriMesh& mesh, const std::vector<Vert
     for (std::size_t p = 0; p < polygons.count() && images > 0; ++p) {
         if (corner_uv && !has_uv(p)) continue;
         const int t = polygons.corner[polygons.first[p]] / 3;
-        face_image[p] = mesh.triangle_material.empty() ? 0 : image_of[mesh.triangle_material[t]];
+        face_image[p] = image_of[mesh.triangle_material.empty() ? 0 : mesh.triangle_material[t]];
     }
     const bool chosen =
         images > 1 || (images == 1 && std::count(face_image.begin(), face_image.end(), -1) > 0);

@@ -6,16 +6,13 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cctype>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <ctime>
 #include <mutex>
-#include <string>
 #include <thread>
-#include <vector>
 
+#include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/process.h"
 
@@ -35,6 +32,7 @@ std::mutex unfinished_mutex;
 fs::path unfinished;
 std::atomic<bool> frames_at_stake = false;
 std::atomic<long> first_asked = 0;  // [ms]
+static_assert(std::atomic<long>::is_always_lock_free, "a signal handler writes it");
 
 long milliseconds_now() {
     timespec now{};
@@ -45,13 +43,14 @@ long milliseconds_now() {
 extern "C" void take_signal(int signal) {
     // A forked child has no watching thread.
     if (::getpid() != owner) ::_exit(128 + signal);
-    if (asked_to_stop() == 0) {
-        first_asked = milliseconds_now();
-    } else {
+    // Two threads may each take one.
+    const long now = milliseconds_now();
+    long first = 0;
+    if (!first_asked.compare_exchange_strong(first, now)) {
         // Shell and kernel both send the one, and the system the others again and again; `timeout`
         // sends its signal to the process and to its group.
         const bool insists = signal == SIGINT || signal == SIGTERM;
-        if (!insists || milliseconds_now() - first_asked < kOneAsking) return;
+        if (!insists || now - first < kOneAsking) return;
     }
     ask_to_stop(signal);
     const char byte = 1;
@@ -80,20 +79,6 @@ void watch() {
     }
     if (!again && is_stopping()) wait_for_signal(kFarewellMilliseconds);
     leave_at_once(128 + asked_to_stop());
-}
-
-// ".frame_0001.part1234.png" of the process 1234 (see base/atomic_file.h). 0: of this process, or
-// of one that is no more.
-bool is_temporary(const std::string& name, long pid) {
-    const std::size_t part = name.rfind(".part");
-    if (name.empty() || name[0] != '.' || part == std::string::npos) return false;
-    std::size_t end = part + 5;
-    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
-    const std::string digits = name.substr(part + 5, end - part - 5);
-    if (digits.empty() || (end < name.size() && name[end] != '.')) return false;
-    if (pid != 0) return digits == std::to_string(pid);
-    const long owner = std::strtol(digits.c_str(), nullptr, 10);
-    return owner == ::getpid() || (::kill(static_cast<pid_t>(owner), 0) != 0 && errno == ESRCH);
 }
 
 }  // namespace
@@ -135,15 +120,5 @@ void leave_at_once(int code) {
 }
 
 void set_frames_at_stake(bool are_at_stake) { frames_at_stake = are_at_stake; }
-
-void remove_temporaries(const fs::path& directory, long pid) {
-    std::error_code ignored;
-    std::vector<fs::path> found;
-    for (fs::recursive_directory_iterator it(directory, ignored), end; !ignored && it != end;
-         it.increment(ignored)) {
-        if (is_temporary(it->path().filename().string(), pid)) found.push_back(it->path());
-    }
-    for (const fs::path& file : found) fs::remove(file, ignored);
-}
 
 }  // namespace swage

@@ -24,8 +24,4 @@ void set_frames_at_stake(bool are_at_stake);
 // Ends the process from any thread, without waiting for others and without its unfinished files.
 [[noreturn]] void leave_at_once(int code);
 
-// Removes temporaries left in a directory tree by processes that wrote files whole; `pid` 0: by
-// this one, and by any that is no more.
-void remove_temporaries(const std::filesystem::path& directory, long pid);
-
 }  // namespace swage

@@ -49,12 +49,6 @@ std::string add_file(RunIdentity& identity, const std::string& kind, const fs::p
     return free_role;
 }
 
-// Whether the numbers of a mesh lie in other files.
-bool keeps_numbers_beside(const fs::path& file) {
-    const std::string ending = file.extension().string();
-    return ending == ".gltf" || ending == ".GLTF";
-}
-
 void add_as_read(RunIdentity& identity, const std::string& role, const fs::path& file,
                  const TriMesh& mesh) {
     identity.input.push_back(

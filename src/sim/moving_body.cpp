@@ -316,9 +316,12 @@ double MovingBody::round_off(double step) const {
     const Vec3Array& x = matter_.particle_position;
     const Vec3 gravity = this->gravity().cwiseAbs();
     const double eps = std::numeric_limits<double>::epsilon();
-    const Material& material = matter_.material;
-    const bool is_hencky = material.elasticity == Elasticity::hencky;
-    const double modulus = !is_hencky ? material.young_modulus / material.density : 0;  // [J/kg]
+    double modulus = 0;  // [J/kg], of laws whose energy is a difference of large numbers
+    for (std::size_t n = 0; n < matter_.material_count(); ++n) {
+        const Material& material = matter_.material_at(n);
+        if (material.elasticity == Elasticity::hencky) continue;
+        modulus = std::max(modulus, material.young_modulus / material.density);
+    }
     return chunked_sum(x.size(), [&](std::size_t p) {
         const double mass = matter_.particle_mass[p];
         const Vec3 far = eps * x.at(p).cwiseAbs();

@@ -269,8 +269,8 @@ class Breaker {
             if (here.balance > 0) continue;
             int from = here.vertex;
             const double end = (next.at > here.at ? next.at : next.at + 4) * parts_;
-            for (int n = static_cast<int>(std::floor(here.at * parts_)) + 1; n < end; ++n) {
-                const int to = vertex_at(rim_point(face, n), from);
+            for (int k = static_cast<int>(std::floor(here.at * parts_)) + 1; k < end; ++k) {
+                const int to = vertex_at(rim_point(face, k), from);
                 segments.push_back({from, to});
                 from = to;
             }

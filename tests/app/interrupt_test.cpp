@@ -58,6 +58,7 @@ TEST_CASE("a run that is asked to stop leaves only whole files within two second
     INFO(outcome.err);
     CHECK(std::chrono::duration<double>(Clock::now() - asked).count() < 2.5);
     CHECK(outcome.code == 128 + signal);
+    if (while_drawing) REQUIRE(fs::exists(run));
     check_only_whole_files(run);
     CHECK_FALSE(fs::exists(run / "film.mp4"));
 }

@@ -158,8 +158,12 @@ TEST_CASE("a mistake in an expression is named at its place") {
         CHECK(mistake.rfind(one.mistake, 0) == 0);
     }
     CHECK(mistake_of(std::string(5000, '1')).find("too long") != std::string::npos);
-    CHECK(mistake_of(std::string(2000, '(') + "1" + std::string(2000, ')')).find("brackets") !=
-          std::string::npos);
+    for (const std::string open : {"(", "abs("}) {
+        std::string deep;
+        for (int n = 0; n < 400; ++n) deep += open;
+        CHECK(mistake_of(deep + "1" + std::string(400, ')')).find("brackets in") !=
+              std::string::npos);
+    }
 }
 
 TEST_CASE("a formula tells which variables it uses") {

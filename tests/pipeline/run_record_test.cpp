@@ -21,7 +21,8 @@ TEST_CASE("what lies beside a glTF file that a scene reads belongs to what a run
     };
     SceneSpec scene;
     scene.body.emplace_back();
-    const auto file = put("core.gltf",
+    const std::string name = GENERATE("core.gltf", "core.glTF");
+    const auto file = put(name.c_str(),
                           R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
             "nodes": [{"mesh": 0}],
             "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
@@ -41,7 +42,7 @@ TEST_CASE("what lies beside a glTF file that a scene reads belongs to what a run
     put_corners(2);
     CHECK(hashes() != one);
     // What cannot be read is refused where it is used, which knows its place.
-    put("core.gltf", "no glTF");
+    put(name.c_str(), "no glTF");
     CHECK_NOTHROW(hashes());
 }
 
