@@ -19,20 +19,22 @@ namespace {
 struct ExportArguments {
     std::string run, out, frames;
     std::optional<int> frames_per_second;
-    bool json = false;
+    bool no_tools = false, json = false;
 };
 
 UsdScene usd_scene_of(const Json& record, const std::optional<int>& frames_per_second) {
-    const RenderSettings drawn = render_settings_of(record);
     UsdScene scene;
-    scene.frames_per_second = frames_per_second.value_or(drawn.frames_per_second);
-    scene.up = drawn.up;
+    scene.render = render_settings_of(record);
+    if (frames_per_second) scene.render.frames_per_second = *frames_per_second;
     try {
         scene.name = fs::path(record.at("scene").get<std::string>()).stem().string();
         for (const Json& body : record.at("bodies")) scene.body.push_back(body.at("name"));
+        for (const Json& stage : record.value("stages", Json::array())) {
+            scene.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
+        }
     } catch (const Json::exception&) {
         fail(ExitCode::output,
-             "run.json does not say what bodies the run has; run it again with --fresh");
+             "run.json does not say what bodies and stages the run has; run it again with --fresh");
     }
     return scene;
 }
@@ -41,7 +43,8 @@ int export_run(const ExportArguments& given) {
     const fs::path run = given.run;
     const std::optional<Json> record = read_record(run / "run.json");
     if (!record) fail(ExitCode::output, "{}: is no finished run of swage", run.string());
-    const UsdScene scene = usd_scene_of(*record, given.frames_per_second);
+    UsdScene scene = usd_scene_of(*record, given.frames_per_second);
+    scene.tools = !given.no_tools;
     const fs::path file = given.out.empty() ? RunDirectory::exported(run) / (scene.name + ".usda")
                                             : fs::path(given.out);
     if (file.extension() != ".usda") {
@@ -55,13 +58,15 @@ int export_run(const ExportArguments& given) {
         const auto lap = watch.lap("export");
         return export_usd(store, scene, frames, file);
     }();
-    log_info("{}: {}, {}, {}", file.string(), counted(outcome.bodies, "body", "bodies"),
+    log_info("{}: {}, {}, {}, {}", file.string(), counted(outcome.bodies, "body", "bodies"),
+             counted(outcome.tools, "tool", "tools"),
              counted(std::size_t(frames.last - frames.first + 1), "frame", "frames"),
              bytes_text(double(outcome.bytes)));
     if (given.json) {
         put_json({{"out", file.string()},
                   {"images", outcome.image},
                   {"bodies", outcome.bodies},
+                  {"tools", outcome.tools},
                   {"frames", {frames.first, frames.last}},
                   {"bytes", outcome.bytes},
                   {"seconds", seconds_json(watch)}});
@@ -75,7 +80,8 @@ void add_export_command(CLI::App& app, Action& chosen) {
     static ExportArguments given;
     CLI::App* command = add_command(
         app, "export",
-        "Write the moving skins of a finished run as one file, for Blender, Houdini, Maya, ...",
+        "Write the moving skins and tools of a finished run, and the camera of its stills, as one "
+        "file, for Blender, Houdini, Maya, ...",
         "  swage export renders/calf-line\n"
         "  swage export renders/calf-line --frames 1-40 --out /tmp/bend.usda\n",
         chosen, [] { return export_run(given); });
@@ -83,8 +89,9 @@ void add_export_command(CLI::App& app, Action& chosen) {
     command
         ->add_option("-o,--out", given.out,
                      "USD as text (default: RUN/usd/SCENE.usda): every body with its materials and "
-                     "where it is in every frame, in metres; images go beside it. A file that was "
-                     "so written before gives way")
+                     "where it is in every frame, in metres, tools below machine/STAGE, the "
+                     "stills' camera and key_lamp; images go beside it. A file that was so written "
+                     "before gives way")
         ->check(kSomewhere)
         ->type_name("FILE");
     command
@@ -97,6 +104,8 @@ void add_export_command(CLI::App& app, Action& chosen) {
         ->add_option("--fps", given.frames_per_second,
                      "frames a second (default: as the scene's film)")
         ->check(CLI::Range(1, 240));
+    command->add_flag("--no-tools", given.no_tools,
+                      "no tools, grips and blades, which are there where the stills have them");
     command->add_flag("--json", given.json, "print one JSON object");
 }
 

@@ -18,6 +18,8 @@ class UsdLooks {
     // Which look each polygon has, -1 for none; new ones are added. What has an image but no place
     // in it, or colours at its vertices, is a look of its own.
     std::vector<int> of_polygons(const TriMesh& mesh, const PolygonCorners& polygons);
+    // The look of a material without an image.
+    int of_plain(SurfaceMaterial material) { return number_of(std::move(material), false); }
 
     std::size_t count() const { return look_.size(); }
     const std::string& identifier(int look) const { return look_.at(std::size_t(look)).identifier; }

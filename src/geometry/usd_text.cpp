@@ -40,6 +40,18 @@ std::string usd_asset(std::string_view path) {
     return fmt::format("{}{}{}", quote, path, quote);
 }
 
+std::string usd_prim(std::string_view kind, const std::string& name, const std::string& identifier,
+                     std::string_view about) {
+    std::string more;
+    if (identifier != name) {
+        more += fmt::format("    customData = {{\n        string name = {}\n    }}\n",
+                            usd_string(name));
+    }
+    if (!about.empty()) more += fmt::format("    {}\n", about);
+    const std::string head = fmt::format("def {} \"{}\"", kind, identifier);
+    return more.empty() ? head : head + " (\n" + more + ")";
+}
+
 void UsdText::line(std::string_view text) {
     for (const std::string& one : lines_of(std::string(text))) {
         if (!one.empty()) indent();
@@ -72,6 +84,11 @@ void UsdText::number(int value) {
 
 void UsdText::number(float value) {
     fmt::format_to(std::back_inserter(bytes_), FMT_COMPILE("{}"), value + 0.0f);  // no "-0"
+}
+
+void UsdText::place(const Vec3& exact) {
+    const Vec3 p = exact.array() + 0.0;
+    put(fmt::format("({}, {}, {})", p.x(), p.y(), p.z()));
 }
 
 void UsdText::flush() {

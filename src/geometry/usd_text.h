@@ -20,6 +20,11 @@ std::string usd_identifier(std::string_view name, std::set<std::string>& taken);
 std::string usd_string(std::string_view text);  // with its quotes
 std::string usd_asset(std::string_view path);   // with its @
 
+// What a prim begins with. It keeps its name where that is no identifier; `about`: more of the
+// kind.
+std::string usd_prim(std::string_view kind, const std::string& name, const std::string& identifier,
+                     std::string_view about = {});
+
 class UsdText {
   public:
     explicit UsdText(const std::filesystem::path& file) : file_(file) {}
@@ -74,6 +79,8 @@ class UsdText {
     }
     void number(int value);
     void number(float value);  // the shortest that reads back to it
+    void word(std::string_view text) { put(usd_string(text)); }
+    void place(const Vec3& exact);  // in double precision
     template <int Size>
     void vector(const Eigen::Matrix<float, Size, 1>& value) {
         put("(");

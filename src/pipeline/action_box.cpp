@@ -174,6 +174,7 @@ ActionBox find_action(const FrameStore& store, bool tools, const Quat& drawn_fro
             skin.grow(p);
             outline.grow(p);
         });
+        if (part_box.empty()) continue;  // no machine at all
         const std::vector<Box>& boxes = part_box.at(static_cast<std::size_t>(frame.machine));
         for (std::size_t b = 0; b < boxes.size() && b < frame.pose.size(); ++b) {
             if (boxes[b].empty()) continue;

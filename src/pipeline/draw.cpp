@@ -9,14 +9,12 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "pipeline/action_box.h"
 #include "pipeline/field_look.h"
 #include "pipeline/interrupt.h"
-#include "render/camera.h"
+#include "pipeline/shot.h"
 #include "render/canvas_trial.h"
 #include "render/contact_sheet.h"
 #include "render/film.h"
-#include "render/legend.h"
 #include "render/png.h"
 #include "render/renderer.h"
 
@@ -27,18 +25,16 @@ namespace {
 // One frame of the run as the renderer wants it; skins and machines are read when they change.
 class FrameSource {
   public:
-    FrameSource(const FrameStore& store, const RenderSettings& settings,
-                const Quat& drawn_from_world, const FieldLook* look)
+    FrameSource(const FrameStore& store, const Shot& shot, const FieldLook* look)
         : store_(store),
           look_(look),
-          tools_(settings.tools),
-          ground_(settings.ground),
-          drawn_from_world_{drawn_from_world, Vec3::Zero()} {}
+          settings_(shot.settings),
+          drawn_from_world_{shot.drawn_from_world, Vec3::Zero()} {}
 
     Picture picture(int frame) {
         StoredFrame stored = store_.frame(frame - 1);
         body_.resize(stored.body.size());
-        if (tools_ && stored.machine != machine_id_) {
+        if (settings_.tools && stored.machine != machine_id_) {
             machine_ = store_.machine(stored.machine);
             machine_id_ = stored.machine;
         }
@@ -54,18 +50,12 @@ class FrameSource {
             picture.item.push_back(
                 {&body.skin, &body.position, drawn_from_world_, std::nullopt, false});
         }
-        for (std::size_t b = 0; tools_ && b < machine_.size(); ++b) {
-            const Finish finish = machine_[b].finish;
-            const bool hidden = finish == Finish::endless && !ground_;  // it stands for the ground
-            if (hidden || machine_[b].surface.triangle.empty()) continue;
-            SurfaceMaterial look;
-            look.name = machine_[b].name;
-            look.color = machine_[b].color;
-            look.roughness = finish == Finish::metal ? 0.4 : 0.95;
-            look.metallic = finish == Finish::metal ? 0.6 : 0;
+        for (std::size_t b = 0; b < machine_.size(); ++b) {
+            const std::optional<SurfaceMaterial> look = look_of(machine_[b], settings_);
+            if (!look) continue;
             picture.item.push_back({&machine_[b].surface, nullptr,
                                     drawn_from_world_ * stored.pose.at(b), look,
-                                    finish == Finish::endless});
+                                    machine_[b].finish == Finish::endless});
         }
         return picture;
     }
@@ -73,7 +63,7 @@ class FrameSource {
   private:
     const FrameStore& store_;
     const FieldLook* look_;  // null: bodies as they look
-    bool tools_, ground_;
+    const RenderSettings& settings_;
     Pose drawn_from_world_;
     struct Body {
         int skin_id = -1;
@@ -114,14 +104,6 @@ int sheet_columns(int pictures) {
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(pictures) - 1e-9)));
 }
 
-// The renderer has y up: the axes take turns.
-Quat drawn_from_world(Up up) {
-    Mat3 turn = Mat3::Identity();
-    if (up == Up::z) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
-    if (up == Up::x) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-    return Quat(turn);
-}
-
 }  // namespace
 
 void check_drawing(const RenderSettings& settings) { try_canvas(settings.gl, thread_count()); }
@@ -132,16 +114,10 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     std::optional<FieldLook> look;
     if (wanted.color) look.emplace(store, wanted);
     make_folder(files.folder());
-    const Quat turn = drawn_from_world(wanted.up);
-    RenderSettings settings = wanted;
+    const Shot shot = shot_of(store, wanted);
+    const RenderSettings& settings = shot.settings;
+    const ActionBox& action = shot.action;
     const bool has_legend = look && settings.legend;
-    if (has_legend) settings.free_below = legend_share(settings.height);
-    for (CameraKey& key : settings.camera) {
-        for (std::optional<Vec3>* place : {&key.eye, &key.target}) {
-            if (*place) *place = turn * **place;
-        }
-    }
-    const ActionBox action = find_action(store, settings.tools, turn);
     Renderer renderer(settings, action.bounds, action.ground_height, thread_count(),
                       action.outline);
     log_verbose("drawing by {}", renderer.renderer_string());
@@ -159,7 +135,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     }
     const std::vector<int> on_sheet = sheet_frames(frames);
     std::vector<Image> thumbnails;
-    FrameSource source(store, settings, turn, look ? &*look : nullptr);
+    FrameSource source(store, shot, look ? &*look : nullptr);
     Progress progress("draw", frames.last - frames.first + 1);
     std::future<void> writing;  // of the picture before, while the next is drawn
     for (int frame = frames.first; frame <= frames.last; ++frame) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readers go straight from one sample of a float to the next where both are of one length: what
-// stays has a second sample before it changes. Whole numbers they hold.
 #include "pipeline/usd_export.h"
 
 #include <algorithm>
@@ -12,13 +10,18 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "geometry/edges.h"
+#include "base/text.h"
 #include "geometry/mesh_write.h"
 #include "geometry/usd_look.h"
+#include "geometry/usd_mesh.h"
 #include "geometry/usd_text.h"
+#include "geometry/usd_time.h"
+#include "pipeline/free_room.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/made_folder.h"
 #include "pipeline/run_directory.h"
+#include "pipeline/usd_camera.h"
+#include "pipeline/usd_machine.h"
 #include "skin/cut_layout.h"
 
 namespace swage {
@@ -30,8 +33,10 @@ namespace {
 using Float3 = Eigen::Vector3f;
 
 constexpr std::string_view kBegin = "#usda 1.0\n(\n    doc = \"A run of swage";
-constexpr const char* kBinds = "prepend apiSchemas = [\"MaterialBindingAPI\"]";
-constexpr const char* kOfCorners = "faceVarying";
+
+// Bytes of what is written as text, about.
+constexpr double kPlaceBytes = 38, kNormalBytes = 30, kCornerBytes = 13, kFaceBytes = 3;
+constexpr double kCornerBytesInImage = 20, kColorBytes = 32, kFieldBytes = 13;
 
 struct Skin {
     int id = -1;
@@ -46,54 +51,20 @@ struct Track {
     std::vector<std::uint64_t> shape;  // hash of places and skin
     std::vector<std::array<Float3, 2>> extent;
     std::vector<std::vector<std::uint64_t>> field;  // hashes of each one's values and the skin
-    std::vector<int> look;                          // all that its polygons have
+    std::vector<std::size_t> vertices, smooth_groups;
+    double skin_bytes = 0;  // of all that is written once a skin
+    std::vector<int> look;  // all that its polygons have
     bool all_have_looks = true, is_open = false, has_normals = true, has_uv = false,
          has_colors = false;
-};
-
-// Times at which something is another than before; `held`: and those right before.
-template <typename T>
-std::vector<int> changes(const std::vector<T>& of_frame, int first, bool held) {
-    std::vector<int> time = {first};
-    for (std::size_t f = 1; f < of_frame.size(); ++f) {
-        if (of_frame[f] == of_frame[f - 1]) continue;
-        const int now = first + static_cast<int>(f);
-        if (held && time.back() < now - 1) time.push_back(now - 1);
-        time.push_back(now);
-    }
-    return time;
-}
-
-bool is_open(const TriMesh& mesh) {
-    bool open = false;
-    for_each_edge(edge_uses(mesh.triangle, mesh.position.size()),
-                  [&](auto uses) { open = open || excess(uses) != 0; });
-    return open;
-}
-
-// The values that corners have, without those that none has, and which of them each has.
-struct CornerValues {
-    std::vector<int> used, index;
-
-    CornerValues(const std::vector<Corners>& ids, std::size_t count, const PolygonCorners& polygons)
-        : index(polygons.corner.size(), -1) {
-        std::vector<int> number(count, -1);
-        for (std::size_t i = 0; i < index.size() && !ids.empty(); ++i) {
-            const int id = ids[polygons.corner[i] / 3][polygons.corner[i] % 3];
-            if (id < 0) continue;
-            if (number.at(id) < 0) {
-                number[id] = static_cast<int>(used.size());
-                used.push_back(id);
-            }
-            index[i] = number[id];
-        }
-    }
 };
 
 class Exporter {
   public:
     Exporter(const FrameStore& store, const UsdScene& scene, const FrameRange& frames)
-        : store_(store), scene_(scene), frames_(frames) {
+        : store_(store),
+          scene_(scene),
+          frames_(frames),
+          machines_(store, scene.shown(), frames, scene.stage) {
         std::set<std::string> taken;
         root_ = usd_identifier(scene.name, taken);
     }
@@ -105,13 +76,18 @@ class Exporter {
             samples += static_cast<int>(moves(track).size()) * (track.has_normals ? 2 : 1);
         }
         progress_.emplace("export", samples);
+        const double expected = expected_bytes(), room = free_disk(fs::absolute(file));
+        if (expected > room) {
+            log_warning("{}: would be about {}, and {} of disk are free", file.string(),
+                        bytes_text(expected), bytes_text(room));
+        }
         FilesBeside beside;
         const std::vector<std::string> image = copy_textures(file, looks_.materials(), beside);
         UsdText out(file);
         write_head(out);
         out.open(fmt::format("def Xform \"{}\"", root_));
         write_turn(out);
-        std::set<std::string> taken = {"materials"};
+        std::set<std::string> taken = {"camera", "key_lamp", "machine", "materials"};
         const std::string materials = "/" + root_ + "/materials";
         if (looks_.count() > 0) {
             out.open("def Scope \"materials\"");
@@ -122,10 +98,12 @@ class Exporter {
             track_[b].identifier = usd_identifier(track_[b].name, taken);
             write_body(out, b, materials);
         }
+        machines_.write(out, materials, looks_);
+        write_view(out);
         out.close();
         out.finish();
         beside.stay();
-        UsdOutcome outcome{track_.size(), fs::file_size(file), {}};
+        UsdOutcome outcome{track_.size(), machines_.count(), fs::file_size(file), expected, {}};
         for (const std::string& one : std::set(image.begin(), image.end())) {
             if (!one.empty()) outcome.image.push_back(one);
         }
@@ -154,8 +132,11 @@ class Exporter {
             throw_if_interrupted();
             const StoredFrame stored = store_.frame(frame - 1);
             track_.resize(std::max(track_.size(), stored.body.size()));
+            machines_.look_at(frame, stored, looks_);
             for (std::size_t b = 0; b < stored.body.size(); ++b) {
                 look_at(track_[b], stored.body[b]);
+                std::vector<std::size_t>& groups = track_[b].smooth_groups;
+                groups.push_back(groups.empty() ? 0 : groups.back());
                 if (is_new_skin(track_[b].skin)) look_at_skin(track_[b], skin(b, frame));
             }
         }
@@ -184,6 +165,7 @@ class Exporter {
             values.add_bytes(body.field[n].data(), body.field[n].size() * sizeof(float));
             track.field[n].push_back(values.value());
         }
+        track.vertices.push_back(body.position.size());
         track.skin.push_back(body.skin);
         track.shape.push_back(shape.value());
         track.extent.push_back(extent);
@@ -196,31 +178,58 @@ class Exporter {
                 track.look.push_back(look);
             }
         }
-        track.is_open = track.is_open || is_open(skin.mesh);
+        track.smooth_groups.back() = std::size_t(skin.mesh.smooth_group_count);
+        const double corners = double(skin.polygons.corner.size());
+        track.skin_bytes += kFaceBytes * double(skin.polygons.count()) + kCornerBytes * corners;
+        if (!skin.mesh.triangle_uv.empty()) track.skin_bytes += kCornerBytesInImage * corners;
+        if (!skin.mesh.position_color.empty()) {
+            track.skin_bytes += kColorBytes * double(skin.mesh.position.size());
+        }
+        track.is_open = track.is_open || swage::is_open(skin.mesh);
         track.has_uv = track.has_uv || !skin.mesh.triangle_uv.empty();
         track.has_colors = track.has_colors || !skin.mesh.position_color.empty();
         track.has_normals =
             track.has_normals && skin.mesh.triangle_smooth.size() == skin.mesh.triangle.size();
     }
 
+    double expected_bytes() const {
+        double bytes = 0;
+        for (const Track& track : track_) {
+            const auto sum = [&](const std::vector<std::size_t>& count,
+                                 const std::vector<int>& frames) {
+                double all = 0;
+                for (const int frame : frames) {
+                    all += double(count.at(std::size_t(frame - frames_.first)));
+                }
+                return all;
+            };
+            bytes += track.skin_bytes + kPlaceBytes * sum(track.vertices, moves(track));
+            if (track.has_normals) bytes += kNormalBytes * sum(track.smooth_groups, moves(track));
+            for (const auto& field : track.field) {
+                bytes += kFieldBytes * sum(track.vertices, changes(field, frames_.first, true));
+            }
+        }
+        return bytes;
+    }
+
     void write_head(UsdText& out) const {
-        out.line(
-            fmt::format("{}, {}\"\n"
-                        "    defaultPrim = \"{}\"\n"
-                        "    endTimeCode = {}\n"
-                        "    framesPerSecond = {}\n"
-                        "    metersPerUnit = 1\n"
-                        "    startTimeCode = {}\n"
-                        "    timeCodesPerSecond = {}\n"
-                        "    upAxis = \"{}\"\n"
-                        ")\n",
-                        kBegin, kVersion, root_, frames_.last, scene_.frames_per_second,
-                        frames_.first, scene_.frames_per_second, scene_.up == Up::z ? "Z" : "Y"));
+        out.line(fmt::format(
+            "{}, {}\"\n"
+            "    defaultPrim = \"{}\"\n"
+            "    endTimeCode = {}\n"
+            "    framesPerSecond = {}\n"
+            "    metersPerUnit = 1\n"
+            "    startTimeCode = {}\n"
+            "    timeCodesPerSecond = {}\n"
+            "    upAxis = \"{}\"\n"
+            ")\n",
+            kBegin, kVersion, root_, frames_.last, scene_.render.frames_per_second, frames_.first,
+            scene_.render.frames_per_second, scene_.render.up == Up::z ? "Z" : "Y"));
     }
 
     // USD knows no x that is upward: there the scene is turned, as pictures of it are.
     void write_turn(UsdText& out) const {
-        if (scene_.up != Up::x) return;
+        if (scene_.render.up != Up::x) return;
         out.line(
             "matrix4d xformOp:transform = ( (0, 1, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0), (0, 0, 0, 1) "
             ")\nuniform token[] xformOpOrder = [\"xformOp:transform\"]");
@@ -228,15 +237,8 @@ class Exporter {
 
     void write_body(UsdText& out, std::size_t body, const std::string& materials) {
         const Track& track = track_[body];
-        std::string head = fmt::format("def Mesh \"{}\"", track.identifier);
-        std::string about;
-        if (track.identifier != track.name) {
-            about += fmt::format("    customData = {{\n        string name = {}\n    }}\n",
-                                 usd_string(track.name));
-        }
-        if (!track.look.empty()) about += fmt::format("    {}\n", kBinds);
-        if (!about.empty()) head += " (\n" + about + ")";
-        out.open(head);
+        out.open(
+            usd_prim("Mesh", track.name, track.identifier, track.look.empty() ? "" : kUsdBinds));
         if (track.is_open) out.line("uniform bool doubleSided = 1");
         const std::vector<int> moves = this->moves(track);
         out.value("float3[] extent", "", moves, [&](int frame) {
@@ -256,6 +258,21 @@ class Exporter {
         out.line("uniform token subdivisionScheme = \"none\"");
         write_looks(out, body, materials);
         out.close();
+    }
+
+    // Camera and lamp of the stills.
+    void write_view(UsdText& out) const {
+        Box seen = machines_.box(false), all = machines_.box(true);
+        for (const Track& track : track_) {
+            for (const auto& extent : track.extent) {
+                for (const Float3& end : extent) {
+                    seen.grow(end.cast<double>());
+                    all.grow(end.cast<double>());
+                }
+            }
+        }
+        write_usd_view(out, shot_of(store_, scene_.render), store_.frame_count(), frames_, seen,
+                       all);
     }
 
     std::vector<int> moves(const Track& track) const {
@@ -294,23 +311,14 @@ class Exporter {
     }
 
     void write_normals(UsdText& out, std::size_t body, const std::vector<int>& moves) {
-        const auto values = [&](const Skin& now) {
-            return CornerValues(now.mesh.triangle_smooth, std::size_t(now.mesh.smooth_group_count),
-                                now.polygons);
-        };
-        out.value("normal3f[] primvars:normals", kOfCorners, moves, [&](int frame) {
+        out.value("normal3f[] primvars:normals", kUsdOfCorners, moves, [&](int frame) {
             const std::vector<Vec3> place = places(body, frame);
             const Skin& now = skin(body, frame);
-            std::vector<Vec3> normal;
-            if (!now.mesh.triangle.empty()) normal = smooth_normals(now.mesh, place);
-            const CornerValues known = values(now);
-            out.list(known.used.size(), [&](std::size_t i) {
-                const Vec3 n = normal[known.used[i]] * 1e5;  // to as much as they tell
-                out.vector<3>(Vec3(n.array().round() / 1e5).cast<float>());
-            });
+            write_usd_normals(out, now.mesh, place, corner_normals(now.mesh, now.polygons));
         });
         out.value("int[] primvars:normals:indices", "", new_skins(body, false), [&](int frame) {
-            const CornerValues known = values(skin(body, frame));
+            const Skin& now = skin(body, frame);
+            const CornerValues known = corner_normals(now.mesh, now.polygons);
             out.list(known.index.size(), [&](std::size_t i) { out.number(known.index[i]); });
         });
     }
@@ -320,7 +328,7 @@ class Exporter {
         const auto values = [&](const Skin& now) {
             return CornerValues(now.mesh.triangle_uv, now.mesh.uv.size(), now.polygons);
         };
-        out.value("texCoord2f[] primvars:st", kOfCorners, new_skins(body, true), [&](int frame) {
+        out.value("texCoord2f[] primvars:st", kUsdOfCorners, new_skins(body, true), [&](int frame) {
             const Skin& now = skin(body, frame);
             const CornerValues known = values(now);
             out.list(known.used.size() + 1, [&](std::size_t i) {
@@ -364,8 +372,8 @@ class Exporter {
         out.line(fmt::format("uniform token subsetFamily:materialBind:familyType = \"{}\"",
                              track.all_have_looks ? "partition" : "nonOverlapping"));
         for (const int look : track.look) {
-            out.open(
-                fmt::format("def GeomSubset \"{}\" (\n    {}\n)", looks_.identifier(look), kBinds));
+            out.open(fmt::format("def GeomSubset \"{}\" (\n    {}\n)", looks_.identifier(look),
+                                 kUsdBinds));
             out.line(
                 "uniform token elementType = \"face\"\n"
                 "uniform token familyName = \"materialBind\"");
@@ -386,6 +394,7 @@ class Exporter {
     const FrameStore& store_;
     const UsdScene& scene_;
     const FrameRange frames_;
+    UsdMachines machines_;
     std::vector<Track> track_;
     UsdLooks looks_;
     std::string root_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The deforming skins of a run in one file of USD, from its motion file: what animation programs
-// load.
+// The deforming skins of a run, its machines, and the camera and lamp of its stills, in one file of
+// USD, from its motion file: what animation programs load.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "pipeline/frame_store.h"
 #include "pipeline/run_options.h"
+#include "pipeline/usd_machine.h"
 #include "render/settings.h"
 
 namespace swage {
@@ -17,13 +18,21 @@ namespace swage {
 struct UsdScene {
     std::string name;               // of the prim that holds all others
     std::vector<std::string> body;  // names; further bodies are called by their number
-    int frames_per_second = 30;
-    Up up = Up::automatic;
+    RenderSettings render = {};     // of its stills
+    std::vector<UsdStage> stage = {};
+    bool tools = true;  // as far as its stills have them
+
+    RenderSettings shown() const {
+        RenderSettings settings = render;
+        settings.tools = render.tools && tools;
+        return settings;
+    }
 };
 
 struct UsdOutcome {
-    std::size_t bodies = 0;
+    std::size_t bodies = 0, tools = 0;  // tools: grips and blades too
     std::uintmax_t bytes = 0;
+    double expected = 0;             // bytes, before it was written; where disk lacks, it is told
     std::vector<std::string> image;  // files beside it that it needs
 };
 

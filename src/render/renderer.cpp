@@ -106,9 +106,7 @@ struct Renderer::Parts {
         blurred = make_target(gl, half.width, half.height, {.color = GL_RGBA16});
         plain = make_target(gl, settings.width, settings.height,
                             {.color = GL_RGBA8, .depth_buffer = true});
-        const Vec3 back = camera.at(0).world_from_view.col(2);
-        // Looking straight down has no azimuth; any will do.
-        front = std::hypot(back.x(), back.z()) > 1e-6 ? std::atan2(back.x(), back.z()) : 0;
+        front = front_of(camera.at(0));
     }
 
     RenderSettings settings;

@@ -12,7 +12,6 @@ namespace {
 constexpr double kFillAzimuth = 0.95, kFillElevation = 0.25;
 constexpr double kRimAzimuth = 2.55, kRimElevation = 0.55;
 
-constexpr double kLampSize = 0.12;  // tangent of the key lamp's half angle: how soft shadows are
 constexpr double kGroundFade = 2.2, kGroundEnd = 9.0;  // [stage]
 
 Vec3 towards(double azimuth, double elevation) { return orbit_rotation(azimuth, elevation).col(2); }
@@ -56,6 +55,18 @@ double nearest_ground(const View& view, const Lens& lens, double ground) {
 
 }  // namespace
 
+Lamps lamps_of(const LightPlace& light, double front) {
+    const double turned = front + (light.azimuth - LightPlace().azimuth);
+    return {towards(front + light.azimuth, light.elevation),
+            towards(turned + kFillAzimuth, kFillElevation),
+            towards(turned + kRimAzimuth, kRimElevation)};
+}
+
+double front_of(const View& first) {
+    const Vec3 back = first.world_from_view.col(2);
+    return std::hypot(back.x(), back.z()) > 1e-6 ? std::atan2(back.x(), back.z()) : 0;
+}
+
 Stage::Stage(const Box& bounds) {
     if (bounds.empty()) return;
     center = bounds.center();
@@ -97,18 +108,18 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     const auto size = [](int w, int h) { return glm::dvec4(w, h, 1.0 / w, 1.0 / h); };
     frame.size = size(settings.width, settings.height);
     frame.half_size = size((settings.width + 1) / 2, (settings.height + 1) / 2);
-    const double key = front + settings.light.azimuth;
-    const double turned = front + (settings.light.azimuth - LightPlace().azimuth);
-    frame.key = four(towards(key, settings.light.elevation), 0);
-    frame.fill = four(towards(turned + kFillAzimuth, kFillElevation), 0);
-    frame.rim = four(towards(turned + kRimAzimuth, kRimElevation), 0);
+    const Lamps lamps = lamps_of(settings.light, front);
+    frame.key = four(lamps.key, 0);
+    frame.fill = four(lamps.fill, 0);
+    frame.rim = four(lamps.rim, 0);
     const bool is_clear = settings.background == Background::transparent;
     frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, is_clear ? 1 : 0);
 
     Box mapped = stage.box(casting);
     const Vec3 middle = mapped.center();
     if (settings.ground) mapped.grow({middle.x(), ground, middle.z()});
-    const ShadowBox map = fit_shadow(mapped, orbit_rotation(key, settings.light.elevation));
+    const ShadowBox map = fit_shadow(
+        mapped, orbit_rotation(front + settings.light.azimuth, settings.light.elevation));
     frame.shadow_from_stage = map.map_from_stage;
     frame.shadow = glm::dvec4(map.side / kShadowMapSide, 1.0 / kShadowMapSide,
                               kLampSize * map.depth / map.side, 1.5 / kShadowMapSide);

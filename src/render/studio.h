@@ -26,6 +26,16 @@ struct Stage {
     glm::mat4 from_mesh(const Pose& world_from_mesh, const Vec3& origin) const;
 };
 
+// Towards them from everywhere, of length 1, in the world that has y up.
+struct Lamps {
+    Vec3 key, fill, rim;
+};
+inline constexpr double kLampSize = 0.12;  // tangent of the key lamp's half angle: soft shadows
+inline constexpr double kKeyLight[] = {0.84, 0.81, 0.765};  // KEY of shaders/light.glsl
+Lamps lamps_of(const LightPlace& light, double front);
+// The azimuth of the film's first view; straight down there is none, and any will do.
+double front_of(const View& first);
+
 // `front` is the azimuth of the film's first view: the lights stand about it and stay in the
 // world. `shown` and `casting` are the boxes of what is drawn and of what casts a shadow, never
 // empty.

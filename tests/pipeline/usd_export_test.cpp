@@ -10,6 +10,7 @@
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 #include "tests/shared/bytes_of.h"
+#include "tests/shared/meshes.h"
 #include "tests/shared/usda.h"
 
 using namespace swage;
@@ -68,9 +69,10 @@ struct Motion {
     Scratch scratch;
     std::vector<StoredFrame> frame;
     std::vector<TriMesh> skin;
-    UsdScene scene{"two-falls", {"a body", "a-body", "3rd"}, 24};
+    UsdScene scene{"two-falls", {"a body", "a-body", "3rd"}};
 
     Motion() {
+        scene.render.frames_per_second = 24;
         const fs::path texture = scratch.path() / "spots of it.png";
         std::ofstream(texture) << "\x89PNG of spots";
         skin = {pyramid(texture), cut_pyramid(texture), colored()};
@@ -120,7 +122,7 @@ TEST_CASE("fields of the matter are values of the vertices in USD") {
         writer.finish();
     }
     const fs::path file = scratch.path() / "out" / "x.usda";
-    export_usd(FrameStore(scratch.path() / "motion.bin"), {"run", {"one"}, 24}, {1, 4}, file);
+    export_usd(FrameStore(scratch.path() / "motion.bin"), {"run", {"one"}}, {1, 4}, file);
     const Usda usd(bytes_of(file));
     for (int f = 1; f <= 4; ++f) {
         CHECK(usd.numbers("/run/one.primvars:plastic_strain", f) == values(f));
@@ -128,6 +130,39 @@ TEST_CASE("fields of the matter are values of the vertices in USD") {
     }
     CHECK(bytes_of(file).find("primvars:plastic_strain (interpolation = \"vertex\")") !=
           std::string::npos);
+}
+
+TEST_CASE("how large a file of USD becomes is known before it is written, about") {
+    const Scratch scratch;
+    TriMesh ball = test::sphere_mesh(0.0123456789, 3);
+    smooth_by_crease_angle(ball);
+    const bool is_dressed = GENERATE(false, true);
+    if (is_dressed) {
+        for (const Vec3& p : ball.position) ball.uv.emplace_back(70.7 * p.x(), 70.7 * p.y());
+        ball.triangle_uv = ball.triangle;
+    }
+    std::vector<SkinField> fields;
+    if (is_dressed) fields = {SkinField::stress};
+    {
+        FrameStoreWriter writer(scratch.path() / "motion.bin", fields);
+        writer.add_skin(ball);
+        for (int f = 1; f <= 5; ++f) {
+            StoredFrame now;
+            now.body = {{0, moved(ball.position, {0.1 / f, 0.01 * f, 0})}};
+            if (is_dressed) {
+                now.body[0].field.resize(1);
+                for (const Vec3& p : ball.position) {
+                    now.body[0].field[0].push_back(float(1e8 * f * std::abs(p.x())));
+                }
+            }
+            writer.add_frame(now);
+        }
+        writer.finish();
+    }
+    const UsdOutcome outcome = export_usd(FrameStore(scratch.path() / "motion.bin"),
+                                          {"run", {"ball"}}, {1, 5}, scratch.path() / "x.usda");
+    CHECK(outcome.expected > 0.8 * double(outcome.bytes));
+    CHECK(outcome.expected < 1.4 * double(outcome.bytes));
 }
 
 TEST_CASE("of a run in USD every frame has the faces and the places of its skins") {
@@ -238,7 +273,7 @@ TEST_CASE("a file of USD says its units, its times and what is upward in it") {
     CHECK(usd.text(".upAxis") == "\"Y\"");
     CHECK(usd.text(".defaultPrim") == "\"two_falls\"");
     CHECK(usd.times(kBody + ".points") == std::vector<int>{3, 4, 5, 6});
-    motion.scene.up = Up::z;
+    motion.scene.render.up = Up::z;
     CHECK(motion.written().text(".upAxis") == "\"Z\"");
     const std::string once = bytes_of(motion.file());
     motion.write();

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/shot.h"
+
+#include "render/legend.h"
+
+namespace swage {
+
+namespace {
+
+// The axes take turns.
+Quat drawn_from_world(Up up) {
+    Mat3 turn = Mat3::Identity();
+    if (up == Up::z) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    if (up == Up::x) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    return Quat(turn);
+}
+
+}  // namespace
+
+Shot shot_of(const FrameStore& store, const RenderSettings& wanted) {
+    const Quat turn = drawn_from_world(wanted.up);
+    RenderSettings settings = wanted;
+    if (settings.color && settings.legend) settings.free_below = legend_share(settings.height);
+    for (CameraKey& key : settings.camera) {
+        for (std::optional<Vec3>* place : {&key.eye, &key.target}) {
+            if (*place) *place = turn * **place;
+        }
+    }
+    return {turn, std::move(settings), find_action(store, wanted.tools, turn)};
+}
+
+std::optional<SurfaceMaterial> look_of(const DrawnPart& part, const RenderSettings& settings) {
+    const bool hidden = part.finish == Finish::endless && !settings.ground;  // it stands for that
+    if (!settings.tools || hidden || part.surface.triangle.empty()) return std::nullopt;
+    SurfaceMaterial look;
+    look.name = part.name;
+    look.color = part.color;
+    look.roughness = part.finish == Finish::metal ? 0.4 : 0.95;
+    look.metallic = part.finish == Finish::metal ? 0.6 : 0;
+    return look;
+}
+
+}  // namespace swage

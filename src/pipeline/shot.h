@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the stills of a run are taken from, and what of its machines is in them.
+#pragma once
+
+#include <optional>
+
+#include "pipeline/action_box.h"
+#include "pipeline/frame_store.h"
+#include "render/camera.h"
+#include "render/settings.h"
+
+namespace swage {
+
+struct Shot {
+    Quat drawn_from_world;    // the renderer has y up
+    RenderSettings settings;  // as it is to have them
+    ActionBox action;         // as drawn
+
+    CameraPath camera() const { return {settings, action.bounds, action.outline}; }
+};
+Shot shot_of(const FrameStore& store, const RenderSettings& wanted);
+
+// How a tool, grip or blade looks; none where it is not to be seen.
+std::optional<SurfaceMaterial> look_of(const DrawnPart& part, const RenderSettings& settings);
+
+}  // namespace swage
