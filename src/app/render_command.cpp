@@ -232,7 +232,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command
         ->add_option("--color-range", given.color_range,
                      "the ends of that scale, stresses in Pa (default: of all frames, from 0 what "
-                     "has no sign)")
+                     "has no sign); one beyond which anything lies is an arrow")
         ->expected(2)
         ->check(kFinite)
         ->type_name("LOW HIGH");

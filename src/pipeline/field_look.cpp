@@ -18,23 +18,30 @@ namespace {
 
 constexpr double kMatt = 0.85;  // roughness: highlights would hide the colours
 
-std::array<double, 2> range_of(const FrameStore& store, std::size_t number, bool is_signed) {
-    std::array<double, 2> range = {0, 0};
+constexpr double kBeyond = 1e-3;  // of a range, what lies less beyond it nobody sees
+
+// Least and greatest of all frames.
+std::array<double, 2> extent_of(const FrameStore& store, std::size_t number) {
+    std::array<double, 2> extent = {0, 0};
     bool has_any = false;
     for (int f = 0; f < store.frame_count(); ++f) {
         for (const StoredBody& body : store.frame(f).body) {
             for (const double value : body.field[number]) {
                 if (!std::isfinite(value)) continue;
-                range[0] = has_any ? std::min(range[0], value) : value;
-                range[1] = has_any ? std::max(range[1], value) : value;
+                extent[0] = has_any ? std::min(extent[0], value) : value;
+                extent[1] = has_any ? std::max(extent[1], value) : value;
                 has_any = true;
             }
         }
     }
-    if (!is_signed) range[0] = 0;
+    return extent;
+}
+
+std::array<double, 2> range_of(std::array<double, 2> extent, bool is_signed) {
+    if (!is_signed) extent[0] = 0;
     // Nothing anywhere, as before anything has flowed.
-    if (!(range[0] < range[1])) range[1] = range[0] + std::max(1.0, std::abs(range[0]));
-    return range;
+    if (!(extent[0] < extent[1])) extent[1] = extent[0] + std::max(1.0, std::abs(extent[0]));
+    return extent;
 }
 
 }  // namespace
@@ -52,8 +59,9 @@ FieldLook::FieldLook(const FrameStore& store, const RenderSettings& settings)
              words_of(field_).name);
     }
     number_ = static_cast<std::size_t>(at - held.begin());
+    extent_ = extent_of(store, number_);
     range_ = settings.color_range ? *settings.color_range
-                                  : range_of(store, number_, words_of(field_).is_signed);
+                                  : range_of(extent_, words_of(field_).is_signed);
     look_.name = words_of(field_).name;
     look_.color = Vec3::Ones();
     look_.roughness = kMatt;
@@ -77,10 +85,17 @@ void FieldLook::dress(const StoredBody& body, TriMesh& skin) const {
     }
 }
 
+std::array<bool, 2> FieldLook::beyond() const {
+    const double least = kBeyond * (range_[1] - range_[0]);
+    return {extent_[0]<range_[0] - least, extent_[1]> range_[1] + least};
+}
+
 void FieldLook::add_legend(Image& image) const {
     const SkinFieldWords& words = words_of(field_);
     Legend legend = make_legend(words.title, words.unit, range_[0], range_[1]);
     legend.scale = scale();
+    legend.below = beyond()[0];
+    legend.above = beyond()[1];
     draw_legend(legend, image);
 }
 

@@ -18,6 +18,8 @@ class FieldLook {
     FieldLook(const FrameStore& store, const RenderSettings& settings);
 
     const std::array<double, 2>& range() const { return range_; }
+    // Whether anything in any frame lies below it, and above.
+    std::array<bool, 2> beyond() const;
     // Colours a skin by the body's field now, whatever it looked like.
     void dress(const StoredBody& body, TriMesh& skin) const;
     void add_legend(Image& image) const;
@@ -27,7 +29,7 @@ class FieldLook {
 
     SkinField field_;
     std::size_t number_ = 0;  // among the file's
-    std::array<double, 2> range_{};
+    std::array<double, 2> extent_{}, range_{};
     SurfaceMaterial look_;
 };
 

@@ -44,11 +44,13 @@ void* grown(void* block, std::size_t size) {
 #define STBI_NO_LINEAR
 #define STBI_FAILURE_USERMSG
 #define STBI_MAX_DIMENSIONS 16384
+#define STB_TRUETYPE_IMPLEMENTATION
+#define STBTT_STATIC
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-function"
 #endif
-#include <stb_easy_font.h>
 #include <stb_image.h>
+#include <stb_truetype.h>
 
 namespace swage {
 
@@ -135,39 +137,53 @@ Image decode_image(const std::string& bytes, const std::string& name, int larges
 
 namespace {
 
-// stb writes in what it is given.
-std::string written(const std::string& text) {
-    std::string plain = text;
-    for (char& c : plain) {
-        if (c < ' ' || c > '~') c = '?';
-    }
-    return plain;
+const stbtt_fontinfo& font() {
+    static const stbtt_fontinfo info = [] {
+        stbtt_fontinfo made;
+        if (stbtt_InitFont(&made, embedded_font().data(), 0) == 0) {
+            fail(ExitCode::output, "the letters that are built in cannot be read");
+        }
+        return made;
+    }();
+    return info;
+}
+
+int glyph_of(char c) { return stbtt_FindGlyphIndex(&font(), c < ' ' || c > '~' ? '?' : c); }
+
+// To where the next one begins [pixel].
+double advance_of(int glyph, double size) {
+    int advance = 0, bearing = 0;
+    stbtt_GetGlyphHMetrics(&font(), glyph, &advance, &bearing);
+    return advance * double(stbtt_ScaleForMappingEmToPixels(&font(), float(size)));
 }
 
 }  // namespace
 
-std::vector<LetterPart> letters_of(const std::string& text) {
-    struct Corner {
-        float x, y, z;
-        unsigned char color[4];
-    };
-    constexpr std::size_t kMostParts = 64;  // of a letter
-    std::string plain = written(text);
-    std::vector<Corner> corner(4 * kMostParts * plain.size());
-    const int parts = stb_easy_font_print(0, 0, plain.data(), nullptr, corner.data(),
-                                          static_cast<int>(corner.size() * sizeof(Corner)));
-    std::vector<LetterPart> letters;
-    const auto pixel = [](float at) { return static_cast<int>(std::lround(at)); };
-    for (std::size_t p = 0; p < static_cast<std::size_t>(parts); ++p) {
-        const Corner &low = corner[4 * p], &high = corner[4 * p + 2];
-        letters.push_back({pixel(low.x), pixel(low.y), pixel(high.x), pixel(high.y)});
+std::vector<LetterPixels> letters_of(const std::string& text, double x, double y, double size) {
+    const float scale = stbtt_ScaleForMappingEmToPixels(&font(), float(size));
+    std::vector<LetterPixels> letters;
+    for (const char c : text) {
+        const int glyph = glyph_of(c);
+        const double left = std::floor(x), top = std::floor(y);
+        const float right_by = float(x - left), down_by = float(y - top);
+        int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+        stbtt_GetGlyphBitmapBoxSubpixel(&font(), glyph, scale, scale, right_by, down_by, &x0, &y0,
+                                        &x1, &y1);
+        x += advance_of(glyph, size);
+        if (x1 <= x0 || y1 <= y0) continue;  // a blank
+        LetterPixels one{int(left) + x0, int(top) + y0, x1 - x0, y1 - y0, {}};
+        one.cover.resize(std::size_t(one.width) * std::size_t(one.height));
+        stbtt_MakeGlyphBitmapSubpixel(&font(), one.cover.data(), one.width, one.height, one.width,
+                                      scale, scale, right_by, down_by, glyph);
+        letters.push_back(std::move(one));
     }
     return letters;
 }
 
-int letters_width(const std::string& text) {
-    std::string plain = written(text);
-    return stb_easy_font_width(plain.data());
+double letters_width(const std::string& text, double size) {
+    double width = 0;
+    for (const char c : text) width += advance_of(glyph_of(c), size);
+    return width;
 }
 
 }  // namespace swage

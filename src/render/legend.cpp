@@ -14,8 +14,8 @@ namespace swage {
 
 namespace {
 
-constexpr int kPictureRows = 330;  // of a picture, to each pixel of a letter
-constexpr double kShade = 0.45;    // of the picture, left under the legend
+constexpr double kPictureRows = 330;  // of a picture, to each unit of the legend; one is a pixel
+constexpr double kShade = 0.45;       // of the picture, left under the legend
 using Color = std::array<double, 3>;
 constexpr Color kInk = {238, 238, 238}, kGround = {24, 26, 30};
 
@@ -41,20 +41,46 @@ struct Paint {
     }
 };
 
+// [pixel]
 struct LegendSize {
-    int scale, pad, bar, tick, height;  // [pixel]
+    double letters;            // size of these
+    int pad, line, bar, tick;  // line: from one base line to the next
+    int mark;                  // how wide ticks are
+
+    int height() const { return pad + 2 * line + bar + 2 * tick; }
+    int arrow() const { return bar; }  // how long an end of the bar is
 };
 LegendSize size_in(int picture_height) {
-    const int scale = std::max(1, (picture_height + kPictureRows / 2) / kPictureRows);
-    const int pad = 5 * scale, bar = 8 * scale, tick = 2 * scale;
-    return {scale, pad, bar, tick, pad + 2 * kLetterLine * scale + bar + 2 * tick};
+    const double unit = std::max(1.0, picture_height / kPictureRows);
+    const auto pixels = [&](double units) { return static_cast<int>(std::lround(units * unit)); };
+    return {10 * unit, pixels(5), pixels(12), pixels(8), pixels(2), std::max(1, pixels(0.8))};
 }
 
-// The top left corner of its line at (x, y).
-void write(Paint& paint, int x, int y, int scale, const std::string& text) {
-    for (const LetterPart& part : letters_of(text)) {
-        paint.fill(x + scale * part.left, y + scale * part.top, x + scale * part.right,
-                   y + scale * part.bottom, kInk);
+// From x on, in a line whose top is y.
+void write(Paint& paint, double x, int y, const LegendSize& size, const std::string& text) {
+    const double base = y + std::round(kLetterHeight * size.letters);
+    for (const LetterPixels& letter : letters_of(text, x, base, size.letters)) {
+        for (int row = 0; row < letter.height; ++row) {
+            for (int column = 0; column < letter.width; ++column) {
+                const std::size_t n = std::size_t(row) * std::size_t(letter.width) + column;
+                if (letter.cover[n] == 0) continue;
+                const int px = letter.left + column, py = letter.top + row;
+                paint.fill(px, py, px + 1, py + 1, kInk, letter.cover[n] / 255.0);
+            }
+        }
+    }
+}
+
+// A triangle beside the bar, from x on to `tip`, which lies on either side.
+void draw_arrow(Paint& paint, int x, int tip, int y, int height, const Color& color) {
+    const double middle = y + 0.5 * height;
+    for (int column = std::min(x, tip); column < std::max(x, tip); ++column) {
+        const double reach = 0.5 * height * (column + 0.5 - tip) / (x - tip);
+        for (int row = y; row < y + height; ++row) {
+            const double low = std::max<double>(row, middle - reach);
+            const double high = std::min<double>(row + 1, middle + reach);
+            if (high > low) paint.fill(column, row, column + 1, row + 1, color, high - low);
+        }
     }
 }
 
@@ -94,7 +120,7 @@ Prefix prefix_of(double most) {
 }  // namespace
 
 Legend make_legend(const std::string& title, const std::string& unit, double low, double high) {
-    Legend legend{title, {}, {}};
+    Legend legend{title, {}};
     const double most = std::max(std::abs(low), std::abs(high));
     if (!unit.empty()) {
         const Prefix prefix = prefix_of(most);
@@ -131,43 +157,52 @@ Legend make_legend(const std::string& title, const std::string& unit, double low
 
 double legend_share(int picture_height) {
     const LegendSize size = size_in(picture_height);
-    const int rows = size.height + size.pad;
+    const int rows = size.height() + size.pad;
     return 2 * rows > picture_height ? 0 : double(rows) / picture_height;
 }
 
 void draw_legend(const Legend& legend, Image& image) {
-    const auto [scale, pad, bar, tick, height] = size_in(image.height);
-    const auto width_of = [&](const std::string& text) { return scale * letters_width(text); };
-    int ends = 0;  // of the numbers at the bar's ends, what stands out beside it
+    const LegendSize size = size_in(image.height);
+    const int pad = size.pad, bar = size.bar;
+    const auto width_of = [&](const std::string& text) {
+        return static_cast<int>(std::ceil(letters_width(text, size.letters)));
+    };
+    int ends = legend.below || legend.above ? size.arrow() : 0;  // what stands out beside the bar
     for (const Legend::Tick& one : legend.tick) ends = std::max(ends, width_of(one.text) / 2);
     const int length = std::max(image.width * 2 / 5, width_of(legend.title));
-    const int left = (image.width - length) / 2;
-    const int top = image.height - height - pad;
+    const int left = (image.width - length) / 2, right = left + length;
+    const int top = image.height - size.height() - pad;
     if (left < ends + 2 * pad || top < image.height / 2) return;
 
     Paint paint{image};
-    paint.fill(left - ends - pad, top, left + length + ends + pad, top + height, kGround,
+    paint.fill(left - ends - pad, top, right + ends + pad, top + size.height(), kGround,
                1 - kShade);
-    write(paint, left, top + pad, scale, legend.title);
-    const int y = top + pad + kLetterLine * scale;
+    write(paint, left, top + pad, size, legend.title);
+    const int y = top + pad + size.line;
     for (int x = 0; x < length; ++x) {
         paint.fill(left + x, y, left + x + 1, y + bar,
                    mapped_color(legend.scale, (x + 0.5) / length));
     }
+    if (legend.below) {
+        draw_arrow(paint, left, left - size.arrow(), y, bar, mapped_color(legend.scale, 0));
+    }
+    if (legend.above) {
+        draw_arrow(paint, right, right + size.arrow(), y, bar, mapped_color(legend.scale, 1));
+    }
     const auto at = [&](const Legend::Tick& one) {
-        return left + static_cast<int>(std::lround(one.share * (length - scale)));
+        return left + static_cast<int>(std::lround(one.share * (length - size.mark)));
     };
     const auto begin_of = [&](const Legend::Tick& one) {
-        return at(one) + scale / 2 - width_of(one.text) / 2;
+        return at(one) + 0.5 * (size.mark - letters_width(one.text, size.letters));
     };
     if (legend.tick.empty()) return;
-    const int last = begin_of(legend.tick.back());
-    int written = 0;  // up to there
+    const double last = begin_of(legend.tick.back());
+    double written = 0;  // up to there
     for (const Legend::Tick& one : legend.tick) {
-        const int from = begin_of(one), to = from + width_of(one.text) + pad;
+        const double from = begin_of(one), to = from + width_of(one.text) + pad;
         if (from < written || (to > last && from < last)) continue;  // the end has its number
-        paint.fill(at(one), y + bar, at(one) + scale, y + bar + tick, kInk);
-        write(paint, from, y + bar + 2 * tick, scale, one.text);
+        paint.fill(at(one), y + bar, at(one) + size.mark, y + bar + size.tick, kInk);
+        write(paint, from, y + bar + 2 * size.tick, size, one.text);
         written = to;
     }
 }

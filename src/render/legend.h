@@ -18,6 +18,8 @@ struct Legend {
     std::string title;  // with its unit
     std::vector<Tick> tick;
     ColorScale scale = {};
+    bool below = false,
+         above = false;  // whether anything lies beyond an end, which is an arrow then
 };
 
 // With round numbers, and the ends of the range where these leave room. `unit` is SI ("Pa"), or

@@ -17,6 +17,15 @@ add_custom_command(
     DEPENDS ${shaders} ${CMAKE_SOURCE_DIR}/src/render/embed_shaders.cmake
     COMMENT "Embedding shaders")
 
-target_sources(swage_render PRIVATE ${embedded})
+set(font ${CMAKE_SOURCE_DIR}/assets/fonts/DejaVuSans-ASCII.ttf)
+set(embedded_font ${CMAKE_BINARY_DIR}/embedded_font.cpp)
+add_custom_command(
+    OUTPUT ${embedded_font}
+    COMMAND ${CMAKE_COMMAND} -DFONT=${font} -DOUT=${embedded_font}
+            -P ${CMAKE_SOURCE_DIR}/src/render/embed_font.cmake
+    DEPENDS ${font} ${CMAKE_SOURCE_DIR}/src/render/embed_font.cmake
+    COMMENT "Embedding the font")
+
+target_sources(swage_render PRIVATE ${embedded} ${embedded_font})
 target_include_directories(swage_render SYSTEM PRIVATE ${STB_INCLUDE})
 target_link_libraries(swage_render PUBLIC glm::glm PRIVATE PkgConfig::LIBDEFLATE ${CMAKE_DL_LIBS})

@@ -177,7 +177,7 @@ const std::vector<KeyHelp>& scene_key_help() {
          "-"},
         {"[render]", "color_range",
          "at the ends of the scale; left out, from 0 (of what has a sign, from the least) to the "
-         "largest of all frames"},
+         "largest of all frames; an end beyond which anything lies is an arrow"},
         {"[render]", "field_of_view", "of the camera, vertical"},
         {"[render]", "up",
          "what the pictures have upward; auto: against gravity where all stages that have it "

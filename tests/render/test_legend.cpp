@@ -2,8 +2,10 @@
 #include "render/legend.h"
 
 #include <cmath>
+#include <set>
 
 #include "render/color_map.h"
+#include "render/letters.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -120,4 +122,90 @@ TEST_CASE("a narrow scale has the numbers of both its ends") {
     without = legend;
     without.tick.front().text = "";
     CHECK(drawn(without) != all);
+}
+
+TEST_CASE("letters are of one shape at any size, as fine as the pixels are") {
+    for (const double size : {12.0, 30.0, 65.0, 200.0}) {
+        INFO(size);
+        // A slanted stroke begins elsewhere in nearly every row: nothing is built of larger blocks.
+        const LetterPixels slash = letters_of("/", 0.25, 100, size).at(0);
+        std::set<int> begins;
+        for (int y = 0; y < slash.height; ++y) {
+            int shade = 0;  // in 255 parts of a pixel
+            for (int x = 0; x < slash.width; ++x) {
+                const int cover = slash.cover[std::size_t(y) * slash.width + x];
+                shade = 255 * x + 255 - cover;
+                if (cover > 0) break;
+            }
+            begins.insert(shade);
+        }
+        CHECK(double(begins.size()) > 0.8 * slash.height);
+        for (const char* text : {"O", "3", "M"}) {
+            const auto area = [&](double of) {
+                double sum = 0;
+                for (const std::uint8_t c : letters_of(text, 0, 100, of).at(0).cover) sum += c;
+                return sum / (255 * of * of);
+            };
+            CHECK(area(size) == Approx(area(500)).epsilon(0.05));
+        }
+        const LetterPixels eight = letters_of("8", 0, 100, size).at(0);
+        CHECK(eight.height == Approx(kLetterHeight * size).margin(2 + 0.03 * size));
+        CHECK(letters_width("0.25", size) == Approx(size / 12 * letters_width("0.25", 12)));
+    }
+    CHECK(letters_of("", 0, 0, 10).empty());
+    CHECK(letters_width("\xc3\xa4", 10) == letters_width("??", 10));
+}
+
+TEST_CASE("letters stand where they are put, to less than a pixel") {
+    const auto middle = [](double x, double y) {
+        double sum = 0, at_x = 0, at_y = 0;
+        const LetterPixels o = letters_of("o", x, y, 20).at(0);
+        for (int row = 0; row < o.height; ++row) {
+            for (int column = 0; column < o.width; ++column) {
+                const double share = o.cover[std::size_t(row) * o.width + column];
+                sum += share;
+                at_x += share * (o.left + column);
+                at_y += share * (o.top + row);
+            }
+        }
+        return std::array<double, 2>{at_x / sum, at_y / sum};
+    };
+    const auto from = middle(5, 50), to = middle(7.3, 49.6);
+    CHECK(to[0] - from[0] == Approx(2.3).margin(0.02));
+    CHECK(to[1] - from[1] == Approx(-0.4).margin(0.02));
+}
+
+TEST_CASE("a scale ends in an arrow where anything lies beyond it, and nowhere else") {
+    Legend legend = make_legend("von Mises stress", "Pa", 0, 2e8);
+    const auto drawn = [&](bool below, bool above) {
+        Image image = grey(1280, 720);
+        legend.below = below;
+        legend.above = above;
+        draw_legend(legend, image);
+        return image;
+    };
+    const auto has = [](const Image& image, double share) {
+        std::array<int, 2> count = {};  // left of the bar, right of it
+        const auto color = mapped_color({}, share);
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                if (x >= image.width * 3 / 10 && x < image.width * 7 / 10) continue;
+                bool same = true;
+                for (int c = 0; c < 3; ++c) {
+                    same = same && std::abs(image.pixel(x, y)[c] - color[std::size_t(c)]) < 1;
+                }
+                if (same) ++count[x > image.width / 2];
+            }
+        }
+        return count;
+    };
+    for (const bool below : {false, true}) {
+        for (const bool above : {false, true}) {
+            const Image image = drawn(below, above);
+            CHECK((has(image, 0)[0] > 50) == below);
+            CHECK((has(image, 1)[1] > 50) == above);
+            CHECK(has(image, 0)[1] == 0);
+            CHECK(has(image, 1)[0] == 0);
+        }
+    }
 }
