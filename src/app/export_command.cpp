@@ -28,10 +28,9 @@ UsdScene usd_scene_of(const Json& record, const std::optional<int>& frames_per_s
     if (frames_per_second) scene.render.frames_per_second = *frames_per_second;
     try {
         scene.name = fs::path(record.at("scene").get<std::string>()).stem().string();
-        for (const Json& body : record.at("bodies")) scene.body.push_back(body.at("name"));
-        for (const Json& stage : record.value("stages", Json::array())) {
-            scene.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
-        }
+        RunNames names = run_names_of(record);
+        scene.body = std::move(names.body);
+        scene.stage = std::move(names.stage);
     } catch (const Json::exception&) {
         fail(ExitCode::output,
              "run.json does not say what bodies and stages the run has; run it again with --fresh");

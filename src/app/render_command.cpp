@@ -25,6 +25,7 @@ namespace {
 struct RenderArguments {
     std::string run, out, size, frames, up, gl, background, color;
     std::vector<double> color_range;
+    std::vector<std::string> passes;
     std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
     std::optional<double> light_azimuth, light_elevation;                 // likewise
     std::vector<double> eye, target;                                      // [m]
@@ -85,6 +86,11 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
         }
         settings.color_range = {given.color_range[0], given.color_range[1]};
     }
+    if (!given.passes.empty()) settings.passes.clear();
+    for (const std::string& name : given.passes) {
+        const std::optional<PicturePass> pass = pass_named(name);
+        if (pass && !settings.has(*pass)) settings.passes.push_back(*pass);
+    }
     if (!given.gl.empty()) settings.gl = gl_named(given.gl);
     return settings;
 }
@@ -104,8 +110,9 @@ int render(const RenderArguments& given) {
     const RenderDirectory directory(out, given.out.empty());
     Stopwatch watch;
     const DrawOutcome drawn =
-        draw_run(store, settings_of(given, *record), frames, directory.files(), watch);
-    const int removed = directory.remove_others(frames, drawn.film);
+        draw_run(store, settings_of(given, *record), frames, directory.files(), watch,
+                 record->contains("bodies") ? run_names_of(*record) : RunNames());
+    const int removed = directory.remove_others(frames, drawn.film, drawn.passes);
     if (removed > 0) {
         log_info("{}: {} of an earlier drawing removed", out.string(),
                  counted(std::size_t(removed), "picture", "pictures"));
@@ -138,6 +145,7 @@ void add_render_command(CLI::App& app, Action& chosen) {
         "  swage render renders/calf-line --camera-azimuth 90 --size 1920x1080 --out /tmp/side\n"
         "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
         "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n"
+        "  swage render renders/calf-line --passes depth,matte --out /tmp/layers\n"
         "  swage render renders/wrench-stress --color stress --color-range 0 300e6\n"
         "  swage render renders/calf-line --camera-eye 0.5 0.2 0.4 --camera-target 0 0.1 0\n",
         chosen, [] { return render(given); });
@@ -236,6 +244,18 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->expected(2)
         ->check(kFinite)
         ->type_name("LOW HIGH");
+    std::vector<std::string> passes = {"none"};
+    passes.insert(passes.end(), kPassName.begin(), kPassName.end());
+    command
+        ->add_option(
+            "--passes", given.passes,
+            "files beside each still, for compositing, without blending at edges: depth "
+            "(EXR, in metres along the view), matte (PNG, a colour for each body, tool and "
+            "the ground, which mattes.json names), normal (EXR, by the world's axes); "
+            "none: no such files (default: as the scene says)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(passes))
+        ->type_name("LIST");
     CLI::Option* film =
         command->add_flag("--film", given.film, "a film too, although the scene has film = false");
     command->add_flag("--no-film", given.no_film, "stills only")->excludes(film);

@@ -13,6 +13,7 @@ namespace {
 
 // What files take at the most, in ordinary runs; half of that is common.
 constexpr double kStillBytes = 2000, kStillBytesPerPixel = 1.05;  // with its share of the film
+constexpr double kPassBytesPerPixel[] = {2.5, 0.02, 7};           // in the order of PicturePass
 constexpr double kMeshBytesPerVertex = 400;             // as OBJ and PLY, with its two triangles
 constexpr double kSkinBytesPerVertex = 140;             // in the motion file, likewise
 constexpr double kPartBytes = 170e3;                    // there: of a machine's tool, grip or blade
@@ -71,7 +72,10 @@ double picture_bytes(const RenderSettings& render, double stills) {
     const double shrunk =
         std::min(1.0, double(kSheetPictureWidth) / std::max(render.width, render.height));
     const double on_sheet = std::min(stills, double(kSheetPictures)) * shrunk * shrunk * pixels;
-    return stills * kStillBytes + kStillBytesPerPixel * (stills * pixels + on_sheet);
+    double passes = 0;
+    for (const PicturePass pass : render.passes) passes += kPassBytesPerPixel[std::size_t(pass)];
+    return stills * (kStillBytes + passes * pixels) +
+           kStillBytesPerPixel * (stills * pixels + on_sheet);
 }
 
 }  // namespace

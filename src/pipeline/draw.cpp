@@ -38,6 +38,7 @@ class FrameSource {
             machine_ = store_.machine(stored.machine);
             machine_id_ = stored.machine;
         }
+        part_.clear();
         Picture picture;
         for (std::size_t b = 0; b < body_.size(); ++b) {
             Body& body = body_[b];
@@ -53,11 +54,20 @@ class FrameSource {
         for (std::size_t b = 0; b < machine_.size(); ++b) {
             const std::optional<SurfaceMaterial> look = look_of(machine_[b], settings_);
             if (!look) continue;
+            part_.push_back(b);
             picture.item.push_back({&machine_[b].surface, nullptr,
                                     drawn_from_world_ * stored.pose.at(b), look,
                                     machine_[b].finish == Finish::endless});
         }
         return picture;
+    }
+    // Of the last picture.
+    int machine() const { return machine_id_; }
+    std::vector<int> mattes(const PassWriter& passes) const {
+        std::vector<int> number;
+        for (std::size_t b = 0; b < body_.size(); ++b) number.push_back(passes.number_of_body(b));
+        for (const std::size_t p : part_) number.push_back(passes.number_of_part(machine_id_, p));
+        return number;
     }
 
   private:
@@ -73,6 +83,7 @@ class FrameSource {
     std::vector<Body> body_;
     int machine_id_ = -1;
     std::vector<DrawnPart> machine_;
+    std::vector<std::size_t> part_;  // of it, that is to be seen
 };
 
 // Frames of the sheet: evenly spread, first and last among them.
@@ -109,7 +120,8 @@ int sheet_columns(int pictures) {
 void check_drawing(const RenderSettings& settings) { try_canvas(settings.gl, thread_count()); }
 
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
-                     const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch) {
+                     const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch,
+                     const RunNames& names) {
     refuse_frames_beyond(store.frame_count(), frames);
     std::optional<FieldLook> look;
     if (wanted.color) look.emplace(store, wanted);
@@ -127,6 +139,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     outcome.height = settings.height;
     outcome.frames = frames;
     outcome.color = settings.color;
+    outcome.passes = settings.passes;
     if (look) outcome.color_range = look->range();
     std::unique_ptr<Film> film;
     if (settings.has_film()) {
@@ -136,32 +149,40 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     const std::vector<int> on_sheet = sheet_frames(frames);
     std::vector<Image> thumbnails;
     FrameSource source(store, shot, look ? &*look : nullptr);
+    PassWriter passes(store, settings, files, names, shot.drawn_from_world);
     Progress progress("draw", frames.last - frames.first + 1);
     std::future<void> writing;  // of the picture before, while the next is drawn
     for (int frame = frames.first; frame <= frames.last; ++frame) {
         throw_if_interrupted();
         Image image;
+        Layers layers;
+        std::vector<int> mattes;
         {
             const auto lap = watch.lap("draw");
             Picture picture = source.picture(frame);
             picture.film_share = still_share(settings.camera, frame - 1, store.frame_count());
-            image = renderer.draw(picture);
+            image = renderer.draw(picture, settings.passes.empty() ? nullptr : &layers);
+            mattes = source.mattes(passes);
             if (has_legend) look->add_legend(image);
         }
         const auto lap = watch.lap("wait for files");
         if (writing.valid()) writing.get();
-        writing = std::async(std::launch::async, [&, frame, image = std::move(image)] {
-            write_png(files.still(frame), image);
-            if (film) film->add(image);
-            if (std::binary_search(on_sheet.begin(), on_sheet.end(), frame)) {
-                thumbnails.push_back(
-                    thumbnail(on_paper(image), kSheetPictureWidth, kSheetPictureWidth));
-            }
-        });
+        writing = std::async(
+            std::launch::async, [&, frame, machine = source.machine(), mattes = std::move(mattes),
+                                 layers = std::move(layers), image = std::move(image)] {
+                write_png(files.still(frame), image);
+                if (layers.width > 0) passes.write(frame, machine, layers, mattes);
+                if (film) film->add(image);
+                if (std::binary_search(on_sheet.begin(), on_sheet.end(), frame)) {
+                    thumbnails.push_back(
+                        thumbnail(on_paper(image), kSheetPictureWidth, kSheetPictureWidth));
+                }
+            });
         progress.advance(frame - frames.first + 1);
     }
     if (writing.valid()) writing.get();
     const auto lap = watch.lap("film and sheet");
+    passes.finish();
     write_png(files.contact_sheet(),
               contact_sheet(thumbnails, sheet_columns(static_cast<int>(thumbnails.size()))));
     if (film) outcome.film = film->finish();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pictures of a run, drawn from its motion file: stills, film, sheet.
+// The pictures of a run, drawn from its motion file: stills, passes beside them, film, sheet.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 
 #include "base/stopwatch.h"
 #include "pipeline/frame_store.h"
+#include "pipeline/passes.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/run_options.h"
 #include "render/settings.h"
@@ -22,6 +23,7 @@ struct DrawOutcome {
     int width = 0, height = 0;
     FrameRange frames;
     bool film = false;  // one was written
+    std::vector<PicturePass> passes;
     std::optional<SkinField> color;
     std::array<double, 2> color_range{};  // of that
     std::vector<std::string> warning;     // all told already
@@ -34,6 +36,7 @@ void check_drawing(const RenderSettings& settings);
 // Throws Error(command_line) when the run has no such frames, Error(output), Interrupted. Only
 // whole files appear.
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& settings,
-                     const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch);
+                     const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch,
+                     const RunNames& names = {});
 
 }  // namespace swage

@@ -16,10 +16,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_still(const DrawnFiles& files, const fs::path& file) {
+// A still or a pass beside one, or what goes with these.
+bool is_drawn_here(const DrawnFiles& files, const fs::path& file) {
     int number = 0;
-    const bool numbered = std::sscanf(file.filename().c_str(), "frame_%9d.png", &number) == 1;
-    return numbered && number > 0 && file == files.still(number);
+    if (file == files.mattes()) return true;
+    if (std::sscanf(file.filename().c_str(), "frame_%9d.", &number) != 1 || number <= 0) {
+        return false;
+    }
+    return file == files.still(number) || file == files.pass(number, PicturePass::depth) ||
+           file == files.pass(number, PicturePass::matte) ||
+           file == files.pass(number, PicturePass::normal);
 }
 
 }  // namespace
@@ -54,14 +60,21 @@ RenderDirectory::~RenderDirectory() {
     if (!error) fs::remove(mark(), error);
 }
 
-int RenderDirectory::remove_others(const FrameRange& drawn, bool film) const {
+int RenderDirectory::remove_others(const FrameRange& drawn, bool film,
+                                   const std::vector<PicturePass>& passes) const {
     std::set<fs::path> of_now;
-    for (int f = drawn.first; f <= drawn.last; ++f) of_now.insert(files().still(f));
+    for (int f = drawn.first; f <= drawn.last; ++f) {
+        of_now.insert(files().still(f));
+        for (const PicturePass pass : passes) of_now.insert(files().pass(f, pass));
+    }
+    if (std::find(passes.begin(), passes.end(), PicturePass::matte) != passes.end()) {
+        of_now.insert(files().mattes());
+    }
     std::vector<fs::path> others;
     std::error_code error;
     for (fs::directory_iterator it(files().folder(), error), end; !error && it != end;
          it.increment(error)) {
-        if (is_still(files(), it->path()) && !of_now.contains(it->path()))
+        if (is_drawn_here(files(), it->path()) && !of_now.contains(it->path()))
             others.push_back(it->path());
     }
     if (!film) others.push_back(files().film());

@@ -25,9 +25,10 @@ class RenderDirectory {
     RenderDirectory& operator=(const RenderDirectory&) = delete;
 
     DrawnFiles files() const { return {root_}; }
-    // Of earlier drawings, and maybe of another camera: stills beside these, and the film where
-    // there is none now. Returns how many files they were.
-    int remove_others(const FrameRange& drawn, bool film) const;
+    // Of earlier drawings, and maybe of another camera: stills and passes beside these, and the
+    // film where there is none now. Returns how many files they were.
+    int remove_others(const FrameRange& drawn, bool film,
+                      const std::vector<PicturePass>& passes = {}) const;
 
   private:
     std::filesystem::path mark() const { return root_ / ".swage-render"; }

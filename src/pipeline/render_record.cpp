@@ -7,6 +7,18 @@
 
 namespace swage {
 
+Json passes_json(const std::vector<PicturePass>& passes) {
+    Json names = Json::array();
+    for (const PicturePass pass : passes) names.push_back(kPassName[std::size_t(pass)]);
+    return names;
+}
+
+std::optional<PicturePass> pass_named(const std::string& name) {
+    const auto at = std::find(kPassName.begin(), kPassName.end(), name);
+    if (at == kPassName.end()) return std::nullopt;
+    return static_cast<PicturePass>(at - kPassName.begin());
+}
+
 Json render_json(const RenderSettings& settings) {
     Json camera = Json::array();
     for (const CameraKey& key : settings.camera) {
@@ -31,6 +43,7 @@ Json render_json(const RenderSettings& settings) {
         {"light", {{"azimuth", settings.light.azimuth}, {"elevation", settings.light.elevation}}},
         {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
         {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
+    if (!settings.passes.empty()) json["passes"] = passes_json(settings.passes);
     if (settings.color) json["color"] = words_of(*settings.color).name;
     if (settings.color_range) json["color_range"] = *settings.color_range;
     return json;
@@ -68,6 +81,11 @@ RenderSettings render_settings_of(const Json& record) {
         settings.color = skin_field_named(json.value("color", ""));
         if (json.contains("color_range")) {
             settings.color_range = json.at("color_range").get<std::array<double, 2>>();
+        }
+        for (const Json& name : json.value("passes", Json::array())) {
+            if (const auto pass = pass_named(name.get<std::string>())) {
+                settings.passes.push_back(*pass);
+            }
         }
         settings.legend = json.value("legend", true);
         settings.background = background_named(json.value("background", "studio"));

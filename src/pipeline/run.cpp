@@ -97,7 +97,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         directory.remove_checkpoint();
         record = *earlier;
         if (plots.has_undrawn()) draw_plots();
-        if (!options.draw || is_drawn(record, files, wanted, scene.render.has_film())) {
+        if (!options.draw || is_drawn(record, files, wanted, scene.render)) {
             log_info("{}: already complete", directory.root().string());
             return record;
         }
@@ -123,7 +123,8 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         if (!options.draw || wanted.first > reached) return;
         const FrameStore store(directory.store());
         const FrameRange drawn{wanted.first, std::min(wanted.last, reached)};
-        record["drawing"] = drawing_json(draw_run(store, scene.render, drawn, files, watch));
+        record["drawing"] =
+            drawing_json(draw_run(store, scene.render, drawn, files, watch, run_names_of(record)));
     };
     if (ended.stopped) {
         // What ended the run is its outcome, whether that can be drawn and told or not.

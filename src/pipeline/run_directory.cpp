@@ -283,4 +283,9 @@ fs::path DrawnFiles::still(int frame) const {
     return folder() / fmt::format("frame_{:04d}.png", frame);
 }
 
+fs::path DrawnFiles::pass(int frame, PicturePass pass) const {
+    return folder() / fmt::format("frame_{:04d}.{}.{}", frame, kPassName[std::size_t(pass)],
+                                  pass == PicturePass::matte ? "png" : "exr");
+}
+
 }  // namespace swage

@@ -12,6 +12,7 @@
 #include "pipeline/build_name.h"
 #include "pipeline/folder_lock.h"
 #include "pipeline/made_folder.h"
+#include "render/settings.h"
 
 namespace swage {
 
@@ -92,7 +93,9 @@ struct DrawnFiles {
     std::filesystem::path root;
 
     std::filesystem::path folder() const { return root / "frames"; }
-    std::filesystem::path still(int frame) const;  // frames/frame_0001.png
+    std::filesystem::path still(int frame) const;                   // frames/frame_0001.png
+    std::filesystem::path pass(int frame, PicturePass pass) const;  // frames/frame_0001.depth.exr
+    std::filesystem::path mattes() const { return folder() / "mattes.json"; }
     std::filesystem::path film() const { return root / "film.mp4"; }
     std::filesystem::path contact_sheet() const { return root / "contact.png"; }
 };

@@ -178,6 +178,7 @@ Json drawing_json(const DrawOutcome& drawing) {
                  {"film", drawing.film},
                  {"ffmpeg", program_exists("ffmpeg")},
                  {"warnings", drawing.warning}};
+    if (!drawing.passes.empty()) json["passes"] = passes_json(drawing.passes);
     if (drawing.color) {
         json["color"] = words_of(*drawing.color).name;
         json["color_range"] = drawing.color_range;
@@ -232,7 +233,17 @@ std::optional<Json> read_record(const fs::path& file) {
     return json;
 }
 
-bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames, bool film) {
+RunNames run_names_of(const Json& record) {
+    RunNames names;
+    for (const Json& body : record.at("bodies")) names.body.push_back(body.at("name"));
+    for (const Json& stage : record.value("stages", Json::array())) {
+        names.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
+    }
+    return names;
+}
+
+bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames,
+              const RenderSettings& settings) {
     try {
         if (record.at("state") != RunState::complete || !record.contains("drawing")) return false;
         const Json& drawing = record.at("drawing");
@@ -243,12 +254,16 @@ bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& fra
         std::error_code error;
         for (int f = frames.first; f <= frames.last; ++f) {
             if (!fs::exists(files.still(f), error)) return false;
+            for (const PicturePass pass : settings.passes) {
+                if (!fs::exists(files.pass(f, pass), error)) return false;
+            }
         }
+        if (settings.has(PicturePass::matte) && !fs::exists(files.mattes(), error)) return false;
         // What ffmpeg failed to make once is not tried again.
         const bool may_come = drawing.at("film").get<bool>() ||
                               (!drawing.at("ffmpeg").get<bool>() && program_exists("ffmpeg"));
         return fs::exists(files.contact_sheet(), error) &&
-               (!film || !may_come || fs::exists(files.film(), error));
+               (!settings.has_film() || !may_come || fs::exists(files.film(), error));
     } catch (const Json::exception&) {
         return false;
     }

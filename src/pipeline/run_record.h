@@ -43,6 +43,10 @@ void write_record(const RunDirectory& directory, Json& record, const Stopwatch& 
 std::optional<Json> read_record(const std::filesystem::path& file);
 
 // Whether the record's pictures include all of these, and they still stand there.
-bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames, bool film);
+bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames,
+              const RenderSettings& settings);
+
+// Of a record that has bodies and stages; throws Json::exception.
+RunNames run_names_of(const Json& record);
 
 }  // namespace swage

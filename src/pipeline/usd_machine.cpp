@@ -9,6 +9,14 @@
 
 namespace swage {
 
+// Frame 1, the start, is in no stage and has the first one's machine.
+std::string stage_of_machine(const std::vector<UsdStage>& stages, int machine, int first_frame) {
+    for (const UsdStage& stage : stages) {
+        if (first_frame <= stage.last) return stage.name;
+    }
+    return fmt::format("machine-{}", machine + 1);
+}
+
 void UsdMachines::look_at(int frame, const StoredFrame& stored, UsdLooks& looks) {
     const auto known = std::find_if(machine_.begin(), machine_.end(),
                                     [&](const Machine& one) { return one.id == stored.machine; });
@@ -54,7 +62,7 @@ void UsdMachines::write(UsdText& out, const std::string& materials, const UsdLoo
     std::set<std::string> taken;
     for (const Machine& machine : machine_) {
         if (machine.part.empty()) continue;
-        const std::string name = name_of(machine);
+        const std::string name = stage_of_machine(stages_, machine.id, machine.first);
         out.open(usd_prim("Scope", name, usd_identifier(name, taken)));
         write(out, machine, materials, looks);
         out.close();
@@ -80,14 +88,6 @@ void UsdMachines::write(UsdText& out, const Machine& machine, const std::string&
         write_usd_poses(out, machine.first, part.pose);
         out.close();
     }
-}
-
-// Frame 1, the start, is in no stage and has the first one's machine.
-std::string UsdMachines::name_of(const Machine& machine) const {
-    for (const UsdStage& stage : stages_) {
-        if (machine.first <= stage.last) return stage.name;
-    }
-    return fmt::format("machine-{}", machine.id + 1);
 }
 
 }  // namespace swage

@@ -19,6 +19,9 @@ struct UsdStage {
     int last = 1;  // frame
 };
 
+// What a machine is under that comes in that frame; its number, where no stage has it.
+std::string stage_of_machine(const std::vector<UsdStage>& stages, int machine, int first_frame);
+
 class UsdMachines {
   public:
     // What pictures with these settings show.
@@ -48,7 +51,6 @@ class UsdMachines {
     };
     void write(UsdText& out, const Machine& machine, const std::string& materials,
                const UsdLooks& looks) const;
-    std::string name_of(const Machine& machine) const;
 
     const FrameStore& store_;
     const RenderSettings settings_;

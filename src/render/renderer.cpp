@@ -123,7 +123,8 @@ struct Renderer::Parts {
         surface_shader, textured_shader, ground_shader, backdrop_shader, smooth_shader;
     GlHandle nothing, frame_buffer;
     Target shadow, half, visibility, blurred;
-    Target plain, sampled, smoothed;  // the latter two are made when first needed
+    Target plain, sampled, smoothed, layered;  // the latter three are made when first needed
+    std::optional<Shader> layer_shader, ground_layer_shader;  // with the last
     bool eye_is_outside = true;       // of the box of all that is drawn, in this picture
     Stopwatch* watch = nullptr;
 
@@ -160,7 +161,8 @@ struct Renderer::Parts {
     void draw_surfaces(const std::vector<Drawable>& drawables, bool ground, const Target& target);
     const Target& whole_picture(bool multisampled);
     Image read_back(const Target& target) const;
-    Image draw(const Picture& picture);
+    Layers draw_layers(const Picture& picture, const std::vector<Drawable>& drawables, bool ground);
+    Image draw(const Picture& picture, Layers* layers);
 };
 
 std::vector<Drawable> Renderer::Parts::prepare(const Picture& picture, Box& shown, Box& casting) {
@@ -311,7 +313,38 @@ Image Renderer::Parts::read_back(const Target& target) const {
     return image;
 }
 
-Image Renderer::Parts::draw(const Picture& picture) {
+Layers Renderer::Parts::draw_layers(const Picture& picture, const std::vector<Drawable>& drawables,
+                                    bool ground) {
+    if (layered.width == 0) {
+        layer_shader.emplace(gl, "surface.vert", "layers.frag");
+        ground_layer_shader.emplace(gl, "ground.vert", "layers.frag");
+        layered = make_target(gl, settings.width, settings.height,
+                              {.color = GL_RGBA32F, .depth_buffer = true});
+    }
+    layered.bind(gl);
+    gl.ClearColor(0, 0, 0, 0);
+    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    const auto set_number = [](const Shader& shader, int item) {
+        shader.use();
+        const float number[4] = {layer_number(item), 0, 0, 0};
+        shader.set4("number", number);
+    };
+    for (const Drawable& d : drawables) {
+        set_number(*layer_shader, static_cast<int>(d.item - picture.item.data()));
+        draw_shapes(*layer_shader, {d});
+    }
+    if (ground) {
+        set_number(*ground_layer_shader, kGroundThere);
+        draw_ground();
+    }
+    std::vector<float> rgba(4 * static_cast<std::size_t>(layered.width) *
+                            static_cast<std::size_t>(layered.height));
+    gl.ReadPixels(0, 0, layered.width, layered.height, GL_RGBA, GL_FLOAT, rgba.data());
+    if (gl.GetError() != GL_NO_ERROR) fail(ExitCode::output, "OpenGL failed to draw a picture");
+    return layers_of(layered.width, layered.height, rgba, stage.radius);
+}
+
+Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
     canvas.make_current();
     Box casting = action_bounds, shown;
     std::vector<Drawable> drawables;
@@ -349,6 +382,9 @@ Image Renderer::Parts::draw(const Picture& picture) {
     timed("resolve", [&] { whole = &whole_picture(multisampled); });
     Image image;
     timed("read back", [&] { image = read_back(*whole); });
+    if (layers != nullptr) {
+        timed("layers", [&] { *layers = draw_layers(picture, drawables, ground); });
+    }
     return image;
 }
 
@@ -365,7 +401,9 @@ Renderer::~Renderer() {
     }
 }
 
-Image Renderer::draw(const Picture& picture) { return parts_->draw(picture); }
+Image Renderer::draw(const Picture& picture, Layers* layers) {
+    return parts_->draw(picture, layers);
+}
 
 std::string Renderer::renderer_string() const { return parts_->canvas.renderer_string(); }
 

@@ -10,6 +10,7 @@
 #include "base/stopwatch.h"
 #include "geometry/trimesh.h"
 #include "render/image.h"
+#include "render/layers.h"
 #include "render/settings.h"
 
 namespace swage {
@@ -41,8 +42,8 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // Meshes and positions are only read during the call.
-    Image draw(const Picture& picture);
+    // Meshes and positions are only read during the call. `layers`: to be told as well.
+    Image draw(const Picture& picture, Layers* layers = nullptr);
 
     std::string renderer_string() const;
 

@@ -2,6 +2,7 @@
 // What a user may ask of the pictures. Angles in radians, lengths in m.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -21,6 +22,10 @@ inline constexpr std::array<const char*, 3> kGlName = {"auto", "osmesa", "egl"};
 // What is behind the bodies: paper, or nothing, and of the ground its shadows alone.
 enum class Background { studio, transparent };
 inline constexpr std::array<const char*, 2> kBackgroundName = {"studio", "transparent"};
+
+// Beside each still, without blending: how far away what is seen is, whose it is, its normal.
+enum class PicturePass { depth, matte, normal };
+inline constexpr std::array<const char*, 3> kPassName = {"depth", "matte", "normal"};  // so ordered
 
 // Where the lamp stands that throws the shadows; the others turn with it about up.
 struct LightPlace {
@@ -57,6 +62,11 @@ struct RenderSettings {
     bool legend = true;                                // of that, on the still
     // Of the height, that the framed action is kept off at the bottom, for a legend; 0 to 0.4.
     double free_below = 0;
+    std::vector<PicturePass> passes;  // each at most once
+
+    bool has(PicturePass pass) const {
+        return std::find(passes.begin(), passes.end(), pass) != passes.end();
+    }
 
     bool has_film() const { return film && background != Background::transparent; }
 };

@@ -168,6 +168,10 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "legend", "put a scale of what color shows on the stills"},
         {"[render]", "background",
          "transparent: stills have alpha, of the ground only its shadows, and there is no film"},
+        {"[render]", "passes",
+         "files beside each still, for compositing, without blending at edges: depth (EXR, metres "
+         "along the view), matte (PNG, a colour for each body, tool and the ground, which "
+         "mattes.json names), normal (EXR, by the world's axes)"},
         {"[render]", "gl", "who draws"},
         {"[render]",
          "color",

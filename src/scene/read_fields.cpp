@@ -10,36 +10,48 @@ namespace swage {
 
 namespace {
 
-std::vector<std::string> field_names() {
-    std::vector<std::string> names;
-    for (const SkinFieldWords& words : kSkinFieldWords) names.emplace_back(words.name);
-    return names;
+// A list of texts of these, none twice; numbers in `names`.
+std::vector<std::size_t> read_list(TableReader& table, const std::string& key,
+                                   const std::vector<std::string>& names, const char* example) {
+    std::vector<std::size_t> chosen;
+    table.describe(key, "texts [\"" + joined(names, "\", \"") + "\"], or some of these", "none");
+    const Node* node = table.find(key);
+    if (node == nullptr) return chosen;
+    if (node->kind != Node::Kind::array) {
+        table.mistake(key,
+                      fmt::format("{} has to be a list of texts, such as [\"{}\"]", key, example));
+        return chosen;
+    }
+    for (const Node& item : node->item) {
+        const std::string said = item.kind == Node::Kind::text ? item.text : "";
+        const auto at = std::find(names.begin(), names.end(), said);
+        const auto number = static_cast<std::size_t>(at - names.begin());
+        if (at == names.end()) {
+            table.reading().mistakes.add(
+                item.place, fmt::format("{}: {} is not one of {}{}", key,
+                                        said.empty() ? kind_text(item) : '"' + said + '"',
+                                        joined(names, ", "), did_you_mean(said, names)));
+        } else if (std::find(chosen.begin(), chosen.end(), number) == chosen.end()) {
+            chosen.push_back(number);
+        }
+    }
+    return chosen;
 }
 
 }  // namespace
 
 void read_fields(TableReader& output, std::vector<SkinField>& fields) {
-    const std::vector<std::string> names = field_names();
-    output.describe("fields", "texts [\"" + joined(names, "\", \"") + "\"], or some of these",
-                    "none");
-    const Node* node = output.find("fields");
-    if (node == nullptr) return;
-    if (node->kind != Node::Kind::array) {
-        output.mistake("fields", "fields has to be a list of texts, such as [\"stress\"]");
-        return;
+    std::vector<std::string> names;
+    for (const SkinFieldWords& words : kSkinFieldWords) names.emplace_back(words.name);
+    for (const std::size_t number : read_list(output, "fields", names, "stress")) {
+        fields.push_back(*skin_field_named(names[number]));
     }
-    for (const Node& item : node->item) {
-        const std::optional<SkinField> field =
-            item.kind == Node::Kind::text ? skin_field_named(item.text) : std::nullopt;
-        if (field && std::find(fields.begin(), fields.end(), *field) == fields.end()) {
-            fields.push_back(*field);
-        } else if (!field) {
-            const std::string said = item.kind == Node::Kind::text ? item.text : "";
-            output.reading().mistakes.add(
-                item.place, fmt::format("fields: {} is not one of {}{}",
-                                        said.empty() ? kind_text(item) : '"' + said + '"',
-                                        joined(names, ", "), did_you_mean(said, names)));
-        }
+}
+
+void read_passes(TableReader& render, std::vector<PicturePass>& passes) {
+    for (const std::size_t number :
+         read_list(render, "passes", {kPassName.begin(), kPassName.end()}, "depth")) {
+        passes.push_back(static_cast<PicturePass>(number));
     }
 }
 

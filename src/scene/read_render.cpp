@@ -142,6 +142,7 @@ void read_render(TableReader& table, RenderSettings& settings) {
                                  settings.gl);
     table.choice<Up>("up", {{"auto", Up::automatic}, {"x", Up::x}, {"y", Up::y}, {"z", Up::z}},
                      settings.up);
+    read_passes(table, settings.passes);
     read_field_color(table, settings);
     table.quantity("field_of_view", Quantity::angle, inside(0, kPi), settings.field_of_view);
     TableReader camera(table.table("camera"), "[render.camera]", table.reading());

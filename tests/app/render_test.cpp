@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a run that is drawn once more goes, and where it does not.
+#include <set>
+
+#include "pipeline/json.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
@@ -154,4 +157,49 @@ TEST_CASE("transparent stills have alpha and no film, and a film with them is re
     CHECK_FALSE(fs::exists(out / "film.mp4"));
     CHECK(bytes_of(out / "frames/frame_0002.png").at(25) == 6);  // RGBA
     CHECK(draw({"--light-elevation", "2"}).code == 2);
+}
+
+TEST_CASE("passes lie beside the stills of a run whose scene asks for them, and of a drawing") {
+    const DrawableRun drawable("passes = [\"normal\", \"matte\"]\n");
+    const auto names = [&](std::vector<std::string> more) {
+        REQUIRE(drawable.draw(drawable.out(), std::move(more)).code == 0);
+        std::set<std::string> found;
+        for (const auto& entry : fs::directory_iterator(drawable.out() / "frames")) {
+            found.insert(entry.path().filename().string());
+        }
+        return found;
+    };
+    using Names = std::set<std::string>;
+    CHECK(names({"--frames", "2"}) ==
+          Names{"frame_0002.png", "frame_0002.matte.png", "frame_0002.normal.exr", "mattes.json"});
+    const std::string table = bytes_of(drawable.out() / "frames/mattes.json");
+    CHECK(table.find("work-piece") != std::string::npos);
+    CHECK(table.find("1-bend") != std::string::npos);
+    CHECK(names({"--frames", "3", "--passes", "depth"}) ==
+          Names{"frame_0003.png", "frame_0003.depth.exr"});
+    CHECK(names({"--frames", "3", "--passes", "none"}) == Names{"frame_0003.png"});
+    const Outcome refused = drawable.draw(drawable.out(), {"--passes", "depth,mate"});
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("mate") != std::string::npos);
+}
+
+TEST_CASE("a run is not complete until its passes are there") {
+    const Scratch scratch;
+    const fs::path scene =
+        put_small_scene(scratch.path(), 1, "passes = [\"depth\"]\nfilm = false\n");
+    const fs::path run = scratch.path() / "run";
+    const std::vector<std::string> arguments = {"run", scene.string(), "--out", run.string()};
+    REQUIRE(run_swage(arguments).code == 0);
+    const fs::path depth = run / "frames/frame_0002.depth.exr";
+    REQUIRE(fs::exists(depth));
+    CHECK(run_swage(arguments).err.find("already complete") != std::string::npos);
+    // What check told of the disk has it.
+    const auto disk = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"check", scene.string(), "--json"});
+        return swage::Json::parse(run_swage(more).out).at("cost").at("disk_bytes").get<double>();
+    };
+    CHECK(disk({}) - disk({"--set", "render.passes=[]"}) > 2 * double(fs::file_size(depth)));
+    fs::remove(depth);
+    CHECK(run_swage(arguments).code == 0);
+    CHECK(fs::exists(depth));
 }

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/atomic_file.h"
+#include "pipeline/json.h"
+#include "pipeline/shot.h"
+#include "render/exr.h"
+#include "render/png.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kGolden = 0.6180339887498949;  // of a turn of hue: neighbours lie far apart
+
+// `hue` 0 to 1, from red over green and blue.
+MatteColor color_of(double hue, int strength) {
+    const double share[] = {std::abs(6 * hue - 3) - 1, 2 - std::abs(6 * hue - 2),
+                            2 - std::abs(6 * hue - 4)};
+    MatteColor color{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        color[c] =
+            static_cast<std::uint8_t>(std::lround(strength * std::clamp(share[c], 0.0, 1.0)));
+    }
+    return color;
+}
+
+}  // namespace
+
+std::vector<MatteColor> matte_colors(std::size_t count) {
+    std::vector<MatteColor> colors = {{0, 0, 0}, {128, 128, 128}};
+    std::set<MatteColor> taken(colors.begin(), colors.end());
+    for (std::size_t n = colors.size(); n < count; ++n) {
+        const double turned = kGolden * static_cast<double>(n);
+        MatteColor color = color_of(turned - std::floor(turned), n % 2 == 0 ? 255 : 150);
+        while (!taken.insert(color).second) color[n % 3] = std::uint8_t(color[n % 3] + 1);
+        colors.push_back(color);
+    }
+    colors.resize(count);
+    return colors;
+}
+
+PassWriter::PassWriter(const FrameStore& store, const RenderSettings& settings,
+                       const DrawnFiles& files, const RunNames& names, const Quat& drawn_from_world)
+    : store_(store),
+      settings_(settings),
+      files_(files),
+      names_(names),
+      world_from_drawn_(drawn_from_world.conjugate().toRotationMatrix()),
+      bodies_(store.frame_count() > 0 ? store.frame(0).body.size() : 0) {
+    int next = 2 + static_cast<int>(bodies_);
+    for (int machine = 0; machine < store.machine_count(); ++machine) {
+        first_part_.push_back(next);
+        next += static_cast<int>(store.machine(machine).size());
+    }
+    color_ = matte_colors(static_cast<std::size_t>(next));
+}
+
+int PassWriter::number_of_part(int machine, std::size_t part) const {
+    return first_part_.at(std::size_t(machine)) + static_cast<int>(part);
+}
+
+void PassWriter::write(int frame, int machine, const Layers& layers,
+                       const std::vector<int>& number) {
+    first_frame_.try_emplace(machine, frame);
+    const auto write_floats = [&](PicturePass pass, std::vector<ExrChannel> channels) {
+        write_file_whole(files_.pass(frame, pass),
+                         encode_exr(layers.width, layers.height, std::move(channels)));
+    };
+    if (settings_.has(PicturePass::depth)) {
+        write_floats(PicturePass::depth, {{"depth.Z", layers.depth}});
+    }
+    if (settings_.has(PicturePass::normal)) {
+        std::vector<ExrChannel> channels = {{"normal.X", {}}, {"normal.Y", {}}, {"normal.Z", {}}};
+        const Eigen::Matrix3f turn = world_from_drawn_.cast<float>();
+        for (const Eigen::Vector3f& drawn : layers.normal) {
+            const Eigen::Vector3f world = turn * drawn;
+            for (int k = 0; k < 3; ++k) channels[std::size_t(k)].value.push_back(world[k]);
+        }
+        write_floats(PicturePass::normal, std::move(channels));
+    }
+    if (!settings_.has(PicturePass::matte)) return;
+    Image matte{layers.width, layers.height, {}};
+    matte.rgb.reserve(3 * layers.item.size());
+    for (const int item : layers.item) {
+        const int whose = item == kNothingThere  ? 0
+                          : item == kGroundThere ? 1
+                                                 : number.at(std::size_t(item));
+        const MatteColor& color = color_.at(std::size_t(whose));
+        matte.rgb.insert(matte.rgb.end(), color.begin(), color.end());
+    }
+    write_png(files_.pass(frame, PicturePass::matte), matte);
+}
+
+void PassWriter::finish() const {
+    if (!settings_.has(PicturePass::matte)) return;
+    Json all = Json::array();
+    const auto add = [&](int number, const char* kind, const std::string& name) -> Json& {
+        all.push_back({{"number", number},
+                       {"color", color_.at(std::size_t(number))},
+                       {"is", kind},
+                       {"name", name}});
+        return all.back();
+    };
+    add(0, "nothing", "nothing");
+    if (settings_.ground) add(1, "ground", "ground");
+    for (std::size_t b = 0; b < bodies_; ++b) {
+        add(number_of_body(b), "body",
+            b < names_.body.size() ? names_.body[b] : fmt::format("body-{}", b + 1));
+    }
+    for (const auto& [machine, frame] : first_frame_) {
+        if (!settings_.tools || machine < 0 || machine >= store_.machine_count()) continue;
+        const std::vector<DrawnPart> parts = store_.machine(machine);
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            if (!look_of(parts[n], settings_)) continue;
+            add(number_of_part(machine, n), "tool", parts[n].name)["stage"] =
+                stage_of_machine(names_.stage, machine, frame);
+        }
+    }
+    write_file_whole(files_.mattes(), json_text({{"mattes", all}}));
+}
+
+}  // namespace swage

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/layers.h"
+
+#include <cmath>
+
+namespace swage {
+
+namespace {
+
+// Source: Z. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
+// JCGT 3(2), 2014: octahedral.
+Eigen::Vector3f unfolded(float x, float y) {
+    const float z = 1 - std::abs(x) - std::abs(y), fold = std::max(-z, 0.0f);
+    return Eigen::Vector3f(x + (x >= 0 ? -fold : fold), y + (y >= 0 ? -fold : fold), z)
+        .normalized();
+}
+
+}  // namespace
+
+Layers layers_of(int width, int height, const std::vector<float>& rgba, double radius) {
+    const std::size_t row = static_cast<std::size_t>(width), pixels = rgba.size() / 4;
+    Layers layers{width, height, std::vector<float>(pixels, kNoDepth),
+                  std::vector<Eigen::Vector3f>(pixels, Eigen::Vector3f::Zero()),
+                  std::vector<int>(pixels, kNothingThere)};
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float* from = &rgba[4 * i];
+        if (from[3] == 0) continue;
+        const std::size_t to = (std::size_t(height) - 1 - i / row) * row + i % row;
+        layers.normal[to] = unfolded(from[0], from[1]);
+        layers.depth[to] = static_cast<float>(radius * double(from[2]));
+        layers.item[to] = static_cast<int>(std::lround(from[3])) - 3;
+    }
+    return layers;
+}
+
+}  // namespace swage

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Passes as files: what mattes.json says is what the mattes show.
+#include "pipeline/passes.h"
+
+#include <set>
+
+#include "geometry/box_mesh.h"
+#include "pipeline/draw.h"
+#include "pipeline/json.h"
+#include "pipeline/render_directory.h"
+#include "render/png.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+#include "tests/render/drawn.h"
+#include "tests/shared/bytes_of.h"
+
+using namespace swage;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kFrames = 4, kSecond = 3;  // the first frame of the second stage
+
+// Two bodies side by side, under a post and then a blade.
+struct TwoStages {
+    Scratch scratch;
+    RunNames names{{"left", "right"}, {{"1-bend", kSecond - 1}, {"2-cut", kFrames}}};
+    RenderSettings settings;
+
+    TwoStages() {
+        settings.width = 160;
+        settings.height = 90;
+        settings.film = false;
+        settings.passes = {PicturePass::matte, PicturePass::depth};
+        const TriMesh box = box_mesh(Vec3::Constant(-0.5), Vec3::Constant(0.5));
+        FrameStoreWriter writer(store());
+        writer.add_skin(box);
+        writer.add_machine({{"post", box}});
+        writer.add_machine({{"blade", box}});
+        for (int f = 1; f <= kFrames; ++f) {
+            StoredFrame now;
+            now.body.assign(2, {0, box.position});
+            for (Vec3& p : now.body[0].position) p.x() -= 1 + 0.1 * f;
+            for (Vec3& p : now.body[1].position) p.x() += 1;
+            now.machine = f < kSecond ? 0 : 1;
+            now.pose = {{Quat::Identity(), {0, 1.5, 0}}};
+            writer.add_frame(now);
+        }
+        writer.finish();
+    }
+    fs::path store() const { return scratch.path() / "motion.bin"; }
+    fs::path out() const { return scratch.path() / "drawn"; }
+    DrawnFiles files() const { return {out()}; }
+    void draw(const FrameRange& frames = {1, kFrames}) const {
+        Stopwatch watch;
+        draw_run(FrameStore(store()), settings, frames, files(), watch, names);
+    }
+};
+
+using Color = std::array<int, 3>;
+
+}  // namespace
+
+TEST_CASE("colours of mattes are all different, and nothing is black") {
+    const std::vector<MatteColor> colors = matte_colors(3000);
+    CHECK(colors[0] == MatteColor{0, 0, 0});
+    CHECK(std::set<MatteColor>(colors.begin(), colors.end()).size() == 3000);
+    // What a number has does not go by how many there are.
+    CHECK(matte_colors(7)[6] == colors[6]);
+}
+
+TEST_CASE("every pixel of a matte is of one of those that its table names") {
+    if (!can_draw()) return;
+    const TwoStages run;
+    run.draw();
+    const Json table = Json::parse(test::bytes_of(run.files().mattes())).at("mattes");
+    std::map<Color, std::string> name;
+    for (const Json& one : table) {
+        const std::string of_stage =
+            one.contains("stage") ? one.at("stage").get<std::string>() : "";
+        CHECK(name.emplace(one.at("color").get<Color>(),
+                           of_stage + "/" + one.at("name").get<std::string>())
+                  .second);
+    }
+    for (int f = 1; f <= kFrames; ++f) {
+        const Image matte = read_image(run.files().pass(f, PicturePass::matte));
+        std::map<std::string, int> count;
+        for (int y = 0; y < matte.height; ++y) {
+            for (int x = 0; x < matte.width; ++x) {
+                const std::uint8_t* p = matte.pixel(x, y);
+                const auto known = name.find({p[0], p[1], p[2]});
+                REQUIRE(known != name.end());
+                ++count[known->second];
+            }
+        }
+        const std::string tool = f < kSecond ? "1-bend/post" : "2-cut/blade";
+        for (const std::string& seen : {std::string("/left"), std::string("/right"), tool}) {
+            INFO(f << seen);
+            CHECK(count[seen] > 150);
+        }
+        CHECK(count["/ground"] > 1000);
+        CHECK(count[f < kSecond ? "2-cut/blade" : "1-bend/post"] == 0);
+        CHECK(fs::file_size(run.files().pass(f, PicturePass::depth)) > 1000);
+        CHECK_FALSE(fs::exists(run.files().pass(f, PicturePass::normal)));
+    }
+}
+
+TEST_CASE("passes change no still, and go when others are drawn in their place") {
+    if (!can_draw()) return;
+    TwoStages run;
+    const auto draw = [&](const FrameRange& frames) {
+        const RenderDirectory directory(run.out(), false);
+        run.draw(frames);
+        return directory.remove_others(frames, false, run.settings.passes);
+    };
+    draw({1, 3});
+    const std::string still = test::bytes_of(run.files().still(2));
+    const std::string matte = test::bytes_of(run.files().pass(2, PicturePass::matte));
+    run.settings.passes = {PicturePass::normal, PicturePass::matte};
+    CHECK(draw({2, 3}) == 5);  // a still with two, and two depths
+    CHECK(fs::exists(run.files().pass(2, PicturePass::normal)));
+    CHECK_FALSE(fs::exists(run.files().pass(2, PicturePass::depth)));
+    CHECK_FALSE(fs::exists(run.files().pass(1, PicturePass::matte)));
+    CHECK(test::bytes_of(run.files().pass(2, PicturePass::matte)) == matte);
+    run.settings.passes.clear();
+    CHECK(draw({2, 2}) == 6);  // a still, four passes and their table
+    CHECK(test::bytes_of(run.files().still(2)) == still);
+    CHECK_FALSE(fs::exists(run.files().mattes()));
+}
