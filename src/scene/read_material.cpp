@@ -15,8 +15,6 @@ namespace swage {
 
 namespace {
 
-constexpr double kLatticePoisson = 0.25;  // of central springs, whatever is asked
-constexpr double kPoissonSlack = 0.005;
 constexpr double kMuchFriction = 2;
 constexpr double kRubberPoisson = 0.4;
 constexpr double kMostStrength = 0.1;                   // of young_modulus
@@ -38,9 +36,6 @@ void read_fracture(TableReader& table, Material& material) {
     const bool has_toughness =
         table.quantity("toughness", Quantity::toughness, above(0), material.toughness);
     if (!material.breaks()) {
-        if (has_toughness && !asks) {
-            table.warn("toughness", "toughness has no effect without strength");
-        }
         material.toughness = kInfinite;
         return;
     }
@@ -157,16 +152,7 @@ void read_material(TableReader& table, const AssetPaths& assets,
     }
     table.choice<Mechanics>("mechanics", kMechanicsNames, material.mechanics);
     read_material_numbers(table, is_custom, material);
-    if (material.mechanics == Mechanics::springs && table.find("poisson_ratio") != nullptr &&
-        std::abs(material.poisson_ratio - kLatticePoisson) > kPoissonSlack) {
-        table.warn("poisson_ratio", fmt::format("poisson_ratio = {} has no effect: a lattice of "
-                                                "springs has {}",
-                                                material.poisson_ratio, kLatticePoisson));
-    }
     const bool asks_elasticity = table.find("elasticity") != nullptr;
-    if (asks_elasticity && material.mechanics == Mechanics::springs) {
-        table.warn("elasticity", "elasticity has no effect on springs");
-    }
     if (material.elasticity != Elasticity::hencky && std::isfinite(material.yield_stress)) {
         const std::string name = name_in(kElasticityNames, material.elasticity);
         // A rubber or foam that is told to yield is taken as what can.
@@ -186,9 +172,6 @@ void read_material(TableReader& table, const AssetPaths& assets,
                                     "missing or a wrong one? What yields does at {:g} to {:g}",
                                     key, quantity_text(material.yield_stress, Quantity::stress),
                                     share, kLeastYield, kMostYield));
-    }
-    if (table.find("hardening") != nullptr && std::isinf(material.yield_stress)) {
-        table.warn("hardening", "hardening has no effect without yield_stress");
     }
     table.finish();
 }

@@ -7,6 +7,7 @@
 #include "base/suggest.h"
 #include "base/text.h"
 #include "scene/document.h"
+#include "scene/idle_keys.h"
 #include "scene/overrides.h"
 #include "scene/product_names.h"
 #include "scene/read_body.h"
@@ -42,18 +43,8 @@ void read_skin(TableReader& table, SkinSettings& skin) {
                             {"frame4", SkinKind::frame4},
                             {"boundary", SkinKind::boundary}},
                            skin.kind);
-    if (table.truth("divide", skin.divide) && skin.kind == SkinKind::boundary) {
-        table.warn("divide",
-                   "divide has no effect with kind = \"boundary\": such a skin is made "
-                   "anew, of voxels");
-    }
-    if (table.quantity("crease_angle", Quantity::angle, between(0, kPi + 1e-12),
-                       skin.crease_angle) &&
-        skin.kind == SkinKind::boundary) {
-        table.warn("crease_angle",
-                   "crease_angle has no effect with kind = \"boundary\": such a skin is made "
-                   "anew, of voxels");
-    }
+    table.truth("divide", skin.divide);
+    table.quantity("crease_angle", Quantity::angle, between(0, kPi + 1e-12), skin.crease_angle);
     table.quantity("roughness", Quantity::number, between(0, kMostRoughness), skin.roughness);
     table.finish();
 }
@@ -219,6 +210,7 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
         read_scene_document(*document, assets, reading, scene);
     }
     if (mistakes.is_clean()) {
+        warn_of_idle_keys(document->root, scene, mistakes);
         tell(document->root, scene);
         result.scene = std::move(scene);
     }

@@ -102,56 +102,31 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
             "what swings in a grip: a low grip_stiffness, of 1, may keep it, else use solver "
             "= \"explicit\"");
     }
-    const bool relaxes = sim.solver == Solver::quasistatic;
     const bool is_implicit = sim.solver == Solver::implicit_steps;
     const bool is_explicit = sim.solver == Solver::explicit_steps || sim.solver == Solver::euler;
-    const bool drags = !relaxes && !is_implicit;
-    const auto only_for = [&](const std::string& key, bool is_given, bool is_used) {
-        if (!is_given || is_used) return;
-        table.warn(key,
-                   fmt::format("{} has no effect with solver = \"{}\"", key, name_of(sim.solver)));
-    };
     const auto number = [&](const std::string& key, double low, double high, double& into) {
-        return table.quantity(key, Quantity::number, between(low, high), into);
+        table.quantity(key, Quantity::number, between(low, high), into);
     };
-    only_for("tolerance", number("tolerance", 1e-4, 0.1, sim.tolerance), relaxes);
-    only_for("iteration_limit", table.whole("iteration_limit", 100, 1'000'000, sim.iteration_limit),
-             relaxes);
-    only_for("halving_limit", table.whole("halving_limit", 0, 8, sim.halving_limit), relaxes);
+    number("tolerance", 1e-4, 0.1, sim.tolerance);
+    table.whole("iteration_limit", 100, 1'000'000, sim.iteration_limit);
+    table.whole("halving_limit", 0, 8, sim.halving_limit);
     number("contact_stiffness", is_explicit ? 0.01 : 0.5, 100, sim.contact_stiffness);
     number("grip_stiffness", 1, 100, sim.grip_stiffness);
-    only_for("step_safety",
-             table.quantity("step_safety", Quantity::number,
-                            {.low = 0, .high = 1, .low_open = true}, sim.step_safety),
-             is_explicit);
-    only_for("retry_limit", table.whole("retry_limit", 0, 20, sim.retry_limit),
-             is_explicit || is_implicit);
-    const bool meets = !is_implicit;
-    only_for("self_contact", table.truth("self_contact", sim.self_contact), meets);
-    if (!meets) sim.self_contact = false;
-    only_for("sleep", table.truth("sleep", sim.sleep), is_explicit || is_implicit);
-    only_for("medium_density",
-             table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density),
-             drags);
-    only_for(
-        "drag_coefficient",
-        table.quantity("drag_coefficient", Quantity::number, at_least(0), sim.drag_coefficient),
-        drags);
-    only_for("directional_drag",
-             table.quantity("directional_drag", Quantity::drag, at_least(0), sim.directional_drag),
-             drags);
-    only_for("directional_drag_along",
-             table.choice<DragAlong>("directional_drag_along",
-                                     {{"motion", DragAlong::motion}, {"normal", DragAlong::normal}},
-                                     sim.directional_drag_along),
-             drags);
-    if (is_implicit) sim.medium_density = sim.directional_drag = 0;
-    const auto idle = [&](const char* key, const char* without, double of) {
-        if (!drags || of > 0 || table.find(key) == nullptr) return;
-        table.warn(key, fmt::format("{} has no effect without {}", key, without));
-    };
-    idle("drag_coefficient", "medium_density", sim.medium_density);
-    idle("directional_drag_along", "directional_drag", sim.directional_drag);
+    table.quantity("step_safety", Quantity::number, {.low = 0, .high = 1, .low_open = true},
+                   sim.step_safety);
+    table.whole("retry_limit", 0, 20, sim.retry_limit);
+    table.truth("self_contact", sim.self_contact);
+    table.truth("sleep", sim.sleep);
+    table.quantity("medium_density", Quantity::density, at_least(0), sim.medium_density);
+    table.quantity("drag_coefficient", Quantity::number, at_least(0), sim.drag_coefficient);
+    table.quantity("directional_drag", Quantity::drag, at_least(0), sim.directional_drag);
+    table.choice<DragAlong>("directional_drag_along",
+                            {{"motion", DragAlong::motion}, {"normal", DragAlong::normal}},
+                            sim.directional_drag_along);
+    if (is_implicit) {
+        sim.self_contact = false;
+        sim.medium_density = sim.directional_drag = 0;
+    }
     const Node* gravity = table.find("gravity");
     if (up == WorldAxis::automatic) up = WorldAxis::y;
     const Vec3 above = direction_of(up);

@@ -193,10 +193,7 @@ void StageReader::read_loads(TableReader& table, StageSpec& stage) {
         stage.machine.load.push_back(std::move(load));
     }
     ExpressionReader timed = expression.timed();
-    if (timed.read(table, "gravity_strength", Quantity::number, stage.machine.gravity_strength) &&
-        stage.sim.gravity == Vec3::Zero()) {
-        table.warn("gravity_strength", "gravity_strength has no effect without gravity");
-    }
+    timed.read(table, "gravity_strength", Quantity::number, stage.machine.gravity_strength);
 }
 
 void read_frame_words(TableReader& table, WorldAxis& axis, WorldAxis& up) {

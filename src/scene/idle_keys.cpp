@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/idle_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "geometry/mesh_check.h"
+#include "geometry/mesh_read.h"
+
+namespace swage {
+
+namespace {
+
+// A section of the scene, and what it was read as.
+struct Section {
+    const Node& node;
+    const SceneSpec& scene;
+    const Material* material = nullptr;  // of a [material] or an [[inset]]
+    const StageSpec* stage = nullptr;    // of a [[stage]]
+
+    bool says(const char* key, const char* text) const {
+        const Entry* entry = node.find(key);
+        return entry != nullptr && entry->value.text == text;
+    }
+};
+
+template <typename Test>
+bool any_stage(const SceneSpec& scene, const Test& test) {
+    return std::any_of(scene.stage.begin(), scene.stage.end(), test);
+}
+
+bool relaxes(const StageSpec& stage) { return stage.sim.solver == Solver::quasistatic; }
+bool is_implicit(const StageSpec& stage) { return stage.sim.solver == Solver::implicit_steps; }
+// By steps that know what materials say of motion.
+bool moves(const StageSpec& stage) { return !relaxes(stage) && !is_implicit(stage); }
+bool is_explicit(const StageSpec& stage) {
+    return stage.sim.solver == Solver::explicit_steps || stage.sim.solver == Solver::euler;
+}
+
+bool meets_anything(const SceneSpec& scene, const StageSpec& stage) {
+    return !stage.machine.tool.empty() || scene.body.size() > 1 || stage.sim.self_contact;
+}
+
+// Behind "KEY has no effect"; empty: it has one.
+using Why = std::string (*)(const Section&);
+
+std::string with_solver(const Section& at) {
+    return fmt::format(" with solver = \"{}\"", name_of(at.stage->sim.solver));
+}
+std::string unless_it_relaxes(const Section& at) {
+    return relaxes(*at.stage) ? "" : with_solver(at);
+}
+std::string unless_it_is_explicit(const Section& at) {
+    return is_explicit(*at.stage) ? "" : with_solver(at);
+}
+std::string unless_it_makes_steps(const Section& at) {
+    return is_explicit(*at.stage) || is_implicit(*at.stage) ? "" : with_solver(at);
+}
+std::string unless_it_drags(const Section& at) { return moves(*at.stage) ? "" : with_solver(at); }
+
+constexpr const char* kNothingMeets =
+    ": nothing can touch, for no machine has a tool, there is one body, and no stage has "
+    "self_contact";
+
+std::string unless_something_meets(const Section& at) {
+    const auto meets = [&](const StageSpec& stage) { return meets_anything(at.scene, stage); };
+    return any_stage(at.scene, meets) ? "" : kNothingMeets;
+}
+std::string unless_something_moves(const Section& at) {
+    return any_stage(at.scene, moves) ? ""
+                                      : " where no stage is of motion (solver = \"explicit\", "
+                                        "\"euler\" or \"energy-stepped\")";
+}
+std::string unless_something_strikes(const Section& at) {
+    const std::string still = unless_something_moves(at);
+    return still.empty() ? unless_something_meets(at) : still;
+}
+
+bool breaks(const SceneSpec& scene) {
+    return scene.any_material([](const Material& m) { return m.breaks(); });
+}
+bool yields(const SceneSpec& scene) {
+    return scene.any_material([](const Material& m) { return m.yields(); });
+}
+
+std::string unless_skin_is_mounted(const Section& at) {
+    return at.scene.skin.kind != SkinKind::boundary
+               ? ""
+               : " with kind = \"boundary\": such a skin is made anew, of voxels";
+}
+
+// Whether any mesh is shaded by the angle: a file that has normals or groups of its own is not.
+bool creases_matter(const SceneSpec& scene) {
+    return std::any_of(scene.body.begin(), scene.body.end(), [](const BodySpec& body) {
+        try {
+            std::vector<std::string> told;  // when the mesh is read to be molded
+            const auto shaded = [&](double angle) {
+                return read_mesh(body.mesh.file, {}, &told, angle);
+            };
+            const TriMesh sharp = shaded(0), smooth = shaded(kPi);
+            // What is repaired is shaded anew.
+            return sharp.triangle_smooth != smooth.triangle_smooth ||
+                   !check_mesh(sharp).is_one_body();
+        } catch (const Error&) {
+            return true;  // what is amiss with it is told then
+        }
+    });
+}
+
+constexpr const char* kNoYield =
+    ": no material yields (yield_stress, flow_curve), so it is 0 everywhere";
+
+struct IdleKey {
+    const char* key;
+    Why why;
+};
+
+const std::vector<IdleKey> kOfMaterials = {
+    {"poisson_ratio",
+     [](const Section& at) -> std::string {
+         constexpr double kOfSprings = 0.25, kSlack = 0.005;
+         const bool is_other = std::abs(at.material->poisson_ratio - kOfSprings) > kSlack;
+         return at.material->mechanics == Mechanics::springs && is_other
+                    ? fmt::format(": a lattice of springs has {}", kOfSprings)
+                    : "";
+     }},
+    {"elasticity",
+     [](const Section& at) -> std::string {
+         return at.material->mechanics == Mechanics::springs ? " on springs" : "";
+     }},
+    {"hardening",
+     [](const Section& at) -> std::string {
+         return at.material->yields() ? "" : " without yield_stress";
+     }},
+    {"toughness",
+     [](const Section& at) -> std::string {
+         return at.material->breaks() ? "" : " without strength";
+     }},
+    // A ratio of 0 says what is so anyhow. Implicit steps are told of where they are chosen.
+    {"damping_ratio",
+     [](const Section& at) -> std::string {
+         const bool is_still = !any_stage(at.scene, [](const StageSpec& s) { return !relaxes(s); });
+         return is_still && at.material->damping_ratio > 0 ? unless_something_moves(at) : "";
+     }},
+    {"friction", unless_something_meets},
+    {"static_friction", unless_something_strikes},
+    {"restitution", unless_something_strikes},
+    {"stickiness", unless_something_strikes},
+};
+
+const std::vector<IdleKey> kOfSkins = {
+    {"divide", unless_skin_is_mounted},
+    {"crease_angle",
+     [](const Section& at) -> std::string {
+         const std::string voxels = unless_skin_is_mounted(at);
+         if (!voxels.empty() || creases_matter(at.scene)) return voxels;
+         return ": the mesh's file says itself which edges are sharp";
+     }},
+    {"roughness",
+     [](const Section& at) -> std::string {
+         return breaks(at.scene) ? "" : ": no material breaks (strength, toughness)";
+     }},
+};
+
+const std::vector<IdleKey> kOfStages = {
+    {"tolerance", unless_it_relaxes},
+    {"iteration_limit", unless_it_relaxes},
+    {"halving_limit", unless_it_relaxes},
+    {"step_safety", unless_it_is_explicit},
+    {"retry_limit", unless_it_makes_steps},
+    {"self_contact",
+     [](const Section& at) -> std::string {
+         return is_implicit(*at.stage) ? with_solver(at) : "";
+     }},
+    {"sleep",
+     [](const Section& at) -> std::string {
+         const std::string other = unless_it_makes_steps(at);
+         if (!other.empty() || at.stage->sim.gravity != Vec3::Zero()) return other;
+         return " without gravity, which alone holds down what sleeps";
+     }},
+    {"contact_stiffness",
+     [](const Section& at) -> std::string {
+         return meets_anything(at.scene, *at.stage)
+                    ? ""
+                    : fmt::format(
+                          ": nothing can touch, for the machine {} has no tool, there is "
+                          "one body, and no self_contact",
+                          at.stage->machine.name);
+     }},
+    {"grip_stiffness",
+     [](const Section& at) -> std::string {
+         return at.stage->machine.grip.empty()
+                    ? fmt::format(": the machine {} has no grip", at.stage->machine.name)
+                    : "";
+     }},
+    {"medium_density", unless_it_drags},
+    {"drag_coefficient",
+     [](const Section& at) -> std::string {
+         const std::string other = unless_it_drags(at);
+         if (!other.empty() || at.stage->sim.medium_density > 0) return other;
+         return " without medium_density";
+     }},
+    {"directional_drag", unless_it_drags},
+    {"directional_drag_along",
+     [](const Section& at) -> std::string {
+         const std::string other = unless_it_drags(at);
+         if (!other.empty() || at.stage->sim.directional_drag > 0) return other;
+         return " without directional_drag";
+     }},
+    {"gravity_strength",
+     [](const Section& at) -> std::string {
+         return at.stage->sim.gravity == Vec3::Zero() ? " without gravity" : "";
+     }},
+};
+
+const std::vector<IdleKey> kOfRender = {
+    {"tools",
+     [](const Section& at) -> std::string {
+         const bool any = any_stage(at.scene, [](const StageSpec& s) {
+             return !s.machine.tool.empty() || !s.machine.grip.empty() || !s.machine.blade.empty();
+         });
+         return any ? "" : ": no machine has a tool, a grip or a blade";
+     }},
+    // Fields that are held may be drawn later, and then keep to it.
+    {"legend",
+     [](const Section& at) -> std::string {
+         return at.scene.render.color || !at.scene.output.fields.empty() ? "" : " without color";
+     }},
+    {"color",
+     [](const Section& at) -> std::string {
+         return at.says("color", "plastic_strain") && !yields(at.scene) ? kNoYield : "";
+     }},
+};
+
+void judge(const std::vector<IdleKey>& keys, const Section& section, MistakeList& mistakes) {
+    for (const auto& [key, why] : keys) {
+        const Entry* given = section.node.find(key);
+        if (given == nullptr) continue;
+        const std::string reason = why(section);
+        if (!reason.empty()) {
+            mistakes.warn(given->value.place, fmt::format("{} has no effect{}", key, reason));
+        }
+    }
+}
+
+// Of a list, so each at its own place.
+void judge_fields(const Node& output, const SceneSpec& scene, MistakeList& mistakes) {
+    const Entry* fields = output.find("fields");
+    if (fields == nullptr || yields(scene)) return;
+    for (const Node& item : fields->value.item) {
+        if (item.text != "plastic_strain") continue;
+        mistakes.warn(item.place, fmt::format("fields: plastic_strain tells nothing{}", kNoYield));
+    }
+}
+
+}  // namespace
+
+void warn_of_idle_keys(const Node& root, const SceneSpec& scene, MistakeList& mistakes) {
+    static const Node absent;
+    const auto section = [&](const Node& of, const char* name) -> const Node& {
+        const Entry* entry = of.find(name);
+        const bool is_there = entry != nullptr && entry->value.kind == Node::Kind::table;
+        return is_there ? entry->value : absent;
+    };
+    const auto item = [&](const char* name, std::size_t n) -> const Node& {
+        const Entry* entry = root.find(name);
+        return entry != nullptr && n < entry->value.item.size() ? entry->value.item[n] : absent;
+    };
+    const BodySpec& work_piece = scene.work_piece();
+    judge(kOfMaterials, {section(root, "material"), scene, &work_piece.material}, mistakes);
+    for (std::size_t n = 0; n < work_piece.inset.size(); ++n) {
+        judge(kOfMaterials, {item("inset", n), scene, &work_piece.inset[n].material}, mistakes);
+    }
+    for (std::size_t b = 1; b < scene.body.size(); ++b) {
+        judge(kOfMaterials,
+              {section(item("body", b - 1), "material"), scene, &scene.body[b].material}, mistakes);
+    }
+    judge(kOfSkins, {section(root, "skin"), scene}, mistakes);
+    for (std::size_t s = 0; s < scene.stage.size(); ++s) {
+        judge(kOfStages, {item("stage", s), scene, nullptr, &scene.stage[s]}, mistakes);
+    }
+    judge(kOfRender, {section(root, "render"), scene}, mistakes);
+    judge_fields(section(root, "output"), scene, mistakes);
+}
+
+}  // namespace swage

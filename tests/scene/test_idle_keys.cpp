@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keys that can do nothing in their scene are told, at their place; the same keys where they act
+// are not.
+#include "tests/scene/bad_scene.h"
+
+using namespace swage;
+using namespace swage::test;
+
+namespace {
+
+Parts scene(const std::string& material, const std::string& stage, const std::string& rest = "") {
+    Parts parts;
+    parts.material = "[material]\nname = \"" + material;
+    parts.stage = "[[stage]]\nmachine = \"" + stage;
+    parts.rest = rest;
+    return parts;
+}
+
+const std::string kDrop = "floor\"\ngravity = 9.81\n";
+const std::string kOther = "[[body]]\nfile = \"bar.obj\"\nat = [0, 1, 0]\n";
+
+}  // namespace
+
+TEST_CASE("a material's key that nothing in the scene asks is told") {
+    check_all({
+        {"no contact",
+         scene("rubber\"\nfriction = 0.3\n", "twist\"\n"),
+         {"5:12: warning: friction has no effect: nothing can touch"}},
+        {"at rest",
+         scene("rubber\"\nrestitution = 0.3\nstickiness = 3\ndamping_ratio = 0.1\n"
+               "static_friction = 0.9\n",
+               "bend\"\n"),
+         {"5:15: warning: restitution has no effect where no stage is of motion",
+          "6:14: warning: stickiness has no effect where no stage is of motion",
+          "7:17: warning: damping_ratio has no effect where no stage is of motion",
+          "8:19: warning: static_friction has no effect where no stage is of motion"}},
+        {"implicit",
+         scene("rubber\"\nrestitution = 0.3\n", "bend\"\nsolver = \"implicit\"\n"),
+         {"5:15: warning: restitution has no effect where no stage is of motion"}},
+        {"in motion, and nothing to meet",
+         scene("rubber\"\nrestitution = 0.3\ndamping_ratio = 0.1\n",
+               "twist\"\nsolver = \"explicit\"\n"),
+         {"5:15: warning: restitution has no effect: nothing can touch"}},
+        {"of an inset",
+         scene("rubber\"\n", "bend\"\n",
+               "[[inset]]\nname = \"lead\"\nto = [1, 1, 0.5]\n"
+               "damping_ratio = 0.1\n"),
+         {"12:17: warning: damping_ratio has no effect"}},
+        {"of a body",
+         scene("rubber\"\n", kDrop,
+               kOther + "[body.material]\nname = \"rubber\"\n"
+                        "hardening = 3\n"),
+         {"15:13: warning: hardening has no effect without yield_stress"}},
+    });
+    for (const Parts& right : {
+             scene("rubber\"\nrestitution = 0.3\nstickiness = 3\nstatic_friction = 0.9\n", kDrop),
+             scene("rubber\"\nrestitution = 0.3\n",
+                   "twist\"\nsolver = \"explicit\"\n"
+                   "self_contact = true\n"),
+             scene("rubber\"\nfriction = 0.3\n", "twist\"\nself_contact = true\n"),
+             scene("rubber\"\nfriction = 0.3\n", "bend\"\n"),
+             scene("rubber\"\ndamping_ratio = 0\n", "bend\"\n"),
+             scene("rubber\"\ndamping_ratio = 0.1\n",
+                   "bend\"\n[[stage]]\nmachine = \"twist\"\nsolver = \"explicit\"\n"),
+         }) {
+        INFO(right.text());
+        CHECK(mistakes_in(right.text()).empty());
+    }
+}
+
+TEST_CASE("a stage's key that its machine or solver does not ask is told") {
+    check_all({
+        {"no grip",
+         scene("rubber\"\n", "bend\"\ngrip_stiffness = 3\n"),
+         {"9:18: warning: grip_stiffness has no effect: the machine bend has no grip"}},
+        {"no tool",
+         scene("rubber\"\n", "twist\"\ncontact_stiffness = 3\n"),
+         {"9:21: warning: contact_stiffness has no effect: nothing can touch, for the machine twist"
+          " has no tool"}},
+        {"nothing holds down what would sleep",
+         scene("rubber\"\n", "twist\"\nsolver = \"explicit\"\nsleep = false\n"),
+         {"10:9: warning: sleep has no effect without gravity"}},
+    });
+    for (const Parts& right : {
+             scene("rubber\"\n", "twist\"\ngrip_stiffness = 3\n"),
+             scene("rubber\"\n", "bend\"\ncontact_stiffness = 3\n"),
+             scene("rubber\"\n", "twist\"\ncontact_stiffness = 3\nself_contact = true\n"),
+             scene("rubber\"\n", kDrop + "sleep = false\n"),
+         }) {
+        INFO(right.text());
+        CHECK(mistakes_in(right.text()).empty());
+    }
+}
+
+TEST_CASE("looks of what cannot come about are told") {
+    const std::string bend = "bend\"\n";
+    check_all({
+        {"nothing breaks",
+         scene("rubber\"\n", bend, "[skin]\nroughness = 0.2\n"),
+         {"10:13: warning: roughness has no effect: no material breaks"}},
+        {"a cut alone",
+         scene("rubber\"\n", "cut\"\n", "[skin]\nroughness = 0\n"),
+         {"10:13: warning: roughness has no effect: no material breaks"}},
+        {"nothing yields",
+         scene("rubber\"\n", bend,
+               "[render]\ncolor = \"plastic_strain\"\n[output]\n"
+               "fields = [\"stress\", \"plastic_strain\"]\n"),
+         {"10:9: warning: color has no effect: no material yields",
+          "12:21: warning: fields: plastic_strain tells nothing: no material yields"}},
+        {"a legend of nothing",
+         scene("rubber\"\n", bend, "[render]\nlegend = false\n"),
+         {"10:10: warning: legend has no effect without color"}},
+        {"no tools",
+         scene("rubber\"\n", "floor\"\ngravity = 9.81\n", "[render]\ntools = false\n"),
+         {}},
+    });
+    for (const Parts& right : {
+             scene("ice\"\n", bend, "[skin]\nroughness = 0.2\n"),
+             scene("copper\"\n", bend, "[render]\ncolor = \"plastic_strain\"\nlegend = false\n"),
+             scene("copper\"\n", bend, "[output]\nfields = [\"plastic_strain\"]\n"),
+             scene("rubber\"\n", bend, "[render]\ncolor = \"stress\"\nlegend = false\n"),
+             scene("rubber\"\n", bend,
+                   "[render]\nlegend = false\n[output]\n"
+                   "fields = [\"stress\"]\n"),
+         }) {
+        INFO(right.text());
+        CHECK(mistakes_in(right.text()).empty());
+    }
+}
+
+TEST_CASE(
+    "an angle of creases is told to be idle where the mesh's file says which edges are sharp") {
+    const std::string text =
+        scene("rubber\"\n", "bend\"\n", "[skin]\ncrease_angle = \"60 deg\"\n").text();
+    const auto with_mesh = [&](const std::string& file) {
+        std::string other = text;
+        other.replace(other.find("bar.obj"), 7, file);
+        return mistakes_in(other);
+    };
+    const std::string meshes = std::string(SWAGE_SOURCE_DIR) + "/assets/meshes/";
+    CHECK(with_mesh(meshes + "bar.obj")
+              .find("10:16: warning: crease_angle has no effect: the mesh's file says itself which "
+                    "edges are sharp") != std::string::npos);
+    CHECK(mistakes_in(text).empty());  // no normals, and no solid
+    const Scratch scratch;
+    const std::filesystem::path plain =
+        scratch.write("tetrahedron.obj",
+                      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    CHECK(with_mesh(plain.string()).empty());
+}
+
+TEST_CASE("no shipped scene has a key without effect") {
+    for (const auto& file : std::filesystem::directory_iterator(
+             std::filesystem::path(SWAGE_SOURCE_DIR) / "assets/scenes")) {
+        INFO(file.path());
+        CHECK(read_scene(file.path(), {}, shipped()).mistakes.empty());
+    }
+}
