@@ -23,24 +23,6 @@ struct CheckArguments {
     bool json = false;
 };
 
-Json mistakes_json(const std::vector<Mistake>& mistakes) {
-    Json list = Json::array();
-    for (const Mistake& mistake : mistakes) {
-        list.push_back({{"file", mistake.file.string()},
-                        {"line", mistake.line},
-                        {"column", mistake.column},
-                        {"text", mistake.text},
-                        {"warning", mistake.warning}});
-    }
-    return list;
-}
-
-// What came to light only now; of what has no place in the scene, the sentence.
-std::vector<Mistake> mistakes_of(const Error& error, const std::string& scene) {
-    if (const auto* placed = dynamic_cast<const SceneError*>(&error)) return placed->mistakes();
-    return {{.file = scene, .text = error.what()}};
-}
-
 // Of the mold, with which what is `cells` thick now comes within 1 %.
 int across_for_percent(const BodyCost& body, double cells) {
     return to_int(std::ceil(accuracy_at(cells).cells_for_percent * body.across / cells));
@@ -193,7 +175,7 @@ int check(const CheckArguments& given) {
     } catch (const Error& error) {
         if (!given.json) throw;
         std::vector<Mistake> mistakes = reading.mistakes;
-        for (Mistake& late : mistakes_of(error, given.scene.file)) {
+        for (Mistake& late : mistakes_of(error, given.scene)) {
             mistakes.push_back(std::move(late));
         }
         json["mistakes"] = mistakes_json(mistakes);

@@ -38,6 +38,8 @@ void add_render_command(CLI::App& app, Action& chosen);
 void add_export_command(CLI::App& app, Action& chosen);
 void add_make_command(CLI::App& app, Action& chosen);
 void add_verify_command(CLI::App& app, Action& chosen);
+// After all others, whose help it tells.
+void add_help_command(CLI::App& app, Action& chosen);
 
 // Of an option that says where to write: anything but "", which nobody means.
 extern const CLI::Validator kSomewhere;

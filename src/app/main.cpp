@@ -51,6 +51,7 @@ int run_command_line(int argc, char** argv) {
     add_export_command(app, chosen);
     add_make_command(app, chosen);
     add_verify_command(app, chosen);
+    add_help_command(app, chosen);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -68,11 +69,13 @@ int run_command_line(int argc, char** argv) {
     return chosen();
 }
 
-// A missing stderr must not become the first file that is opened for data.
+// What is missing must not become the first file that is opened for data. What then goes to stdout
+// fails, as it does on a full disk.
 void open_standard_streams() {
     for (int stream = 0; stream <= 2; ++stream) {
         if (::fcntl(stream, F_GETFD) == -1) {
-            [[maybe_unused]] const int opened = ::open("/dev/null", O_RDWR);
+            [[maybe_unused]] const int opened =
+                ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "app/scene_argument.h"
+#include "base/error.h"
 #include "pipeline/cost.h"
 #include "pipeline/run.h"
 
@@ -14,9 +15,8 @@ struct RunArguments {
     bool no_render = false, fresh = false, go_on = false, force = false, json = false;
 };
 
-int run(const RunArguments& given) {
+Json run(const RunArguments& given, const SceneSpec& scene) {
     RunOptions options;
-    const SceneSpec scene = checked_scene(given.scene);
     if (!given.frames.empty()) options.frames = parse_frame_range(given.frames, frame_count(scene));
     options.out = given.out.empty() ? std::filesystem::path("renders") / scene.name
                                     : std::filesystem::path(given.out);
@@ -25,7 +25,25 @@ int run(const RunArguments& given) {
     options.fresh = given.fresh;
     options.go_on = given.go_on;
     options.insist = given.force;
-    const Json record = run_scene(scene, options);
+    return run_scene(scene, options);
+}
+
+int run(const RunArguments& given) {
+    const SceneReading reading = read_scene_argument(given.scene);
+    log_mistakes(reading.mistakes);
+    Json record;
+    try {
+        record = run(given, scene_of(reading, given.scene));
+    } catch (const Error& error) {
+        if (!given.json) throw;
+        std::vector<Mistake> mistakes = reading.mistakes;
+        if (reading.scene) {
+            const std::vector<Mistake> late = mistakes_of(error, given.scene);
+            mistakes.insert(mistakes.end(), late.begin(), late.end());
+        }
+        put_json({{"file", given.scene.file}, {"mistakes", mistakes_json(mistakes)}});
+        throw;
+    }
     if (given.json) put_json(record);
     return 0;
 }
@@ -60,7 +78,9 @@ void add_run_command(CLI::App& app, Action& chosen) {
         ->excludes(fresh);
     command->add_flag("--force", given.force,
                       "run even if it seems to need more memory, disk or time than there is");
-    command->add_flag("--json", given.json, "print the run's record on stdout");
+    command->add_flag(
+        "--json", given.json,
+        "print the run's record on stdout, or what kept it from running as `swage check` does");
 }
 
 }  // namespace swage

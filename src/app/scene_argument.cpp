@@ -2,6 +2,7 @@
 #include "app/scene_argument.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -19,7 +20,9 @@ AssetPaths asset_paths(const std::string& given) {
 }
 
 void add_scene_argument(CLI::App& command, SceneArgument& argument) {
-    command.add_option("scene", argument.file, "scene file (TOML)")->required()->type_name("SCENE");
+    command.add_option("scene", argument.file, "scene file (TOML), or - for standard input")
+        ->required()
+        ->type_name("SCENE");
     command
         .add_option("--set", argument.overrides,
                     "put a value in place of the scene's, such as \"stage.1.angle=45 deg\"")
@@ -37,16 +40,31 @@ void log_mistakes(const std::vector<Mistake>& mistakes) {
     for (const Mistake& mistake : mistakes) log_text(mistake_text(mistake));
 }
 
-SceneSpec checked_scene(const SceneArgument& argument) {
-    SceneReading reading = read_scene_argument(argument);
-    log_mistakes(reading.mistakes);
+SceneSpec scene_of(SceneReading reading, const SceneArgument& argument) {
     const auto count = std::count_if(reading.mistakes.begin(), reading.mistakes.end(),
                                      [](const Mistake& mistake) { return !mistake.warning; });
     if (count > 0 || !reading.scene) {
         fail(exit_code(reading.mistakes), "{}: {} mistake{}; nothing was done", argument.file,
              count, count == 1 ? "" : "s");
     }
-    return *reading.scene;
+    return std::move(*reading.scene);
+}
+
+Json mistakes_json(const std::vector<Mistake>& mistakes) {
+    Json list = Json::array();
+    for (const Mistake& mistake : mistakes) {
+        list.push_back({{"file", mistake.file.string()},
+                        {"line", mistake.line},
+                        {"column", mistake.column},
+                        {"text", mistake.text},
+                        {"warning", mistake.warning}});
+    }
+    return list;
+}
+
+std::vector<Mistake> mistakes_of(const Error& error, const SceneArgument& argument) {
+    if (const auto* placed = dynamic_cast<const SceneError*>(&error)) return placed->mistakes();
+    return {{.file = argument.file, .text = error.what()}};
 }
 
 }  // namespace swage

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/json.h"
 #include "scene/find.h"
 #include "scene/read_scene.h"
 
@@ -27,7 +28,12 @@ SceneReading read_scene_argument(const SceneArgument& argument);
 // Every mistake on stderr, one a line, as FILE:LINE:COLUMN: what.
 void log_mistakes(const std::vector<Mistake>& mistakes);
 
-// Logs every mistake; then throws Error with the count, or gives the scene.
-SceneSpec checked_scene(const SceneArgument& argument);
+// Throws Error with the count of mistakes, or gives the scene.
+SceneSpec scene_of(SceneReading reading, const SceneArgument& argument);
+
+// What --json tells of a scene that cannot be run.
+Json mistakes_json(const std::vector<Mistake>& mistakes);
+// What came to light after the scene was read; of what has no place in it, the sentence.
+std::vector<Mistake> mistakes_of(const Error& error, const SceneArgument& argument);
 
 }  // namespace swage

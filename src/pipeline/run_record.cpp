@@ -113,7 +113,14 @@ std::vector<std::string> stage_keys(const SceneSpec& scene, const RunIdentity& i
 RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
                         const RunOptions& options) {
     RunIdentity identity;
-    std::vector<fs::path> files = {scene.file};
+    std::vector<fs::path> files;
+    if (scene.piped) {
+        identity.input.push_back(
+            {"scene", scene.file.filename(), hash_text(hash_of(*scene.piped)),
+             scene.piped->size() <= kLongestKeptText ? *scene.piped : std::string()});
+    } else {
+        files = {scene.file};
+    }
     for (const fs::path& file : scene.inputs) {
         if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
     }
@@ -202,7 +209,7 @@ Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunId
     record["version"] = identity.version;
     record["build"] = identity.build;
     record["state"] = RunState::begun;
-    record["scene"] = scene.file.string();
+    record["scene"] = (scene.piped ? scene.file.filename() : scene.file).string();
     record["overrides"] = options.overrides;
     for (const RunInput& one : identity.input) {
         record["inputs"].push_back(

@@ -69,6 +69,33 @@ void set_place(Node& node, const Place& place) {
     for (Node& item : node.item) set_place(item, place);
 }
 
+std::optional<Document> parsed(std::string text, const std::filesystem::path& shown,
+                               MistakeList& mistakes) {
+    Document document;
+    document.source = std::make_shared<const Source>(Source{shown, text});
+    for (int count = 0;; ++count) {
+        if (const auto at = too_deep_key(text)) {
+            mistakes.add({document.source, at->first, at->second},
+                         fmt::format("a key of more than {} parts", kMostKeyParts));
+            return std::nullopt;
+        }
+        try {
+            const toml::table table = toml::parse(std::string_view(text));
+            document.root = converted(table, document.source);
+            return document;
+        } catch (const toml::parse_error& error) {
+            const SyntaxMistake broken{static_cast<int>(error.source().begin.line),
+                                       static_cast<int>(error.source().begin.column),
+                                       std::string(error.description())};
+            SyntaxAdvice advice = explain_syntax(text, broken);
+            mistakes.add({document.source, broken.line, advice.column}, advice.text);
+            document.is_complete = false;
+            if (!advice.can_go_on || count >= kSyntaxMistakes) return std::nullopt;
+            blank_line(text, broken.line);
+        }
+    }
+}
+
 }  // namespace
 
 const Entry* Node::find(std::string_view key) const {
@@ -197,29 +224,15 @@ std::optional<Document> read_document(const std::filesystem::path& file,
     const auto nameless = std::make_shared<const Source>(Source{shown, ""});
     std::optional<std::string> text = read_text(file, {nameless, 0, 0}, kLargestFile, mistakes);
     if (!text) return std::nullopt;
-    Document document;
-    document.source = std::make_shared<const Source>(Source{shown, *text});
-    for (int count = 0;; ++count) {
-        if (const auto at = too_deep_key(*text)) {
-            mistakes.add({document.source, at->first, at->second},
-                         fmt::format("a key of more than {} parts", kMostKeyParts));
-            return std::nullopt;
-        }
-        try {
-            const toml::table table = toml::parse(std::string_view(*text));
-            document.root = converted(table, document.source);
-            return document;
-        } catch (const toml::parse_error& error) {
-            const SyntaxMistake broken{static_cast<int>(error.source().begin.line),
-                                       static_cast<int>(error.source().begin.column),
-                                       std::string(error.description())};
-            SyntaxAdvice advice = explain_syntax(*text, broken);
-            mistakes.add({document.source, broken.line, advice.column}, advice.text);
-            document.is_complete = false;
-            if (!advice.can_go_on || count >= kSyntaxMistakes) return std::nullopt;
-            blank_line(*text, broken.line);
-        }
-    }
+    return parsed(std::move(*text), shown, mistakes);
+}
+
+std::optional<Document> read_piped_document(const std::filesystem::path& shown,
+                                            MistakeList& mistakes) {
+    const auto nameless = std::make_shared<const Source>(Source{shown, ""});
+    std::optional<std::string> text = read_standard_input({nameless, 0, 0}, kLargestFile, mistakes);
+    if (!text) return std::nullopt;
+    return parsed(std::move(*text), shown, mistakes);
 }
 
 Node parse_value(std::string_view text, const Place& place) {

@@ -96,6 +96,9 @@ struct Document {
 // Nothing when no tree could be made. `shown`: how mistakes call the file.
 std::optional<Document> read_document(const std::filesystem::path& file,
                                       const std::filesystem::path& shown, MistakeList& mistakes);
+// The same of what is piped in.
+std::optional<Document> read_piped_document(const std::filesystem::path& shown,
+                                            MistakeList& mistakes);
 
 // One value as it stands after an = sign; what is no TOML is taken as a text.
 Node parse_value(std::string_view text, const Place& place);

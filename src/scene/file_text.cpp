@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/file_text.h"
 
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "base/interrupt.h"
 #include "geometry/mesh_read.h"
 
 namespace swage {
@@ -53,6 +61,13 @@ bool check_letters(const std::string& text, const Place& place, MistakeList& mis
     return true;
 }
 
+std::optional<std::string> checked(std::optional<std::string> text, const std::string& why,
+                                   const Place& place, MistakeList& mistakes) {
+    if (!text) mistakes.add(place, why);
+    if (!text || !check_letters(*text, place, mistakes)) return std::nullopt;
+    return text;
+}
+
 }  // namespace
 
 std::optional<std::string> why_no_mesh(const std::filesystem::path& file) {
@@ -65,12 +80,28 @@ std::optional<std::string> read_text(const std::filesystem::path& file, const Pl
                                      std::uint64_t limit, MistakeList& mistakes) {
     std::string why;
     std::optional<std::string> text = file_contents(file, limit, &why);
-    if (!text) {
-        mistakes.add(place, "the file " + why);
-        return std::nullopt;
+    return checked(std::move(text), "the file " + why, place, mistakes);
+}
+
+std::optional<std::string> read_standard_input(const Place& place, std::uint64_t limit,
+                                               MistakeList& mistakes) {
+    constexpr int kPatience = 200;  // [ms] until a look at whether somebody wants to stop
+    std::string text;
+    for (std::string part(std::size_t{64} << 10, 0); text.size() <= limit;) {
+        throw_if_interrupted();
+        pollfd input{STDIN_FILENO, POLLIN, 0};
+        if (::poll(&input, 1, kPatience) <= 0) continue;
+        const ssize_t got = ::read(STDIN_FILENO, part.data(), part.size());
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) {
+            const std::string why = std::strerror(errno);
+            return checked(std::nullopt, "standard input cannot be read: " + why, place, mistakes);
+        }
+        if (got == 0) return checked(std::move(text), "", place, mistakes);
+        text.append(part, 0, static_cast<std::size_t>(got));
     }
-    if (!check_letters(*text, place, mistakes)) return std::nullopt;
-    return text;
+    return checked(std::nullopt, fmt::format("standard input is larger than {} MiB", limit >> 20),
+                   place, mistakes);
 }
 
 }  // namespace swage

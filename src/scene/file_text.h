@@ -19,5 +19,8 @@ std::optional<std::string> why_no_mesh(const std::filesystem::path& file);
 // bytes that are no UTF-8 text.
 std::optional<std::string> read_text(const std::filesystem::path& file, const Place& place,
                                      std::uint64_t limit, MistakeList& mistakes);
+// The same of standard input, to its end.
+std::optional<std::string> read_standard_input(const Place& place, std::uint64_t limit,
+                                               MistakeList& mistakes);
 
 }  // namespace swage

@@ -17,7 +17,44 @@ constexpr const char* kWanted =
 constexpr double kMostStrain = 10;                      // of a point: more is meant in percent
 constexpr double kLeastStep = 1e-9;                     // between points
 constexpr Range kStress = {.low = 1e-3, .high = 1e15};  // [Pa]
+constexpr double kUnitless = 1e-3;   // of the largest stress with a unit: less lacks its own
 constexpr double kLeastPower = 0.1;  // of Ludwik's form, which is too steep at its beginning
+
+// A stress that stands without a unit among others that have one, and is nothing beside them: one
+// was forgotten. Whether there is such a one, which is then told.
+bool lacks_unit(TableReader& table, const std::vector<const Node*>& stress) {
+    const auto pascals = [](const Node& node) -> std::optional<double> {
+        if (node.kind != Node::Kind::text) return node.number;
+        try {
+            return parse_quantity(node.text, Quantity::stress);
+        } catch (const TextError&) {
+            return std::nullopt;
+        }
+    };
+    const auto says_unit = [](const Node& node) {
+        return node.kind == Node::Kind::text && !unit_in(node.text).empty();
+    };
+    const Node* largest = nullptr;
+    for (const Node* one : stress) {
+        const bool counts = says_unit(*one) && pascals(*one);
+        if (counts && (!largest || *pascals(*one) > *pascals(*largest))) largest = one;
+    }
+    if (largest == nullptr) return false;
+    bool any = false;
+    for (const Node* one : stress) {
+        const bool is_plain = one->kind == Node::Kind::text || one->kind == Node::Kind::whole ||
+                              one->kind == Node::Kind::real;
+        if (!is_plain || says_unit(*one) || !pascals(*one)) continue;
+        const double value = *pascals(*one);
+        if (!(value > 0 && value < kUnitless * *pascals(*largest))) continue;
+        table.reading().mistakes.add(
+            one->place, fmt::format("flow_curve: {0:g} without a unit is {0:g} Pa, beside \"{1}\": "
+                                    "is a unit missing, as in \"{0:g} {2}\"?",
+                                    value, largest->text, unit_in(largest->text)));
+        any = true;
+    }
+    return any;
+}
 
 // Points that say how matter hardens; none after a mistake.
 std::vector<FlowPoint> read_points(TableReader& table, const Node& list) {
@@ -26,6 +63,13 @@ std::vector<FlowPoint> read_points(TableReader& table, const Node& list) {
         table.reading().mistakes.add(at.place, "flow_curve: " + text);
         return std::vector<FlowPoint>{};
     };
+    std::vector<const Node*> stress;
+    for (const Node& item : list.item) {
+        if (item.kind == Node::Kind::array && item.item.size() == 2) {
+            stress.push_back(&item.item[1]);
+        }
+    }
+    if (lacks_unit(table, stress)) return {};
     for (const Node& item : list.item) {
         if (item.kind != Node::Kind::array || item.item.size() != 2) {
             return mistake(item,
@@ -102,7 +146,12 @@ std::vector<FlowPoint> read_form(TableReader& table, const Node& node) {
     }
     TableReader form(node, "flow_curve", table.reading());
     double a[3];
-    bool right = true;
+    std::vector<const Node*> stress;
+    for (const auto& [key, quantity, range] : like->number) {
+        const Entry* given = node.find(key);
+        if (given != nullptr && quantity == Quantity::stress) stress.push_back(&given->value);
+    }
+    bool right = !lacks_unit(table, stress);
     for (int n = 0; n < 3; ++n) {
         const auto& [key, quantity, range] = like->number[n];
         const Node* given = form.find(key);

@@ -193,12 +193,16 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
     SceneReading result;
     SceneSpec scene;
     std::error_code error;
-    scene.file = fs::absolute(file, error).lexically_normal();
+    const bool is_piped = file == kPiped;
+    const fs::path shown = is_piped ? fs::path("stdin") : file;
+    scene.file = fs::absolute(shown, error).lexically_normal();
     scene.name = scene.file.stem().string();
-    scene.inputs = {scene.file};
+    if (!is_piped) scene.inputs = {scene.file};
 
     MistakeList mistakes;
-    std::optional<Document> document = read_document(file, file, mistakes);
+    std::optional<Document> document =
+        is_piped ? read_piped_document(shown, mistakes) : read_document(file, file, mistakes);
+    if (document && is_piped) scene.piped = document->source->text;
     if (document && document->root.entry.empty() && document->is_complete) {
         mistakes.add(
             {document->source, 0, 0},
@@ -214,7 +218,7 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
         tell(document->root, scene);
         result.scene = std::move(scene);
     }
-    result.mistakes = mistakes.take(file);
+    result.mistakes = mistakes.take(shown);
     return result;
 }
 

@@ -23,6 +23,9 @@ struct SceneReading {
     std::vector<Mistake> mistakes;   // of all files, the scene's first, in the order of each file
 };
 
+// What stands for standard input, whose paths are relative to the working directory.
+inline constexpr const char* kPiped = "-";
+
 // `overrides`: "stage.1.angle=45 deg", "material.young_modulus=2 GPa", "render.size=[640, 360]". A
 // stage goes by its number, its name, its machine, or * for all. Everything that is wrong in the
 // scene and in the files it names is found in one reading; throws nothing for what a user may

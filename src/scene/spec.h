@@ -96,6 +96,8 @@ struct OutputSpec {
 struct SceneSpec {
     std::filesystem::path file;  // absolute
     std::string name;            // stem of the file
+    // Where it was piped in: what was. `file` is then a name in the working directory, no file.
+    std::optional<std::string> piped;
     std::vector<BodySpec> body;  // the first is the work-piece, which machines are set up at and
                                  // take hold of
     SkinSettings skin;

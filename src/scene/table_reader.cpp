@@ -2,7 +2,7 @@
 #include "scene/table_reader.h"
 
 #include <algorithm>
-#include <cctype>
+#include <charconv>
 #include <cmath>
 
 #include "base/math.h"
@@ -22,14 +22,6 @@ std::string example_of(Quantity quantity) {
 std::string with_unit(Quantity quantity) {
     const std::string unit = si_unit(quantity);
     return unit.empty() ? quantity_name(quantity) : quantity_name(quantity) + " [" + unit + "]";
-}
-
-// Whether a text that reads as a quantity says which: "deg" and "°" do, the e of "1e3" does not.
-bool has_unit(std::string_view text) {
-    return std::any_of(text.begin(), text.end(), [](char c) {
-        const auto byte = static_cast<unsigned char>(c);
-        return byte >= 0x80 || (std::isalpha(byte) && c != 'e' && c != 'E');
-    });
 }
 
 bool contains(const std::vector<std::string>& list, const std::string& word) {
@@ -57,6 +49,19 @@ const std::map<std::string, std::string> kOtherNames = {
 };
 
 }  // namespace
+
+std::string_view unit_in(std::string_view text) {
+    const auto trim = [&] {
+        text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    };
+    trim();
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    trim();
+    return text;
+}
 
 void Reading::report_unknown() {
     for (const UnknownKey& one : unknown) {
@@ -148,7 +153,8 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
     if (node.kind == Node::Kind::text) {
         try {
             into = parse_quantity(node.text, quantity);
-            if (quantity == Quantity::angle && !has_unit(node.text)) warn_of_turns(key, node, into);
+            if (quantity == Quantity::angle && unit_in(node.text).empty())
+                warn_of_turns(key, node, into);
             return true;
         } catch (const TextError& error) {
             reading_.mistakes.add(place_inside(node, error.at()), key + ": " + error.what());

@@ -58,6 +58,9 @@ struct Reading {
     void report_unknown();
 };
 
+// What stands behind the number of a text that reads as a quantity: "MPa" of "250 MPa".
+std::string_view unit_in(std::string_view text);
+
 class TableReader {
   public:
     // `section` is how the user writes it: "[mesh]", "[[stage]]".

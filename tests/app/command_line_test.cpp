@@ -15,7 +15,7 @@ using swage::Json;
 namespace {
 
 const std::vector<std::string> kCommands = {"run",    "check",  "info", "machines", "keys",
-                                            "render", "export", "make", "verify"};
+                                            "render", "export", "make", "verify",   "help"};
 
 // The words of a shell line that uses double quotes at most.
 std::vector<std::string> words_of(const std::string& line) {

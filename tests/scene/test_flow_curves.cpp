@@ -31,6 +31,18 @@ TEST_CASE("a flow curve that is none is refused at its place, with what is wante
         {"a curve that falls",
          material("flow_curve = [[0, \"250 MPa\"], [0.1, \"240 MPa\"]]"),
          {"5:37: flow_curve: the stress falls from 250 MPa to 240 MPa: matter that softens"}},
+        {"a unit forgotten of one",
+         material("flow_curve = [[0, \"250 MPa\"], [0.1, 300], [0.2, \"400 MPa\"]]"),
+         {"5:37: flow_curve: 300 without a unit is 300 Pa, beside \"400 MPa\": is a unit missing, "
+          "as in \"300 MPa\"?"}},
+        {"a unit forgotten of the first, and in a text",
+         material("flow_curve = [[0, \"250\"], [0.1, \"300 N/mm2\"]]"),
+         {"5:19: flow_curve: 250 without a unit is 250 Pa, beside \"300 N/mm2\": is a unit "
+          "missing, "
+          "as in \"250 N/mm2\"?"}},
+        {"a unit forgotten in a form",
+         material("flow_curve = {A = \"90 MPa\", B = 292, n = 0.31}"),
+         {"5:33: flow_curve: 292 without a unit is 292 Pa, beside \"90 MPa\""}},
         {"strain in percent",
          material("flow_curve = [[0, \"250 MPa\"], [20, \"300 MPa\"]]"),
          {"5:32: flow_curve = 20 is out of range: it has to be 0 to 10"}},
@@ -53,6 +65,19 @@ TEST_CASE("a flow curve that is none is refused at its place, with what is wante
          material("elasticity = \"storakers\"\nflow_curve = [[0, 3], [1, 4]]"),
          {"storakers matter does not yield"}},
     });
+}
+
+TEST_CASE("a flow curve in pascals beside other units is taken as it says") {
+    for (const char* curve :
+         {"[[0, 250e6], [0.1, \"300 MPa\"]]", "[[0, \"250e6\"], [0.1, \"3e8 Pa\"]]",
+          "[[0, 250e6], [0.1, 300e6]]", "{A = \"90 MPa\", B = 0, n = 1}"}) {
+        INFO(curve);
+        CHECK(mistakes_in(
+                  with(&Parts::material,
+                       std::string("[material]\nname = \"copper\"\nflow_curve = ") + curve + "\n")
+                      .text())
+                  .empty());
+    }
 }
 
 namespace {
