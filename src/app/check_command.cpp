@@ -25,7 +25,9 @@ struct CheckArguments {
 
 // Of the mold, with which what is `cells` thick now comes within 1 %.
 int across_for_percent(const BodyCost& body, double cells) {
-    return to_int(std::ceil(accuracy_at(cells).cells_for_percent * body.across / cells));
+    constexpr double kRounding = 1e-9;
+    return to_int(
+        std::ceil(accuracy_at(cells).cells_for_percent * body.across / cells - kRounding));
 }
 
 std::string stiffness_text(const BodyCost& body, double cells) {
@@ -42,15 +44,23 @@ std::vector<std::string> accuracy_texts(const BodySpec& spec, const BodyCost& bo
     }
     std::vector<std::string> texts;
     if (body.has_thin_parts()) {
-        texts = {fmt::format("elastic stiffness of the whole, {} cells across, where thin parts "
-                             "stretch and shear (a tube bent, twisted): {}",
-                             body.across, stiffness_text(body, body.across)),
-                 fmt::format("elastic stiffness where thin parts, about {:.2g} cells thick, bend "
-                             "by themselves (a ring squeezed flat, a bracket): {}",
-                             body.thickness, stiffness_text(body, body.thickness))};
+        texts = {
+            fmt::format("elastic stiffness of the whole, {:.3g} cells across, where thin parts "
+                        "stretch and shear (a tube bent, twisted): {}",
+                        body.across, stiffness_text(body, body.across)),
+            fmt::format("elastic stiffness where thin parts, about {:.2g} cells thick, bend "
+                        "by themselves (a ring squeezed flat, a bracket): {}",
+                        body.thickness, stiffness_text(body, body.thickness))};
     } else {
-        texts = {fmt::format("elastic stiffness of a part {:g} cells thick: {}", body.thickness,
+        texts = {fmt::format("elastic stiffness of a part {:.3g} cells thick: {}", body.thickness,
                              stiffness_text(body, body.thickness))};
+    }
+    if (const int layers = body.whole_layers(); layers > 0) {
+        texts.push_back(fmt::format(
+            "the thinnest side is {:.3g} cells, so its outermost layers are filled to {:.2g}: "
+            "across = {}, or spacing = \"{}\", has whole ones",
+            body.across, body.outermost_fill(), layers,
+            length_text(body.spacing * body.across / layers)));
     }
     for (const Material* material : spec.materials()) {
         if (!std::isfinite(material->yield_stress)) continue;
@@ -68,6 +78,11 @@ Json accuracy_json(const BodyCost& body, double cells) {
             {"bending", accuracy.bending},
             {"torsion", accuracy.torsion},
             {"across_for_percent", across_for_percent(body, cells)}};
+}
+
+std::string range_text(const CostRange& range, std::string (*text)(double)) {
+    if (range.is_narrow()) return "about " + text(range.middle());
+    return text(range.least) + " to " + text(range.most);
 }
 
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
@@ -112,12 +127,12 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         for (const std::string& load : place.load) line("load", whose + load + when);
     }
     line("frames", count_text(cost.frames));
-    line("steps", "about " + count_text(cost.steps));
+    line("steps", range_text(cost.steps, count_text));
     line("memory", fmt::format("about {}, the matter itself {}", bytes_text(cost.memory_bytes),
                                bytes_text(cost.mold.bytes)));
     line("disk", "about " + bytes_text(cost.disk_bytes));
-    line("time", "about " + seconds_text(cost.seconds) +
-                     (cost.slow.empty() ? "" : "; " + cost.slow + " may take ten times that"));
+    line("time", range_text(cost.seconds, seconds_text) +
+                     (cost.hangs_on.empty() ? "" : ", by " + cost.hangs_on));
     for (const std::string& note : cost.note) line("note", note);
     return text;
 }

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "base/whole.h"
 #include "machines/legs.h"
 #include "pipeline/accuracy.h"
 #include "pipeline/disk_cost.h"
@@ -24,23 +25,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Measured on shipped scenes; good to a factor of two or so, relaxation to one of three.
-constexpr double kSmoothWork = 350;                // iterations that Newton's method is worth
-constexpr double kYieldingWork = 1500;             // likewise, where matter yields
-constexpr double kRelaxationWork = 220;            // under tools: 60 to 350
-constexpr double kEquilibriaPerFrame = 2;          // under tools, where they are not counted
-constexpr int kSampledFrames = 200;                // of the first stage, for how far its tools go
-constexpr double kThin = 0.3;                      // of the box's thinnest side
-constexpr double kSecondsPerParticleStep = 60e-9;  // one core
-constexpr double kDampedShare = 2, kYieldingShare = 1.4;  // of explicit steps that do
-constexpr double kIterationShare = 1.4;                   // and of a relaxation's iteration
-constexpr double kSecondsPerPixel = 1.8e-7;               // drawing and writing, two cores
-constexpr double kEnergyStepsPerStep = 100;               // while a body swings
-constexpr double kImplicitStepsPerFrame = 4;              // where no tool is in reach
-constexpr double kImplicitWork = 250;                     // of such a step: 50 to 400
+constexpr int kSampledFrames = 200;        // of the first stage, for how far its tools go
+constexpr double kWhole = 0.01;            // of a layer of cells: less is as good as whole
+constexpr double kManyLayers = 20;         // of which the outermost hardly count
+constexpr double kThin = 0.3;              // of the box's thinnest side
 constexpr double kBytesPerParticle = 500;  // beside the aggregate: solver, mount, skin
 constexpr double kBytesPerVertex = 600;
-constexpr double kVerticesPerFace = 6;  // of a boundary, a cell's face: four, and its steps
+constexpr double kPointsPerFace = 4;       // of contact
+constexpr double kParticlesForTwo = 2048;  // from which on a second core helps
+constexpr double kVerticesPerFace = 6;     // of a boundary, a cell's face: four, and its steps
 constexpr double kDividedVerticesPerFace = 2.5;  // of a face that is divided to follow the matter
 constexpr double kProgramBytes = 80e6, kDrawingBytes = 65e6;  // libraries and their buffers
 // Addresses beside that memory and those of threads.
@@ -72,24 +65,6 @@ double mounted_vertices(const TriMesh& mesh, const SkinSettings& skin, double sp
     return vertices;
 }
 
-double least_damping(const SceneSpec& scene) {
-    double least = 1;
-    for (const BodySpec& body : scene.body) {
-        for (const Material* m : body.materials()) least = std::min(least, m->damping_ratio);
-    }
-    return least;
-}
-
-bool yields(const SceneSpec& scene) {
-    return scene.any_material([](const Material& m) { return std::isfinite(m.yield_stress); });
-}
-
-// What laws make of an explicit step's time.
-double law_share(const SceneSpec& scene) {
-    const bool damps = scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
-    return (damps ? kDampedShare : 1) * (yields(scene) ? kYieldingShare : 1);
-}
-
 // Of the body with the shortest stable step.
 double steps_per_second(const SceneSpec& scene, const RunCost& cost,
                         const std::vector<Aggregate>& matter, const SimSettings& sim) {
@@ -106,9 +81,17 @@ double steps_per_second(const SceneSpec& scene, const RunCost& cost,
 }
 
 // Of walls 2 V / A; of a bar or ball half of how thick it is, or a third.
-double thickness_of(const TriMesh& mesh, double spacing, int across) {
+double thickness_of(const TriMesh& mesh, double spacing, double across) {
     const double mean = 2 * std::abs(signed_volume(mesh)) / surface_area(mesh) / spacing;
     return mean < kThin * across ? mean : across;
+}
+
+// A block is of whole cells, whatever its mesh is.
+double cells_across(const TriMesh& mesh, MoldKind kind, const MoldEstimate& mold) {
+    constexpr double kRounding = 1e-6;
+    const double layers = mold.cell_count.minCoeff();
+    const double across = box_of(mesh.position).size().minCoeff() / mold.spacing;
+    return kind == MoldKind::block || across > layers - kRounding ? layers : across;
 }
 
 std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
@@ -136,12 +119,6 @@ double softest_give(const SceneSpec& scene, const std::vector<Aggregate>& matter
     return most;
 }
 
-// Of a solver that takes far more than explicit steps, how many times as many, about.
-double more_steps(const SceneSpec& scene, Solver solver) {
-    if (solver == Solver::energy_stepped) return kEnergyStepsPerStep;
-    return solver == Solver::euler ? 1 / std::max(least_damping(scene), 1e-3) : 1;
-}
-
 // Of the stages that take far more steps than explicit ones would, those with the same solver as
 // one.
 void note_more_steps(const SceneSpec& scene, RunCost& cost) {
@@ -157,40 +134,40 @@ void note_more_steps(const SceneSpec& scene, RunCost& cost) {
     }
 }
 
+std::string what_time_hangs_on(const SceneSpec& scene) {
+    const auto any_stage = [&](const auto& test) {
+        return std::any_of(scene.stage.begin(), scene.stage.end(), test);
+    };
+    std::vector<std::string> all;
+    if (scene.any_material([](const Material& m) { return m.breaks(); })) all.push_back("breaks");
+    if (scene.any_material([](const Material& m) { return m.yields(); })) all.push_back("flows");
+    if (any_stage(moves)) all.push_back("meets");
+    if (!any_stage(moves) && any_stage([](const StageSpec& s) { return !s.machine.tool.empty(); }))
+        all.push_back("slips");
+    return all.empty() ? "how soon it comes to rest" : "what " + joined(all, " and ");
+}
+
 // `matter`: of each body, or empty. `equilibria`: of the first stage, 0: not known.
 void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>& input,
             const RunOptions& options, const std::vector<Aggregate>& matter, long equilibria) {
     cost.frames = frame_count(scene);
     cost.tool_give = softest_give(scene, matter);
-    cost.steps = 0;
-    cost.slow.clear();
-    double work = 0;  // the steps, as if nothing damped or yielded in them
-    double way = 0;   // [byte], of the machine's, one after another
+    cost.steps = cost.seconds = {};
+    double way = 0;  // [byte], of the machine's, one after another
+    WorkLoad load{.particles = cost.mold.particles,
+                  .longest = double(cost.mold.cell_count.maxCoeff())};
+    for (std::size_t b = 0; b < input.size(); ++b) {
+        const double a = cost.body[b].spacing;
+        load.surface_points += kPointsPerFace * surface_area(input[b].to_mold()) / (a * a);
+    }
     for (const StageSpec& stage : scene.stage) {
-        const Solver solver = stage.sim.solver;
-        way =
-            std::max(way, bytes_of_way(stage.machine, stage.frames, solver != Solver::quasistatic));
-        if (solver == Solver::quasistatic) {
-            const bool relaxes = !stage.machine.tool.empty();
-            const bool counted = equilibria > 0 && &stage == &scene.stage.front();
-            const double steps = (relaxes         ? kRelaxationWork
-                                  : yields(scene) ? kYieldingWork
-                                                  : kSmoothWork) *
-                                 (counted ? static_cast<double>(equilibria)
-                                          : (relaxes ? kEquilibriaPerFrame : 1) * stage.frames);
-            cost.steps += steps, work += (relaxes ? kIterationShare : 1) * steps;
-            if (relaxes) cost.slow = "what snaps or slips";
-        } else if (solver == Solver::implicit_steps) {
-            const double steps = kImplicitStepsPerFrame * stage.frames;
-            cost.steps += steps, work += kImplicitWork * steps;
-            if (cost.slow.empty()) cost.slow = "what is thin, or hits a tool,";
-        } else {
-            const double steps = more_steps(scene, solver) * scene.duration_of(stage) *
-                                 steps_per_second(scene, cost, matter, stage.sim);
-            cost.steps += steps, work += law_share(scene) * steps;
-            const bool breaks = scene.any_material([](const Material& m) { return m.breaks(); });
-            if (breaks && cost.slow.empty()) cost.slow = "what goes to pieces that meet";
-        }
+        const bool in_motion = moves(stage);
+        way = std::max(way, bytes_of_way(stage.machine, stage.frames, in_motion));
+        if (in_motion) load.steps_per_second = steps_per_second(scene, cost, matter, stage.sim);
+        const bool counted = &stage == &scene.stage.front();
+        const StageTime time = stage_time(scene, stage, load, counted ? equilibria : 0);
+        cost.steps.add(time.steps);
+        cost.seconds.add(time.seconds);
     }
     const double pixels = static_cast<double>(scene.render.width) * scene.render.height;
     double vertices = 0;
@@ -202,15 +179,20 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     }
     double stills = options.draw ? cost.frames : 0;
     if (options.draw && options.frames) stills = options.frames->last - options.frames->first + 1;
-    const double cores = std::min(thread_count(), 2);
-    cost.seconds = work * cost.mold.particles * kSecondsPerParticleStep / cores +
-                   stills * (0.02 + pixels * kSecondsPerPixel) * 2 / cores;
     cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
                         vertices * kBytesPerVertex + way +
                         (options.draw ? kDrawingBytes + pixels * 60 : 0);
     cost.disk_bytes = disk_bytes(scene, input,
                                  {double(cost.frames), stills, cost.mold.active_cells,
                                   cost.mold.particles, cost.mold.bytes, vertices});
+    const double drawing = drawing_time(scene.render, stills);
+    cost.seconds.add(writing_time(scene, cost.frames, cost.disk_bytes, cost.mold.particles));
+    cost.hangs_on = cost.seconds.is_narrow() ? "" : what_time_hangs_on(scene);
+    cost.seconds.add({0.6 * drawing, 1.2 * drawing});
+    // What is small, or goes from one equilibrium to the next, has little for more of them.
+    const double cores = std::min(thread_count(), 2);
+    cost.seconds.least /= cores;
+    if (cost.mold.particles > kParticlesForTwo) cost.seconds.most /= std::sqrt(cores);
 }
 
 // Of a body's mesh and of its strength.
@@ -231,6 +213,13 @@ void add_warnings(const SceneSpec& scene, std::size_t b, const InputMesh& input,
 
 }  // namespace
 
+int BodyCost::whole_layers() const {
+    const double nearest = std::max(1.0, std::round(across));
+    return std::abs(across - nearest) < kWhole || across > kManyLayers ? 0 : to_int(nearest);
+}
+
+double BodyCost::outermost_fill() const { return 0.5 * (across - (std::ceil(across) - 2)); }
+
 int frame_count(const SceneSpec& scene) {
     long frames = 1;
     for (const StageSpec& stage : scene.stage) frames += stage.frames;
@@ -242,7 +231,7 @@ RunCost estimate_cost(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     RunCost cost;
     for (std::size_t b = 0; b < input.size(); ++b) {
         const MoldEstimate mold = estimate_mold(input[b].to_mold(), scene.body[b].mold);
-        const int across = mold.cell_count.minCoeff();
+        const double across = cells_across(input[b].to_mold(), scene.body[b].mold.kind, mold);
         cost.body.push_back({mold.spacing, mold.active_cells, across,
                              thickness_of(input[b].to_mold(), mold.spacing, across)});
         add_warnings(scene, b, input[b], cost);
@@ -340,7 +329,9 @@ Json cost_json(const RunCost& cost) {
     for (const BodyCost& body : cost.body) {
         bodies.push_back({{"spacing_m", body.spacing},
                           {"cells", body.cells},
-                          {"thickness_cells", body.thickness}});
+                          {"thickness_cells", body.thickness},
+                          {"across_cells", body.across},
+                          {"whole_layers", body.whole_layers()}});
     }
     return {{"counted", cost.counted},
             {"spacing_m", cost.mold.spacing},
@@ -351,9 +342,13 @@ Json cost_json(const RunCost& cost) {
             {"memory_bytes", cost.memory_bytes},
             {"disk_bytes", cost.disk_bytes},
             {"frames", cost.frames},
-            {"steps", cost.steps},
-            {"seconds", cost.seconds},
-            {"slow", cost.slow},
+            {"steps", cost.steps.middle()},
+            {"steps_least", cost.steps.least},
+            {"steps_most", cost.steps.most},
+            {"seconds", cost.seconds.middle()},
+            {"seconds_least", cost.seconds.least},
+            {"seconds_most", cost.seconds.most},
+            {"time_hangs_on", cost.hangs_on},
             {"thickness_cells", cost.work_piece().thickness},
             {"bodies", bodies},
             {"tool_give_cells", cost.tool_give},
@@ -384,11 +379,12 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
              "[render] size need less (--force runs all the same)",
              bytes_text(cost.disk_bytes), bytes_text(disk));
     }
-    if (cost.seconds > kLongestRun) {
+    if (cost.seconds.least > kLongestRun) {
         fail(ExitCode::resources,
-             "the run would take about {:.0f} days: fewer frames or a larger [mold] spacing take "
+             "the run would take {:.0f} days at the least: fewer frames or a larger [mold] spacing "
+             "take "
              "less (--force runs all the same)",
-             cost.seconds / 86400);
+             cost.seconds.least / 86400);
     }
 }
 

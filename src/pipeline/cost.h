@@ -10,6 +10,7 @@
 #include "pipeline/machine_place.h"
 #include "pipeline/run_options.h"
 #include "pipeline/start_warnings.h"
+#include "pipeline/time_cost.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
 
@@ -18,11 +19,14 @@ namespace swage {
 struct BodyCost {
     double spacing = 0;    // [m]
     double cells = 0;      // that hold matter
-    int across = 0;        // cells over the thinnest side of its box
+    double across = 0;     // the thinnest side of its box, in cells: 4.2, where it lies in 5 layers
     double thickness = 0;  // of it, or of its thin parts, in cells: about
 
     // Most of it is far thinner than its box.
     bool has_thin_parts() const { return thickness < across; }
+    // Of the thinnest side, the number of whole ones that are nearest; 0: they are whole.
+    int whole_layers() const;
+    double outermost_fill() const;  // of those that are not
 };
 
 struct RunCost {
@@ -31,9 +35,9 @@ struct RunCost {
     bool counted = false;             // the mold was made, so its numbers are no estimate
     double tool_give = 0;             // what the softest tool gives way by, in cells; 0: no tools
     int frames = 0;                   // stills, the start included
-    double steps = 0;                 // relaxation iterations and steps of motion, about
-    double seconds = 0;               // of simulation and drawing on this machine, about
-    std::string slow;                 // what may take ten times that; empty: nothing
+    CostRange steps;                  // relaxation iterations and steps of motion
+    CostRange seconds;                // of simulation, skins, files and drawing
+    std::string hangs_on;             // what makes that more or less; empty: nothing much
     double memory_bytes = 0;          // at the peak, about
     double disk_bytes = 0;            // of the run directory, about
     std::vector<std::string> note;    // of the first machine at the work-piece; of steps

@@ -41,6 +41,60 @@ TEST_CASE("check, the log and the record tell how a machine stands and what its 
     CHECK(table.find(",0,0,-0.1,") != std::string::npos);
 }
 
+TEST_CASE("the steps that a run takes lie in the range that check tells") {
+    const Scratch scratch;
+    const auto holds = [&](const std::string& stage, const std::string& material) {
+        const fs::path scene = scratch.path() / "scene.toml", out = scratch.path() / "run";
+        put_text(scene, "[mesh]\nfile = \"bar.obj\"\n[material]\n" + material +
+                            "[mold]\nacross = 3\n[[stage]]\nframes = 4\nmachine = \"" + stage);
+        run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, scratch.path());
+        const Json cost =
+            Json::parse(run_swage({"check", scene.string(), "--json"}).out).at("cost");
+        const Outcome run = run_swage(
+            {"run", scene.string(), "--no-render", "--json", "--fresh", "--out", out.string()});
+        INFO(stage << material << run.err << cost);
+        const Json record = Json::parse(run.out).at("stages").at(0);
+        const double steps =
+            record.at("steps").get<double>() + record.at("iterations").get<double>();
+        CHECK(steps >= 0.99 * cost.at("steps_least").get<double>());
+        CHECK(steps <= 1.01 * cost.at("steps_most").get<double>() + 4);  // a frame has whole ones
+        CHECK(cost.at("seconds_least") < cost.at("seconds"));
+        CHECK(cost.at("seconds") < cost.at("seconds_most"));
+    };
+    const std::string rubber = "name = \"rubber\"\n", copper = "name = \"copper\"\n",
+                      clay = "name = \"clay\"\n", ice = "name = \"ice\"\n";
+    for (const std::string& of : {rubber, copper}) {
+        holds("bend\"\nangle = \"20 deg\"\n", of);
+        holds("twist\"\nangle = \"20 deg\"\n", of);
+    }
+    holds("bend\"\nangle = \"5 deg\"\n", ice);
+    const std::string floor = "floor\"\ngravity = 9.81\nduration = \"4 ms\"\ndrop = \"0.1 mm\"\n";
+    holds(floor, rubber);
+    holds(floor, clay);
+    holds("twist\"\nsolver = \"explicit\"\nduration = \"4 ms\"\n", copper);
+    holds("bend\"\nsolver = \"implicit\"\nangle = \"20 deg\"\n", rubber);
+}
+
+TEST_CASE("a slab that its spacing does not divide is told in the layers that it lies in") {
+    const Scratch scratch;
+    const fs::path scene = scratch.path() / "slab.toml";
+    swage::write_obj(scratch.path() / "slab.obj", swage::box_mesh({0, 0, 0}, {0.1, 0.02, 0.06}));
+    put_text(scene,
+             "[mesh]\nfile = \"slab.obj\"\n[material]\nname = \"glass\"\n[mold]\n"
+             "spacing = \"4.762 mm\"\n[[stage]]\nmachine = \"hold\"\nframes = 1\n");
+    const auto told = [&](const std::string& set) {
+        return run_swage({"check", scene.string(), "--set", set}).out;
+    };
+    const std::string uneven = told("mold.spacing=4.762 mm");
+    INFO(uneven);
+    CHECK(uneven.find("of a part 4.2 cells thick: bending about 5.2 %") != std::string::npos);
+    CHECK(uneven.find("the thinnest side is 4.2 cells, so its outermost layers are filled to 0.6: "
+                      "across = 4, or spacing = \"5 mm\", has whole ones") != std::string::npos);
+    const std::string even = told("mold.spacing=5 mm");
+    CHECK(even.find("of a part 4 cells thick: bending about 5.7 %") != std::string::npos);
+    CHECK(even.find("whole ones") == std::string::npos);
+}
+
 TEST_CASE("a tube's accuracy is told of the whole and of its wall, and as elastic") {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "tube.toml";

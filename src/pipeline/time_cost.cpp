@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numbers are measured on one core of a shared Xeon, by what `swage run --no-render` took and
+// the steps, iterations and equilibria that run.json then told; tests/verify/LIMITS.md has a table
+// of what was told and what came.
+#include "pipeline/time_cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/portable_math.h"
+
+namespace swage {
+
+namespace {
+
+// What others do on the machine, and how the matter lies in its caches.
+constexpr CostRange kMachine = {0.6, 1.7};
+
+// Of an explicit step [s]: of each particle its cells and its move; its dashpots; its flow; of each
+// point of the surface what drags it, what it has near of tools, and what it presses of bodies.
+constexpr double kCells = 45e-9, kDashpots = 45e-9, kFlow = 30e-9;
+constexpr double kDrag = 25e-9, kTools = 12e-9, kMeets = 60e-9;
+// What is struck, by the energy of its motion over what it holds until it breaks or flows.
+// Breaking: its springs, and all that is found anew after it (pieces, surfaces, what lies near),
+// of each particle and step [s]; measured 0.16 to 0.7 of these.
+constexpr CostRange kBreaking = {0.1e-6, 0.8e-6};
+constexpr double kBreakingByMachines = 15e-6, kMostBreaking = 30e-6;
+constexpr double kTakenBack = 1.1;  // steps, and those that are taken again
+// Flow strikes cells flat, whose swings are faster: steps for one of the elastic body, beside it (a
+// rod of copper 17 at 0.6, lumps of clay 4).
+constexpr CostRange kFlattened = {3, 35};
+constexpr double kFlattenedByMachines = 10, kFlattest = 50;
+
+constexpr CostRange kEnergySteps = {10, 200};        // for each explicit one, while a body swings
+constexpr double kImplicitSteps = 4;                 // a frame, where no tool is in reach
+constexpr double kImplicitAtTools = 200;             // times as many, where one is
+constexpr CostRange kImplicitStep = {3e-6, 150e-6};  // of each particle [s]
+
+// Under tools, or after a cut: iterations of relaxation an equilibrium, equilibria a frame where
+// they are not counted, and what an iteration takes of a particle and a point of the surface [s].
+// What is longer takes longer to settle: as (cells / kUsualLength)^kSettling.
+constexpr CostRange kIterations = {35, 420}, kEquilibria = {1, 2.5};
+constexpr double kRelaxed = 75e-9, kRelaxedPoint = 15e-9;
+constexpr double kUsualLength = 60, kSettling = 0.4;
+// Where nothing touches: of an equilibrium, each particle [s], by Newton's method, of which a step
+// takes this; where much flows at once it gives up, and relaxation goes on.
+constexpr CostRange kSmooth = {6e-6, 90e-6}, kYielding = {6e-6, 120e-6};
+constexpr double kNewtonStep = 3.5e-6;
+// A crack that runs is found again and again: equilibria for one where nothing breaks, under tools
+// and where grips draw all of it.
+constexpr double kCracking = 3, kCrackingAlong = 8;
+
+constexpr double kSecondsPerByte = 20e-9;  // written
+// Of each particle and frame, where skins are made anew.
+constexpr CostRange kSkins = {0.3e-6, 15e-6};
+constexpr double kSecondsPerStill = 0.04, kSecondsPerPixel = 3.6e-7;
+
+bool breaks(const SceneSpec& scene) {
+    return scene.any_material([](const Material& m) { return m.breaks(); });
+}
+bool yields(const SceneSpec& scene) {
+    return scene.any_material([](const Material& m) { return m.yields(); });
+}
+bool damps(const SceneSpec& scene) {
+    return scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
+}
+
+double least_damping(const SceneSpec& scene) {
+    double least = 1;
+    for (const BodySpec& body : scene.body) {
+        for (const Material* m : body.materials()) least = std::min(least, m->damping_ratio);
+    }
+    return least;
+}
+
+// The energy of motion with which a body strikes, in shares of what each cubic metre holds.
+double struck(const Material& m, double speed, double holds) {
+    return 0.5 * m.density * speed * speed / holds;
+}
+double held_until_breaking(const Material& m) {
+    return 0.5 * m.strength * m.strength / m.young_modulus;
+}
+
+// Of the materials that break or flow, at the least by the speeds that bodies start with, at the
+// most by those that gravity may give them too.
+struct Strikes {
+    CostRange breaking, flowing;
+};
+Strikes strikes(const SceneSpec& scene, const StageSpec& stage) {
+    Strikes found;
+    const bool can_strike = !stage.machine.tool.empty() || scene.body.size() > 1;
+    if (!can_strike) return found;
+    const double fall = stage.sim.gravity.norm() * scene.duration_of(stage);
+    const auto grow = [](CostRange& range, double least, double most) {
+        range = {std::max(range.least, least), std::max(range.most, most)};
+    };
+    for (const BodySpec& body : scene.body) {
+        const double first = body.start.velocity.norm(), last = first + fall;
+        for (const Material* m : body.materials()) {
+            if (m->breaks()) {
+                const double holds = held_until_breaking(*m);
+                const double least = struck(*m, first, holds);
+                grow(found.breaking, least > 1 ? least : 0, struck(*m, last, holds));
+            }
+            if (m->yields()) {
+                grow(found.flowing, struck(*m, first, m->yield_stress),
+                     struck(*m, last, m->yield_stress));
+            }
+        }
+    }
+    return found;
+}
+
+StageTime relaxed(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load,
+                  long equilibria) {
+    const bool touches =
+        !stage.machine.tool.empty() || !stage.machine.blade.empty() || stage.sim.self_contact;
+    CostRange count = kEquilibria.times(stage.frames);
+    if (!touches) count = {double(stage.frames), 1.5 * stage.frames};
+    if (equilibria > 0) count = {double(equilibria), 1.1 * double(equilibria)};
+    if (breaks(scene)) count.most *= touches ? kCracking : kCrackingAlong;
+    if (!touches) {
+        const CostRange each = (yields(scene) || breaks(scene) ? kYielding : kSmooth);
+        const CostRange seconds = {count.least * each.least * load.particles,
+                                   count.most * each.most * load.particles};
+        const double last = yields(scene) || breaks(scene) ? kRelaxed : kNewtonStep;
+        return {{seconds.least / (kNewtonStep * load.particles),
+                 seconds.most / (last * load.particles)},
+                seconds};
+    }
+    const double longer = std::max(1.0, portable::pow(load.longest / kUsualLength, kSettling));
+    const CostRange steps = {count.least * kIterations.least,
+                             count.most * kIterations.most * longer};
+    const double each = kRelaxed * load.particles + kRelaxedPoint * load.surface_points;
+    return {steps, {steps.least * each * kMachine.least, steps.most * each * kMachine.most}};
+}
+
+StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load) {
+    const Strikes by = strikes(scene, stage);
+    const bool is_driven = !stage.machine.stands() || !stage.machine.load.empty();
+    const double elastic = scene.duration_of(stage) * load.steps_per_second;
+    CostRange steps = {elastic, elastic};
+    if (yields(scene)) {
+        const double driven = is_driven ? kFlattenedByMachines : 1;
+        steps.least *= std::min(kFlattest, 1 + kFlattened.least * by.flowing.least);
+        steps.most *= std::min(kFlattest, std::max(driven, 1 + kFlattened.most * by.flowing.most));
+    }
+    if (stage.sim.solver == Solver::energy_stepped) {
+        steps = {steps.least * kEnergySteps.least, steps.most * kEnergySteps.most};
+    } else if (stage.sim.solver == Solver::euler) {
+        steps = steps.times(more_steps(scene, stage.sim.solver));
+    }
+    double each =
+        load.particles * (kCells + (damps(scene) ? kDashpots : 0) + (yields(scene) ? kFlow : 0));
+    if (stage.sim.medium_density > 0 || stage.sim.directional_drag > 0) {
+        each += load.surface_points * kDrag;
+    }
+    double meeting = 0;
+    if (!stage.machine.tool.empty()) meeting += load.surface_points * kTools;
+    if (scene.body.size() > 1 || stage.sim.self_contact) meeting += load.surface_points * kMeets;
+    if (breaks(scene)) {
+        const double driven = is_driven ? kBreakingByMachines : 0;
+        steps.most *= kTakenBack;
+        meeting +=
+            load.particles *
+            std::min(kMostBreaking, std::max(driven, kBreaking.most * (1 + by.breaking.most)));
+        each += load.particles * std::min(kMostBreaking, kBreaking.least * by.breaking.least);
+    }
+    return {steps,
+            {steps.least * each * kMachine.least, steps.most * (each + meeting) * kMachine.most}};
+}
+
+}  // namespace
+
+double CostRange::middle() const { return std::sqrt(least * most); }
+
+double more_steps(const SceneSpec& scene, Solver solver) {
+    if (solver == Solver::energy_stepped) return kEnergySteps.middle();
+    return solver == Solver::euler ? 1 / std::max(least_damping(scene), 1e-3) : 1;
+}
+
+StageTime stage_time(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& load,
+                     long equilibria) {
+    if (stage.sim.solver == Solver::quasistatic) return relaxed(scene, stage, load, equilibria);
+    if (stage.sim.solver != Solver::implicit_steps) return moved(scene, stage, load);
+    const double steps = kImplicitSteps * stage.frames;
+    const double tools = stage.machine.tool.empty() ? 1 : kImplicitAtTools;
+    return {{steps, tools * steps},
+            {steps * load.particles * kImplicitStep.least,
+             tools * steps * load.particles * kImplicitStep.most}};
+}
+
+CostRange writing_time(const SceneSpec& scene, double frames, double bytes, double particles) {
+    bool parts = breaks(scene);
+    for (const StageSpec& stage : scene.stage) parts = parts || !stage.machine.blade.empty();
+    CostRange seconds = {0.2 * kSecondsPerByte * bytes, kSecondsPerByte * bytes};
+    if (parts || scene.skin.kind == SkinKind::boundary) {
+        seconds.add(kSkins.times(frames * particles));
+    }
+    return seconds;
+}
+
+double drawing_time(const RenderSettings& render, double stills) {
+    const double pixels = static_cast<double>(render.width) * render.height;
+    return stills * (kSecondsPerStill + pixels * kSecondsPerPixel);
+}
+
+}  // namespace swage

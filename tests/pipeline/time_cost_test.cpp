@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run is told to take: from the least to the most. That a run comes to lie in between is
+// tried by its counts alone, in tests/app/check_test.cpp.
+#include "pipeline/time_cost.h"
+
+#include "base/parallel.h"
+#include "geometry/make_shape.h"
+#include "pipeline/cost.h"
+#include "tests/catch.h"
+
+using namespace swage;
+
+namespace {
+
+// A bar and a stage of a second, not drawn.
+struct Work {
+    InputMesh input;
+    SceneSpec scene;
+
+    explicit Work(Solver solver, bool has_tools = false) {
+        input.mesh = make_shape("bar", {}).mesh;
+        scene.body.resize(1);
+        scene.body[0].mold.across = 6;
+        scene.stage.resize(1);
+        scene.stage[0].duration = 1;
+        scene.stage[0].sim.solver = solver;
+        if (has_tools) scene.stage[0].machine.tool.resize(1);
+    }
+    CostRange seconds() const {
+        RunOptions options;
+        options.draw = false;
+        return estimate_cost(scene, std::vector(scene.body.size(), input), options).seconds;
+    }
+};
+
+constexpr Solver kSolvers[] = {Solver::quasistatic, Solver::explicit_steps, Solver::euler,
+                               Solver::energy_stepped, Solver::implicit_steps};
+
+}  // namespace
+
+TEST_CASE("more cells, more frames or a longer time are never told to take less") {
+    for (const Solver solver : kSolvers) {
+        for (const bool tools : {false, true}) {
+            CostRange last;
+            for (int across = 2; across < 14; ++across) {
+                Work work(solver, tools);
+                work.scene.body[0].mold.across = across;
+                const CostRange now = work.seconds();
+                INFO(name_of(solver) << tools << across);
+                CHECK(now.least > last.least);
+                CHECK(now.most > last.most);
+                CHECK(now.least < now.most);
+                last = now;
+            }
+            Work longer(solver, tools);
+            const CostRange before = longer.seconds();
+            longer.scene.stage[0].frames *= 2;
+            longer.scene.stage[0].duration *= 2;
+            CHECK(longer.seconds().least > before.least);
+            CHECK(longer.seconds().most > before.most);
+        }
+    }
+}
+
+TEST_CASE("what may happen on top makes the most that is told more, and the least no less") {
+    for (const Solver solver : {Solver::quasistatic, Solver::explicit_steps}) {
+        for (const bool tools : {false, true}) {
+            INFO(name_of(solver) << tools);
+            const Work plain(solver, tools);
+            const auto more = [&](auto change) {
+                Work work = plain;
+                change(work.scene);
+                CHECK(work.seconds().most > plain.seconds().most);
+                CHECK(work.seconds().least >= plain.seconds().least);
+            };
+            more([](SceneSpec& scene) { scene.body[0].material.strength = 1e6; });
+            if (solver == Solver::quasistatic) continue;
+            more([](SceneSpec& scene) { scene.stage[0].sim.self_contact = true; });
+            more([](SceneSpec& scene) { scene.body.push_back(scene.body[0]); });
+            more([](SceneSpec& scene) { scene.stage[0].sim.medium_density = 1; });
+            more([](SceneSpec& scene) {
+                scene.body[0].material.yield_stress = 1e6;
+                scene.body[0].start.velocity = {0, -30, 0};
+            });
+        }
+    }
+}
+
+TEST_CASE("a time that nothing can change much is told as one, what may go to pieces is not") {
+    Work work(Solver::explicit_steps);
+    CHECK(work.seconds().is_narrow());
+    work.scene.body[0].material.strength = 1e6;
+    CHECK(work.seconds().most > 20 * work.seconds().least);
+    // What strikes a tool harder than it bears does go to pieces.
+    Work struck(Solver::explicit_steps, true);
+    struck.scene.body[0].material.strength = 1e6;
+    const double least = struck.seconds().least;
+    struck.scene.body[0].start.velocity = {0, -1000, 0};
+    CHECK(struck.seconds().least > 2 * least);
+}
+
+TEST_CASE("the same scene is told the same, and never longer with another thread") {
+    const int before = thread_count();
+    for (const Solver solver : kSolvers) {
+        const Work work(solver, true);
+        set_thread_count(1);
+        const CostRange one = work.seconds(), again = work.seconds();
+        CHECK(one.least == again.least);
+        CHECK(one.most == again.most);
+        set_thread_count(2);
+        const CostRange two = work.seconds();
+        CHECK(two.least <= one.least);
+        CHECK(two.most <= one.most);
+    }
+    set_thread_count(before);
+}
