@@ -125,6 +125,7 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         const std::string when = is_later ? " (as the work-piece is at first)" : "";
         if (!place.axes.empty()) line("axes", whose + place.axes + when);
         for (const std::string& load : place.load) line("load", whose + load + when);
+        for (const std::string& limit : place.limit) line("limit", whose + limit);
     }
     line("frames", count_text(cost.frames));
     line("steps", range_text(cost.steps, count_text));

@@ -65,6 +65,8 @@ std::string machine_text(const MachineSpec& machine) {
     for (const LoadSpec& load : machine.load) parts.push_back("load " + load.name);
     text += "\n  ";
     for (const std::string& part : parts) text += (&part == &parts.front() ? "" : ", ") + part;
+    text += machine.stops ? "\n  can stop at a force or torque ([[stage.limit]])"
+                          : "\n  goes all its way: no motion of it can stop at a force";
     return text +
            "\n  a number without a unit is in UNIT; length, height and width are those of the "
            "work-piece's box, spacing that of its lattice\n";
@@ -84,7 +86,8 @@ Json machine_json(const MachineSpec& machine) {
     return {{"name", machine.name},           {"help", machine.help},
             {"file", machine.file.string()},  {"parameters", parameters},
             {"tools", machine.tool.size()},   {"grips", machine.grip.size()},
-            {"blades", machine.blade.size()}, {"loads", machine.load.size()}};
+            {"blades", machine.blade.size()}, {"loads", machine.load.size()},
+            {"can_stop", machine.stops}};
 }
 
 bool is_file(const MachinesArguments& given) { return given.name.ends_with(".toml"); }

@@ -77,6 +77,12 @@ constexpr Unit kUnits[] = {
     {"kN", Quantity::force, 1e3, true},
     {"N", Quantity::force, 1, true},
     {"mN", Quantity::force, 1e-3, true},
+    {"kN m", Quantity::torque, 1e3, true},
+    {"N m", Quantity::torque, 1, true},
+    {"N mm", Quantity::torque, 1e-3, true},
+    {"kNm", Quantity::torque, 1e3},
+    {"Nm", Quantity::torque, 1},
+    {"Nmm", Quantity::torque, 1e-3},
     {"m/s2", Quantity::acceleration, 1, true},
     {"mm/s2", Quantity::acceleration, 1e-3},
     {"kJ/m2", Quantity::toughness, 1e3, true},
@@ -117,6 +123,7 @@ constexpr QuantityName kQuantities[] = {
     {Quantity::toughness, "toughness", "J/m2", "a toughness", 1e-12, 1e12},
     {Quantity::drag, "drag", "Pa s/m", "a drag", 0, 1e15},
     {Quantity::spin, "spin", "rad/s", "a spin", 0, 1e9},
+    {Quantity::torque, "torque", "N m", "a torque", 0, 1e15},
 };
 
 const QuantityName& about(Quantity quantity) {

@@ -27,6 +27,7 @@ enum class Quantity {
     toughness,     // [J/m2]
     drag,          // of a surface [Pa s/m]
     spin,          // [rad/s]
+    torque,        // [N m]
 };
 
 std::string quantity_name(Quantity quantity);  // "length"

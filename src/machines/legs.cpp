@@ -14,6 +14,7 @@ namespace {
 constexpr int kHalvings = 6;             // of a frame
 constexpr int kMostHalvings = 12;        // the same for loads that jump, in motion
 constexpr int kJumps = 4;                // legs of a frame that may stay bent: what jumps is one
+constexpr double kNoLeg = 1e-12;         // of the stage, by which its beginning may be rounded
 constexpr double kMostTurn = 0.5 * kPi;  // of a leg
 constexpr double kStrengthSlack = 0.01, kSlackInMotion = 0.001;  // of a load's full strength
 // Where a leg is asked whether it is straight; not where what comes back to itself does so.
@@ -169,7 +170,7 @@ class Straightness {
 
 }  // namespace
 
-Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
+Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion, double begin) {
     const Straightness straight(machine, frames, slack, in_motion);
     Legs legs;
     std::vector<std::size_t> bent;
@@ -186,10 +187,11 @@ Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion) {
         again(again, {leg.frame, middle, leg.end}, halvings - 1);
     };
     for (int n = 0; n < frames; ++n) {
+        const double end = static_cast<double>(n + 1) / frames;
+        if (end - begin <= kNoLeg) continue;
         bent.clear();
         const std::size_t first = legs.leg.size();
-        divide(divide, {n, static_cast<double>(n) / frames, static_cast<double>(n + 1) / frames},
-               kHalvings);
+        divide(divide, {n, std::max(begin, static_cast<double>(n) / frames), end}, kHalvings);
         legs.lost += bent.size() > kJumps;
         if (!in_motion || bent.empty() || bent.size() > kJumps) continue;
         const std::vector<Leg> rough(legs.leg.begin() + std::ptrdiff_t(first), legs.leg.end());

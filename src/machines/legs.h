@@ -30,7 +30,8 @@ struct Legs {
 // long it does it, a load may be off by a thousandth, and one that jumps does so within a 4096th;
 // and tools and grips go along a leg without corners, by a cubic that is off by no more than a
 // 400th of what the straight way is, so that what they carry feels their accelerations.
-Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion);
+// `begin`: of the stage, where there is nothing before it.
+Legs legs_of(const Machine& machine, int frames, double slack, bool in_motion, double begin = 0);
 
 // At the start and at the end of each of `steps` parts of each leg, of a stage of `duration` [s].
 // The last of a leg that bends says how.

@@ -75,8 +75,8 @@ auto told_at(const std::string& whose, double t, const Value& value) {
     }
 }
 
-Pose pose_at(const Motion& motion, const std::string& whose, double t) {
-    return told_at("the motion of " + whose, t, [&] { return motion.at(t); });
+Pose pose_at(const Motion& motion, const std::string& whose, double t, double stop = 1) {
+    return told_at("the motion of " + whose, t, [&] { return motion.at(t, stop); });
 }
 
 // As build_machine() does.
@@ -319,13 +319,37 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
     machine.load_strength.emplace_back(spec.strength, setting.timed(), Quantity::number);
 }
 
+// The scene's reader has found the part, and that it turns where a torque is meant.
+void add_limit(Machine& machine, const LimitSpec& spec) {
+    const Apparatus& apparatus = machine.apparatus;
+    LoadLimit limit{.most = spec.most, .of_torque = spec.of_torque};
+    const auto find = [&](const auto& parts, const std::vector<Pose>& work_from_part,
+                          const std::vector<Motion>& motion, std::size_t before) {
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            if (parts[n].name != spec.part) continue;
+            const Pose part_from_work = work_from_part[n].inverse();
+            limit.part = before + n;
+            limit.axis = part_from_work.turn(motion[n].axis());
+            limit.at = part_from_work * motion[n].pivot_at(0);
+            return true;
+        }
+        return false;
+    };
+    if (!find(apparatus.tool, machine.work_from_tool, machine.tool_motion, 0) &&
+        !find(apparatus.grip, machine.work_from_grip, machine.grip_motion, apparatus.tool.size())) {
+        refuse({"", spec.place}, fmt::format("no tool or grip is called \"{}\"", spec.part));
+    }
+    machine.apparatus.limit.push_back(limit);
+}
+
 template <typename Part>
 std::vector<Pose> placed(const Machine& machine, const char* kind, const std::vector<Part>& part,
                          const std::vector<Pose>& work_from_part, const std::vector<Motion>& motion,
                          double t) {
     std::vector<Pose> world_from_part;
     for (std::size_t n = 0; n < motion.size(); ++n) {
-        const Pose moved = pose_at(motion[n], fmt::format("{} {}", kind, part[n].name), t);
+        const Pose moved =
+            pose_at(motion[n], fmt::format("{} {}", kind, part[n].name), t, machine.stop);
         world_from_part.push_back(machine.frame.world_from_work * moved * work_from_part[n]);
     }
     return world_from_part;
@@ -391,6 +415,7 @@ Machine set_up(const MachineSpec& spec, const std::map<std::string, double>& giv
     for (const GripSpec& grip : spec.grip) add_grip(machine, setting, matter, grip, regions);
     for (const BladeSpec& blade : spec.blade) add_blade(machine, setting, blade);
     for (const LoadSpec& load : spec.load) add_load(machine, setting, matter, load);
+    for (const LimitSpec& limit : spec.limit) add_limit(machine, limit);
     if (!spec.gravity_strength.empty()) {
         machine.gravity_strength.emplace(spec.gravity_strength, setting.timed(), Quantity::number);
     }
@@ -414,11 +439,12 @@ std::vector<double> strengths_at(const Machine& machine, double t) {
     return naming(machine.spec, [&] {
         std::vector<double> strength;
         for (std::size_t n = 0; n < machine.load_strength.size(); ++n) {
-            strength.push_back(told_at("the strength of load " + apparatus.load[n].name, t,
-                                       [&] { return machine.load_strength[n].at(t); }));
+            strength.push_back(told_at("the strength of load " + apparatus.load[n].name, t, [&] {
+                return machine.load_strength[n].at(t, machine.stop);
+            }));
         }
         strength.push_back(told_at("gravity_strength", t, [&] {
-            return machine.gravity_strength ? machine.gravity_strength->at(t) : 1.0;
+            return machine.gravity_strength ? machine.gravity_strength->at(t, machine.stop) : 1.0;
         }));
         return strength;
     });

@@ -51,6 +51,7 @@ struct Machine {
     std::vector<Timed> load_strength;
     std::vector<std::vector<SurfaceComponent>> load_on;  // as the work-piece lies
     std::optional<Timed> gravity_strength;               // none: full from the start
+    double stop = 1;                                     // the motions' variable of this name
 };
 
 // What expressions know of the work-piece: length, height, width, spacing, lattice_reach and

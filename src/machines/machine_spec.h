@@ -6,7 +6,9 @@
 // (how far particles stick out of that box, at the most) and material_friction; tools also the
 // placed centres of the tools before them, as NAME_x, NAME_y, NAME_z in the work frame, and
 // motions, grips, blades, loads and checks those of all tools. Motions and strengths of loads also
-// see t, 0 at the start of the stage and 1 at its end, and duration, of the stage [s].
+// see t, 0 at the start of the stage and 1 at its end, duration, of the stage [s], and, but for
+// blades, stop: the t at which a limit was reached, 1 until then. What is to come no farther then
+// goes by min(t, stop).
 //
 // The work frame stands at the centre of the work-piece's box: x along its length, y the way the
 // machine calls up, z across.
@@ -116,6 +118,14 @@ struct LoadSpec {
     Expression strength = "ramp(t, 0, 1)";
 };
 
+// What a tool or grip may bear (matter/load_limit.h).
+struct LimitSpec {
+    std::string part;
+    double most = 0;  // [N], or [N m] of a torque
+    bool of_torque = false;
+    TextPlace place;
+};
+
 // What had better hold before the machine starts; where it does not, the user is told.
 struct CheckSpec {
     Expression holds;       // not 0
@@ -128,14 +138,16 @@ struct MachineSpec {
     std::filesystem::path file;
     bool moves = false;    // for bodies in motion: no equilibrium is to be expected
     bool upright = false;  // what lies on its tools does so by gravity
+    bool stops = false;    // something of it comes no farther once a limit is reached
     // The work frame's x and y, as place_work_frame takes them, where a stage leaves them open.
     WorldAxis axis = WorldAxis::automatic, up = WorldAxis::automatic;
     std::vector<ParameterSpec> parameter;
     std::vector<ToolSpec> tool;
     std::vector<GripSpec> grip;
     std::vector<BladeSpec> blade;
-    std::vector<LoadSpec> load;   // a scene adds its own
-    Expression gravity_strength;  // a scene's; sees t; empty: 1
+    std::vector<LoadSpec> load;    // a scene adds its own
+    Expression gravity_strength;   // a scene's; sees t; empty: 1
+    std::vector<LimitSpec> limit;  // a scene's
     std::vector<CheckSpec> check;
 
     // Whether nothing of it goes anywhere.

@@ -29,10 +29,11 @@ double meant(double value, const Expression& text, Quantity quantity) {
     return value;
 }
 
-std::vector<std::string> names_and_t(const Variables& known) {
+std::vector<std::string> names_and_times(const Variables& known) {
     std::vector<std::string> names;
     for (const auto& [name, value] : known) names.push_back(name);
     names.push_back("t");
+    names.push_back("stop");
     return names;
 }
 
@@ -54,19 +55,21 @@ Vec3 evaluate(const Expression3& text, const Variables& variables, Quantity quan
 Timed::Timed(const Expression& text, const Variables& known, Quantity quantity)
     : text_(text),
       quantity_(quantity),
-      formula_(quoting(text, [&] { return Formula(text.text, names_and_t(known)); })) {
+      formula_(quoting(text, [&] { return Formula(text.text, names_and_times(known)); })) {
     for (const auto& [name, value] : known) value_.push_back(value);
-    value_.push_back(0);
+    value_.insert(value_.end(), {0.0, 1.0});
     const std::vector<std::string> used = formula_.used();
-    varies_ = std::find(used.begin(), used.end(), "t") != used.end();
+    varies_ = std::any_of(used.begin(), used.end(),
+                          [](const std::string& name) { return name == "t" || name == "stop"; });
     if (varies_) return;
     constant_ = meant(quoting(text, [&] { return formula_.evaluate(value_); }), text, quantity);
 }
 
-double Timed::at(double t) const {
+double Timed::at(double t, double stop) const {
     if (!varies_) return constant_;
     std::vector<double> value = value_;
-    value.back() = t;
+    value[value.size() - 2] = t;
+    value.back() = stop;
     return meant(quoting(text_, [&] { return formula_.evaluate(value); }), text_, quantity_);
 }
 
@@ -81,10 +84,14 @@ Motion::Motion(const MotionSpec& spec, const Variables& known) {
     axis_.normalize();
 }
 
-Pose Motion::at(double t) const {
-    const Vec3 move(move_[0].at(t), move_[1].at(t), move_[2].at(t));
-    const Vec3 pivot(pivot_[0].at(t), pivot_[1].at(t), pivot_[2].at(t));
-    const double turn = turn_.front().at(t);
+Vec3 Motion::pivot_at(double t, double stop) const {
+    return {pivot_[0].at(t, stop), pivot_[1].at(t, stop), pivot_[2].at(t, stop)};
+}
+
+Pose Motion::at(double t, double stop) const {
+    const Vec3 move(move_[0].at(t, stop), move_[1].at(t, stop), move_[2].at(t, stop));
+    const Vec3 pivot = pivot_at(t, stop);
+    const double turn = turn_.front().at(t, stop);
     const Quat rotation = turn_about(axis_, turn);
     return {rotation, pivot - rotation * pivot + move};
 }

@@ -21,19 +21,20 @@ Vec3 evaluate(const Expression3& text, const Variables& variables, Quantity quan
 // The same of any size.
 double evaluate(const Expression& text, const Variables& variables);
 
-// The value of an expression that may depend on t.
+// The value of an expression that may depend on t, and on stop: when the machine came no farther, 1
+// where it goes all its way.
 class Timed {
   public:
-    // Compiles the expression, which sees `known` and t. Throws PlacedError.
+    // Compiles the expression, which sees `known`, t and stop. Throws PlacedError.
     Timed(const Expression& text, const Variables& known, Quantity quantity);
     // Safe to call from any thread. Throws as evaluate().
-    double at(double t) const;
+    double at(double t, double stop = 1) const;
 
   private:
     Expression text_;
     Quantity quantity_;
     Formula formula_;
-    std::vector<double> value_;  // of the formula's variables; the last is t
+    std::vector<double> value_;  // of the formula's variables; the last are t and stop
     bool varies_;
     double constant_ = 0;
 };
@@ -41,13 +42,14 @@ class Timed {
 // Where a thing goes, as time goes from 0 to 1.
 class Motion {
   public:
-    // Compiles the expressions, which see `known` and t. Throws PlacedError.
+    // Compiles the expressions, which see `known`, t and stop. Throws PlacedError.
     Motion(const MotionSpec& spec, const Variables& known);
 
     // Where the motion takes a point of the work frame: moved_from_start * point. Safe to call from
     // any thread. Throws as evaluate().
-    Pose at(double t) const;
+    Pose at(double t, double stop = 1) const;
 
+    Vec3 pivot_at(double t, double stop = 1) const;
     const Vec3& axis() const { return axis_; }  // of the turn; unit
 
   private:

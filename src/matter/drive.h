@@ -3,13 +3,16 @@
 // one time (Drive). Made by `machines`, read by `sim`.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
 #include "geometry/shape.h"
+#include "matter/load_limit.h"
 
 namespace swage {
 
@@ -77,6 +80,7 @@ struct Apparatus {
     std::vector<Grip> grip;
     std::vector<Blade> blade;
     std::vector<Load> load;
+    std::vector<LoadLimit> limit{};  // whichever is reached first
 };
 
 // How what moves unevenly sets out on its way from the drive before, and comes to the end of it: as
@@ -103,5 +107,21 @@ Pose between(const Pose& from, const Pose& to, const WayEnds& ends, double s);
 
 // The drive a share `s` of the way between two, which follow each other.
 Drive drive_between(const Drive& from, const Drive& to, double s);
+
+// Of the part with this number: the tools, `tools` of them, then the grips.
+inline const Pose& pose_of(const Drive& drive, std::size_t part, std::size_t tools) {
+    return part < tools ? drive.world_from_tool[part] : drive.world_from_grip[part - tools];
+}
+
+// What a machine asks for at a time of the stage [s].
+using DriveAt = std::function<Drive(double time)>;
+
+// Where a machine came no farther.
+struct LimitStop {
+    std::size_t limit = 0;  // of the apparatus, the one that was reached
+    Drive at;
+    double borne = 0;   // of it, there
+    double beyond = 0;  // what it jumps to at the least way farther; 0: it was met
+};
 
 }  // namespace swage

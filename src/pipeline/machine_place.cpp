@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/portable_math.h"
 #include "geometry/mesh_check.h"
+#include "pipeline/limit_watch.h"
 #include "pipeline/stage_machine.h"
 
 namespace swage {
@@ -111,12 +112,19 @@ std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& 
                 later = stage_machine(stage, work_piece, beside, scene.duration_of(stage));
             }
             const Machine& machine = is_first ? first : later;
-            places.push_back({stage.name, axes_text(machine.frame), load_texts(machine),
-                              axes_json(machine.frame), loads_json(machine)});
+            places.push_back({stage.name,
+                              axes_text(machine.frame),
+                              load_texts(machine),
+                              axes_json(machine.frame),
+                              loads_json(machine),
+                              {},
+                              {}});
         } catch (const Error&) {
             // It may stand at the work-piece of then.
             places.push_back({.stage = stage.name});
         }
+        places.back().limit = limit_texts(stage.machine);
+        places.back().limits_json = limits_json(stage.machine);
     }
     return places;
 }
@@ -124,8 +132,10 @@ std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& 
 Json places_json(const std::vector<MachinePlace>& places) {
     Json json = Json::array();
     for (const MachinePlace& place : places) {
-        json.push_back(
-            {{"name", place.stage}, {"axes", place.axes_json}, {"loads", place.loads_json}});
+        json.push_back({{"name", place.stage},
+                        {"axes", place.axes_json},
+                        {"loads", place.loads_json},
+                        {"limits", place.limits_json}});
     }
     return json;
 }

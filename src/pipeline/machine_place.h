@@ -28,6 +28,8 @@ struct MachinePlace {
     std::string axes{};               // as axes_text()
     std::vector<std::string> load{};  // as load_texts()
     Json axes_json{}, loads_json{};
+    std::vector<std::string> limit{};  // as limit_texts()
+    Json limits_json{};
 };
 
 // Of all stages. `first`: the machine of the first.

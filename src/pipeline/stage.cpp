@@ -2,7 +2,6 @@
 #include "pipeline/stage.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <span>
@@ -11,15 +10,16 @@
 #include "base/failure.h"
 #include "base/units.h"
 #include "geometry/mesh_write.h"
-#include "machines/legs.h"
 #include "pipeline/body_table.h"
 #include "pipeline/curves.h"
+#include "pipeline/limit_watch.h"
 #include "pipeline/machine_place.h"
 #include "pipeline/piece_fields.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/stage_verdict.h"
+#include "pipeline/stage_way.h"
 #include "pipeline/start_overlap.h"
 #include "pipeline/start_warnings.h"
 #include "pipeline/stiffness_note.h"
@@ -83,14 +83,6 @@ void write_meshes(const WorkPiece& body, const std::vector<SkinField>& fields,
     write_obj(fs::path(stem) += ".obj", mesh, objects_of_pieces(mesh, piece, body.label));
 }
 
-// What a blade sweeps as it turns lies between its poses in steps at most this long.
-constexpr int kBladeSteps = 64;  // of a stage, at least
-int blade_steps(const std::vector<Leg>& legs) {
-    double longest = 0;
-    for (const Leg& leg : legs) longest = std::max(longest, leg.end - leg.begin);
-    return static_cast<int>(std::ceil(kBladeSteps * longest * (1 - 1e-9)));
-}
-
 // The skin is cut along the whole path of the stage's blades when they reach the matter.
 void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& piece, int frame,
                WarningBook& warnings) {
@@ -129,14 +121,15 @@ class StageRun {
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(bodies),
                                  context.scene.duration_of(stage))),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
-          legs_(stage_legs(stage, machine_, stage.frames, bodies.front().matter)),
-          steps_(cuts_any() ? blade_steps(legs_.leg) : 1),
-          way_(stage_drives(stage, machine_, legs_.leg, steps_, context.scene.duration_of(stage))),
-          ahead_(way_),
+          way_(stage, machine_, bodies.front().matter, context.scene.duration_of(stage)),
+          limits_(stage, machine_),
           cuts_(bodies.size(), 0) {
         const std::string axes = axes_text(machine_.frame);
         if (!axes.empty()) log_info("{}: {}", stage.name, axes);
         for (const std::string& load : load_texts(machine_)) log_info("{}: {}", stage.name, load);
+        for (const std::string& limit : limit_texts(machine_.spec)) {
+            log_info("{}: {}", stage.name, limit);
+        }
         for (const std::string& note : machine_.notes) log_info("{}: {}", stage.name, note);
         std::vector<std::string> told = tool_overlaps(
             machine_, named(bodies),
@@ -164,12 +157,12 @@ class StageRun {
         if (last_frame == 0) {
             last_frame = 1;
             const std::vector<SkinFieldValues> values = fields_now();
-            context_.recorder.add_frame(bodies_, way_.front(), values);
+            context_.recorder.add_frame(bodies_, way_.now(), values);
             if (each_frame()) keep([&] { write_meshes_of(last_frame, values); });
         }
         const Apparatus& apparatus = machine_.apparatus;
         first_ = simulation.start();
-        StageCurves curves(stage_.name, last_frame, simulation.loads(way_.front()), first_,
+        StageCurves curves(stage_.name, last_frame, simulation.loads(way_.now()), first_,
                            apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
                            probes());
         if (in_motion()) body_table_.emplace(last_frame, bodies_, first_);
@@ -242,21 +235,26 @@ class StageRun {
     // The machine goes through the n-th frame; false where that was given up. What legs of it were
     // done is on the books and in the skins either way.
     bool work(Simulation& simulation, int n, int number, StageCurves& curves) {
-        const std::size_t begun = leg_;
+        int legs = 0;
         FrameReport frame;
         try {
-            for (; leg_ < legs_.leg.size() && legs_.leg[leg_].frame == n - 1; ++leg_) {
+            for (; way_.goes_on_in(n); ++legs) {
                 throw_if_interrupted();
-                if (leg_ > begun) follow_on_the_way();
+                if (legs > 0) follow_on_the_way();
                 plan_cuts(simulation, number);
                 FrameReport report = [&] {
                     const auto lap = context_.watch.lap("simulate");
-                    return simulation.advance(ahead_.front(), ahead_[steps_]);
+                    return simulation.advance(way_.now(), way_.next(), way_.between());
                 }();
                 if (report.severed > 0) hold_skins();
+                if (report.stop) {
+                    stop(*report.stop, simulation);
+                } else {
+                    way_.go_on();
+                }
+                limits_.look(number, report);
                 frame.go_on(std::move(report));
                 curves.pass(frame.load);
-                ahead_ = ahead_.subspan(steps_);
             }
         } catch (const Interrupted& interrupted) {
             outcome_.interrupted = interrupted;
@@ -265,7 +263,7 @@ class StageRun {
             outcome_.stopped.emplace(failure.code(), fmt::format("{}, frame {}: {}", stage_.name,
                                                                  number, failure.what()));
         }
-        if (leg_ > begun) book(number, std::move(frame), curves);
+        if (legs > 0) book(number, std::move(frame), curves);
         return !outcome_.interrupted && !outcome_.stopped;
     }
 
@@ -279,14 +277,23 @@ class StageRun {
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
     }
 
+    // The machine has reached a limit, and goes on without coming any farther.
+    void stop(const LimitStop& at, Simulation& simulation) {
+        way_.stop(at.at);
+        // Blades go on as they would have gone, in other legs.
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (cuts_[b]) simulation.plan_cuts(b, way_.ahead(), way_.steps());
+        }
+    }
+
     // Once a blade is about to reach a body the whole cut is settled: in its matter and, along the
     // same path, in its skin.
     void plan_cuts(Simulation& simulation, int number) {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            if (cuts_[b] || !simulation.blades_reach(b, ahead_.first(steps_ + 1))) continue;
+            if (cuts_[b] || !simulation.blades_reach(b, way_.leg_ahead())) continue;
             cuts_[b] = 1;
-            simulation.plan_cuts(b, ahead_, steps_);
-            cut_ahead(machine_, ahead_, bodies_[b], number, warnings_);
+            simulation.plan_cuts(b, way_.ahead(), way_.steps());
+            cut_ahead(machine_, way_.ahead(), bodies_[b], number, warnings_);
         }
     }
 
@@ -315,7 +322,7 @@ class StageRun {
             return fields_now();
         }();
         const auto lap = context_.watch.lap("write");
-        context_.recorder.add_frame(bodies_, ahead_.front(), values);
+        context_.recorder.add_frame(bodies_, way_.now(), values);
         if (each_frame()) write_meshes_of(number, values);
         context_.progress.advance(number - 1, stage_.name);
     }
@@ -329,23 +336,26 @@ class StageRun {
                            .last = last_,
                            .first_frame = first_frame,
                            .last_frame = last_frame,
-                           .legs = legs_.leg.size(),
+                           .legs = way_.legs(),
                            .duration = context_.scene.duration_of(stage_),
                            .connections_before = connections_before_,
                            .probes = probes()};
-        StageVerdict verdict = judge_stage(end, pieces_before_,
-                                           outcome_.interrupted ? StageEnded::interrupted
-                                           : outcome_.stopped   ? StageEnded::stopped
-                                                                : StageEnded::wholly);
+        const StageEnded ended = outcome_.interrupted ? StageEnded::interrupted
+                                 : outcome_.stopped   ? StageEnded::stopped
+                                                      : StageEnded::wholly;
+        StageVerdict verdict = judge_stage(end, pieces_before_, ended);
         const std::size_t known = outcome_.warning.size();
         for (std::string& line : warnings_.told(stage_.name)) {
             outcome_.warning.push_back(std::move(line));
         }
-        if (legs_.lost > 0) {
+        for (std::string& line : limits_.warnings(ended == StageEnded::wholly)) {
+            outcome_.warning.push_back(std::move(line));
+        }
+        if (way_.lost() > 0) {
             outcome_.warning.push_back(fmt::format(
                 "{}: in {} of its frames the machine does what 64 steps do not follow; more frames "
                 "do",
-                stage_.name, legs_.lost));
+                stage_.name, way_.lost()));
         }
         std::move(verdict.warning.begin(), verdict.warning.end(),
                   std::back_inserter(outcome_.warning));
@@ -354,19 +364,17 @@ class StageRun {
         }
         outcome_.steps = totals_.iterations + totals_.steps;
         outcome_.record = stage_record(end, curves, verdict.overlap, outcome_.warning);
+        limits_.add_to(outcome_.record);
     }
 
     const StageSpec& stage_;
     std::vector<WorkPiece>& bodies_;
     const StageContext& context_;
     const std::size_t connections_before_;
-    const Machine machine_;
+    Machine machine_;  // it may come to stop
     const int pieces_before_;
-    const Legs legs_;
-    const int steps_;  // of the way, a leg
-    const std::vector<Drive> way_;
-    std::span<const Drive> ahead_;  // of the way, what is still to go
-    std::size_t leg_ = 0;
+    StageWay way_;
+    LimitWatch limits_;
     std::vector<char> cuts_;  // a body each: whether its cut is settled
     std::vector<fs::path> meshes_;
     std::optional<BodyTable> body_table_;  // of a stage in motion

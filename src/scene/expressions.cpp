@@ -31,9 +31,10 @@ void ExpressionReader::add_names(const std::vector<std::string>& names) {
     known_.insert(known_.end(), names.begin(), names.end());
 }
 
-ExpressionReader ExpressionReader::timed() const {
+ExpressionReader ExpressionReader::timed(bool stops) const {
     ExpressionReader reader = *this;
     reader.add_names({"t", "duration"});
+    if (stops) reader.add_name(kStop);
     return reader;
 }
 

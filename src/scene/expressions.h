@@ -19,14 +19,17 @@ const std::vector<std::string>& work_piece_names();
 const std::vector<std::pair<std::string, std::string>>&
 work_piece_names_told();  // and what each is
 
+inline const std::string kStop = "stop";  // what motions call it
+
 class ExpressionReader {
   public:
     // The names that expressions see from now on, beside those of before.
     void add_name(const std::string& name) { known_.push_back(name); }
     void add_names(const std::vector<std::string>& names);
     const std::vector<std::string>& names() const { return known_; }
-    // One that also sees what motions and strengths see beside all that: t and duration.
-    ExpressionReader timed() const;
+    // One that also sees what motions and strengths see beside all that: t and duration, and stop,
+    // but for blades, whose cut is settled when they first touch.
+    ExpressionReader timed(bool stops = true) const;
     // Parameters of the file that it does not see yet.
     void expect_later(std::set<std::string> names) { later_ = std::move(names); }
 

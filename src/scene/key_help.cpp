@@ -136,6 +136,7 @@ const std::vector<KeyHelp>& scene_key_help() {
          "along the world's axes",
          "acceleration, or [x, y, z] of them", "0"},
         {"[[stage]]", "load", "forces and pressures on the surface"},
+        {"[[stage]]", "limit", "what a tool or grip may bear: at it the machine comes no farther"},
         {"[[stage]]", "gravity_strength", "gravity's share over the stage, 0 < t < 1",
          "expression of t", "1"},
 
@@ -158,6 +159,22 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[[stage.load]]", "to", "the opposite corner"},
         {"[[stage.load]]", "strength", "share of the load over the stage, 0 < t < 1",
          "expression of t"},
+
+        {"[[stage.limit]]", "part",
+         "whose: `swage machines NAME` lists them; of several limits the first that is reached "
+         "stops all"},
+        {"[[stage.limit]]",
+         "force",
+         "the size of the force that it exerts on the matter, as in curves; met from below to half "
+         "a percent; quasistatic, with machines that can stop (`swage machines NAME`)",
+         {},
+         "-"},
+        {"[[stage.limit]]",
+         "torque",
+         "instead of force: that about the axis that it turns about, whichever way; of a `bend` "
+         "the moment at the support",
+         {},
+         "-"},
 
         {"[render]", "size", "of the stills", "[width, height], whole numbers up to 16384",
          "[1280, 720]"},
@@ -272,7 +289,8 @@ const std::vector<KeyHelp>& machine_key_help() {
         {"[[tool]]", "finish", "endless: matt, and fades out into the backdrop"},
         {"[[tool]]", "motion", "a section [tool.motion]", "section"},
 
-        {"[tool.motion]", "move", "from where it stood; may use t, 0 to 1 over the stage"},
+        {"[tool.motion]", "move",
+         "from where it stood; may use t, 0 to 1 over the stage, and stop"},
         {"[tool.motion]", "turn", "an angle; may use t"},
         {"[tool.motion]", "axis", "of the turn", {}, "[0, 0, 1]"},
         {"[tool.motion]",

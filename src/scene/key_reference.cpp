@@ -92,8 +92,9 @@ std::vector<SectionReference> scene_key_reference() {
     reading.describes = true;
     SceneSpec scene;
     read_scene_document(
-        document_of("{ inset = [{}], body = [{}], probe = [{}], stage = [{ load = [{}] }], "
-                    "render = { camera = { keys = [{}] }, light = {} } }"),
+        document_of(
+            "{ inset = [{}], body = [{}], probe = [{}], stage = [{ load = [{}], limit = [{}] }], "
+            "render = { camera = { keys = [{}] }, light = {} } }"),
         {}, reading, scene);
     return reference(reading, scene_key_help());
 }
@@ -124,6 +125,9 @@ SectionReference expression_reference() {
     add("NAME", "a parameter of the machine");
     add("TOOL_x, TOOL_y, TOOL_z", "in what follows a [[tool]]: its middle");
     add("t", "in motions and strengths: 0 to 1 over the stage");
+    add("stop",
+        "likewise, but for blades: the t at which a limit ([[stage.limit]]) was reached, 1 until "
+        "then; what goes by min(t, stop) comes no farther");
     add("duration", "likewise: of the stage, so that t*duration is the time in it");
     for (const FormulaFunction& f : formula_functions()) add(f.call, f.help);
     return all;

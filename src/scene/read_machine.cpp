@@ -57,6 +57,7 @@ class MachineReader {
         for (const Node* node : root.tables("load", "[[load]]")) read_load(*node, machine);
         for (const Node* node : root.tables("check", "[[check]]")) read_check(*node, machine);
         root.finish();
+        machine.stops = expression_.is_used(kStop);
         if (machine.tool.empty() && machine.grip.empty() && machine.blade.empty() &&
             machine.load.empty() && reading_.is_complete) {
             mistakes_.add({document.source, 0, 0},
@@ -119,6 +120,8 @@ class MachineReader {
             reason = "has to be letters, digits and _, beginning with a letter";
         } else if (entry.key == "t") {
             reason = "is the time";
+        } else if (entry.key == kStop) {
+            reason = "is the time at which a limit is reached";
         } else if (is_work_piece_name(entry.key)) {
             reason = "is that of the work-piece";
         } else if (is_reserved_name(entry.key)) {
@@ -238,9 +241,10 @@ class MachineReader {
         }
     }
 
-    void read_motion(TableReader& part, const std::string& section, MotionSpec& motion) {
+    void read_motion(TableReader& part, const std::string& section, MotionSpec& motion,
+                     bool stops = true) {
         TableReader table(part.table("motion"), section, reading_);
-        ExpressionReader timed = expression_.timed();
+        ExpressionReader timed = expression_.timed(stops);
         timed.read(table, "move", Quantity::length, motion.move);
         const bool turns = timed.read(table, "turn", Quantity::angle, motion.turn);
         const bool has_axis = expression_.read(table, "axis", Quantity::number, motion.axis);
@@ -317,7 +321,7 @@ class MachineReader {
         if (expression_.read(table, "thickness", Quantity::length, blade.thickness)) {
             expression_.expect_positive(table, "thickness");
         }
-        read_motion(table, "[blade.motion]", blade.motion);
+        read_motion(table, "[blade.motion]", blade.motion, false);
         table.finish();
         machine.blade.push_back(std::move(blade));
     }

@@ -6,6 +6,7 @@
 
 #include "scene/expressions.h"
 #include "scene/file_text.h"
+#include "scene/read_limit.h"
 #include "scene/read_load.h"
 #include "scene/read_machine.h"
 #include "scene/read_solver.h"
@@ -30,6 +31,7 @@ const std::vector<std::string> kStageKeys = {"machine",
                                              "gravity",
                                              "gravity_strength",
                                              "load",
+                                             "limit",
                                              "medium_density",
                                              "drag_coefficient",
                                              "directional_drag",
@@ -194,6 +196,8 @@ void StageReader::read_loads(TableReader& table, StageSpec& stage) {
     }
     ExpressionReader timed = expression.timed();
     timed.read(table, "gravity_strength", Quantity::number, stage.machine.gravity_strength);
+    expression.take_used(timed);
+    stage.machine.stops = stage.machine.stops || expression.is_used(kStop);
 }
 
 void read_frame_words(TableReader& table, WorldAxis& axis, WorldAxis& up) {
@@ -256,10 +260,12 @@ StageSpec StageReader::read(const Node& node) {
         table.narrow(fmt::format("[[stage]] with machine \"{}\"", machine));
         read_parameters(table, *loaded, stage);
         read_loads(table, stage);
+        read_limits(table, stage.sim.solver, stage.machine);
     } else if (reading_.describes) {
         read_loads(table, stage);  // their keys are the same with every machine
+        read_limits(table, stage.sim.solver, stage.machine);
     } else {
-        for (const char* key : {"load", "gravity_strength"}) table.find(key);
+        for (const char* key : {"load", "gravity_strength", "limit"}) table.find(key);
         table.leave_unknown();
     }
     table.finish();

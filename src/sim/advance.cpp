@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -29,6 +30,10 @@ AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& 
     const bool quasistatic = settings.solver == Solver::quasistatic;
     if (bodies.size() > 1 && (quasistatic || settings.solver == Solver::implicit_steps)) {
         fail(ExitCode::stopped, "{}: solver = \"{}\" moves one body: use solver = \"explicit\"",
+             apparatus.name, name_of(settings.solver));
+    }
+    if (!apparatus.limit.empty() && !quasistatic) {
+        fail(ExitCode::stopped, "{}: solver = \"{}\" stops at no limit: use \"quasistatic\"",
              apparatus.name, name_of(settings.solver));
     }
     if (quasistatic) return QuasistaticSolver(*bodies[0], apparatus, settings);
@@ -292,18 +297,27 @@ void FrameReport::go_on(FrameReport next) {
     *this = std::move(next);
 }
 
-FrameReport Simulation::advance(const Drive& from, const Drive& to) {
+FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveAt& way) {
     Rooms& r = *rooms_;
     FrameReport report;
-    report.time = to.time;
     for (std::size_t b = 0; b < r.body.size(); ++b) {
         const int severed = r.cut(b, from, to);
         report.severed += severed;
         if (severed > 0) r.count_pieces(b, "the blade", report.warning);
     }
 
-    const MoveOutcome outcome =
-        std::visit([&](auto& solver) { return solver.advance(from, to); }, r.solver);
+    MoveOutcome outcome = std::visit(
+        [&](auto& solver) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(solver)>, QuasistaticSolver>) {
+                return solver.advance(from, to, way);
+            } else {
+                return solver.advance(from, to);
+            }
+        },
+        r.solver);
+    report.stop = std::move(outcome.stop);
+    const Drive& end = report.stop ? report.stop->at : to;
+    report.time = end.time;
 
     report.pieces = 0;
     for (std::size_t b = 0; b < r.body.size(); ++b) {
@@ -318,8 +332,8 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to) {
     }
 
     r.book(outcome, report);
-    const std::vector<PushSum> pushes = r.push_sums(to);
-    report.load = r.loads(to, pushes);
+    const std::vector<PushSum> pushes = r.push_sums(end);
+    report.load = r.loads(end, pushes);
     for (std::size_t n = 0; n < r.work.size(); ++n) {
         ToolLoad& load = report.load[n];
         for (const BodyOutcome& body : outcome.body) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ struct FrameReport : Books, StepCounts {  // of all bodies
     int severed = 0, broken = 0;  // connections, in this frame: by blades, by load
     int pieces = 1;               // of all bodies
     std::vector<std::string> warning;
+    std::optional<LimitStop> stop;  // the machine came no farther than there, for a limit
 
     // What comes next belongs to the same frame. To be begun with an empty one.
     void go_on(FrameReport next);
@@ -93,8 +95,10 @@ class Simulation {
 
     // Moves the matter on while the apparatus goes from one drive to another. What the blades
     // sweep in this frame is severed first. Throws Error(stopped) with a sentence that names what
-    // to change; the matter is then in a state that was converged.
-    FrameReport advance(const Drive& from, const Drive& to);
+    // to change; the matter is then in a state that was converged. Where a limit of the apparatus
+    // is reached, it goes no farther than there, and later no limit is looked at. `way`: the drives
+    // between the two, where they are not on the straight way.
+    FrameReport advance(const Drive& from, const Drive& to, const DriveAt& way = {});
 
   private:
     struct Rooms;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,7 @@ struct MoveOutcome : StepCounts {
     double left_over = 0;  // of forces, at any rest from now on, where it is more than before [N]
     bool buckled = false;  // an equilibrium on the way was unstable, and left
     std::vector<std::string> lost;  // tools that the work-piece has slipped away from
+    std::optional<LimitStop> stop;  // the move ended there, for a limit
 };
 
 // Work [J] that each tool and grip did while its pose went from one to another under these loads

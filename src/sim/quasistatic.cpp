@@ -48,27 +48,39 @@ void QuasistaticSolver::connections_renewed() {
     foresight_.forget();
 }
 
-MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to) {
+MoveOutcome QuasistaticSolver::advance(const Drive& from, const Drive& to, const DriveAt& way) {
     MoveOutcome outcome;
     BodyOutcome& body = outcome.body.emplace_back(apparatus_, forces_.pushes.count());
     forces_.pushes.start(matter_, from);
     seats_ = true;
-    const bool severed = std::exchange(severed_, false);
+    way_ = way ? &way : nullptr;
+    if (is_limited()) stands_ = from;
+    const bool begins = !begun_, severed = std::exchange(severed_, false);
     const bool let_go_of = begin(from, body) || severed;
     forces_.measure.ask(
         std::max(forces_.pushes.size(matter_, from), forces_.pushes.size(matter_, to)));
     const int count = increments_between(forces_.contacts, matter_, from, to);
-    if (let_go_of) let_go(from, outcome);
+    if (let_go_of) {
+        let_go(from, outcome);
+    } else if (begins && is_limited()) {
+        // What is borne before anything moves may be beyond a limit.
+        increment(from, from, settings_.halving_limit, outcome, Unsolved::leave);
+    }
+    if (is_limited()) come_to_stop(outcome);
     Drive before = from;
-    for (int n = 1; n <= count; ++n) {
-        const Drive after = n == count ? to : drive_between(from, to, double(n) / count);
+    for (int n = 1; n <= count && !outcome.stop; ++n) {
+        const Drive after = n == count ? to : between(from, to, double(n) / count);
         splits_ = 0;
-        increment(before, after, 0, outcome);
-        let_crack(after, outcome);
+        if (increment(before, after, 0, outcome)) {
+            let_crack(after, outcome);
+            if (is_limited()) come_to_stop(outcome);
+        } else {
+            approach(outcome);
+        }
         before = after;
     }
     body.load = load_;
-    body.after = forces_.stored(to);
+    body.after = forces_.stored(outcome.stop ? outcome.stop->at : to);
     return outcome;
 }
 
@@ -79,25 +91,27 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     Relaxation found = search_.find(forces_, move);
     outcome.iterations += found.iterations;
     outcome.residual = found.residual;
-    outcome.buckled = outcome.buckled || found.buckled;
+    const bool buckled = std::exchange(outcome.buckled, outcome.buckled || found.buckled);
     if (!found.converged || smallest_cell_volume(matter_) <= kSmallestCellVolume) {
         const std::string met = this->met(move);
         if (take_back(found, move, outcome)) return increment(from, to, depth, outcome, unsolved);
         if (unsolved == Unsolved::leave) return false;
         if (found.falls || depth >= settings_.halving_limit) stop(found, move, met);
         ++outcome.halvings;
-        const Drive middle = drive_between(from, to, 0.5);
-        increment(from, middle, depth + 1, outcome);
-        increment(middle, to, depth + 1, outcome);
-        return true;
+        const Drive middle = between(from, to, 0.5);
+        return increment(from, middle, depth + 1, outcome) &&
+               increment(middle, to, depth + 1, outcome);
+    }
+    if (goes_beyond(move)) {
+        put_back(move);
+        outcome.buckled = buckled;
+        return false;
     }
     if (const double share = share_to_yield(move); share < 1) {
         put_back(move);
         ++splits_;
-        const Drive middle = drive_between(from, to, share);
-        increment(from, middle, depth, outcome);
-        increment(middle, to, depth, outcome);
-        return true;
+        const Drive middle = between(from, to, share);
+        return increment(from, middle, depth, outcome) && increment(middle, to, depth, outcome);
     }
     keep(move, found.buckled, outcome);
     return true;
@@ -202,6 +216,7 @@ void QuasistaticSolver::keep(const StaticMove& move, bool buckled, MoveOutcome& 
     // None of these goes on as it did.
     if (buckled || breaks || move.seated > kSeated * matter_.lattice.spacing) foresight_.forget();
     ++outcome.increments;
+    if (is_limited()) stands_ = move.to;
 }
 
 bool QuasistaticSolver::commit(BodyOutcome& outcome) {

@@ -28,7 +28,7 @@ class QuasistaticSolver {
 
     // Throws Error(stopped) when an increment fails at the deepest halving; the matter is then as
     // it was before that increment.
-    MoveOutcome advance(const Drive& from, const Drive& to);
+    MoveOutcome advance(const Drive& from, const Drive& to, const DriveAt& way = {});
 
     // A blade has severed connections. Returns what contacts and grips held by what is gone [J].
     double connections_changed(std::size_t body, const Drive& now);
@@ -37,7 +37,8 @@ class QuasistaticSolver {
 
   private:
     enum class Unsolved { stop, leave };
-    // Whether there is an equilibrium at `to`; without one the matter stays as it was, or it stops.
+    // Whether there is an equilibrium at `to` within the limits; without one the matter stays as it
+    // was, or it stops; beyond a limit it stays where it has got to.
     bool increment(const Drive& from, const Drive& to, int depth, MoveOutcome& outcome,
                    Unsolved unsolved = Unsolved::stop);
     StaticMove begin_move(const Drive& from, const Drive& to, int depth,
@@ -58,6 +59,20 @@ class QuasistaticSolver {
     void let_crack(const Drive& to, MoveOutcome& outcome);
     double booked(const Drive& now, const BodyOutcome& outcome);
 
+    // How near the parts are to their limits: the nearest, and what it bears over its limit.
+    struct Reach {
+        std::size_t limit = 0;
+        double share = 0;
+    };
+    bool is_limited() const { return !apparatus_.limit.empty() && !has_stopped_; }
+    double borne_of(std::size_t limit, const std::vector<LoadSum>& load, const Drive& now) const;
+    Reach reach_of(const std::vector<LoadSum>& load, const Drive& now) const;
+    bool goes_beyond(const StaticMove& move);
+    bool go_on(const Drive& to, MoveOutcome& outcome);
+    void approach(MoveOutcome& outcome);
+    void come_to_stop(MoveOutcome& outcome);
+    Drive between(const Drive& from, const Drive& to, double s) const;
+
     double seat_pieces(StaticMove& move);
     void stay(const StaticMove& move);
 
@@ -73,6 +88,17 @@ class QuasistaticSolver {
     bool seats_ = true;          // until a piece finds no seat, in this advance
     bool begun_ = false;
     bool severed_ = false;  // by a blade, since the last equilibrium
+
+    // Where there are limits: the drives between those of a move, where the matter stands, and the
+    // last try that went beyond.
+    const DriveAt* way_ = nullptr;
+    Drive stands_;
+    struct Beyond {
+        Drive at;
+        Reach reach;
+    };
+    Beyond beyond_;
+    bool has_stopped_ = false;
 };
 
 }  // namespace swage

@@ -107,6 +107,11 @@ TEST_CASE(
         {"springs", kMesh + metal("mechanics = \"springs\"\n") + worked()},
         {"boundary", kMesh + metal("") + kBoundary + worked()},
         {"molded anew", kMesh + metal("") + kBoundary + worked("remold = true\n")},
+        {"stops at a limit",
+         kMesh + metal("") +
+             "[[stage]]\nmachine = \"press\"\ndepth = 0.2\nframes = 2\n[[stage.limit]]\n"
+             "part = \"plate\"\nforce = \"20 kN\"\n" +
+             worked() + "[[stage.limit]]\npart = \"draw\"\nforce = \"1 kN\"\n"},
         {"meshes of every frame", kMesh + metal("") + kOutput + worked()},
         {"breaks in motion, boundary",
          kMesh + falls(8) + kBrittle + kMold + kBoundary + floor(12) + floor(12) + floor(12)},

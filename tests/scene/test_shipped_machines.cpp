@@ -325,3 +325,44 @@ TEST_CASE("the bender's pushers stand on the bar wherever its support does") {
         }
     }
 }
+
+TEST_CASE("a machine that stops does so without a jump, and what presses comes no farther") {
+    struct Case {
+        const char *machine, *part;
+        Given given;
+        double release;  // share of the stage from which it draws back
+    };
+    const Case cases[] = {{"press", "plate", {}, 0.65},
+                          {"bend", "left", {}, 0.65},
+                          {"bend", "right", {}, 0.65},
+                          {"stretch", "draw", {{"drawing", 0.6}, {"release", 0.3}}, 0.7},
+                          {"twist", "turn", {}, 1},
+                          {"wring", "turn_above", {}, 0.85}};
+    for (const auto& [name, part, given, release] : cases) {
+        Machine machine = at_bar(name, given);
+        CHECK(machine.spec.stops);
+        const auto pose = [&](double t, double stop) {
+            machine.stop = stop;
+            const Drive drive = drive_at(machine, t, 1);
+            for (std::size_t n = 0; n < machine.apparatus.tool.size(); ++n) {
+                if (machine.apparatus.tool[n].name == part) return drive.world_from_tool[n];
+            }
+            return drive.world_from_grip[1];
+        };
+        const auto apart = [](const Pose& a, const Pose& b) {
+            return (a.translation - b.translation).norm() + turn_between(a, b).norm();
+        };
+        for (const double stop : {0.0, 0.2, 0.45, 0.59}) {
+            INFO(name << " " << part << " " << stop);
+            const Pose there = pose(stop, 1);
+            CHECK(apart(pose(stop, stop), there) == 0);
+            CHECK(apart(pose(0.5 * (stop + release), stop), there) == 0);
+            CHECK(apart(pose(release, stop), there) < 1e-12);
+            // It draws back to where it does anyway; jaws open across what they have turned.
+            if (release == 1 || std::string(name) == "wring") continue;
+            CHECK(apart(pose(1, stop), pose(1, 1)) < 1e-12);
+        }
+    }
+    CHECK_FALSE(shipped("hold").stops);
+    CHECK_FALSE(shipped("cut").stops);
+}
