@@ -5,11 +5,22 @@
 #pragma once
 
 #include "laws/cell.h"
+#include "laws/cell_back.h"
 #include "laws/cell_foam.h"
 
 namespace swage {
 
-enum class CellKind { elastic, yielding, rubber, foam };
+enum class CellKind {
+    elastic,
+    yielding,
+    kinematic,  // yielding with a back stress
+    rubber,
+    foam
+};
+
+inline constexpr bool can_flow(CellKind kind) {
+    return kind == CellKind::yielding || kind == CellKind::kinematic;
+}
 
 // By the gradient itself, which shows where a cell is inside out, instead of by C = F^T F.
 inline constexpr bool knows_inside(CellKind kind) {
@@ -73,10 +84,12 @@ SWAGE_INLINE CornerSums<N> spread_stress(const CornerSums<N>& c, const Columns<N
 // Forces on the sums of the corners. kPart: the cell is partly filled; kFlowed: it has a history.
 // What does not apply is not looked at. Numbers with a slope: of what turning does to the stress's
 // force, their slope gets the share `turning`. `over`: gets how far what can yield is beyond that.
+// `back`: of what has flowed and is kinematic.
 template <CellKind kKind, bool kPart, bool kFlowed, typename N>
 SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<N>& c,
                                        const CellShare<N>& share, const CellHistory<N>& history,
-                                       double turning = 1, N* over = nullptr) {
+                                       double turning = 1, std::type_identity_t<N>* over = nullptr,
+                                       const BackStrain<std::type_identity_t<N>>* back = nullptr) {
     Columns<N> d = kPart ? centroid_sums(c, share.at) : Columns<N>{c.x, c.y, c.z};
     Symmetric<N> a;  // A
     if constexpr (kFlowed) {
@@ -123,7 +136,23 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
         } else {
             g = mode_stress(k.folded, modes);
         }
-        if constexpr (kKind == CellKind::yielding) {
+        Symmetric<N> lent{};  // stress that is no function of E
+        if constexpr (kKind == CellKind::kinematic && kFlowed) {
+            const CellModes<N> beta = (1 / k.scale) * back->modes;
+            const CellModes<N> of_beta = mode_stress(k.folded, a, beta);
+            const Symmetric<N> distortion = deviator(e.log);
+            N part = (-0.5 / (k.law.shear * k.law.spacing * k.law.spacing * k.law.spacing)) + N{};
+            if constexpr (kPart) part = part * mode_share(share.fill);
+            const BackReturn<N> r = return_with_back(
+                k.law, contract(distortion, distortion) + part * product(g, modes),
+                contract(distortion, back->strain) + part * product(of_beta, modes),
+                contract(back->strain, back->strain) + part * product(of_beta, beta),
+                history.alpha);
+            if (over != nullptr) *over = r.over;
+            lent = (shear * r.lent) * back->strain;
+            shear = shear * r.kept;
+            g = r.kept * g + r.lent * of_beta;
+        } else if constexpr (can_flow(kKind)) {
             const Symmetric<N> distortion = deviator(e.log);
             N mode_energy = -1.0 * product(g, modes);
             if constexpr (kPart) mode_energy = mode_share(share.fill) * mode_energy;
@@ -136,6 +165,9 @@ SWAGE_INLINE CornerSums<N> cell_forces(const CellConstants& k, const CornerSums<
         if constexpr (kPart) g = mode_fill(share.fill) * g;
         stress =
             evaluate(e, material_stress(e, shear * deviator_series(e)) + pressure * size.slope);
+        if constexpr (kKind == CellKind::kinematic && kFlowed) {
+            stress = stress + material_stress(e, lent);
+        }
     }
     if constexpr (requires { c.x.x.slope; }) {
         const Columns<N> e = slope_scaled(d, turning);

@@ -56,15 +56,18 @@ SWAGE_INLINE Symmetric<N> made_symmetric(Columns<N> m) {
         m.x.x, m.y.y, m.z.z, 0.5 * (m.x.y + m.y.x), 0.5 * (m.y.z + m.z.y), 0.5 * (m.x.z + m.z.x)};
 }
 
-// A after a flow of d.
+// Times det^(-1/3), which is nearly one.
 template <typename N>
-SWAGE_INLINE Symmetric<N> flowed_on(const Symmetric<N>& a, const Symmetric<N>& d) {
-    const Symmetric<N> grown = made_symmetric(columns_of(a) * decay(d));
-    // det^(-1/3), which is nearly one.
+SWAGE_INLINE Symmetric<N> of_volume_one(const Symmetric<N>& grown) {
     const N det = determinant(grown, cofactors(grown));
     N scale = 1.0 + 0.0 * det;
     for (int n = 0; n < 3; ++n) scale = (1.0 / 3) * scale * (4.0 - det * scale * scale * scale);
     return scale * grown;
+}
+// A after a flow of d.
+template <typename N>
+SWAGE_INLINE Symmetric<N> flowed_on(const Symmetric<N>& a, const Symmetric<N>& d) {
+    return of_volume_one(made_symmetric(columns_of(a) * decay(d)));
 }
 
 // The history after the return `r` of a cell of gradient f.

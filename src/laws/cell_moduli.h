@@ -26,6 +26,8 @@ struct CellModuli {
     double foam_power;    // m of laws/cell_foam.h
     double foam_least;    // J below which that law goes on in a straight line
     FlowCurve curve;      // instead of sigma_y + H alpha where it is not empty
+    // laws/cell_back.h: X_s [Pa], 0: none; gamma.
+    double back_stress = 0, back_rate = 0;
 };
 
 inline constexpr double kMostStiffened = 1000;

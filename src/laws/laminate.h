@@ -136,14 +136,6 @@ SWAGE_INLINE Columns<N> traction_slope(const Phase<N>& m, const Columns<N>& f,
     return slope;
 }
 
-template <typename N>
-SWAGE_INLINE Columns<N> inverse_of(const Columns<N>& m) {
-    const Triple<N> x = cross(m.y, m.z), y = cross(m.z, m.x), z = cross(m.x, m.y);
-    const N over = 1.0 / dot(m.x, x);
-    return {over * Triple<N>{x.x, y.x, z.x}, over * Triple<N>{x.y, y.y, z.y},
-            over * Triple<N>{x.z, y.z, z.z}};
-}
-
 template <typename M, typename N>
 SWAGE_INLINE Triple<N> pick(const M& which, const Triple<N>& a, const Triple<N>& b) {
     return {which ? a.x : b.x, which ? a.y : b.y, which ? a.z : b.z};

@@ -172,9 +172,24 @@ SWAGE_INLINE Symmetric<N> inverse_of(const Symmetric<N>& m) {
     return (1.0 / determinant(m, c)) * c;
 }
 template <typename N>
+SWAGE_INLINE Columns<N> inverse_of(const Columns<N>& m) {
+    const Triple<N> x = cross(m.y, m.z), y = cross(m.z, m.x), z = cross(m.x, m.y);
+    const N over = 1.0 / dot(m.x, x);
+    return {over * Triple<N>{x.x, y.x, z.x}, over * Triple<N>{x.y, y.y, z.y},
+            over * Triple<N>{x.z, y.z, z.z}};
+}
+
+template <typename N>
 SWAGE_INLINE Triple<N> operator*(const Symmetric<N>& s, const Triple<N>& a) {
     return {s.xx * a.x + s.xy * a.y + s.zx * a.z, s.xy * a.x + s.yy * a.y + s.yz * a.z,
             s.zx * a.x + s.yz * a.y + s.zz * a.z};
+}
+// s m s
+template <typename N>
+SWAGE_INLINE Symmetric<N> between(const Symmetric<N>& s, const Symmetric<N>& m) {
+    const Triple<N> a = {s.xx, s.xy, s.zx}, b = {s.xy, s.yy, s.yz}, c = {s.zx, s.yz, s.zz};
+    const Triple<N> x = m * a, y = m * b, z = m * c;
+    return {dot(a, x), dot(b, y), dot(c, z), dot(a, y), dot(b, z), dot(c, x)};
 }
 
 }  // namespace swage

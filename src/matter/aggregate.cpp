@@ -144,6 +144,7 @@ std::size_t Aggregate::bytes() const {
                       bytes_of(cell_material) + bytes_of(mixed_cell) + surface.bytes();
     for (const std::vector<float>& slot : cell_plastic) sum += bytes_of(slot);
     for (const std::vector<float>& row : cell_history.row) sum += bytes_of(row);
+    for (const std::vector<float>& row : cell_back.row) sum += bytes_of(row);
     for (const ConnectionArrays& direction : connection) {
         sum += direction.weight.bytes() + bytes_of(direction.plastic) + bytes_of(direction.damage);
     }
@@ -198,6 +199,11 @@ std::uint64_t state_hash(const Aggregate& matter) {
     }
     for (const std::vector<float>& row : matter.cell_history.row) {
         hasher.add(std::span<const float>(row));
+    }
+    if (!matter.cell_back.empty()) {
+        for (const std::vector<float>& row : matter.cell_back.row) {
+            hasher.add(std::span<const float>(row));
+        }
     }
     for (const MixedCell& cell : matter.mixed_cell) {
         for (const auto& part : cell.flowed) hasher.add(std::span<const float>(part));

@@ -51,6 +51,22 @@ struct CellHistories {
     }
 };
 
+// Numbers of a cell's back stress (laws/cell_back.h), in this order: its strain, xx, yy, zz, xy,
+// yz, zx; of the modes as above [m].
+inline constexpr int kCellBack = 18;
+
+struct CellBackStrains {
+    std::array<std::vector<float>, kCellBack> row;
+
+    bool empty() const { return row[0].empty(); }
+    void assign(std::size_t cells) {
+        for (std::vector<float>& v : row) v.assign(cells, 0.0f);
+    }
+    void clear() {
+        for (std::vector<float>& v : row) v.clear();
+    }
+};
+
 // What has flowed in each of the materials of a cell of two, committed.
 using MixedHistory = std::array<std::array<float, kCellHistory>, 2>;
 
@@ -105,6 +121,8 @@ struct Aggregate {
 
     // Of cells of one material; empty while none of these has ever yielded.
     CellHistories cell_history;
+    // Committed back stress; empty where no material has one, and while none has yielded.
+    CellBackStrains cell_back;
     // Mechanics of springs: logarithmic plastic strain that a cell gives each of its 24
     // connections, by slot (kCellConnection), then cell. Empty likewise.
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;

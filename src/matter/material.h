@@ -25,6 +25,7 @@ enum class Elasticity {
 struct Material {
     bool breaks() const { return strength < std::numeric_limits<double>::infinity(); }
     bool yields() const { return yield_stress < std::numeric_limits<double>::infinity(); }
+    bool shifts() const { return yields() && back_stress > 0; }
 
     std::string name = "custom";
     Mechanics mechanics = Mechanics::cells;
@@ -38,6 +39,11 @@ struct Material {
     // Instead of hardening: the stress over the plastic strain, from yield_stress at 0 on, in
     // straight lines, flat behind the last; empty: none.
     std::vector<FlowPoint> flow_curve = {};
+    // Of the stress at which it flows, the part that shifts with the flow instead of growing, so
+    // that flow back sets in early: what it comes to [Pa], and the plastic strain over which it
+    // does all but 1/e of that, which are C/gamma and 1/gamma of Armstrong and Frederick's law. 0:
+    // none.
+    double back_stress = 0, back_strain = 0;
     // Both or neither. Stress at which a bar that is pulled breaks [Pa], > 0 and below a tenth of
     // young_modulus; inf: never. Energy of a new crack, both its faces together [J/m2], > 0.
     double strength = std::numeric_limits<double>::infinity();

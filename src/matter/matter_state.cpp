@@ -21,6 +21,7 @@ void copy_state(const Aggregate& of, const From& from, To& to) {
     to.cell_cracked = from.cell_cracked;
     to.cell_set = from.cell_set;
     to.cell_history = from.cell_history;
+    to.cell_back = from.cell_back;
     to.cell_plastic = from.cell_plastic;
 }
 

@@ -15,6 +15,7 @@ struct MatterState {
     std::vector<char> cell_cracked;
     std::vector<CellSet> cell_set;
     CellHistories cell_history;
+    CellBackStrains cell_back;
     std::array<std::vector<float>, kCellConnectionCount> cell_plastic;
     std::vector<MixedHistory> mixed_flowed;  // of each of its mixed cells
 

@@ -29,7 +29,8 @@ constexpr double kCurvePointBytes = 90;  // of a flow curve in run.json
 // In a checkpoint, beside the matter.
 constexpr double kKeptBytesPerVertex = 230, kLookBytesPerVertex = 200;
 constexpr double kKeptBytesPerParticle = 30;
-constexpr double kDampedBytes = 180, kYieldedBytes = 100;  // a particle, for its history
+// A particle, for its history.
+constexpr double kDampedBytes = 180, kYieldedBytes = 100, kShiftedBytes = 80;
 
 // Of a machine as it is drawn.
 double machine_bytes(const MachineSpec& machine) {
@@ -88,9 +89,10 @@ double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& in
     const bool damps =
         moves && scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
     const bool yields = scene.any_material([](const Material& m) { return m.yields(); });
+    const bool shifts = scene.any_material([](const Material& m) { return m.shifts(); });
     double bytes = of.matter + of.vertices * kKeptBytesPerVertex +
                    of.particles * (kKeptBytesPerParticle + (damps ? kDampedBytes : 0) +
-                                   (yields ? kYieldedBytes : 0));
+                                   (yields ? kYieldedBytes : 0) + (shifts ? kShiftedBytes : 0));
     for (const InputMesh& one : input) {
         if (scene.skin.kind == SkinKind::boundary) {
             bytes += kLookBytesPerVertex * static_cast<double>(one.mesh.position.size());

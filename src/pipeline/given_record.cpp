@@ -16,22 +16,27 @@ Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(
 Json material_json(const Material& material) {
     Json curve = Json::array();  // of flow; [] where the hardening is linear
     for (const auto& [strain, stress] : material.flow_curve) curve.push_back({strain, stress});
-    return {{"name", material.name},
-            {"mechanics", name_in(kMechanicsNames, material.mechanics)},
-            {"elasticity", name_in(kElasticityNames, material.elasticity)},
-            {"young_modulus_Pa", material.young_modulus},
-            {"poisson_ratio", material.poisson_ratio},
-            {"density_kg_m3", material.density},
-            {"yield_stress_Pa", finite(material.yield_stress)},
-            {"hardening_Pa", material.hardening},
-            {"flow_curve_Pa", curve},
-            {"strength_Pa", finite(material.strength)},
-            {"toughness_J_m2", finite(material.toughness)},
-            {"damping_ratio", material.damping_ratio},
-            {"friction", material.friction},
-            {"static_friction", material.holding_friction()},
-            {"restitution", material.restitution},
-            {"stickiness_Pa", material.stickiness}};
+    Json json = {{"name", material.name},
+                 {"mechanics", name_in(kMechanicsNames, material.mechanics)},
+                 {"elasticity", name_in(kElasticityNames, material.elasticity)},
+                 {"young_modulus_Pa", material.young_modulus},
+                 {"poisson_ratio", material.poisson_ratio},
+                 {"density_kg_m3", material.density},
+                 {"yield_stress_Pa", finite(material.yield_stress)},
+                 {"hardening_Pa", material.hardening},
+                 {"flow_curve_Pa", curve},
+                 {"strength_Pa", finite(material.strength)},
+                 {"toughness_J_m2", finite(material.toughness)},
+                 {"damping_ratio", material.damping_ratio},
+                 {"friction", material.friction},
+                 {"static_friction", material.holding_friction()},
+                 {"restitution", material.restitution},
+                 {"stickiness_Pa", material.stickiness}};
+    if (material.shifts()) {
+        json["back_stress_Pa"] = material.back_stress;
+        json["back_strain"] = material.back_strain;
+    }
+    return json;
 }
 
 Json settings_json(const SimSettings& settings) {

@@ -15,11 +15,11 @@ void visit(Io& io, FlowPoint& point) {
 template <typename Io>
 void visit(Io& io, Material& material) {
     auto& [name, mechanics, elasticity, young_modulus, poisson_ratio, density, yield_stress,
-           hardening, flow_curve, strength, toughness, damping_ratio, friction, static_friction,
-           restitution, stickiness] = material;
+           hardening, flow_curve, back_stress, back_strain, strength, toughness, damping_ratio,
+           friction, static_friction, restitution, stickiness] = material;
     io(name, mechanics, elasticity, young_modulus, poisson_ratio, density, yield_stress, hardening,
-       flow_curve, strength, toughness, damping_ratio, friction, static_friction, restitution,
-       stickiness);
+       flow_curve, back_stress, back_strain, strength, toughness, damping_ratio, friction,
+       static_friction, restitution, stickiness);
 }
 
 template <typename Io>
@@ -59,6 +59,11 @@ void visit(Io& io, CellHistories& histories) {
     io(row);
 }
 template <typename Io>
+void visit(Io& io, CellBackStrains& back) {
+    auto& [row] = back;
+    io(row);
+}
+template <typename Io>
 void visit(Io& io, MixedCell& mixed) {
     auto& [cell, material, fill, centroid, normal, flowed] = mixed;
     io(cell, material, fill, centroid, normal, flowed);
@@ -82,10 +87,11 @@ template <typename Io>
 void visit(Io& io, Aggregate& matter) {
     auto& [material, lattice, particle_reference, particle_position, particle_velocity,
            particle_mass, connection, cell_fill, cell_centroid, inset, cell_material, mixed_cell,
-           cell_cracked, cell_set, cell_history, cell_plastic, branch_memory, surface] = matter;
+           cell_cracked, cell_set, cell_history, cell_back, cell_plastic, branch_memory, surface] =
+        matter;
     io(material, lattice, particle_reference, particle_position, particle_velocity, particle_mass,
        connection, cell_fill, cell_centroid, inset, cell_material, mixed_cell, cell_cracked,
-       cell_set, cell_history, cell_plastic, branch_memory, surface);
+       cell_set, cell_history, cell_back, cell_plastic, branch_memory, surface);
 }
 
 // What finish_mount derives is left to it.

@@ -36,6 +36,18 @@ const std::vector<KeyHelp>& scene_key_help() {
          "straight from point to point and flat behind the last; or as K (e0 + e)^n, A + B e^n, "
          "s0 + Q (1 - exp(-b e))",
          "[[0, stress], [strain, stress], ...], {K, e0, n}, {A, B, n} or {s0, Q, b}"},
+        {"[material]", "back_stress",
+         "of the stress at which it flows, the part that has the sense of the flow, so that flow "
+         "back "
+         "sets in early (kinematic hardening, Bauschinger's effect): what it grows to, C / gamma "
+         "of "
+         "Armstrong and Frederick or Chaboche; a pull that goes on bears what yield_stress, "
+         "hardening or flow_curve say as before"},
+        {"[material]",
+         "back_strain",
+         "the plastic strain over which back_stress grows, 1 / gamma; goes with it",
+         {},
+         "-"},
         {"[material]", "strength", "stress at which a pulled bar breaks; goes with toughness",
          "stress, more than 0 Pa and less than a tenth of young_modulus, or inf", "inf"},
         {"[material]", "toughness", "energy of a new crack, both its faces together"},

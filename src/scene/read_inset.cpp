@@ -66,6 +66,13 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
     if (body.material.mechanics == Mechanics::springs) {
         root.mistake("inset", "springs know one material: use mechanics = \"cells\" in [material]");
     }
+    bool shifts = body.material.shifts();
+    for (const InsetSpec& inset : body.inset) shifts = shifts || inset.material.shifts();
+    if (shifts) {
+        root.mistake("inset",
+                     "cells of two materials have no back stress: leave back_stress out of all "
+                     "materials of the work-piece");
+    }
     for (const StageSpec& stage : scene.stage) {
         if (stage.remold) {
             root.mistake("inset", fmt::format("stage \"{}\" molds the work-piece anew, which "

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "laws/internal_damping.h"
 #include "matter/material_names.h"
+#include "scene/read_back_stress.h"
 #include "scene/read_flow_curve.h"
 
 namespace swage {
@@ -93,6 +94,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     const bool has_density =
         table.quantity("density", Quantity::density, kDensity, material.density);
     read_flow(table, material);
+    read_back_stress(table, material);
     read_fracture(table, material);
     table.quantity("damping_ratio", Quantity::number, between(0, kMostDampingRatio),
                    material.damping_ratio);

@@ -3,6 +3,7 @@
 // eight cells of a row at a time. Each cell's numbers are added in the order of the cells.
 
 #include "base/parallel.h"
+#include "laws/back_growth.h"
 #include "laws/cell_forces.h"
 #include "laws/cell_growth.h"
 #include "laws/cell_rest.h"
@@ -121,15 +122,28 @@ SWAGE_INLINE void add_growths(const BookTask& task, int begin, int count, const 
     }
 }
 
-template <int kWidth>
+template <CellKind kKind, int kWidth>
 SWAGE_INLINE void add_flow(BookTask& task) {
     typedef LanesOf<kWidth> V;
+    constexpr bool kShifts = kKind == CellKind::kinematic;
     const double volume = task.matter->lattice.cell_volume();
     const CellModuli& law = task.law->moduli;
     for (int begin = 0; begin < task.run->count; begin += kWidth) {
         const int count = std::min(kWidth, task.run->count - begin);
         const BookCells<V> c = load_cells<V>(task, begin, count);
-        const CellFlowed<V> r = flow_cell(law, c.history, c.strain.log, c.modes, c.fill);
+        const CellId first = task.run->first + begin;
+        BackStrain<V> back{};
+        const auto r = [&]() __attribute__((always_inline)) {
+            if constexpr (kShifts) {
+                if (has_flowed(task.history, first - begin % kLanes)) {
+                    back = load_back<V>(task.history, first);
+                }
+                return flow_with_back(law, c.history, back, c.strain.log, c.modes, c.fill);
+            } else {
+                return flow_cell(law, c.history, c.strain.log, c.modes, c.fill);
+            }
+        }
+        ();
         V flows{};
         bool any = false;
         for (int l = 0; l < count; ++l) {
@@ -143,15 +157,27 @@ SWAGE_INLINE void add_flow(BookTask& task) {
             continue;
         }
         // The stress that did the flow's work is the one after the return, less what hardening
-        // stores: hardening is booked as lost.
+        // stores: hardening is booked as lost, and what the back stress stores too, until flow back
+        // takes it from there.
         const V flowed = volume * c.fill * r.d_alpha;
         for (int l = 0; l < count; ++l) {
             if (!(flows[l] > 0)) continue;
-            task.sum += flowed[l] * mean_flow_stress(law, c.history.alpha[l], r.d_alpha[l]);
+            double stress = mean_flow_stress(law, c.history.alpha[l], r.d_alpha[l]);
+            if constexpr (kShifts) stress += r.more[l];
+            task.sum += flowed[l] * stress;
         }
-        const CellHistory<V> after = flowed_on(c.history, r, c.gradient, c.sums);
+        CellHistory<V> after;
+        if constexpr (kShifts) {
+            const BackGrown<V> grown = flowed_on(c.history, back, r, c.gradient, c.sums);
+            after = grown.history;
+            const auto number = numbers_of_back(grown.back);
+            for (int n = 0; n < kCellBack; ++n) {
+                keep(*number[n], flows, count, task.flows->cell_back.row[n].data() + first);
+            }
+        } else {
+            after = flowed_on(c.history, r, c.gradient, c.sums);
+        }
         if (task.growths) add_growths(task, begin, count, c, after, flows);
-        const CellId first = task.run->first + begin;
         const auto number = numbers_of(after);
         for (int n = 0; n < kCellHistory; ++n) {
             keep(*number[n], flows, count, task.flows->cell_history.row[n].data() + first);
@@ -193,16 +219,24 @@ double CellSweep::commit(Aggregate& matter, bool seen, SlabGrowths* growths) con
     RestGrowths* const mixed_growths = growths ? &growths->back() : nullptr;
     const auto sum = [&](Aggregate* flows) {
         return sum_of_runs(matter, of, [&](BookTask& task, std::size_t slab) {
-            if (task.law->kind != CellKind::yielding) return;
+            const CellKind kind = task.law->kind;
+            if (!can_flow(kind)) return;
             task.flows = flows;
             if (growths) task.growths = &(*growths)[slab];
-            by_width([&]<int kWidth>() __attribute__((always_inline)) { add_flow<kWidth>(task); });
+            by_width([&]<int kWidth>() __attribute__((always_inline)) {
+                kind == CellKind::kinematic ? add_flow<CellKind::kinematic, kWidth>(task)
+                                            : add_flow<CellKind::yielding, kWidth>(task);
+            });
         });
     };
     if (matter.cell_history.empty()) {
         if (sum(nullptr) == 0) return mixed_.commit(matter, law_, seen, mixed_growths);
         matter.cell_history.assign(fill_.size());
     }
+    const bool shifts = std::any_of(law_.begin(), law_.end(), [](const MaterialLaw& law) {
+        return law.kind == CellKind::kinematic;
+    });
+    if (shifts && matter.cell_back.empty()) matter.cell_back.assign(fill_.size());
     const double lost = sum(&matter);
     return lost + mixed_.commit(matter, law_, seen, mixed_growths);
 }

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "laws/cell_back.h"
 #include "matter/aggregate.h"
 #include "sim/cell_batch.h"
 
 namespace swage {
 
 static_assert(sizeof(CellHistory<double>) == kCellHistory * sizeof(double));
+static_assert(sizeof(BackStrain<double>) == kCellBack * sizeof(double));
 
 // By batches of eight cells of a run: all full and whole, or where their fills and centroids begin.
 inline constexpr std::int32_t kWholeCells = -1;
@@ -31,30 +33,53 @@ inline bool is_whole_batch(const Aggregate& matter, const std::vector<float>& fi
 // The committed history of all cells.
 struct HistoryRows {
     const float* row[kCellHistory] = {};  // null: nothing has flowed
+    const float* back[kCellBack] = {};    // null: and none has a back stress
     int cells = 0;
 
     explicit HistoryRows(const Aggregate& matter)
         : cells(static_cast<int>(matter.cell_fill.size())) {
         if (matter.cell_history.empty()) return;
         for (int n = 0; n < kCellHistory; ++n) row[n] = matter.cell_history.row[n].data();
+        if (matter.cell_back.empty()) return;
+        for (int n = 0; n < kCellBack; ++n) back[n] = matter.cell_back.row[n].data();
     }
     const float* hardening() const { return row[kCellHistory - 1]; }
 };
 
-template <typename V>
-SWAGE_INLINE CellHistory<V> load_history(const HistoryRows& rows, CellId cell) {
-    float copy[kCellHistory][kLanes];
-    const float* from[kCellHistory];
-    for (int n = 0; n < kCellHistory; ++n) from[n] = rows.row[n] + cell;
-    if (cell + kWidthOf < V >> rows.cells) [[unlikely]] {
-        for (int n = 0; n < kCellHistory; ++n) {
-            for (int l = 0; l < kWidthOf<V>; ++l) {
-                copy[n][l] = cell + l < rows.cells ? from[n][l] : 0.0f;
+// Where so many rows have the numbers of a batch, whose lanes past the last cell are zero.
+template <typename V, int kCount>
+struct BatchRows {
+    float copy[kCount][kLanes];
+    const float* from[kCount];
+
+    SWAGE_INLINE BatchRows(const float* const (&row)[kCount], int cells, CellId cell) {
+        for (int n = 0; n < kCount; ++n) from[n] = row[n] + cell;
+        if (cell + kWidthOf < V >> cells) [[unlikely]] {
+            for (int n = 0; n < kCount; ++n) {
+                for (int l = 0; l < kWidthOf<V>; ++l) {
+                    copy[n][l] = cell + l < cells ? from[n][l] : 0.0f;
+                }
+                from[n] = copy[n];
             }
-            from[n] = copy[n];
         }
     }
-    return history_from<V>([&](int n) __attribute__((always_inline)) { return load<V>(from[n]); });
+};
+
+template <typename V>
+SWAGE_INLINE CellHistory<V> load_history(const HistoryRows& rows, CellId cell) {
+    const BatchRows<V, kCellHistory> batch(rows.row, rows.cells, cell);
+    return history_from<V>([&](int n)
+                               __attribute__((always_inline)) { return load<V>(batch.from[n]); });
+}
+// Zero while none has a back stress.
+template <typename V>
+SWAGE_INLINE BackStrain<V> load_back(const HistoryRows& rows, CellId cell) {
+    BackStrain<V> back{};
+    if (rows.back[0] == nullptr) return back;
+    const BatchRows<V, kCellBack> batch(rows.back, rows.cells, cell);
+    const auto number = numbers_of_back(back);
+    for (int n = 0; n < kCellBack; ++n) *number[n] = load<V>(batch.from[n]);
+    return back;
 }
 
 // Whether any cell of a batch of eight has flowed.

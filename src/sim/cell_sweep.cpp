@@ -98,17 +98,22 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
                 strained = larger(strained, strain);
             }
             const CellId cell = run->first + begin;
-            if (kKind == CellKind::yielding && begin % kLanes == 0) {
+            if (can_flow(kKind) && begin % kLanes == 0) {
                 flowed = has_flowed(task.history, cell);
                 any_flowed = any_flowed || flowed;
             }
             CornerSums<V> r;
             V over = most_over;
+            BackStrain<V> back;
+            if constexpr (kKind == CellKind::kinematic) {
+                if (flowed) back = load_back<V>(task.history, cell);
+            }
             if (shares == kWholeCells) {
                 const CellShare<V> whole{};
                 if (flowed) {
-                    r = cell_forces<kKind, false, true>(
-                        *task.constants, c, whole, load_history<V>(task.history, cell), 1, &over);
+                    r = cell_forces<kKind, false, true>(*task.constants, c, whole,
+                                                        load_history<V>(task.history, cell), 1,
+                                                        &over, &back);
                 } else {
                     r = cell_forces<kKind, false, false>(*task.constants, c, whole,
                                                          CellHistory<V>{}, 1, &over);
@@ -116,14 +121,15 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             } else {
                 const CellShare<V> part = share_of<V>(task, shares, begin);
                 if (flowed) {
-                    r = cell_forces<kKind, true, true>(
-                        *task.constants, c, part, load_history<V>(task.history, cell), 1, &over);
+                    r = cell_forces<kKind, true, true>(*task.constants, c, part,
+                                                       load_history<V>(task.history, cell), 1,
+                                                       &over, &back);
                 } else {
                     r = cell_forces<kKind, true, false>(*task.constants, c, part, CellHistory<V>{},
                                                         1, &over);
                 }
             }
-            if constexpr (kKind == CellKind::yielding) {
+            if constexpr (can_flow(kKind)) {
                 if (count < kWidth) over = lane < count ? over : most_over;
                 most_over = larger(most_over, over);
             }
@@ -138,7 +144,7 @@ SWAGE_INLINE void slab_forces(SlabTask& task) {
             strains = strains || strained[l] > task.strained;
         }
         if (crushed) task.crushed_run->push_back(run);
-        if (kKind == CellKind::yielding && yields) task.yielding_run->push_back(run);
+        if (can_flow(kKind) && yields) task.yielding_run->push_back(run);
         if (kWatched && strains) task.strained_run->push_back(run);
         batch += batches_of(*run);
     }
@@ -152,10 +158,11 @@ void slab_of(SlabTask& task) {
 }
 template <bool kWatched>
 void slab_by_kind(CellKind kind, SlabTask& task) {
-    kind == CellKind::rubber     ? slab_of<CellKind::rubber, kWatched>(task)
-    : kind == CellKind::foam     ? slab_of<CellKind::foam, kWatched>(task)
-    : kind == CellKind::yielding ? slab_of<CellKind::yielding, kWatched>(task)
-                                 : slab_of<CellKind::elastic, kWatched>(task);
+    kind == CellKind::rubber      ? slab_of<CellKind::rubber, kWatched>(task)
+    : kind == CellKind::foam      ? slab_of<CellKind::foam, kWatched>(task)
+    : kind == CellKind::yielding  ? slab_of<CellKind::yielding, kWatched>(task)
+    : kind == CellKind::kinematic ? slab_of<CellKind::kinematic, kWatched>(task)
+                                  : slab_of<CellKind::elastic, kWatched>(task);
 }
 void sweep_slab(CellKind kind, SlabTask& task) {
     task.strained > 0 ? slab_by_kind<true>(kind, task) : slab_by_kind<false>(kind, task);
@@ -175,7 +182,7 @@ CellSweep::CellSweep(const Aggregate& matter)
     : law_(material_laws(matter)), slab_(cell_slabs(matter)), pieces_(matter, slab_) {
     for (SlabRuns* runs : {&crushed_, &strained_, &yielding_}) runs->resize(slab_.size());
     yields_ = std::any_of(law_.begin(), law_.end(),
-                          [](const MaterialLaw& law) { return law.kind == CellKind::yielding; });
+                          [](const MaterialLaw& law) { return can_flow(law.kind); });
     cells_changed(matter);
 }
 

@@ -54,11 +54,15 @@ SWAGE_INLINE CornerSums<V> minus_slopes(const Task& task, int begin, const Corne
     using N = Dual<V>;
     const CornerSums<N> c = pair(x, way);
     CornerSums<N> r;
-    const bool flowed = kKind == CellKind::yielding && run.history.hardening() != nullptr;
+    const bool flowed = can_flow(kKind) && run.history.hardening() != nullptr;
+    BackStrain<N> back;
+    if constexpr (kKind == CellKind::kinematic) {
+        if (flowed) back = constant(load_back<V>(run.history, run.first + begin));
+    }
     if (run.whole[begin / kLanes]) {
         const CellShare<N> all{};
         r = flowed ? cell_forces<kKind, false, true>(constants, c, all, history_of<V>(run, begin),
-                                                     turning)
+                                                     turning, nullptr, &back)
                    : cell_forces<kKind, false, false>(constants, c, all, CellHistory<N>{}, turning);
     } else {
         const CellShare<N> part{
@@ -66,7 +70,7 @@ SWAGE_INLINE CornerSums<V> minus_slopes(const Task& task, int begin, const Corne
             {constant(load<V>(run.at[0] + begin)), constant(load<V>(run.at[1] + begin)),
              constant(load<V>(run.at[2] + begin))}};
         r = flowed ? cell_forces<kKind, true, true>(constants, c, part, history_of<V>(run, begin),
-                                                    turning)
+                                                    turning, nullptr, &back)
                    : cell_forces<kKind, true, false>(constants, c, part, CellHistory<N>{}, turning);
     }
     return {minus_slope(r.x),  minus_slope(r.y),  minus_slope(r.z),  minus_slope(r.xy),
@@ -217,10 +221,11 @@ void do_kind(const T& task) {
 }
 template <typename T>
 void do_task(CellKind kind, const T& task) {
-    kind == CellKind::rubber     ? do_kind<CellKind::rubber>(task)
-    : kind == CellKind::foam     ? do_kind<CellKind::foam>(task)
-    : kind == CellKind::yielding ? do_kind<CellKind::yielding>(task)
-                                 : do_kind<CellKind::elastic>(task);
+    kind == CellKind::rubber      ? do_kind<CellKind::rubber>(task)
+    : kind == CellKind::foam      ? do_kind<CellKind::foam>(task)
+    : kind == CellKind::yielding  ? do_kind<CellKind::yielding>(task)
+    : kind == CellKind::kinematic ? do_kind<CellKind::kinematic>(task)
+                                  : do_kind<CellKind::elastic>(task);
 }
 
 }  // namespace

@@ -170,6 +170,14 @@ CellHistory<double> committed_history(const Aggregate& matter, CellId cell) {
     return history_from<double>([&](int n) { return double(matter.cell_history.row[n][cell]); });
 }
 
+BackStrain<double> committed_back(const Aggregate& matter, CellId cell) {
+    BackStrain<double> back{};
+    if (matter.cell_back.empty()) return back;
+    const auto number = numbers_of_back(back);
+    for (int n = 0; n < kCellBack; ++n) *number[n] = matter.cell_back.row[n][cell];
+    return back;
+}
+
 Mat3 matrix_of(const Columns<double>& f) {
     Mat3 m;
     m << f.x.x, f.y.x, f.z.x, f.x.y, f.y.y, f.z.y, f.x.z, f.y.z, f.z.z;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "laws/cell.h"
+#include "laws/cell_back.h"
 #include "matter/aggregate.h"
 
 namespace swage {
@@ -24,6 +24,7 @@ CornerSums<double> corner_sums(const Aggregate& matter, const CellRun& run, int 
 Triple<double> material_place(const Aggregate& matter, CellId cell);
 Mat3 material_gradient(const Aggregate& matter, const CellRun& run, int n);
 CellHistory<double> committed_history(const Aggregate& matter, CellId cell);
+BackStrain<double> committed_back(const Aggregate& matter, CellId cell);
 Mat3 matrix_of(const Columns<double>& f);
 
 struct SmallCell {

@@ -54,7 +54,9 @@ struct Crushed {
     CellHistory<double> history{};
     Columns<double> gradient;  // F_e
     CellStrain<double> strain;
-    CellFlowed<double> flowed;
+    bool shifts;  // has a back stress
+    BackStrain<double> back{};
+    BackFlowed<double> flowed{};
 
     Crushed(const Aggregate& matter, const std::vector<MaterialLaw>& laws, const SmallCell& cell) {
         const CellId id = cell.id();
@@ -63,6 +65,7 @@ struct Crushed {
         law = &own.moduli;
         fades = matter.material.mechanics == Mechanics::cells && !knows_inside(own.kind) &&
                 matter.mixed_at(id) == nullptr;
+        shifts = own.kind == CellKind::kinematic;
         fill = matter.cell_fill[id];
         volume = fill * a * a * a;
         at = material_place(matter, id);
@@ -74,12 +77,24 @@ struct Crushed {
                            matrix_of(gradient));
         if (!fades) return;
         strain = cell_strain(gradient);
-        flowed = flow_cell(*law, history, strain.log, pulled_back(gradient, sums), fill);
+        const CellModes<double> modes = pulled_back(gradient, sums);
+        if (shifts) {
+            back = committed_back(matter, id);
+            flowed = flow_with_back(*law, history, back, strain.log, modes, fill);
+        } else {
+            const CellFlowed<double> r = flow_cell(*law, history, strain.log, modes, fill);
+            static_cast<CellReturn<double>&>(flowed) = r;
+            flowed.distortion = r.distortion, flowed.modes = r.modes;
+            flowed.mode_stress = r.mode_stress;
+        }
     }
 
     // Of the cell's own law: what it holds, and besides what the flow on trial takes.
     double stored() const { return strain_energy(*law, strain); }
-    double spent() const { return stored() - saved_by_flow(*law, history.alpha, flowed); }
+    double spent() const {
+        return stored() - (shifts ? saved_by_flow(*law, history.alpha, back, fill, flowed)
+                                  : saved_by_flow(*law, history.alpha, flowed));
+    }
 
     double energy() const {
         return volume * (guard.energy - (fades ? guard.share * stored() : 0.0));
@@ -90,9 +105,14 @@ struct Crushed {
         Mat3 stress = guard.stress;
         CellModes<double> modes{};
         if (fades) {
-            const Symmetric<double> own = cell_stress(*law, strain, flowed.kept);
+            Symmetric<double> own = cell_stress(*law, strain, flowed.kept);
+            if (shifts) {
+                own = own + material_stress(strain, (2 * law->shear * flowed.lent) * back.strain);
+            }
             stress -= guard.share * matrix_of(gradient * own) + spent() * guard.share_slope;
-            modes = (guard.share * mode_fill(fill) * (1 - flowed.kept)) * flowed.mode_stress;
+            const double part = guard.share * mode_fill(fill);
+            modes = (part * (1 - flowed.kept)) * flowed.mode_stress;
+            if (shifts) modes = modes - (part * flowed.lent) * flowed.back_stress;
         }
         const Symmetric<double> a = taken_back(history);
         return sum_forces(sums, gradient, a, columns(volume * stress) * a, modes, at, law->spacing);

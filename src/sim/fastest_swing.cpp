@@ -41,6 +41,7 @@ Aggregate as_molded(Aggregate matter) {
     matter.material.yield_stress = std::numeric_limits<double>::infinity();
     for (Material& inset : matter.inset) inset.yield_stress = matter.material.yield_stress;
     matter.cell_history.clear();
+    matter.cell_back.clear();
     for (auto& part : matter.cell_plastic) part.clear();
     for (MixedCell& mixed : matter.mixed_cell) mixed.flowed = {};
     for (ConnectionArrays& along : matter.connection) along.plastic.clear();

@@ -15,15 +15,20 @@ std::vector<MaterialLaw> material_laws(const Aggregate& matter, Flow flow) {
     for (std::size_t n = 0; n < matter.material_count(); ++n) {
         const Material& m = matter.material_at(n);
         const bool foam = cells && m.elasticity == Elasticity::storakers;
-        const CellKind kind = m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
-                              : foam                                  ? CellKind::foam
-                              : std::isfinite(m.yield_stress)         ? CellKind::yielding
-                                                                      : CellKind::elastic;
+        CellKind kind = m.elasticity == Elasticity::neo_hookean ? CellKind::rubber
+                        : foam                                  ? CellKind::foam
+                        : std::isfinite(m.yield_stress)         ? CellKind::yielding
+                                                                : CellKind::elastic;
         const bool yields = kind == CellKind::yielding, flows = yields && flow == Flow::trial;
+        const bool shifts = cells && flows && m.shifts();
+        if (shifts) kind = CellKind::kinematic;
         laws.push_back({cell_moduli(m.young_modulus, m.poisson_ratio, matter.lattice.spacing,
                                     flows ? m.yield_stress : kNeverYields, yields ? m.hardening : 0,
                                     flows ? m.flow_curve : std::vector<FlowPoint>()),
                         kind});
+        if (!shifts) continue;
+        laws.back().moduli.back_stress = m.back_stress;
+        laws.back().moduli.back_rate = 1 / m.back_strain;
     }
     return laws;
 }

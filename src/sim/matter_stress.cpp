@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "base/portable_math.h"
 #include "laws/laminate.h"
 #include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
@@ -34,12 +35,14 @@ std::array<double, 6> turned_back(const Mat3& p, const Mat3& f) {
     return components(0.5 * (stress + stress.transpose()));
 }
 
-// Springs harden beyond their law as they flow far.
+// Springs harden beyond their law as they flow far. Where the back stress has another sense than
+// flow has had so far matter bears more than its curve says, by what that has not seen of it.
 double yields_at(const MaterialLaw& law, Mechanics mechanics, double plastic_strain) {
-    if (law.kind != CellKind::yielding || mechanics == Mechanics::springs) {
+    if (!can_flow(law.kind) || mechanics == Mechanics::springs) {
         return std::numeric_limits<double>::infinity();
     }
-    return mean_flow_stress(law.moduli, plastic_strain, 0);
+    return mean_flow_stress(law.moduli, plastic_strain, 0) +
+           law.moduli.back_stress * portable::exp(-law.moduli.back_rate * plastic_strain);
 }
 
 class Sampler {
@@ -97,7 +100,10 @@ class Sampler {
         one.place += matter_.cell_centroid[cell].cast<double>();
         one.volume = matter_.cell_fill[cell];
         const CornerSums<double> sums = sums_of(corner);
-        const Phase<double> phase{&law_[material].moduli, law_[material].kind, one.volume,
+        // What has a back stress is within its surface, which is not looked at.
+        const bool shifts = law_[material].kind == CellKind::kinematic;
+        const Phase<double> phase{&law_[material].moduli,
+                                  shifts ? CellKind::elastic : law_[material].kind, one.volume,
                                   material_place(matter_, cell), committed_history(matter_, cell)};
         const Columns<double> f = centroid_gradient(sums, phase.at, matter_.lattice.spacing);
         PhaseState<double> state;

@@ -52,3 +52,35 @@ TEST_CASE("what never flowed gives nothing to what is molded anew") {
     carry_hardening(old, anew);
     CHECK(anew.cell_history.empty());
 }
+
+TEST_CASE("what is molded anew has the back stress that the matter had, turned as it was") {
+    const Material metal{
+        .young_modulus = 1e6, .yield_stress = 1e3, .back_stress = 600, .back_strain = 0.01};
+    Aggregate old = make_block(6, 4, 4, 0.1, metal);
+    const std::size_t cells = old.cell_fill.size();
+    old.cell_history.assign(cells);
+    old.cell_back.assign(cells);
+    const double shear = metal.young_modulus / 2.5;
+    const double strain = 500 / (3 * shear);  // bears 500 Pa, pulled along x
+    for (std::size_t c = 0; c < cells; ++c) {
+        old.cell_history.hardening()[c] = 0.01f;
+        old.cell_back.row[0][c] = static_cast<float>(strain);
+        for (int n : {1, 2}) old.cell_back.row[n][c] = static_cast<float>(-0.5 * strain);
+        old.cell_back.row[7][c] = 1e-3f;
+    }
+    const Mat3 turn = Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitZ()).toRotationMatrix();
+    deform(old, [&](const Vec3& x) { return Vec3(turn * x); });
+    Aggregate anew = make_block(4, 6, 4, 0.1, metal);
+    carry_hardening(old, anew);
+    REQUIRE(anew.cell_back.row[0].size() == cells);
+    for (std::size_t c = 0; c < cells; ++c) {
+        CHECK(anew.cell_back.row[1][c] == Approx(strain).epsilon(1e-5));
+        CHECK(anew.cell_back.row[0][c] == Approx(-0.5 * strain).epsilon(1e-5));
+        CHECK(std::abs(anew.cell_back.row[3][c]) < 1e-5 * strain);
+        CHECK(anew.cell_back.row[7][c] == 0);
+    }
+    // 1000 - 600 (1 - e^-10) of surface are left: without stress there can be no more than that.
+    for (float& one : old.cell_history.hardening()) one = 0.1f;
+    carry_hardening(old, anew);
+    CHECK(3 * shear * anew.cell_back.row[1][0] == Approx(400).epsilon(2e-3));
+}

@@ -45,6 +45,9 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
     m.mixed_cell[1].flowed[1][3] = 0.25f;
     m.cell_history.assign(cells);
     m.cell_history.row[4][2] = 0.5f;
+    m.cell_back.assign(cells);
+    m.cell_back.row[7][2] = 0.25f;
+    m.material.back_stress = 3e4, m.material.back_strain = 0.02;
     for (std::size_t s = 0; s < m.cell_plastic.size(); ++s)
         m.cell_plastic[s].assign(cells, 0.1f * s);
     for (ConnectionArrays& all : m.connection) {
@@ -149,6 +152,9 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
         CHECK(after.matter.inset.at(0).yield_stress == 1e5);
         CHECK(after.matter.inset.at(0).flow_curve.at(1).strain == 0.1);
         CHECK(after.matter.inset.at(0).flow_curve.at(1).stress == 2e5);
+        CHECK(after.matter.cell_back.row[7] == before.matter.cell_back.row[7]);
+        CHECK(after.matter.material.back_stress == 3e4);
+        CHECK(after.matter.material.back_strain == 0.02);
         CHECK(after.matter.lattice.cell_row_begin == before.matter.lattice.cell_row_begin);
         CHECK(after.matter.branch_memory.at(0).branches.time ==
               before.matter.branch_memory.at(0).branches.time);

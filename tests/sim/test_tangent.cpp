@@ -61,6 +61,12 @@ const Material kMaterials[] = {
      .poisson_ratio = 0.3,
      .yield_stress = 2e3,
      .flow_curve = {{0, 2e3}, {0.011, 4e3}, {0.023, 4e3}, {0.047, 4.5e3}, {0.3, 6e3}}},
+    {.young_modulus = 1e5,
+     .poisson_ratio = 0.3,
+     .yield_stress = 2e3,
+     .hardening = 1e4,
+     .back_stress = 1.3e3,
+     .back_strain = 0.03},
     {.elasticity = Elasticity::neo_hookean, .young_modulus = 1e5, .poisson_ratio = 0.45},
     {.elasticity = Elasticity::storakers, .young_modulus = 1e5, .poisson_ratio = 0.3},
 };
