@@ -83,6 +83,7 @@ std::vector<Case> verification_cases() {
     add_two_material_cases(cases);
     add_plastic_cases(cases);
     add_large_flow_cases(cases);
+    add_reverse_flow_cases(cases);
     add_fracture_cases(cases);
     add_fast_fracture_cases(cases);
     add_motion_cases(cases);

@@ -107,6 +107,7 @@ void add_invariance_cases(std::vector<Case>& cases);
 void add_two_material_cases(std::vector<Case>& cases);
 void add_plastic_cases(std::vector<Case>& cases);
 void add_large_flow_cases(std::vector<Case>& cases);
+void add_reverse_flow_cases(std::vector<Case>& cases);
 void add_fracture_cases(std::vector<Case>& cases);
 void add_fast_fracture_cases(std::vector<Case>& cases);
 void add_motion_cases(std::vector<Case>& cases);
