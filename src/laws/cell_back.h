@@ -133,7 +133,7 @@ SWAGE_INLINE BackReturn<N> return_with_back(const CellModuli& law, const N& own,
                                             const N& back, const N& alpha) {
     using V = std::remove_cvref_t<decltype(value_of(own))>;
     constexpr int kMostRounds = 60;
-    constexpr double kTiny = 1e-300, kClose = 1e-13;
+    constexpr double kTiny = 1e-300, kClose = 1e-11;  // the last step squares what is left
     const double scale = std::sqrt(6.0) * law.shear, rate = law.back_rate, firm = 3 * law.shear;
     const auto along = [&](const auto& stress, const auto& reached) __attribute__((always_inline)) {
         if (!law.curve.empty()) {
@@ -157,6 +157,7 @@ SWAGE_INLINE BackReturn<N> return_with_back(const CellModuli& law, const N& own,
     const V none{};
     V d = none, low = none, over = none, slope_left = none;
     V high = (scale * (root(a) + root(b)) + law.back_stress) * (1 / firm);
+    const V close = kClose * high;
     V moving = none + 1.0;
     Fading<V> f = fading(none);
     for (int round = 0; round < kMostRounds; ++round) {
@@ -179,7 +180,7 @@ SWAGE_INLINE BackReturn<N> return_with_back(const CellModuli& law, const N& own,
         const V change = next > d ? next - d : d - next;
         next = moving > none ? next : d;
         d = next;
-        moving = change > kClose * next ? moving : none;
+        moving = change > close ? moving : none;
         if (!any_above_zero(moving)) break;
     }
     // Once more, with the slopes of all that has some.

@@ -55,6 +55,7 @@ void body(const char* name, double wanted, const Material& material) {
         history += bytes_of(c.damage);
     }
     for (const auto& v : m.cell_history.row) history += bytes_of(v);
+    for (const auto& v : m.cell_back.row) history += bytes_of(v);
     for (const auto& v : m.cell_plastic) history += bytes_of(v);
     fmt::print(
         "{:<9}{:>8.0f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>10.1f}{:>9.1f}{:>10.1f}"
@@ -77,11 +78,13 @@ int main(int argc, char** argv) {
         "bytes a cell        x, v, m  weight  plastic  fill, c   history  surface  "
         "resident   stepped\n");
     const Material elastic{.young_modulus = 1e6, .poisson_ratio = 0.3, .damping_ratio = 0};
-    Material flowing = elastic, springs = elastic;
+    Material flowing = elastic, springs = elastic, shifting;
     flowing.yield_stress = 1e3, flowing.hardening = 1e4;
     springs.mechanics = Mechanics::springs;
     body("elastic", cells, elastic);
     body("flowing", cells, flowing);
+    shifting = flowing, shifting.back_stress = 500, shifting.back_strain = 0.01;
+    body("shifting", cells, shifting);
     body("springs", cells, springs);
     springs.damping_ratio = 0.02;
     body("damped", cells, springs);

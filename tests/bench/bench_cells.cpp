@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nanoseconds for one evaluation of the forces inside the matter: a cell by the cell law, elastic,
-// rubber, foam, flowing and flowing along a curve of some 400 points, in blocks and balls and by
-// each width of vectors that the machine has; a connection by springs; two threads against one;
+// rubber, foam, flowing, flowing along a curve of some 400 points, and with a back stress, as
+// committed and flowing back from there, in blocks and balls and by each width of vectors that the
+// machine has; a connection by springs; two threads against one;
 // bytes. Medians, beside the bars that were set. Arguments: the numbers of cells to try, or none
 // for 1e4, 1e5 and 1e6.
 #include <fmt/format.h>
@@ -38,13 +39,13 @@ Aggregate molded(const std::string& shape, double cells, const Material& materia
 }
 
 // Strains of about a hundredth, which yield where the material can.
-void deform(Aggregate& m) {
+void deform(Aggregate& m, double share = 1) {
     const double a = m.lattice.spacing;
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
         const Vec3 x = m.particle_reference.at(p) / a;
         const Vec3 u(std::sin(0.7 * x.y() + 0.3 * x.z()), std::cos(0.5 * x.x()),
                      std::sin(0.4 * x.y()));
-        m.particle_position.set(p, m.particle_reference.at(p) + 0.02 * a * u);
+        m.particle_position.set(p, m.particle_reference.at(p) + share * 0.02 * a * u);
     }
 }
 
@@ -89,30 +90,41 @@ Material curved() {
     return m;
 }
 
-double cell_ns(Aggregate& matter) {
+Material shifting() {
+    Material m = flowing();
+    m.back_stress = 1e3, m.back_strain = 0.01;
+    return m;
+}
+
+double cell_ns(Aggregate& matter, double then = 1) {
     LatticeForces forces(matter);
     deform(matter);
     Vec3Array f;
     forces.find(matter, Flow::trial, f);
     forces.commit(matter);
+    deform(matter, then);
     return least_ns(matter.cell_fill.size(), [&] { forces.find(matter, Flow::trial, f); });
 }
 
 void kernels(double cells) {
     for (const std::string shape : {"bar", "sphere"}) {
         Aggregate elastic = molded(shape, cells, kElastic);
-        Aggregate soft = elastic, foamy = elastic, flows = elastic, curves = elastic;
+        Aggregate soft = elastic, foamy = elastic, flows = elastic, curves = elastic,
+                  shifts = elastic;
         soft.material = rubber();
         foamy.material = foam();
         flows.material = flowing();
         curves.material = curved();
+        shifts.material = shifting();
         for (int width : {8, 4}) {
             limit_vector_width(width);
             if (vector_width() != width) continue;
             fmt::print(
-                "{:<8}{:>9} cells, vectors of {}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}\n",
+                "{:<8}{:>9} cells, vectors of {}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}"
+                "{:>10.1f}{:>10.1f}\n",
                 shape, elastic.cell_fill.size(), width, cell_ns(elastic), cell_ns(soft),
-                cell_ns(foamy), cell_ns(flows), cell_ns(curves));
+                cell_ns(foamy), cell_ns(flows), cell_ns(curves), cell_ns(shifts),
+                cell_ns(shifts, 0));
         }
         limit_vector_width(0);
     }
@@ -125,7 +137,7 @@ int main(int argc, char** argv) {
     for (int n = 1; n < argc; ++n) sizes.push_back(std::atof(argv[n]));
     if (sizes.empty()) sizes = {1e4, 1e5, 1e6};
     set_thread_count(1);
-    fmt::print("ns a cell, guard included{:>22}{:>10}{:>10}{:>10}{:>10}\n", "elastic", "rubber",
-               "foam", "flowing", "curve");
+    fmt::print("ns a cell, guard included{:>22}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "elastic",
+               "rubber", "foam", "flowing", "curve", "back", "reversed");
     for (double cells : sizes) kernels(cells);
 }
