@@ -67,9 +67,9 @@ int PassWriter::number_of_part(int machine, std::size_t part) const {
 void PassWriter::write(int frame, int machine, const Layers& layers,
                        const std::vector<int>& number) {
     first_frame_.try_emplace(machine, frame);
-    const auto write_floats = [&](PicturePass pass, std::vector<ExrChannel> channels) {
+    const auto write_floats = [&](PicturePass pass, const std::vector<ExrChannel>& channels) {
         write_file_whole(files_.pass(frame, pass),
-                         encode_exr(layers.width, layers.height, std::move(channels)));
+                         encode_exr(layers.width, layers.height, channels));
     };
     if (settings_.has(PicturePass::depth)) {
         write_floats(PicturePass::depth, {{"depth.Z", layers.depth}});
@@ -81,7 +81,7 @@ void PassWriter::write(int frame, int machine, const Layers& layers,
             const Eigen::Vector3f world = turn * drawn;
             for (int k = 0; k < 3; ++k) channels[std::size_t(k)].value.push_back(world[k]);
         }
-        write_floats(PicturePass::normal, std::move(channels));
+        write_floats(PicturePass::normal, channels);
     }
     if (!settings_.has(PicturePass::matte)) return;
     Image matte{layers.width, layers.height, {}};

@@ -12,7 +12,7 @@ struct ExrChannel {
     std::vector<float> value;  // width * height, rows from the top
 };
 
-// One picture of these channels, none of which has another's name.
-std::string encode_exr(int width, int height, std::vector<ExrChannel> channels);
+// One picture of these channels, none of which has another's name. Throws Error(output).
+std::string encode_exr(int width, int height, const std::vector<ExrChannel>& channels);
 
 }  // namespace swage

@@ -4,13 +4,19 @@
 // times as fast as a general encoder and a quarter smaller.
 #include "render/png.h"
 
+#include <libdeflate.h>
+
+#include <memory>
+#include <new>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "render/deflate.h"
 
 namespace swage {
 
 namespace {
+
+constexpr int kPackLevel = 1;
 
 void add_number(std::string& out, std::uint32_t value) {
     for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 255);
@@ -21,7 +27,7 @@ void add_chunk(std::string& out, const char* name, const std::string& body) {
     const std::size_t begin = out.size();
     out += name;
     out += body;
-    add_number(out, crc32_of(std::string_view(out).substr(begin)));
+    add_number(out, libdeflate_crc32(0, out.data() + begin, out.size() - begin));
 }
 
 std::string filtered_rows(const Image& image) {
@@ -50,7 +56,13 @@ std::string filtered_rows(const Image& image) {
 
 std::string encode_png(const Image& image) {
     if (image.width <= 0 || image.height <= 0) fail(ExitCode::output, "an empty picture");
-    const std::string packed = zlib_packed(filtered_rows(image));
+    const std::string rows = filtered_rows(image);
+    const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> packer(
+        libdeflate_alloc_compressor(kPackLevel), libdeflate_free_compressor);
+    if (!packer) throw std::bad_alloc();
+    std::string packed(libdeflate_zlib_compress_bound(packer.get(), rows.size()), '\0');
+    packed.resize(libdeflate_zlib_compress(packer.get(), rows.data(), rows.size(), packed.data(),
+                                           packed.size()));
 
     std::string header;
     add_number(header, static_cast<std::uint32_t>(image.width));

@@ -3,6 +3,7 @@
 # the program works alone.
 pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 find_package(glm REQUIRED)
+find_package(OpenEXR REQUIRED)
 find_path(STB_INCLUDE stb_image.h PATH_SUFFIXES stb REQUIRED)
 find_path(GL_INCLUDE GL/glcorearb.h REQUIRED)
 find_path(EGL_INCLUDE EGL/egl.h REQUIRED)
@@ -28,4 +29,4 @@ add_custom_command(
 
 target_sources(swage_render PRIVATE ${embedded} ${embedded_font})
 target_include_directories(swage_render SYSTEM PRIVATE ${STB_INCLUDE})
-target_link_libraries(swage_render PUBLIC glm::glm PRIVATE PkgConfig::LIBDEFLATE ${CMAKE_DL_LIBS})
+target_link_libraries(swage_render PUBLIC glm::glm PRIVATE PkgConfig::LIBDEFLATE OpenEXR::OpenEXR ${CMAKE_DL_LIBS})
