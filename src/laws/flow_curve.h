@@ -9,7 +9,9 @@
 // lines were passed. Its tangent is exact too; it jumps where lines meet.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 #include "laws/lane_tensor.h"
@@ -58,6 +60,11 @@ SWAGE_INLINE const FlowPart* part_at(const FlowCurve& curve, double reached) {
 SWAGE_INLINE FlowLine<double> line_at(const FlowCurve& curve, double reached) {
     return part_at(curve, reached)->line;
 }
+// That holds from a strain on.
+inline FlowCurve::const_iterator part_from(const FlowCurve& curve, double alpha) {
+    const auto is_behind = [](double strain, const FlowPart& part) { return strain < part.strain; };
+    return std::prev(std::upper_bound(curve.begin() + 1, curve.end(), alpha, is_behind));
+}
 // Of several at a time, whose searches do not wait for each other. NOTE: kept out of the loops over
 // cells, which it would slow where nothing flows along a curve.
 template <int kWidth>
@@ -86,8 +93,7 @@ SWAGE_INLINE FlowLine<V> line_at(const FlowCurve& curve, const V& reached) {
 
 // The mean of the curve from alpha to alpha + d_alpha, which is what a flow takes per d_alpha.
 inline double mean_flow_stress(const FlowCurve& curve, double alpha, double d_alpha) {
-    std::size_t n = 0;
-    while (n + 1 < curve.size() && curve[n + 1].strain <= alpha) ++n;
+    auto n = static_cast<std::size_t>(part_from(curve, alpha) - curve.begin());
     const double end = alpha + d_alpha;
     const auto end_of = [&](std::size_t part) {
         return part + 1 < curve.size() && curve[part + 1].strain < end ? curve[part + 1].strain

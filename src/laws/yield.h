@@ -1,43 +1,59 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Plasticity after von Mises with isotropic hardening, linear or along a flow curve
-// (laws/flow_curve.h), for a cell of 24 connections (12 edges, 12 face diagonals):
+// (laws/flow_curve.h), for a cell of 24 connections (12 edges, 12 face diagonals) along unit
+// vectors n_b:
 //
-//     e_b = ln(d / reference_length)         strain of a connection
-//     theta = ln(det F) / 3                  change of size, F the cell's mean gradient
-//     s_b = e_b - p_b - theta                elastic distortion of a connection
-//     S = sum_edges s_b^2 / 4 + sum_diagonals s_b^2
-//     q = mu sqrt(3 S)                       equivalent stress [Pa]
-//     q > sigma_y + H alpha:                 d_alpha = (q - sigma_y - H alpha) / (3 mu + H)
-//                                            p_b += (3 mu d_alpha / q) s_b,  alpha += d_alpha
+//     e_b = ln(d / reference_length) - p_b   elastic strain of a connection
+//     c_b = w_b (d / reference_length)^2     w: 1/4 of edges, 1 of diagonals; mu c_b e_b is the
+//                                            tension times d, for the cell's volume [Pa]
+//     <u, v> = sum c_b u_b v_b
+//     t i_b                                  the part of e_b that is pressure alone: i is the rest
+//                                            of 1 after all n_b.N n_b with tr N = 0 are taken out
+//                                            of it, and t = <e, i> / <i, i>
+//     s_b = e_b - t i_b                      what is left is distortion; N the closest to it
+//     S = <s, s>,  S_0 = 2 |N|^2 + what of S is not N, by the mean of w / c
+//     q = mu S sqrt(3 / S_0)                 equivalent stress [Pa]: of the stress, what works
+//     q > sigma(alpha):                      p_b += phi (s_b - theta + t),  theta = ln(det F) / 3,
+//                                            alpha += phi sqrt(S_0 / 3), by the phi that leaves
+//                                            q = sigma(alpha)
 //
 // p_b is the plastic strain that the cell gives the connection, alpha the accumulated plastic
-// strain; a connection's rest_length follows the mean of its cells. For a uniform strain S = 2 |dev
-// eps|^2, the same in every direction, so the cell yields where von Mises says, as long as it has
-// not flowed far: p_b is of connections, which turn and stretch away from what it meant (1.13 and
-// 1.6 times the work at a flow of 0.1 and 0.3).
+// strain; a connection's rest_length follows the mean of its cells. <e, s> = S is never negative,
+// so flow takes energy, however far matter has flowed and whatever its connections mean by then;
+// N has no trace, so it keeps the volume, and theta - t, of second order in a step, brings back
+// what was lost of it. Of a cell as it was molded S_0 = S = 2 |dev eps|^2, the same in every
+// direction.
 //
 // Bending and twisting within the cell count as distortion too and yield by the same factor: kept
 // elastic they would carry a moment of 1.8 E I kappa / N^2 for ever (N cells across), more than the
-// plastic one at large curvature. Size never yields, so flow keeps the volume. Measuring it by the
-// edges' mean strain instead lets the cell fold like a trellis, whose edges keep their lengths
-// while its volume goes.
+// plastic one at large curvature.
 //
 // NOTE: yielding each connection by its own strain, the nearest thing to the papers, was tried
 // first: tuned for tension it is half too weak in shear, it flows under pressure, and bars fold
-// flat between tools. NOTE: without hardening a bent bar may fold in a hinge one cell wide.
+// flat between tools. With c = w and i = 1 what is pressed works less the more it has flowed
+// (pressed connections are weaker by the square of their length), and in the end makes energy.
+// NOTE: without hardening a bent bar may fold in a hinge one cell wide.
 //
 // The history (p_b, alpha) has a committed value; every evaluation returns from it, leaving no
 // trace.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
+#include "base/math.h"
+#include "base/portable_math.h"
 #include "laws/flow_curve.h"
 
 namespace swage {
 
-inline constexpr double kEdgeShare = 0.25;  // in S
+inline constexpr double kEdgeShare = 0.25;  // w
 inline constexpr double kDiagonalShare = 1.0;
+inline constexpr int kReturnTries = 40;
+inline constexpr double kReturnError = 1e-12;
 
 // ln of a ratio of lengths by its rational series; error below 1e-7 from 0.7 to 1.4, 2e-4 at 0.4
 // and 2.5. One division, so that loops over it vectorise.
@@ -54,25 +70,157 @@ struct Yield {
     FlowCurve curve = {};  // instead of sigma_y + H alpha where it is not empty
 };
 
-// S at which a cell that has never yielded begins to.
+// sigma(alpha).
+inline double flow_stress(const Yield& law, double alpha) {
+    if (law.curve.empty()) return law.yield_stress + law.hardening * alpha;
+    const FlowLine<double>& line = part_from(law.curve, alpha)->line;
+    return line.stress + line.slope * alpha;
+}
+
+// S at which a cell that has never yielded begins to, as it was molded.
 inline double yield_distortion(const Yield& law) {
     const double e = law.yield_stress / law.shear_modulus;
     return e * e / 3;
 }
 
-// d_alpha for the distortion S; zero inside the yield surface.
-inline double flow(const Yield& law, double distortion, double alpha) {
-    const double q = law.shear_modulus * std::sqrt(3 * distortion);
-    const FlowLine<double> line = law.curve.empty()
-                                      ? FlowLine<double>{law.yield_stress, law.hardening}
-                                      : line_at(law.curve, q + 3 * law.shear_modulus * alpha);
-    const double over = q - line.stress - line.slope * alpha;
-    return over > 0 ? over / (3 * law.shear_modulus + line.slope) : 0;
-}
+using Springs = std::array<double, 24>;  // a number of each connection
 
-// The share of each s_b that flows.
-inline double flow_share(double distortion, double d_alpha) {
-    return d_alpha > 0 ? 3 * d_alpha / std::sqrt(3 * distortion) : 0;
+struct CellSprings {
+    std::array<Vec3, 24> way;  // d n_b, over its reference_length
+    Springs strain;            // e_b
+};
+
+struct SpringDistortion {
+    double pressed;        // t
+    double worked, meant;  // S, S_0
+
+    double stress(double shear) const {  // q
+        return meant > 0 ? shear * worked * std::sqrt(3 / meant) : 0;
+    }
+};
+
+// A cell as its connections lie, for strains of these.
+class SpringFrame {
+  public:
+    SpringFrame(const std::array<Vec3, 24>& way, const Springs& weight) : weight_(weight) {
+        const double r2 = std::sqrt(0.5), r6 = std::sqrt(1.0 / 6), s2 = std::sqrt(2.0);
+        Five5 m = Five5::Zero();
+        for (std::size_t b = 0; b < weight.size(); ++b) {
+            const Vec3 n = way[b] / std::max(way[b].norm(), 1e-300);
+            const double xx = n.x() * n.x(), yy = n.y() * n.y(), zz = n.z() * n.z();
+            along_[b] << r2 * (xx - yy), r6 * (xx + yy - 2 * zz), s2 * n.x() * n.y(),
+                s2 * n.y() * n.z(), s2 * n.z() * n.x();
+            for (int i = 0; i < 5; ++i) {
+                const double part = weight[b] * along_[b][i];
+                for (int j = 0; j <= i; ++j) m(i, j) += part * along_[b][j];
+                of_one_[i] += part;
+            }
+            one_one_ += weight[b];
+        }
+        // All in a plane: what none of them can tell is not theirs.
+        for (int i = 0; i < 5; ++i) m(i, i) += 1e-12 * one_one_;
+        solver_.compute(m);  // of the lower half
+        size_ = solver_.solve(of_one_);
+        pressed_ = std::max(one_one_ - of_one_.dot(size_), 1e-12 * one_one_);
+    }
+
+    SpringDistortion distortion(const Springs& strain) const {
+        Five of_strain = Five::Zero();
+        double one = 0, square = 0;
+        for (std::size_t b = 0; b < strain.size(); ++b) {
+            const double part = weight_[b] * strain[b];
+            of_strain += part * along_[b];
+            one += part;
+            square += part * strain[b];
+        }
+        const Five mean = solver_.solve(of_strain);
+        const double t = (one - of_strain.dot(size_)) / pressed_;
+        const double worked = std::max(square - t * t * pressed_, 0.0);
+        const double of_mean = std::min(of_strain.dot(mean), worked);
+        return {t, worked, 2 * mean.squaredNorm() + 15 / one_one_ * (worked - of_mean)};
+    }
+    double pressure_strain(std::size_t b) const { return 1 - along_[b].dot(size_); }  // i_b
+
+  private:
+    using Five = Eigen::Matrix<double, 5, 1>;  // a symmetric tensor without trace
+    using Five5 = Eigen::Matrix<double, 5, 5>;
+
+    Springs weight_;  // c_b
+    std::array<Five, 24> along_;
+    Five of_one_ = Five::Zero(), size_;
+    Eigen::LLT<Five5> solver_;
+    double one_one_ = 0, pressed_;
+};
+
+struct SpringReturn {
+    double d_alpha = 0;
+    Springs grows{};  // of p_b
+};
+
+// `theta`: of what the cell is large by. Nothing where it does not flow. NOTE: what grows goes by
+// how the cell lay halfway between rest and now, what the stress is by how it lies now: a step of
+// five percent is then right to a few thousandths, and its end lies on the yield surface.
+inline std::optional<SpringReturn> return_springs(const Yield& law, const CellSprings& cell,
+                                                  const Springs& share, double theta,
+                                                  double alpha) {
+    Springs weight;
+    for (std::size_t b = 0; b < share.size(); ++b) weight[b] = share[b] * cell.way[b].squaredNorm();
+    const SpringFrame now(cell.way, weight);
+    const double q = now.distortion(cell.strain).stress(law.shear_modulus);
+    if (!(q > flow_stress(law, alpha))) return std::nullopt;
+
+    Mat3 strain = Mat3::Zero();  // about
+    double size = 0;
+    for (std::size_t b = 0; b < share.size(); ++b) {
+        const Vec3 n = cell.way[b].normalized();
+        strain += 0.5 * share[b] * cell.strain[b] * n * n.transpose();
+        size += share[b] * cell.strain[b] / 15;
+    }
+    strain.diagonal().array() += size - strain.trace() / 3;
+    std::array<Vec3, 24> way;
+    for (std::size_t b = 0; b < share.size(); ++b) {
+        way[b] = cell.way[b] - 0.5 * strain * cell.way[b];
+        weight[b] *= portable::exp(-cell.strain[b]);
+    }
+    const SpringFrame halfway(way, weight);
+    const SpringDistortion flows = halfway.distortion(cell.strain);
+    double worked_on_size = 0;
+    for (std::size_t b = 0; b < share.size(); ++b) worked_on_size += weight[b] * cell.strain[b];
+    // The volume gets no more than half of the work, nor a tenth of the flow.
+    const double all = std::accumulate(weight.begin(), weight.end(), 0.0);
+    const double most = std::min(0.5 * flows.worked / std::max(std::abs(worked_on_size), 1e-300),
+                                 0.1 * std::sqrt(flows.worked / all));
+    const double lost = std::clamp(theta - flows.pressed, -most, most);
+    SpringReturn r;
+    for (std::size_t b = 0; b < share.size(); ++b) {
+        r.grows[b] = cell.strain[b] - flows.pressed * halfway.pressure_strain(b) - lost;
+    }
+
+    // By false position with halving (Illinois).
+    const double per_share = std::sqrt(flows.meant / 3);
+    const auto over = [&](double part) {
+        Springs left;
+        for (std::size_t b = 0; b < share.size(); ++b) {
+            left[b] = cell.strain[b] - part * r.grows[b];
+        }
+        return now.distortion(left).stress(law.shear_modulus) -
+               flow_stress(law, alpha + part * per_share);
+    };
+    double low = 0, high = 1, at_low = q - flow_stress(law, alpha), at_high = over(1);
+    double part = 1;
+    for (int n = 0; n < kReturnTries && at_high < 0; ++n) {
+        part = low + (high - low) * at_low / (at_low - at_high);
+        const double at = over(part);
+        if (std::abs(at) < kReturnError * q) break;
+        if (at > 0) {
+            low = part, at_low = at, at_high *= 0.5;
+        } else {
+            high = part, at_high = at, at_low *= 0.5;
+        }
+    }
+    r.d_alpha = part * per_share;
+    for (double& one : r.grows) one *= part;
+    return r;
 }
 
 }  // namespace swage

@@ -22,14 +22,22 @@ namespace {
 constexpr std::size_t kRunsPerChunk = 256;
 constexpr std::size_t kSpansPerChunk = 1024;
 constexpr double kNearYield = 1e-4;  // of it: strains are kept as floats
+// Of S with c = w and i = 1, which is soon found: below it no cell yields that never has.
+constexpr double kUnyielded = 0.25;
 
-double share_of(int slot) {
-    return kCellConnection[slot].direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
-}
+constexpr Springs kShares = [] {
+    Springs shares{};
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        shares[slot] = kCellConnection[slot].direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
+    }
+    return shares;
+}();
 
-ParticleId lower_end(const std::array<ParticleId, 4>& row, int slot) {
-    const int corner = kCellConnection[slot].corner;
+ParticleId at_corner(const std::array<ParticleId, 4>& row, int corner) {
     return row[corner >> 1] + (corner & 1);
+}
+ParticleId lower_end(const std::array<ParticleId, 4>& row, int slot) {
+    return at_corner(row, kCellConnection[slot].corner);
 }
 
 SWAGE_VECTOR_CLONES
@@ -52,9 +60,10 @@ void distortion_block(const float* strain, const float* weight, const float* pla
     }
 }
 
-// At least the root of S (laws/yield.h) of any cell of a run that has never flowed. With q = r^2 -
-// 1 of a connection's ratio r, its logarithm is q/2 to within 0.3 q^2, a third of the volume's j/3
-// to within 0.2 j^2, where these are below a tenth; beyond, it is told as more than anything.
+// At least S / root S_0 (laws/yield.h) of any cell of a run that has never flowed. With q = r^2 - 1
+// of a connection's ratio r, its logarithm is q/2 to within 0.3 q^2, a third of the volume's j/3 to
+// within 0.2 j^2, where these are below a tenth; r^2 and what it makes of i are as near to 1 as q
+// is to 0. Beyond, it is told as more than anything.
 SWAGE_VECTOR_CLONES
 double most_distorted(const Aggregate& matter, const CellRun& run) {
     constexpr double kTenth = 0.01, kShares = 12 * (kEdgeShare + kDiagonalShare);
@@ -105,7 +114,8 @@ double most_distorted(const Aggregate& matter, const CellRun& run) {
         const FewLanes about = kEdgeShare * edges + kDiagonalShare * diagonals;
         for (int l = 0; l < count; ++l) {
             if (!(squares[l] < kTenth)) return std::numeric_limits<double>::infinity();
-            most = std::max(most, std::sqrt(about[l]) + 0.3 * std::sqrt(kShares) * squares[l]);
+            most = std::max(most, std::sqrt(about[l]) * (1 + 2 * std::sqrt(squares[l])) +
+                                      1.2 * std::sqrt(kShares) * squares[l]);
         }
     }
     return most;
@@ -156,6 +166,23 @@ void CellFlow::find_strains(const Aggregate& matter) {
     });
 }
 
+CellSprings CellFlow::springs_of(const Aggregate& matter, CellId cell,
+                                 const std::array<ParticleId, 4>& row) const {
+    CellSprings springs;
+    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
+        const int d = kCellConnection[slot].direction;
+        const ParticleId lower = lower_end(row, slot);
+        const ParticleId upper = at_corner(row, upper_corner(kCellConnection[slot]));
+        const double plastic =
+            matter.cell_plastic[slot].empty() ? 0.0 : double(matter.cell_plastic[slot][cell]);
+        springs.way[slot] =
+            (matter.particle_position.at(upper) - matter.particle_position.at(lower)) /
+            reference_length(matter.lattice, d);
+        springs.strain[slot] = double(strain_[d][lower]) - plastic;
+    }
+    return springs;
+}
+
 void CellFlow::find_flowing(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
     const bool fresh = matter.cell_plastic[0].empty();
@@ -183,32 +210,24 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                     const ParticleId lower = lower_end(run.row, slot) + at;
                     matter.connection[d].weight.copy(lower, count, weight);
                     distortion_block(strain_[d].data() + lower, weight, plastic(slot), theta,
-                                     share_of(slot), count, distortion);
+                                     kShares[slot], count, distortion);
                 }
                 for (int n = 0; n < count; ++n) {
-                    if (!(distortion[n] > yield_distortion_)) continue;
                     const CellId id = run.first + at + n;
-                    const double d_alpha =
-                        flow(law_, distortion[n], fresh ? 0.0 : double(hardening[id]));
-                    if (!(d_alpha > 0)) continue;
-                    FlowingCell cell{id, run.row_at(at + n), theta[n],
-                                     flow_share(distortion[n], d_alpha), d_alpha};
-                    if (!cell_is_sound(matter, id, cell.row)) continue;  // has no size any more
-                    flowing.push_back(cell);
+                    const double alpha = fresh ? 0.0 : double(hardening[id]);
+                    const double least = alpha > 0 ? 0 : kUnyielded * yield_distortion_;
+                    if (!(distortion[n] > least)) continue;
+                    const std::array<ParticleId, 4> row = run.row_at(at + n);
+                    if (!cell_is_sound(matter, id, row)) continue;  // has no size any more
+                    if (const auto flow = return_springs(law_, springs_of(matter, id, row), kShares,
+                                                         theta[n], alpha)) {
+                        flowing.push_back({id, row, *flow});
+                    }
                 }
             }
         }
     };
     flowing_ = parallel_collect<FlowingCell>(runs.size(), kRunsPerChunk, find);
-}
-
-// How much the cell's plastic strain of one of its connections grows.
-double CellFlow::flow_of(const Aggregate& matter, const FlowingCell& cell, int slot) const {
-    const int d = kCellConnection[slot].direction;
-    const ParticleId lower = lower_end(cell.row, slot);
-    const double plastic =
-        matter.cell_plastic[slot].empty() ? 0.0 : double(matter.cell_plastic[slot][cell.cell]);
-    return cell.share * (double(strain_[d][lower]) - plastic - cell.theta);
 }
 
 const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
@@ -234,9 +253,8 @@ const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
             const double weight = matter.connection[d].weight[lower];
             if (weight <= 0) continue;  // severed: its rest length no longer matters
             const double share = cell_share(d) * fill / weight;
-            // The rest ratio grows by the factor exp(share * flow).
             rest_[d][lower] = static_cast<float>(
-                (1.0 + rest_[d][lower]) * portable::exp(share * flow_of(matter, cell, slot)) - 1.0);
+                (1.0 + rest_[d][lower]) * portable::exp(share * cell.flow.grows[slot]) - 1.0);
         }
     }
     return rest_;
@@ -257,18 +275,11 @@ double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
     if (!found) rest_strains(matter);
     if (flowing_.empty()) return 0;
     double lost = 0;
-    std::vector<std::array<double, kCellConnectionCount>> flow(flowing_.size());
-    for (std::size_t n = 0; n < flowing_.size(); ++n) {
-        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-            flow[n][slot] = flow_of(matter, flowing_[n], slot);
-        }
-    }
     for (std::vector<float>& slot : matter.cell_plastic) slot.resize(matter.cell_fill.size());
     for (ConnectionArrays& c : matter.connection) c.plastic.resize(matter.particle_count());
     std::vector<float>& hardening = matter.cell_history.hardening();
     hardening.resize(matter.cell_fill.size());
-    for (std::size_t n = 0; n < flowing_.size(); ++n) {
-        const FlowingCell& cell = flowing_[n];
+    for (const FlowingCell& cell : flowing_) {
         for (int slot = 0; slot < kCellConnectionCount; ++slot) {
             const int d = kCellConnection[slot].direction;
             const ParticleId lower = lower_end(cell.row, slot);
@@ -284,9 +295,9 @@ double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
                          static_cast<float>(weight * growth / (1 + plastic - 0.5 * growth))});
                 }
             }
-            matter.cell_plastic[slot][cell.cell] += static_cast<float>(flow[n][slot]);
+            matter.cell_plastic[slot][cell.cell] += static_cast<float>(cell.flow.grows[slot]);
         }
-        hardening[cell.cell] += static_cast<float>(cell.d_alpha);
+        hardening[cell.cell] += static_cast<float>(cell.flow.d_alpha);
     }
     flowing_.clear();
     return lost;

@@ -2,6 +2,7 @@
 // Plastic flow of the lattice: cells that yield hand their connections new rest lengths.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "laws/yield.h"
@@ -33,15 +34,14 @@ class CellFlow {
     struct FlowingCell {
         CellId cell;
         std::array<ParticleId, 4> row;  // low ends of its four edges along x
-        double theta;                   // logarithm of its size ratio
-        double share;                   // of its connections' distortion that flows
-        double d_alpha;                 // growth of its accumulated plastic strain
+        SpringReturn flow;
     };
     bool is_far_from_yield(const Aggregate& matter) const;
     void find_strains(const Aggregate& matter);
     void find_flowing(const Aggregate& matter);
+    CellSprings springs_of(const Aggregate& matter, CellId cell,
+                           const std::array<ParticleId, 4>& row) const;
     double plastic_work(const Aggregate& matter, int d, ParticleId lower, double growth) const;
-    double flow_of(const Aggregate& matter, const FlowingCell& cell, int slot) const;
 
     Yield law_{};
     double yield_distortion_ = 0;  // of a cell that has not yielded yet; 0: never yields

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <random>
 
 #include "base/math.h"
 #include "laws/contact.h"
 #include "laws/inverse_root.h"
 #include "laws/spring_damper.h"
 #include "laws/yield.h"
+#include "matter/lattice.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -65,18 +67,81 @@ TEST_CASE("the series is the logarithm") {
     }
 }
 
-TEST_CASE("inside the yield surface nothing flows, outside the stress returns to it") {
-    for (double hardening : {0.0, 5e8}) {
-        const Yield law{3e8, hardening, 8e10};
-        const double limit = yield_distortion(law);
-        CHECK(flow(law, 0.999 * limit, 0) == 0);
-        CHECK(flow_share(0.999 * limit, 0) == 0);
-        const double alpha = 0.02, distortion = 40 * limit;
-        const double d_alpha = flow(law, distortion, alpha);
-        const double kept = 1 - flow_share(distortion, d_alpha);
-        const double stress = law.shear_modulus * std::sqrt(3 * kept * kept * distortion);
-        CHECK(stress == Approx(law.yield_stress + hardening * (alpha + d_alpha)));
+namespace {
+
+// A cell of springs that is stretched by U and then turned, as it was molded otherwise.
+struct StrainedCell {
+    CellSprings springs;
+    Springs share;
+};
+StrainedCell strained_cell(const Mat3& gradient) {
+    StrainedCell cell;
+    for (int slot = 0; slot < 24; ++slot) {
+        const auto& way = kForward[kCellConnection[slot].direction];
+        const Vec3 n = Vec3(way[0], way[1], way[2]).normalized();
+        cell.springs.way[slot] = gradient * n;
+        cell.springs.strain[slot] = std::log((gradient * n).norm());
+        cell.share[slot] = kCellConnection[slot].direction < 3 ? kEdgeShare : kDiagonalShare;
     }
+    return cell;
+}
+
+}  // namespace
+
+TEST_CASE("springs inside the yield surface do not flow, outside their stress returns to it") {
+    const Vec3 stretch = Vec3(1.02, .99, 1 / (1.02 * .99));
+    const Quat turn(Eigen::AngleAxisd(.7, Vec3(1, 2, -1).normalized()));
+    const Mat3 gradient = turn * stretch.asDiagonal() * turn.conjugate();
+    const StrainedCell cell = strained_cell(gradient);
+    const double shear = 8e10;
+    Springs weight;
+    for (int b = 0; b < 24; ++b) weight[b] = cell.share[b] * cell.springs.way[b].squaredNorm();
+    const SpringFrame frame(cell.springs.way, weight);
+    const double q = frame.distortion(cell.springs.strain).stress(shear);
+    const Vec3 log = stretch.array().log();
+    CHECK(q == Approx(2 * shear * std::sqrt(1.5) * log.norm()).epsilon(.05));
+    for (double hardening : {0.0, 5e8}) {
+        CHECK_FALSE(return_springs({1.001 * q, hardening, shear}, cell.springs, cell.share, 0, 0));
+        const Yield law{0.1 * q, hardening, shear};
+        const double alpha = 0.02;
+        const auto flow = return_springs(law, cell.springs, cell.share, 0, alpha);
+        REQUIRE(flow);
+        Springs left = cell.springs.strain;
+        double taken = 0;
+        for (int b = 0; b < 24; ++b) {
+            left[b] -= flow->grows[b];
+            taken += weight[b] * left[b] * flow->grows[b];
+        }
+        const double stress = frame.distortion(left).stress(shear);
+        CHECK(stress == Approx(flow_stress(law, alpha + flow->d_alpha)).epsilon(1e-9));
+        CHECK(shear * taken == Approx(stress * flow->d_alpha).epsilon(.03));
+        CHECK(flow->d_alpha ==
+              Approx(std::sqrt(2. / 3) * log.norm() * (1 - stress / q)).epsilon(.01));
+    }
+}
+
+TEST_CASE("what springs flow never gives energy, however they lie") {
+    std::mt19937 engine(11);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    int flowed = 0;
+    for (int round = 0; round < 300; ++round) {
+        Mat3 gradient;
+        for (int n = 0; n < 9; ++n) gradient(n / 3, n % 3) = draw(engine) + (n % 4 == 0);
+        StrainedCell cell = strained_cell(gradient);
+        for (double& strain : cell.springs.strain) strain = 0.02 * draw(engine);
+        const auto flow = return_springs({1e6, 0, 1e9}, cell.springs, cell.share, 0, 0);
+        if (!flow) continue;
+        ++flowed;
+        double taken = 0, all = 0;
+        for (int b = 0; b < 24; ++b) {
+            const double c = cell.share[b] * cell.springs.way[b].squaredNorm();
+            taken += c * (cell.springs.strain[b] - 0.5 * flow->grows[b]) * flow->grows[b];
+            all += c * cell.springs.strain[b] * cell.springs.strain[b];
+        }
+        CHECK(taken > 0);
+        CHECK(taken <= 0.5 * all * (1 + 1e-9));
+    }
+    CHECK(flowed > 200);
 }
 
 TEST_CASE("contact pushes only inside, along the normal when nothing slides") {

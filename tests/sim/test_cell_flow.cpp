@@ -167,3 +167,40 @@ TEST_CASE("whether springs flow is seen from the first cell on, and none flows b
         }
     }
 }
+
+TEST_CASE("springs that flow far work as much as the yield stress says") {
+    struct Way {
+        Mat3 rate;  // of the gradient, without trace
+        const char* name;
+    };
+    const auto diagonal = [](double x, double y, double z) {
+        return Mat3(Vec3(x, y, z).asDiagonal());
+    };
+    Mat3 shear = Mat3::Zero();
+    shear(0, 1) = std::sqrt(3.0);
+    const Way way =
+        GENERATE_COPY(Way{diagonal(1, -.5, -.5), "drawn"}, Way{diagonal(-1, .5, .5), "pressed"},
+                      Way{std::sqrt(.75) * diagonal(1, -1, 0), "in a plane"},
+                      Way{diagonal(.3, -1.1, .8), "aslant"}, Way{shear, "sheared"});
+    INFO(way.name);
+    Aggregate m = make_block(2, 1, 1, 0.1, kMetal);
+    CellFlow flow(m);
+    const double rate = std::sqrt(2.0 / 3) * (0.5 * (way.rate + way.rate.transpose())).norm();
+    constexpr double kStep = 0.0025;
+    Mat3 gradient = Mat3::Identity();
+    double lost = 0, strain = 0;
+    for (int n = 1; n <= 320; ++n) {
+        // Of second order, and without change of volume.
+        const Mat3 half = Mat3::Identity() + 0.5 * kStep * way.rate;
+        gradient = (Mat3::Identity() - 0.5 * kStep * way.rate).inverse() * half * gradient;
+        gradient /= std::cbrt(gradient.determinant());
+        strain_uniformly(m, gradient);
+        const double now = flow.commit(m);
+        CHECK(now >= 0);
+        lost += now, strain += kStep * rate;
+        if (n % 80) continue;
+        const double taken = m.volume() * kMetal.yield_stress * (strain - 1e-3);
+        CHECK(lost == Approx(taken).epsilon(0.01));
+        CHECK(m.cell_history.hardening()[0] == Approx(strain - 1e-3).epsilon(0.004));
+    }
+}
