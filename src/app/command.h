@@ -33,6 +33,7 @@ void add_run_command(CLI::App& app, Action& chosen);
 void add_check_command(CLI::App& app, Action& chosen);
 void add_info_command(CLI::App& app, Action& chosen);
 void add_machines_command(CLI::App& app, Action& chosen);
+void add_materials_command(CLI::App& app, Action& chosen);
 void add_keys_command(CLI::App& app, Action& chosen);
 void add_render_command(CLI::App& app, Action& chosen);
 void add_export_command(CLI::App& app, Action& chosen);

@@ -3,6 +3,7 @@
 
 #include "app/command.h"
 #include "app/scene_argument.h"
+#include "app/table_text.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "scene/catalogue.h"
@@ -17,25 +18,6 @@ struct MachinesArguments {
     std::string name, assets;
     bool json = false;
 };
-
-// A table whose columns are as wide as they need to be.
-std::string table_text(const std::vector<std::vector<std::string>>& rows) {
-    std::vector<std::size_t> width;
-    for (const std::vector<std::string>& row : rows) {
-        width.resize(std::max(width.size(), row.size()));
-        for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
-    }
-    std::string text;
-    for (const std::vector<std::string>& row : rows) {
-        std::string line = " ";
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            line += " " + row[c];
-            if (c + 1 < row.size()) line.append(width[c] - row[c].size() + 1, ' ');
-        }
-        text += line + "\n";
-    }
-    return text;
-}
 
 std::string range_text(const ParameterSpec& parameter) {
     if (parameter.low.empty() && parameter.high.empty()) return "any";

@@ -46,6 +46,7 @@ int run_command_line(int argc, char** argv) {
     add_check_command(app, chosen);
     add_info_command(app, chosen);
     add_machines_command(app, chosen);
+    add_materials_command(app, chosen);
     add_keys_command(app, chosen);
     add_render_command(app, chosen);
     add_export_command(app, chosen);

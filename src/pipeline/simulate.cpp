@@ -224,6 +224,8 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         directory.remove_checkpoint();
     } else if (kept_stages > 0) {
         log_info("swage run goes on after stage {} of {}", kept_stages, stages);
+    } else {
+        log_info("swage run begins anew, as no stage was finished");
     }
     return ended;
 }

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "app/command.h"
+#include "app/scene_argument.h"
+#include "app/table_text.h"
+#include "base/error.h"
+#include "base/suggest.h"
+#include "base/units.h"
+#include "matter/material_names.h"
+#include "pipeline/given_record.h"
+#include "scene/catalogue.h"
+
+namespace swage {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MaterialsArguments {
+    std::string name, assets;
+    bool json = false;
+};
+
+std::string limit_text(double stress) {
+    return std::isfinite(stress) ? quantity_text(stress, Quantity::stress) : "-";
+}
+
+std::string list_text(const std::vector<Material>& materials) {
+    std::vector<std::vector<std::string>> rows = {
+        {"MATERIAL", "STIFFNESS", "POISSON", "DENSITY", "FLOWS AT", "BREAKS AT"}};
+    for (const Material& m : materials) {
+        rows.push_back({m.name, quantity_text(m.young_modulus, Quantity::stress),
+                        fmt::format("{:g}", m.poisson_ratio),
+                        quantity_text(m.density, Quantity::density), limit_text(m.yield_stress),
+                        limit_text(m.strength)});
+    }
+    return table_text(rows) +
+           "\nswage materials NAME tells all numbers of one, as a scene may give them\n";
+}
+
+// As a scene may say it.
+std::string material_text(const Material& m) {
+    std::string text = fmt::format("[material]\nname = \"{}\"\n", m.name);
+    const auto number = [&](const char* key, double value) {
+        text += fmt::format("{} = {:g}\n", key, value);
+    };
+    const auto quantity = [&](const char* key, double value, Quantity kind) {
+        text += fmt::format("{} = \"{}\"\n", key, quantity_text(value, kind));
+    };
+    quantity("young_modulus", m.young_modulus, Quantity::stress);
+    number("poisson_ratio", m.poisson_ratio);
+    quantity("density", m.density, Quantity::density);
+    if (m.elasticity != Elasticity::hencky) {
+        text += fmt::format("elasticity = \"{}\"\n", name_in(kElasticityNames, m.elasticity));
+    }
+    if (!m.flow_curve.empty()) {
+        text += "flow_curve = [";
+        for (const auto& [strain, stress] : m.flow_curve) {
+            text +=
+                fmt::format("{}[{:.6g}, \"{}\"]", &strain == &m.flow_curve[0].strain ? "" : ", ",
+                            strain, quantity_text(stress, Quantity::stress));
+        }
+        text += "]\n";
+    } else if (m.yields()) {
+        quantity("yield_stress", m.yield_stress, Quantity::stress);
+        quantity("hardening", m.hardening, Quantity::stress);
+    }
+    if (m.breaks()) {
+        quantity("strength", m.strength, Quantity::stress);
+        quantity("toughness", m.toughness, Quantity::toughness);
+    }
+    number("damping_ratio", m.damping_ratio);
+    number("friction", m.friction);
+    if (m.static_friction > m.friction) number("static_friction", m.static_friction);
+    number("restitution", m.restitution);
+    if (m.stickiness > 0) quantity("stickiness", m.stickiness, Quantity::stress);
+    return text;
+}
+
+int materials(const MaterialsArguments& given) {
+    const AssetPaths assets = asset_paths(given.assets);
+    MaterialCatalogue catalogue = material_catalogue(assets, fs::current_path());
+    log_mistakes(catalogue.mistakes);
+    if (catalogue.material.empty()) {
+        fail(ExitCode::command_line, "no file of materials was found{}",
+             wrong_root_text(assets.root));
+    }
+    if (given.name.empty()) {
+        Json list = Json::array();
+        for (const Material& one : catalogue.material) list.push_back(material_json(one));
+        if (given.json) {
+            put_json(list);
+        } else {
+            put_out(list_text(catalogue.material));
+        }
+        return 0;
+    }
+    std::vector<std::string> known;
+    for (const Material& one : catalogue.material) {
+        known.push_back(one.name);
+        if (one.name != given.name) continue;
+        if (given.json) {
+            put_json(material_json(one));
+        } else {
+            put_out(material_text(one));
+        }
+        return 0;
+    }
+    fail(ExitCode::command_line, "no material \"{}\"{}; swage materials lists them", given.name,
+         did_you_mean(given.name, known));
+}
+
+}  // namespace
+
+void add_materials_command(CLI::App& app, Action& chosen) {
+    static MaterialsArguments given;
+    CLI::App* command = add_command(app, "materials", "List the materials, or tell one's numbers",
+                                    "  swage materials\n"
+                                    "  swage materials rubber\n"
+                                    "  swage materials aluminium --json\n",
+                                    chosen, [] { return materials(given); });
+    command->add_option("name", given.name, "a material")->type_name("NAME");
+    add_assets_option(*command, given.assets);
+    command->add_flag("--json", given.json, "print JSON");
+}
+
+}  // namespace swage

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/json.h"
+#include "tests/app/program.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+namespace fs = std::filesystem;
+using swage::Json;
+
+TEST_CASE("what is told of a material is a material that a scene may give") {
+    const Outcome list = run_swage({"materials", "--json"});
+    REQUIRE(list.code == 0);
+    const Json all = Json::parse(list.out);
+    CHECK(all.size() >= 33);
+    const std::string table = run_swage({"materials"}).out;
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path());
+    std::string rest = bytes_of(scene);
+    const std::size_t from = rest.find("[material]"), to = rest.find("\n[", from);
+    for (const char* name : {"structural_steel", "rubber", "foam", "glass", "clay"}) {
+        CHECK(table.find(std::string("  ") + name + " ") != std::string::npos);
+        const std::string text = run_swage({"materials", name}).out;
+        INFO(text);
+        // Of no name: nothing but what is told.
+        const std::size_t end = text.find('\n', text.find("name = "));
+        std::string own = rest;
+        own.replace(from, to - from, "[material]" + text.substr(end));
+        put_text(scratch.path() / "own.toml", own);
+        std::string named = rest;
+        named.replace(from, to - from, std::string("[material]\nname = \"") + name + "\"\n");
+        put_text(scratch.path() / "named.toml", named);
+        const auto material = [&](const char* file, const char* out) {
+            const Outcome run = run_swage({"run", file, "--no-render", "--out", out, "--set",
+                                           "stage.1.frames=1", "--set", "stage.1.angle=0.1 deg"},
+                                          scratch.path());
+            INFO(run.err);
+            REQUIRE(run.code == 0);
+            Json told =
+                Json::parse(bytes_of(scratch.path() / out / "run.json"))["bodies"][0]["materials"];
+            told[0].erase("name");
+            return told;
+        };
+        CHECK(material("own.toml", (std::string(name) + "-own").c_str()) ==
+              material("named.toml", (std::string(name) + "-named").c_str()));
+    }
+}
+
+TEST_CASE("a material that is not there is answered by the nearest") {
+    const Outcome outcome = run_swage({"materials", "ruber"});
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err.find("did you mean \"rubber\"?") != std::string::npos);
+}
