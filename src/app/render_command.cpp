@@ -51,7 +51,10 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
         log_info("the scene's eye and target give way to the camera that is asked for");
     }
     settings.camera = changed_camera(std::move(settings.camera), change);
+    settings.open.azimuth &= !given.azimuth;
+    settings.open.elevation &= !given.elevation;
     if (!given.eye.empty()) {
+        settings.open = {};
         CameraKey key;
         key.eye = place(given.eye);
         key.target = place(given.target);
@@ -166,7 +169,8 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->type_name("DEG");
     command
         ->add_option("--camera-elevation", given.elevation,
-                     "how high it stands, all through the film")
+                     "how high it stands, all through the film. Of these two, what neither the "
+                     "scene nor this gives is chosen, as swage keys render.camera tells")
         ->check(kFinite & CLI::Range(-90.0, 90.0))
         ->type_name("DEG");
     command->add_option("--camera-zoom", given.zoom, "2 is twice as near, all through the film")

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nearest point of a triangle by the regions of its plane (Ericson, Real-Time Collision Detection,
-// 5.1.5). Solid angle of a triangle by van Oosterom and Strackee 1983; clusters far away are taken
-// as one dipole, as in Barill et al., Fast Winding Numbers for Soups and Clouds, 2018.
+// 5.1.5). What a line crosses by Moeller and Trumbore 1997, boxes by their slabs. Solid angle of a
+// triangle by van Oosterom and Strackee 1983; clusters far away are taken as one dipole, as in
+// Barill et al., Fast Winding Numbers for Soups and Clouds, 2018.
 #include "geometry/triangle_tree.h"
 
 #include <algorithm>
@@ -82,6 +83,32 @@ double solid_angle(const Vec3& p, const std::array<Vec3, 3>& t) {
 double squared_distance(const Vec3& p, const Box& box) {
     const Vec3 nearest = p.cwiseMax(box.low).cwiseMin(box.high);
     return (p - nearest).squaredNorm();
+}
+
+// Whether from + s * way, 0 <= s <= 1, meets the triangle.
+bool crosses(const Vec3& from, const Vec3& way, const std::array<Vec3, 3>& t) {
+    const Vec3 ab = t[1] - t[0], ac = t[2] - t[0], p = way.cross(ac);
+    const double det = ab.dot(p);
+    if (det == 0) return false;
+    const Vec3 start = from - t[0], q = start.cross(ab);
+    const double u = start.dot(p) / det, v = way.dot(q) / det, s = ac.dot(q) / det;
+    return u >= 0 && v >= 0 && u + v <= 1 && s >= 0 && s <= 1;
+}
+
+bool crosses(const Vec3& from, const Vec3& way, const Box& box) {
+    double enters = 0, leaves = 1;
+    for (int d = 0; d < 3; ++d) {
+        if (way[d] == 0) {
+            if (from[d] < box.low[d] || from[d] > box.high[d]) return false;
+            continue;
+        }
+        const double one = (box.low[d] - from[d]) / way[d];
+        const double other = (box.high[d] - from[d]) / way[d];
+        enters = std::max(enters, std::min(one, other));
+        leaves = std::min(leaves, std::max(one, other));
+    }
+    // Boxes of flat faces have no thickness: rounding may not lose them.
+    return enters <= leaves + 1e-12;
 }
 
 }  // namespace
@@ -175,6 +202,26 @@ double TriangleTree::distance(const Vec3& point) const {
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
     const int at = find(point).at;
     return {number_[at], nearest_weights(point, triangle_[at])};
+}
+
+bool TriangleTree::lies_between(const Vec3& from, const Vec3& to) const {
+    const Vec3 way = to - from;
+    std::array<int, 96> stack;
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const Node& node = node_[stack[--depth]];
+        if (!crosses(from, way, node.box)) continue;
+        if (node.left < 0) {
+            for (int n = node.first; n < node.first + node.count; ++n) {
+                if (crosses(from, way, triangle_[n])) return true;
+            }
+            continue;
+        }
+        stack[depth++] = node.right;
+        stack[depth++] = node.left;
+    }
+    return false;
 }
 
 double TriangleTree::winding_number(const Vec3& point) const {

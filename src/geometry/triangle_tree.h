@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A binary tree of boxes over the triangles of a surface: what is nearest, how far it is, and the
-// winding number.
+// A binary tree of boxes over the triangles of a surface: what is nearest, how far it is, what
+// stands in the way, and the winding number.
 #pragma once
 
 #include <vector>
@@ -24,6 +24,9 @@ class TriangleTree {
         Vec3 weight;   // of its corners, each 0 to 1: their mean is the nearest place
     };
     Nearest nearest(const Vec3& point) const;
+
+    // Whether any triangle lies between the two points.
+    bool lies_between(const Vec3& from, const Vec3& to) const;
 
     // How often the surface winds around `point`: 1 inside a closed outward surface, 0 outside,
     // between the two near the holes of an open one. Accurate to about 0.02.

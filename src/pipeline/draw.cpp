@@ -139,6 +139,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     outcome.height = settings.height;
     outcome.frames = frames;
     outcome.color = settings.color;
+    outcome.view = shot.chosen;
     outcome.passes = settings.passes;
     if (look) outcome.color_range = look->range();
     std::unique_ptr<Film> film;

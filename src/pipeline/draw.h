@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/stopwatch.h"
+#include "pipeline/best_view.h"
 #include "pipeline/frame_store.h"
 #include "pipeline/passes.h"
 #include "pipeline/run_directory.h"
@@ -22,7 +23,8 @@ struct DrawOutcome {
     std::string renderer;  // what OpenGL calls itself
     int width = 0, height = 0;
     FrameRange frames;
-    bool film = false;  // one was written
+    bool film = false;               // one was written
+    std::optional<ChosenView> view;  // where angles of the camera were open
     std::vector<PicturePass> passes;
     std::optional<SkinField> color;
     std::array<double, 2> color_range{};  // of that

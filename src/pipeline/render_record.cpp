@@ -43,6 +43,11 @@ Json render_json(const RenderSettings& settings) {
         {"light", {{"azimuth", settings.light.azimuth}, {"elevation", settings.light.elevation}}},
         {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
         {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
+    if (settings.open.any()) {
+        Json& open = json["camera_auto"] = Json::array();
+        if (settings.open.azimuth) open.push_back("azimuth");
+        if (settings.open.elevation) open.push_back("elevation");
+    }
     if (!settings.passes.empty()) json["passes"] = passes_json(settings.passes);
     if (settings.color) json["color"] = words_of(*settings.color).name;
     if (settings.color_range) json["color_range"] = *settings.color_range;
@@ -107,6 +112,10 @@ RenderSettings render_settings_of(const Json& record) {
             if (one.contains("eye")) key.eye = vector_of(one.at("eye"));
             if (one.contains("target")) key.target = vector_of(one.at("target"));
             settings.camera.push_back(key);
+        }
+        for (const Json& angle : json.value("camera_auto", Json::array())) {
+            settings.open.azimuth |= angle == "azimuth";
+            settings.open.elevation |= angle == "elevation";
         }
     } catch (const Json::exception&) {
         fail(ExitCode::output,

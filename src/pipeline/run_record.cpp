@@ -185,6 +185,12 @@ Json drawing_json(const DrawOutcome& drawing) {
                  {"film", drawing.film},
                  {"ffmpeg", program_exists("ffmpeg")},
                  {"warnings", drawing.warning}};
+    if (drawing.view) {
+        json["view"] = {{"azimuth", drawing.view->camera.front().azimuth},
+                        {"elevation", drawing.view->camera.front().elevation},
+                        {"seen", drawing.view->seen},
+                        {"seen_before", drawing.view->seen_before}};
+    }
     if (!drawing.passes.empty()) json["passes"] = passes_json(drawing.passes);
     if (drawing.color) {
         json["color"] = words_of(*drawing.color).name;

@@ -5,20 +5,16 @@
 
 namespace swage {
 
-namespace {
-
 // The axes take turns.
-Quat drawn_from_world(Up up) {
+Quat drawn_from_up(Up up) {
     Mat3 turn = Mat3::Identity();
     if (up == Up::z) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
     if (up == Up::x) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
     return Quat(turn);
 }
 
-}  // namespace
-
 Shot shot_of(const FrameStore& store, const RenderSettings& wanted) {
-    const Quat turn = drawn_from_world(wanted.up);
+    const Quat turn = drawn_from_up(wanted.up);
     RenderSettings settings = wanted;
     if (settings.color && settings.legend) settings.free_below = legend_share(settings.height);
     for (CameraKey& key : settings.camera) {
@@ -26,7 +22,12 @@ Shot shot_of(const FrameStore& store, const RenderSettings& wanted) {
             if (*place) *place = turn * **place;
         }
     }
-    return {turn, std::move(settings), find_action(store, wanted.tools, turn)};
+    Shot shot{turn, std::move(settings), find_action(store, wanted.tools, turn), {}};
+    if (shot.settings.open.any()) {
+        shot.chosen = choose_view(store, shot.settings, shot.action, turn);
+        shot.settings.camera = shot.chosen->camera;
+    }
+    return shot;
 }
 
 std::optional<SurfaceMaterial> look_of(const DrawnPart& part, const RenderSettings& settings) {

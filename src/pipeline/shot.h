@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "pipeline/action_box.h"
+#include "pipeline/best_view.h"
 #include "pipeline/frame_store.h"
 #include "render/camera.h"
 #include "render/settings.h"
@@ -12,12 +13,14 @@
 namespace swage {
 
 struct Shot {
-    Quat drawn_from_world;    // the renderer has y up
-    RenderSettings settings;  // as it is to have them
-    ActionBox action;         // as drawn
+    Quat drawn_from_world;             // the renderer has y up
+    RenderSettings settings;           // as it is to have them
+    ActionBox action;                  // as drawn
+    std::optional<ChosenView> chosen;  // where angles of the camera were open
 
     CameraPath camera() const { return {settings, action.bounds, action.outline}; }
 };
+Quat drawn_from_up(Up up);  // from the world
 Shot shot_of(const FrameStore& store, const RenderSettings& wanted);
 
 // How a tool, grip or blade looks; none where it is not to be seen.

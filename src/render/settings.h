@@ -45,10 +45,17 @@ struct CameraKey {
     std::optional<Vec3> eye, target;
 };
 
+// Angles of the camera that nobody gave: it may stand elsewhere, where more is to be seen.
+struct OpenAngles {
+    bool azimuth = false, elevation = false;
+    bool any() const { return azimuth || elevation; }
+};
+
 struct RenderSettings {
     int width = 1280, height = 720;                 // 1 to 16384
     double field_of_view = 0.6;                     // vertical, 0 to pi exclusive
     std::vector<CameraKey> camera = {CameraKey{}};  // sorted by `at`
+    OpenAngles open;                                // of that
     int frames_per_second = 30;                     // of the film, 1 to 240
     bool film = true;                               // also write film.mp4, of what is not clear
     bool tools = true;                              // draw tools, grips and blades

@@ -220,8 +220,12 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "light", "where it comes from", "section"},
 
         {"[render.camera]", "azimuth",
-         "about the upward axis; y up: from z toward x, z up: from x toward y"},
-        {"[render.camera]", "elevation", "above the horizon", "angle, -90 deg to 90 deg"},
+         "about the upward axis; y up: from z toward x, z up: from x toward y; auto: 34.4 deg, or "
+         "another side where tools hide much less of the bodies",
+         "angle [rad] or auto", "auto"},
+        {"[render.camera]", "elevation",
+         "above the horizon; auto: 20.1 deg, or lower where tools hide much less of the bodies",
+         "angle, -90 deg to 90 deg, or auto", "auto"},
         {"[render.camera]", "zoom", "1 frames the bodies on all of their way"},
         {"[render.camera]", "eye", "with target, instead of azimuth, elevation and zoom"},
         {"[render.camera]", "target",
@@ -231,6 +235,8 @@ const std::vector<KeyHelp>& scene_key_help() {
          "a step short of the first"},
         {"[render.camera]", "keys", "instead of all that: the same keys at several times"},
         {"[[render.camera.keys]]", "at", "share of the film", {}, "-"},
+        {"[[render.camera.keys]]", "azimuth", "as in [render.camera]"},
+        {"[[render.camera.keys]]", "elevation", "likewise", "angle, -90 deg to 90 deg"},
 
         {"[render.light]",
          "azimuth",

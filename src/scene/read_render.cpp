@@ -38,12 +38,24 @@ void read_size(TableReader& table, RenderSettings& settings) {
     }
 }
 
-// Where the camera stands, from [render.camera] or one of its keys.
-void read_view(TableReader& table, CameraKey& key) {
+// Whether the table says it; with `open`, "auto" says nothing.
+bool read_angle(TableReader& table, const std::string& key, const Range& range, double& into,
+                bool* open) {
+    const Node* node = table.find(key);
+    const bool is_auto = open && node && node->kind == Node::Kind::text && node->text == "auto";
+    const bool says = !is_auto && table.quantity(key, Quantity::angle, range, into);
+    if (open) *open = !says;
+    return says;
+}
+
+// Where the camera stands, from [render.camera] or one of its keys. `open`: of the angles, those
+// that are not given; null: all count as given.
+void read_view(TableReader& table, CameraKey& key, OpenAngles* open) {
     const Range quarter = between(-kPi / 2 - 1e-12, kPi / 2 + 1e-12);
-    const bool orbits[] = {table.quantity("azimuth", Quantity::angle, {}, key.azimuth),
-                           table.quantity("elevation", Quantity::angle, quarter, key.elevation),
-                           table.quantity("zoom", Quantity::number, between(0.01, 1000), key.zoom)};
+    const bool orbits[] = {
+        read_angle(table, "azimuth", {}, key.azimuth, open ? &open->azimuth : nullptr),
+        read_angle(table, "elevation", quarter, key.elevation, open ? &open->elevation : nullptr),
+        table.quantity("zoom", Quantity::number, between(0.01, 1000), key.zoom)};
     Vec3 eye = Vec3::Zero(), target = Vec3::Zero();
     const bool has_eye = table.vector("eye", Quantity::length, eye);
     const bool has_target = table.vector("target", Quantity::length, target);
@@ -64,6 +76,7 @@ void read_view(TableReader& table, CameraKey& key) {
     if (eye == target) table.mistake("eye", "eye and target are the same point");
     key.eye = eye;
     key.target = target;
+    if (open) *open = {};
 }
 
 void read_light(TableReader& table, LightPlace& light) {
@@ -73,9 +86,9 @@ void read_light(TableReader& table, LightPlace& light) {
     table.finish();
 }
 
-void read_camera(TableReader& table, std::vector<CameraKey>& camera) {
+void read_camera(TableReader& table, std::vector<CameraKey>& camera, OpenAngles& open) {
     CameraKey fixed;
-    read_view(table, fixed);
+    read_view(table, fixed, &open);
     double orbit = 0;
     const bool orbits = table.quantity("orbit", Quantity::angle, {}, orbit);
     if (orbits && fixed.eye) {
@@ -97,13 +110,14 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera) {
         return;
     }
     camera.clear();
+    open = {};
     for (const Node* node : keys) {
         TableReader one(*node, "a key of [render.camera]", table.reading());
         CameraKey key;
         if (!one.quantity("at", Quantity::number, between(0, 1), key.at)) {
             one.missing("at", "the share of the film, 0 to 1");
         }
-        read_view(one, key);
+        read_view(one, key, nullptr);
         one.finish();
         camera.push_back(key);
     }
@@ -146,7 +160,7 @@ void read_render(TableReader& table, RenderSettings& settings) {
     read_field_color(table, settings);
     table.quantity("field_of_view", Quantity::angle, inside(0, kPi), settings.field_of_view);
     TableReader camera(table.table("camera"), "[render.camera]", table.reading());
-    read_camera(camera, settings.camera);
+    read_camera(camera, settings.camera, settings.open);
     camera.finish();
     TableReader light(table.table("light"), "[render.light]", table.reading());
     read_light(light, settings.light);

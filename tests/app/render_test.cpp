@@ -203,3 +203,21 @@ TEST_CASE("a run is not complete until its passes are there") {
     CHECK(run_swage(arguments).code == 0);
     CHECK(fs::exists(depth));
 }
+
+TEST_CASE("a drawing tells which view it chose for angles that nobody gave") {
+    const DrawableRun drawable;
+    const auto view = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--frames", "1", "--json"});
+        const Outcome outcome = drawable.draw(drawable.out(), more);
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+        return swage::Json::parse(outcome.out).value("view", swage::Json());
+    };
+    const auto chosen = view({});
+    CHECK(chosen.at("seen").get<double>() > 0.5);
+    CHECK(view({"--size", "90x160"}) == chosen);
+    CHECK(view({"--camera-azimuth", "90"}).at("azimuth").get<double>() == Approx(1.5707963));
+    CHECK(view({"--camera-elevation", "50"}).at("elevation").get<double>() == Approx(0.8726646));
+    CHECK(view({"--camera-azimuth", "90", "--camera-elevation", "50"}).is_null());
+    CHECK(view({"--camera-eye", "1", "1", "1", "--camera-target", "0", "0", "0"}).is_null());
+}

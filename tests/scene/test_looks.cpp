@@ -26,3 +26,25 @@ TEST_CASE("a scene says where light comes from, what is behind and which edges a
     CHECK(scene.render.light.azimuth == Approx(kPi / 6));
     CHECK(scene.render.light.elevation == Approx(kPi / 9));
 }
+
+TEST_CASE("angles of the camera are open where the scene does not give them") {
+    const auto open = [](const std::string& camera) {
+        const Scratch scratch;
+        const Parts parts = with(&Parts::rest, "[render]\n" + camera + "\n");
+        const SceneReading reading =
+            read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+        REQUIRE(reading.scene);
+        const OpenAngles& angles = reading.scene->render.open;
+        return std::pair(angles.azimuth, angles.elevation);
+    };
+    const std::pair both(true, true), none(false, false);
+    CHECK(open("") == both);
+    CHECK(open("camera = { zoom = 2, orbit = \"90 deg\", target = [0, 0, 0] }") == both);
+    CHECK(open("camera = { azimuth = \"auto\", elevation = \"auto\" }") == both);
+    CHECK(open("camera = { azimuth = \"20 deg\" }") == std::pair(false, true));
+    CHECK(open("camera = { azimuth = \"auto\", elevation = \"20 deg\" }") ==
+          std::pair(true, false));
+    CHECK(open("camera = { azimuth = 1, elevation = 1 }") == none);
+    CHECK(open("camera = { eye = [1, 1, 1], target = [0, 0, 0] }") == none);
+    CHECK(open("camera = { keys = [{ at = 0 }, { at = 1, zoom = 2 }] }") == none);
+}
