@@ -143,7 +143,8 @@ TEST_CASE("letters are of one shape at any size, as fine as the pixels are") {
         for (const char* text : {"O", "3", "M"}) {
             const auto area = [&](double of) {
                 double sum = 0;
-                for (const std::uint8_t c : letters_of(text, 0, 100, of).at(0).cover) sum += c;
+                const LetterPixels letter = letters_of(text, 0, 100, of).at(0);
+                for (const std::uint8_t c : letter.cover) sum += c;
                 return sum / (255 * of * of);
             };
             CHECK(area(size) == Approx(area(500)).epsilon(0.05));
