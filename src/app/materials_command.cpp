@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <cmath>
 
 #include "app/command.h"
@@ -56,24 +55,24 @@ std::string material_text(const Material& m) {
         text += fmt::format("elasticity = \"{}\"\n", name_in(kElasticityNames, m.elasticity));
     }
     if (!m.flow_curve.empty()) {
-        text += "flow_curve = [";
-        for (const auto& [strain, stress] : m.flow_curve) {
-            text +=
-                fmt::format("{}[{:.6g}, \"{}\"]", &strain == &m.flow_curve[0].strain ? "" : ", ",
-                            strain, quantity_text(stress, Quantity::stress));
-        }
-        text += "]\n";
+        text += fmt::format("# flows along a curve of its own, from {} on, which its name brings\n",
+                            quantity_text(m.yield_stress, Quantity::stress));
     } else if (m.yields()) {
         quantity("yield_stress", m.yield_stress, Quantity::stress);
         quantity("hardening", m.hardening, Quantity::stress);
+    }
+    if (m.back_stress > 0) {
+        quantity("back_stress", m.back_stress, Quantity::stress);
+        number("back_strain", m.back_strain);
     }
     if (m.breaks()) {
         quantity("strength", m.strength, Quantity::stress);
         quantity("toughness", m.toughness, Quantity::toughness);
     }
-    number("damping_ratio", m.damping_ratio);
     number("friction", m.friction);
     if (m.static_friction > m.friction) number("static_friction", m.static_friction);
+    text += "# in motion alone:\n";
+    number("damping_ratio", m.damping_ratio);
     number("restitution", m.restitution);
     if (m.stickiness > 0) quantity("stickiness", m.stickiness, Quantity::stress);
     return text;
@@ -81,8 +80,11 @@ std::string material_text(const Material& m) {
 
 int materials(const MaterialsArguments& given) {
     const AssetPaths assets = asset_paths(given.assets);
-    MaterialCatalogue catalogue = material_catalogue(assets, fs::current_path());
+    const MaterialCatalogue catalogue = material_catalogue(assets, fs::current_path());
     log_mistakes(catalogue.mistakes);
+    if (exit_code(catalogue.mistakes) != ExitCode::done) {
+        fail(ExitCode::scene, "a file of materials has mistakes");
+    }
     if (catalogue.material.empty()) {
         fail(ExitCode::command_line, "no file of materials was found{}",
              wrong_root_text(assets.root));

@@ -41,19 +41,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "base/math.h"
-#include "base/portable_math.h"
 #include "laws/flow_curve.h"
 
 namespace swage {
 
 inline constexpr double kEdgeShare = 0.25;  // w
 inline constexpr double kDiagonalShare = 1.0;
-inline constexpr int kReturnTries = 40;
-inline constexpr double kReturnError = 1e-12;
 
 // ln of a ratio of lengths by its rational series; error below 1e-7 from 0.7 to 1.4, 2e-4 at 0.4
 // and 2.5. One division, so that loops over it vectorise.
@@ -102,14 +98,16 @@ struct SpringDistortion {
 // A cell as its connections lie, for strains of these.
 class SpringFrame {
   public:
+    using Five = Eigen::Matrix<double, 5, 1>;  // a symmetric tensor without trace
+
     SpringFrame(const std::array<Vec3, 24>& way, const Springs& weight) : weight_(weight) {
-        const double r2 = std::sqrt(0.5), r6 = std::sqrt(1.0 / 6), s2 = std::sqrt(2.0);
-        Five5 m = Five5::Zero();
+        Eigen::Matrix<double, 5, 5> m = Eigen::Matrix<double, 5, 5>::Zero();
         for (std::size_t b = 0; b < weight.size(); ++b) {
-            const Vec3 n = way[b] / std::max(way[b].norm(), 1e-300);
-            const double xx = n.x() * n.x(), yy = n.y() * n.y(), zz = n.z() * n.z();
-            along_[b] << r2 * (xx - yy), r6 * (xx + yy - 2 * zz), s2 * n.x() * n.y(),
-                s2 * n.y() * n.z(), s2 * n.z() * n.x();
+            const Vec3& d = way[b];
+            const double r = 1 / std::max(d.squaredNorm(), 1e-300);
+            along_[b] << kR2 * r * (d.x() * d.x() - d.y() * d.y()),
+                kR6 * (1 - 3 * r * d.z() * d.z()), 2 * kR2 * r * d.x() * d.y(),
+                2 * kR2 * r * d.y() * d.z(), 2 * kR2 * r * d.z() * d.x();
             for (int i = 0; i < 5; ++i) {
                 const double part = weight[b] * along_[b][i];
                 for (int j = 0; j <= i; ++j) m(i, j) += part * along_[b][j];
@@ -124,33 +122,74 @@ class SpringFrame {
         pressed_ = std::max(one_one_ - of_one_.dot(size_), 1e-12 * one_one_);
     }
 
-    SpringDistortion distortion(const Springs& strain) const {
-        Five of_strain = Five::Zero();
-        double one = 0, square = 0;
+    // Of strains: their parts along n_b.N n_b, and N; their sum; each linear in them.
+    struct Sums {
+        Five along, mean;
+        double one;
+    };
+    Sums sums(const Springs& strain) const {
+        Sums s{Five::Zero(), Five::Zero(), 0};
         for (std::size_t b = 0; b < strain.size(); ++b) {
             const double part = weight_[b] * strain[b];
-            of_strain += part * along_[b];
-            one += part;
-            square += part * strain[b];
+            s.along += part * along_[b];
+            s.one += part;
         }
-        const Five mean = solver_.solve(of_strain);
-        const double t = (one - of_strain.dot(size_)) / pressed_;
+        s.mean = solver_.solve(s.along);
+        return s;
+    }
+    double product(const Springs& u, const Springs& v) const {
+        double sum = 0;
+        for (std::size_t b = 0; b < u.size(); ++b) sum += weight_[b] * u[b] * v[b];
+        return sum;
+    }
+    // `square`: <e, e>.
+    SpringDistortion distortion(const Sums& strain, double square) const {
+        const double t = (strain.one - strain.along.dot(size_)) / pressed_;
         const double worked = std::max(square - t * t * pressed_, 0.0);
-        const double of_mean = std::min(of_strain.dot(mean), worked);
-        return {t, worked, 2 * mean.squaredNorm() + 15 / one_one_ * (worked - of_mean)};
+        const double of_mean = std::min(strain.along.dot(strain.mean), worked);
+        return {t, worked, 2 * strain.mean.squaredNorm() + kShares / one_one_ * (worked - of_mean)};
     }
     double pressure_strain(std::size_t b) const { return 1 - along_[b].dot(size_); }  // i_b
+    double weight() const { return one_one_; }
+
+    // About the strain of the cell as a whole.
+    Mat3 mean_strain(const Springs& share, const Springs& strain) const {
+        Five dev = Five::Zero();
+        double size = 0;
+        for (std::size_t b = 0; b < strain.size(); ++b) {
+            dev += 0.5 * share[b] * strain[b] * along_[b];
+            size += share[b] * strain[b] / kShares;
+        }
+        Mat3 mean;
+        mean << kR2 * dev[0] + kR6 * dev[1] + size, kR2 * dev[2], kR2 * dev[4],  //
+            kR2 * dev[2], kR6 * dev[1] - kR2 * dev[0] + size, kR2 * dev[3],      //
+            kR2 * dev[4], kR2 * dev[3], size - 2 * kR6 * dev[1];
+        return mean;
+    }
 
   private:
-    using Five = Eigen::Matrix<double, 5, 1>;  // a symmetric tensor without trace
-    using Five5 = Eigen::Matrix<double, 5, 5>;
+    static constexpr double kShares = 12 * (kEdgeShare + kDiagonalShare);
+    static constexpr double kR2 = 0.70710678118654752, kR6 = 0.40824829046386302;
 
     Springs weight_;  // c_b
     std::array<Five, 24> along_;
     Five of_one_ = Five::Zero(), size_;
-    Eigen::LLT<Five5> solver_;
+    Eigen::LLT<Eigen::Matrix<double, 5, 5>> solver_;
     double one_one_ = 0, pressed_;
 };
+
+// Halfway between rest, where `strain` is none, and now.
+inline SpringFrame halfway(const SpringFrame& now, const CellSprings& cell, const Springs& share,
+                           Springs weight) {
+    const Mat3 half = Mat3::Identity() - 0.5 * now.mean_strain(share, cell.strain);
+    std::array<Vec3, 24> way;
+    for (std::size_t b = 0; b < share.size(); ++b) {
+        way[b] = half * cell.way[b];
+        const double e = 0.5 * std::clamp(cell.strain[b], -1.0, 1.0);
+        weight[b] *= (1 - e) / (1 + e);  // exp(-2 e)
+    }
+    return {way, weight};
+}
 
 struct SpringReturn {
     double d_alpha = 0;
@@ -163,55 +202,45 @@ struct SpringReturn {
 inline std::optional<SpringReturn> return_springs(const Yield& law, const CellSprings& cell,
                                                   const Springs& share, double theta,
                                                   double alpha) {
+    constexpr int kTries = 40;
+    constexpr double kError = 1e-12;  // of the stress
     Springs weight;
     for (std::size_t b = 0; b < share.size(); ++b) weight[b] = share[b] * cell.way[b].squaredNorm();
     const SpringFrame now(cell.way, weight);
-    const double q = now.distortion(cell.strain).stress(law.shear_modulus);
+    const SpringFrame::Sums sums = now.sums(cell.strain);
+    const double square = now.product(cell.strain, cell.strain);
+    const double q = now.distortion(sums, square).stress(law.shear_modulus);
     if (!(q > flow_stress(law, alpha))) return std::nullopt;
 
-    Mat3 strain = Mat3::Zero();  // about
-    double size = 0;
-    for (std::size_t b = 0; b < share.size(); ++b) {
-        const Vec3 n = cell.way[b].normalized();
-        strain += 0.5 * share[b] * cell.strain[b] * n * n.transpose();
-        size += share[b] * cell.strain[b] / 15;
-    }
-    strain.diagonal().array() += size - strain.trace() / 3;
-    std::array<Vec3, 24> way;
-    for (std::size_t b = 0; b < share.size(); ++b) {
-        way[b] = cell.way[b] - 0.5 * strain * cell.way[b];
-        weight[b] *= portable::exp(-cell.strain[b]);
-    }
-    const SpringFrame halfway(way, weight);
-    const SpringDistortion flows = halfway.distortion(cell.strain);
-    double worked_on_size = 0;
-    for (std::size_t b = 0; b < share.size(); ++b) worked_on_size += weight[b] * cell.strain[b];
+    const SpringFrame mid = halfway(now, cell, share, weight);
+    const SpringFrame::Sums of_mid = mid.sums(cell.strain);
+    const SpringDistortion flows = mid.distortion(of_mid, mid.product(cell.strain, cell.strain));
     // The volume gets no more than half of the work, nor a tenth of the flow.
-    const double all = std::accumulate(weight.begin(), weight.end(), 0.0);
-    const double most = std::min(0.5 * flows.worked / std::max(std::abs(worked_on_size), 1e-300),
-                                 0.1 * std::sqrt(flows.worked / all));
+    const double most = std::min(0.5 * flows.worked / std::max(std::abs(of_mid.one), 1e-300),
+                                 0.1 * std::sqrt(flows.worked / mid.weight()));
     const double lost = std::clamp(theta - flows.pressed, -most, most);
     SpringReturn r;
     for (std::size_t b = 0; b < share.size(); ++b) {
-        r.grows[b] = cell.strain[b] - flows.pressed * halfway.pressure_strain(b) - lost;
+        r.grows[b] = cell.strain[b] - flows.pressed * mid.pressure_strain(b) - lost;
     }
 
     // By false position with halving (Illinois).
     const double per_share = std::sqrt(flows.meant / 3);
+    const SpringFrame::Sums gone = now.sums(r.grows);
+    const double across = now.product(cell.strain, r.grows), own = now.product(r.grows, r.grows);
     const auto over = [&](double part) {
-        Springs left;
-        for (std::size_t b = 0; b < share.size(); ++b) {
-            left[b] = cell.strain[b] - part * r.grows[b];
-        }
-        return now.distortion(left).stress(law.shear_modulus) -
+        const SpringFrame::Sums left{sums.along - part * gone.along, sums.mean - part * gone.mean,
+                                     sums.one - part * gone.one};
+        const double squared = square + part * (part * own - 2 * across);
+        return now.distortion(left, squared).stress(law.shear_modulus) -
                flow_stress(law, alpha + part * per_share);
     };
     double low = 0, high = 1, at_low = q - flow_stress(law, alpha), at_high = over(1);
     double part = 1;
-    for (int n = 0; n < kReturnTries && at_high < 0; ++n) {
+    for (int n = 0; n < kTries && at_high < 0; ++n) {
         part = low + (high - low) * at_low / (at_low - at_high);
         const double at = over(part);
-        if (std::abs(at) < kReturnError * q) break;
+        if (std::abs(at) < kError * q) break;
         if (at > 0) {
             low = part, at_low = at, at_high *= 0.5;
         } else {

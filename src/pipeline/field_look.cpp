@@ -87,7 +87,7 @@ void FieldLook::dress(const StoredBody& body, TriMesh& skin) const {
 
 std::array<bool, 2> FieldLook::beyond() const {
     const double least = kBeyond * (range_[1] - range_[0]);
-    return {extent_[0]<range_[0] - least, extent_[1]> range_[1] + least};
+    return {(extent_[0] < range_[0] - least), (extent_[1] > range_[1] + least)};
 }
 
 void FieldLook::add_legend(Image& image) const {

@@ -9,8 +9,9 @@
 
 namespace swage {
 
-// Returns what run.json holds. Throws Error (see base/error.h for the codes) and Interrupted; the files that exist are whole.
-// When the simulation gives up, what was reached is written and drawn before Error(stopped).
+// Returns what run.json holds. Throws Error (see base/error.h for the codes) and Interrupted; the
+// files that exist are whole. When the simulation gives up, what was reached is written and drawn
+// before Error(stopped).
 Json run_scene(const SceneSpec& scene, const RunOptions& options);
 
 }  // namespace swage

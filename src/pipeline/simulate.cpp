@@ -225,7 +225,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     } else if (kept_stages > 0) {
         log_info("swage run goes on after stage {} of {}", kept_stages, stages);
     } else {
-        log_info("swage run begins anew, as no stage was finished");
+        log_info("swage run begins anew, as no finished stage is kept");
     }
     return ended;
 }

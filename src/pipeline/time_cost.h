@@ -17,8 +17,6 @@ struct CostRange {
     // One number says as much.
     bool is_narrow() const { return most < 4.5 * least; }
     double middle() const;  // geometric
-    // That there is nothing between them: what is told is counted.
-    bool is_one() const { return least == most; }
 };
 
 // Of all bodies together.

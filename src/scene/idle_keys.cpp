@@ -35,7 +35,7 @@ bool any_stage(const SceneSpec& scene, const Test& test) {
 bool relaxes(const StageSpec& stage) { return stage.sim.solver == Solver::quasistatic; }
 bool is_implicit(const StageSpec& stage) { return stage.sim.solver == Solver::implicit_steps; }
 // By steps that know what materials say of motion.
-bool moves(const StageSpec& stage) { return !relaxes(stage) && !is_implicit(stage); }
+bool moves_by_steps(const StageSpec& stage) { return !relaxes(stage) && !is_implicit(stage); }
 bool is_explicit(const StageSpec& stage) {
     return stage.sim.solver == Solver::explicit_steps || stage.sim.solver == Solver::euler;
 }
@@ -59,7 +59,9 @@ std::string unless_it_is_explicit(const Section& at) {
 std::string unless_it_makes_steps(const Section& at) {
     return is_explicit(*at.stage) || is_implicit(*at.stage) ? "" : with_solver(at);
 }
-std::string unless_it_drags(const Section& at) { return moves(*at.stage) ? "" : with_solver(at); }
+std::string unless_it_drags(const Section& at) {
+    return moves_by_steps(*at.stage) ? "" : with_solver(at);
+}
 
 constexpr const char* kNothingMeets =
     ": nothing can touch, for no machine has a tool, there is one body, and no stage has "
@@ -70,9 +72,10 @@ std::string unless_something_meets(const Section& at) {
     return any_stage(at.scene, meets) ? "" : kNothingMeets;
 }
 std::string unless_something_moves(const Section& at) {
-    return any_stage(at.scene, moves) ? ""
-                                      : " where no stage is of motion (solver = \"explicit\", "
-                                        "\"euler\" or \"energy-stepped\")";
+    return any_stage(at.scene, moves_by_steps)
+               ? ""
+               : " where no stage is of motion (solver = \"explicit\", "
+                 "\"euler\" or \"energy-stepped\")";
 }
 std::string unless_something_strikes(const Section& at) {
     const std::string still = unless_something_moves(at);

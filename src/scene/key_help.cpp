@@ -38,11 +38,9 @@ const std::vector<KeyHelp>& scene_key_help() {
          "[[0, stress], [strain, stress], ...], {K, e0, n}, {A, B, n} or {s0, Q, b}"},
         {"[material]", "back_stress",
          "of the stress at which it flows, the part that has the sense of the flow, so that flow "
-         "back "
-         "sets in early (kinematic hardening, Bauschinger's effect): what it grows to, C / gamma "
-         "of "
-         "Armstrong and Frederick or Chaboche; a pull that goes on bears what yield_stress, "
-         "hardening or flow_curve say as before"},
+         "back sets in early (kinematic hardening, Bauschinger's effect): what it grows to, C / "
+         "gamma of Armstrong and Frederick or Chaboche; a pull that goes on bears what "
+         "yield_stress, hardening or flow_curve say as before"},
         {"[material]",
          "back_strain",
          "the plastic strain over which back_stress grows, 1 / gamma; goes with it",
@@ -309,11 +307,12 @@ const std::vector<KeyHelp>& machine_key_help() {
 
         {"[tool.motion]", "move",
          "from where it stood; may use t, 0 to 1 over the stage, and stop"},
-        {"[tool.motion]", "turn", "an angle; may use t"},
+        {"[tool.motion]", "turn", "an angle; may use t and stop"},
         {"[tool.motion]", "axis", "of the turn", {}, "[0, 0, 1]"},
         {"[tool.motion]",
          "pivot",
-         "that the turn leaves where it is; may use t; left out, the middle of the work-piece's "
+         "that the turn leaves where it is; may use t and stop; left out, the middle of the "
+         "work-piece's "
          "box, not the tool's",
          {},
          "[0, 0, 0]"},

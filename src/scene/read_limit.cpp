@@ -32,7 +32,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 void read_part(TableReader& table, const MachineSpec& machine, LimitSpec& limit) {
     const std::vector<std::string> parts =
         parts_of(machine, [](const MotionSpec&) { return true; });
-    const std::string known = joined(parts, ", ");
+    const std::string known = parts.empty() ? "none" : joined(parts, ", ");
     if (!table.text("part", limit.part)) {
         table.missing("part", "a tool or grip of the machine: " + known);
         return;

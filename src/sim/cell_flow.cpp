@@ -24,6 +24,7 @@ constexpr std::size_t kSpansPerChunk = 1024;
 constexpr double kNearYield = 1e-4;  // of it: strains are kept as floats
 // Of S with c = w and i = 1, which is soon found: below it no cell yields that never has.
 constexpr double kUnyielded = 0.25;
+constexpr double kAllShares = 12 * (kEdgeShare + kDiagonalShare);
 
 constexpr Springs kShares = [] {
     Springs shares{};
@@ -53,11 +54,23 @@ void strain_block(const double* x, const double* y, const double* z, const doubl
 
 SWAGE_VECTOR_CLONES
 void distortion_block(const float* strain, const float* weight, const float* plastic,
-                      const double* theta, double share, int count, double* __restrict distortion) {
+                      const double* theta, double share, int count, float* __restrict shortest,
+                      float* __restrict longest, double* __restrict distortion) {
     for (int n = 0; n < count; ++n) {
+        shortest[n] = strain[n] < shortest[n] ? strain[n] : shortest[n];
+        longest[n] = strain[n] > longest[n] ? strain[n] : longest[n];
         const double s = double(strain[n]) - double(plastic[n]) - theta[n];
         distortion[n] += weight[n] > 0 ? share * s * s : 0.0;
     }
+}
+
+// At least q of a cell (laws/yield.h) over mu, whose connections' strains lie between these. S is
+// least of all <e - x, e - x> with x pressure alone, and no c is more than w r^2 of the longest's
+// ratio r; S / S_0 is no more than that r^2; and i is off 1 by no more than the cell is off a cube.
+double most_stress(double distortion, double theta, double shortest, double longest) {
+    const double off_cube = std::min(1.0, 2 * (portable::exp(2 * (longest - shortest)) - 1));
+    const double root = std::sqrt(distortion) + std::abs(theta) * std::sqrt(kAllShares) * off_cube;
+    return std::sqrt(3.0) * portable::exp(2 * longest) * root;
 }
 
 // At least S / root S_0 (laws/yield.h) of any cell of a run that has never flowed. With q = r^2 - 1
@@ -66,7 +79,7 @@ void distortion_block(const float* strain, const float* weight, const float* pla
 // is to 0. Beyond, it is told as more than anything.
 SWAGE_VECTOR_CLONES
 double most_distorted(const Aggregate& matter, const CellRun& run) {
-    constexpr double kTenth = 0.01, kShares = 12 * (kEdgeShare + kDiagonalShare);
+    constexpr double kTenth = 0.01;
     const Vec3Array& x = matter.particle_position;
     const double a = matter.lattice.spacing, s = 0.25 / a;
     CornerRows<const double> rows;
@@ -115,7 +128,7 @@ double most_distorted(const Aggregate& matter, const CellRun& run) {
         for (int l = 0; l < count; ++l) {
             if (!(squares[l] < kTenth)) return std::numeric_limits<double>::infinity();
             most = std::max(most, std::sqrt(about[l]) * (1 + 2 * std::sqrt(squares[l])) +
-                                      1.2 * std::sqrt(kShares) * squares[l]);
+                                      1.2 * std::sqrt(kAllShares) * squares[l]);
         }
     }
     return most;
@@ -190,7 +203,7 @@ void CellFlow::find_flowing(const Aggregate& matter) {
     const std::array<float, kCellBlock> unyielded{};
     const auto find = [&](std::size_t first, std::size_t last, std::vector<FlowingCell>& flowing) {
         double theta[kCellBlock], distortion[kCellBlock];
-        float weight[kCellBlock];
+        float weight[kCellBlock], shortest[kCellBlock], longest[kCellBlock];
         for (std::size_t r = first; r < last; ++r) {
             const CellRun& run = runs[r];
             for (int at = 0; at < run.count; at += kCellBlock) {
@@ -205,18 +218,24 @@ void CellFlow::find_flowing(const Aggregate& matter) {
                         log_ratio(std::clamp(theta[n], kGuardedVolume, 1 / kGuardedVolume)) / 3;
                 }
                 std::fill_n(distortion, count, 0.0);
+                std::fill_n(shortest, count, std::numeric_limits<float>::infinity());
+                std::fill_n(longest, count, -std::numeric_limits<float>::infinity());
                 for (int slot = 0; slot < kCellConnectionCount; ++slot) {
                     const int d = kCellConnection[slot].direction;
                     const ParticleId lower = lower_end(run.row, slot) + at;
                     matter.connection[d].weight.copy(lower, count, weight);
                     distortion_block(strain_[d].data() + lower, weight, plastic(slot), theta,
-                                     kShares[slot], count, distortion);
+                                     kShares[slot], count, shortest, longest, distortion);
                 }
                 for (int n = 0; n < count; ++n) {
                     const CellId id = run.first + at + n;
                     const double alpha = fresh ? 0.0 : double(hardening[id]);
-                    const double least = alpha > 0 ? 0 : kUnyielded * yield_distortion_;
-                    if (!(distortion[n] > least)) continue;
+                    const bool is_far =
+                        alpha > 0 ? law_.shear_modulus * most_stress(distortion[n], theta[n],
+                                                                     shortest[n], longest[n]) <
+                                        flow_stress(law_, alpha)
+                                  : !(distortion[n] > kUnyielded * yield_distortion_);
+                    if (is_far) continue;
                     const std::array<ParticleId, 4> row = run.row_at(at + n);
                     if (!cell_is_sound(matter, id, row)) continue;  // has no size any more
                     if (const auto flow = return_springs(law_, springs_of(matter, id, row), kShares,

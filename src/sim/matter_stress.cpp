@@ -35,8 +35,9 @@ std::array<double, 6> turned_back(const Mat3& p, const Mat3& f) {
     return components(0.5 * (stress + stress.transpose()));
 }
 
-// Springs harden beyond their law as they flow far. Where the back stress has another sense than
-// flow has had so far matter bears more than its curve says, by what that has not seen of it.
+// What springs bear beside the way they flow is no matter of their law. Where the back stress has
+// another sense than flow has had so far matter bears more than its curve says, by what that has
+// not seen of it.
 double yields_at(const MaterialLaw& law, Mechanics mechanics, double plastic_strain) {
     if (!can_flow(law.kind) || mechanics == Mechanics::springs) {
         return std::numeric_limits<double>::infinity();

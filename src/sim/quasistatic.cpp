@@ -90,7 +90,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     move.let_go = unsolved == Unsolved::leave;
     Relaxation found = search_.find(forces_, move);
     outcome.iterations += found.iterations;
-    outcome.residual = found.residual;
+    const double residual = std::exchange(outcome.residual, found.residual);
     const bool buckled = std::exchange(outcome.buckled, outcome.buckled || found.buckled);
     if (!found.converged || smallest_cell_volume(matter_) <= kSmallestCellVolume) {
         const std::string met = this->met(move);
@@ -104,6 +104,7 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     }
     if (goes_beyond(move)) {
         put_back(move);
+        outcome.residual = residual;
         outcome.buckled = buckled;
         return false;
     }

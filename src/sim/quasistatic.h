@@ -68,7 +68,6 @@ class QuasistaticSolver {
     double borne_of(std::size_t limit, const std::vector<LoadSum>& load, const Drive& now) const;
     Reach reach_of(const std::vector<LoadSum>& load, const Drive& now) const;
     bool goes_beyond(const StaticMove& move);
-    bool go_on(const Drive& to, MoveOutcome& outcome);
     void approach(MoveOutcome& outcome);
     void come_to_stop(MoveOutcome& outcome);
     Drive between(const Drive& from, const Drive& to, double s) const;

@@ -72,8 +72,10 @@ void QuasistaticSolver::approach(MoveOutcome& outcome) {
         const Drive from = stands_, middle = between(stands_, beyond_.at, s);
         if (!(middle.time - from.time > least && beyond_.at.time - middle.time > least)) break;
         splits_ = 0;
-        if (increment(from, middle, 0, outcome)) {
-            let_crack(middle, outcome);
+        const bool arrived = increment(from, middle, 0, outcome);
+        // Where it did not, a part of the way may have been gone.
+        if (stands_.time > from.time) let_crack(stands_, outcome);
+        if (arrived) {
             if (side < 0) above /= 2;
             side = -1;
         } else {

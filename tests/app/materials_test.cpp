@@ -8,21 +8,26 @@ namespace fs = std::filesystem;
 using swage::Json;
 
 TEST_CASE("what is told of a material is a material that a scene may give") {
-    const Outcome list = run_swage({"materials", "--json"});
+    const Scratch scratch;
+    put_text(scratch.path() / "materials.toml",
+             "[mine]\nyoung_modulus = \"200 GPa\"\ndensity = 7800\nyield_stress = \"300 MPa\"\n"
+             "back_stress = \"80 MPa\"\nback_strain = 0.02\nstickiness = \"3 kPa\"\n");
+    const Outcome list = run_swage({"materials", "--json"}, scratch.path());
     REQUIRE(list.code == 0);
     const Json all = Json::parse(list.out);
     CHECK(all.size() >= 33);
-    const std::string table = run_swage({"materials"}).out;
-    const Scratch scratch;
+    const std::string table = run_swage({"materials"}, scratch.path()).out;
     const fs::path scene = put_small_scene(scratch.path());
     std::string rest = bytes_of(scene);
     const std::size_t from = rest.find("[material]"), to = rest.find("\n[", from);
-    for (const char* name : {"structural_steel", "rubber", "foam", "glass", "clay"}) {
+    for (const char* name :
+         {"structural_steel", "rubber", "foam", "glass", "clay", "ofhc_copper", "mine"}) {
         CHECK(table.find(std::string("  ") + name + " ") != std::string::npos);
-        const std::string text = run_swage({"materials", name}).out;
+        const std::string text = run_swage({"materials", name}, scratch.path()).out;
         INFO(text);
         // Of no name: nothing but what is told.
-        const std::size_t end = text.find('\n', text.find("name = "));
+        const bool has_curve = text.find("curve") != std::string::npos;
+        const std::size_t end = has_curve ? text.find('\n') : text.find('\n', text.find("name = "));
         std::string own = rest;
         own.replace(from, to - from, "[material]" + text.substr(end));
         put_text(scratch.path() / "own.toml", own);
@@ -49,4 +54,13 @@ TEST_CASE("a material that is not there is answered by the nearest") {
     const Outcome outcome = run_swage({"materials", "ruber"});
     CHECK(outcome.code == 2);
     CHECK(outcome.err.find("did you mean \"rubber\"?") != std::string::npos);
+}
+
+TEST_CASE("a file of materials that has mistakes is no list of materials") {
+    const Scratch scratch;
+    put_text(scratch.path() / "materials.toml", "[goo]\ndensity = 1000\n");
+    const Outcome outcome = run_swage({"materials", "goo"}, scratch.path());
+    CHECK(outcome.code == 3);
+    CHECK(outcome.err.find("materials.toml:1") != std::string::npos);
+    CHECK(outcome.out.empty());
 }

@@ -2,9 +2,9 @@
 #include <cstring>
 #include <random>
 
+#include "laws/cell_return.h"
 #include "laws/dual.h"
 #include "laws/flow_forms.h"
-#include "laws/yield.h"
 #include "tests/catch.h"
 
 using namespace swage;
@@ -47,11 +47,14 @@ TEST_CASE("a return along a flow curve ends on it, over however many of its poin
         const double at = stress_at(point, alpha);
         const double q = n % 7 == 6 ? 0.99 * at : at + 3 * kShear * 0.5 * draw(engine);
         const FlowCurve curve = flow_curve(point, kShear);
-        const FlowLine<double> line = line_at(curve, q + 3 * kShear * alpha);
-        const double over = q - line.stress - line.slope * alpha;
-        CHECK((over > 0) == (q > at));
+        CellModuli law{};
+        law.shear = kShear;
+        const CellReturn<double> back =
+            return_to(law, line_at(curve, q + 3 * kShear * alpha), q, alpha);
+        const double d = back.d_alpha;
+        CHECK((d > 0) == (q > at));
         if (q < at) continue;
-        const double d = over / (3 * kShear + line.slope);
+        CHECK(back.kept * q == Approx(q - 3 * kShear * d).epsilon(1e-12));
         ++flowed;
         far += part_at(curve, q + 3 * kShear * alpha) > part_at(curve, at + 3 * kShear * alpha) + 2;
         const double left = q - 3 * kShear * d;

@@ -139,7 +139,7 @@ TEST_CASE("the first limit that is reached stops all, and none is looked at late
     CHECK_FALSE(bar.pull_to(0.05 * kLength).stop);
 }
 
-TEST_CASE("a limit that is not reached leaves everything as it would be") {
+TEST_CASE("a limit that is not reached leaves what goes straight as it would be") {
     Pulled limited(kMetal, 100e6 * kArea, Ends::clamped), free(kMetal, 0, Ends::clamped);
     CHECK_FALSE(limited.go(0.05 * kLength, 5));
     free.go(0.05 * kLength, 5);
