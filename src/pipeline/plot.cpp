@@ -138,6 +138,13 @@ bool Plots::has_undrawn() const {
     });
 }
 
+void Plots::forget_from(std::size_t table) const {
+    std::error_code unknown;
+    for (std::size_t n = table; n < names_.size(); ++n) {
+        fs::remove(folder_ / (names_[n] + ".gp"), unknown);
+    }
+}
+
 void Plots::draw() {
     std::error_code unknown;
     for (const std::string& name : names_) {

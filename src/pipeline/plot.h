@@ -27,6 +27,8 @@ class Plots {
     Plots(std::filesystem::path folder, std::vector<std::string> names);
 
     bool has_undrawn() const;
+    // Those from this one on are of tables that are about to be made anew.
+    void forget_from(std::size_t table) const;
     // Each that can be drawn, once in the life of this, until somebody asks the process to end.
     void draw();
     // What kept those that were tried from it, in the log already.

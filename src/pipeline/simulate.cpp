@@ -157,6 +157,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         if (std::exchange(has_begun, true)) return;
         directory.begin(products_of_stages(scene, kept ? reached.stages : 0));
         if (!kept) directory.remove_checkpoint();
+        plots.forget_from(static_cast<std::size_t>(reached.stages));
         reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
                                            kStageRecordRoom * scene.stage.size());
         make_folder(directory.root() / "meshes");

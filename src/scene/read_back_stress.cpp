@@ -39,6 +39,7 @@ void read_back_stress(TableReader& table, Material& material) {
     }
     const auto text = [](double stress) { return quantity_text(stress, Quantity::stress); };
     if (!(material.back_strain > 0)) {
+        if (table.find("back_strain") != nullptr) return;  // told already
         table.mistake("back_stress",
                       "back_stress needs back_strain beside it: the plastic strain over which it "
                       "builds up, such as 0.01");
