@@ -25,8 +25,10 @@
 #include "base/file_contents.h"
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "base/math.h"
 #include "base/memory.h"
 #include "base/process.h"
+#include "geometry/mesh_check.h"
 #include "geometry/mesh_numbered.h"
 #include "geometry/mesh_read_child.h"
 
@@ -253,6 +255,16 @@ bool is_mesh_file_name(const fs::path& file) {
 bool keeps_numbers_beside(const fs::path& file) {
     MeshFormat format;
     return format_of(file, format) && format == MeshFormat::gltf;
+}
+
+bool goes_by_crease_angle(const fs::path& file) {
+    TriMesh smooth;
+    const TriMesh sharp = read_with(file, {}, [&](RawMesh& raw) {
+        RawMesh same = raw;
+        smooth = weld(same, kPi);
+        return weld(raw, 0);
+    });
+    return sharp.triangle_smooth != smooth.triangle_smooth || !check_mesh(sharp).is_one_body();
 }
 
 TriMesh read_mesh(const fs::path& file, const ReadLimits& limits, std::vector<std::string>* finding,

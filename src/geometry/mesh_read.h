@@ -31,6 +31,10 @@ struct ReadLimits {
 TriMesh read_mesh(const std::filesystem::path& file, const ReadLimits& limits = {},
                   std::vector<std::string>* finding = nullptr, double crease_angle = kCreaseAngle);
 
+// Whether a body of the file is shaded by the angle: one that has normals or groups of its own is
+// not, unless it has to be repaired. Throws as read_mesh().
+bool goes_by_crease_angle(const std::filesystem::path& file);
+
 // Whether the name ends like a mesh file that can be read: one of these.
 inline constexpr const char* kMeshKinds = "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS, 3MF";
 bool is_mesh_file_name(const std::filesystem::path& file);

@@ -44,12 +44,14 @@
 #include <optional>
 
 #include "base/math.h"
+#include "base/portable_math.h"
 #include "laws/flow_curve.h"
 
 namespace swage {
 
 inline constexpr double kEdgeShare = 0.25;  // w
 inline constexpr double kDiagonalShare = 1.0;
+inline constexpr double kAllShares = 12 * (kEdgeShare + kDiagonalShare);
 
 // ln of a ratio of lengths by its rational series; error below 1e-7 from 0.7 to 1.4, 2e-4 at 0.4
 // and 2.5. One division, so that loops over it vectorise.
@@ -77,6 +79,16 @@ inline double flow_stress(const Yield& law, double alpha) {
 inline double yield_distortion(const Yield& law) {
     const double e = law.yield_stress / law.shear_modulus;
     return e * e / 3;
+}
+
+// At least q / mu of a cell, from what is soon found: the sum of w (e_b - theta)^2, and the least
+// and most of ln(d / reference_length). S is no more than <e - x, e - x> with any x that is
+// pressure alone, c no more than w r^2 of the longest's ratio r, S / S_0 than that r^2, and i is no
+// farther from 1 than the cell from a cube.
+inline double most_stress(double distortion, double theta, double shortest, double longest) {
+    const double off_cube = std::min(1.0, 2 * (portable::exp(2 * (longest - shortest)) - 1));
+    const double root = std::sqrt(distortion) + std::abs(theta) * std::sqrt(kAllShares) * off_cube;
+    return std::sqrt(3.0) * portable::exp(2 * longest) * root;
 }
 
 using Springs = std::array<double, 24>;  // a number of each connection
@@ -147,7 +159,8 @@ class SpringFrame {
         const double t = (strain.one - strain.along.dot(size_)) / pressed_;
         const double worked = std::max(square - t * t * pressed_, 0.0);
         const double of_mean = std::min(strain.along.dot(strain.mean), worked);
-        return {t, worked, 2 * strain.mean.squaredNorm() + kShares / one_one_ * (worked - of_mean)};
+        return {t, worked,
+                2 * strain.mean.squaredNorm() + kAllShares / one_one_ * (worked - of_mean)};
     }
     double pressure_strain(std::size_t b) const { return 1 - along_[b].dot(size_); }  // i_b
     double weight() const { return one_one_; }
@@ -158,7 +171,7 @@ class SpringFrame {
         double size = 0;
         for (std::size_t b = 0; b < strain.size(); ++b) {
             dev += 0.5 * share[b] * strain[b] * along_[b];
-            size += share[b] * strain[b] / kShares;
+            size += share[b] * strain[b] / kAllShares;
         }
         Mat3 mean;
         mean << kR2 * dev[0] + kR6 * dev[1] + size, kR2 * dev[2], kR2 * dev[4],  //
@@ -168,7 +181,6 @@ class SpringFrame {
     }
 
   private:
-    static constexpr double kShares = 12 * (kEdgeShare + kDiagonalShare);
     static constexpr double kR2 = 0.70710678118654752, kR6 = 0.40824829046386302;
 
     Springs weight_;  // c_b

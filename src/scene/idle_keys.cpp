@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "geometry/mesh_check.h"
 #include "geometry/mesh_read.h"
 
 namespace swage {
@@ -71,11 +70,10 @@ std::string unless_something_meets(const Section& at) {
     const auto meets = [&](const StageSpec& stage) { return meets_anything(at.scene, stage); };
     return any_stage(at.scene, meets) ? "" : kNothingMeets;
 }
+constexpr const char* kNothingMoves =
+    " where no stage is of motion (solver = \"explicit\", \"euler\" or \"energy-stepped\")";
 std::string unless_something_moves(const Section& at) {
-    return any_stage(at.scene, moves_by_steps)
-               ? ""
-               : " where no stage is of motion (solver = \"explicit\", "
-                 "\"euler\" or \"energy-stepped\")";
+    return any_stage(at.scene, moves_by_steps) ? "" : kNothingMoves;
 }
 std::string unless_something_strikes(const Section& at) {
     const std::string still = unless_something_moves(at);
@@ -95,18 +93,10 @@ std::string unless_skin_is_mounted(const Section& at) {
                : " with kind = \"boundary\": such a skin is made anew, of voxels";
 }
 
-// Whether any mesh is shaded by the angle: a file that has normals or groups of its own is not.
 bool creases_matter(const SceneSpec& scene) {
     return std::any_of(scene.body.begin(), scene.body.end(), [](const BodySpec& body) {
         try {
-            std::vector<std::string> told;  // when the mesh is read to be molded
-            const auto shaded = [&](double angle) {
-                return read_mesh(body.mesh.file, {}, &told, angle);
-            };
-            const TriMesh sharp = shaded(0), smooth = shaded(kPi);
-            // What is repaired is shaded anew.
-            return sharp.triangle_smooth != smooth.triangle_smooth ||
-                   !check_mesh(sharp).is_one_body();
+            return goes_by_crease_angle(body.mesh.file);
         } catch (const Error&) {
             return true;  // what is amiss with it is told then
         }
@@ -146,7 +136,7 @@ const std::vector<IdleKey> kOfMaterials = {
     {"damping_ratio",
      [](const Section& at) -> std::string {
          const bool is_still = !any_stage(at.scene, [](const StageSpec& s) { return !relaxes(s); });
-         return is_still && at.material->damping_ratio > 0 ? unless_something_moves(at) : "";
+         return is_still && at.material->damping_ratio > 0 ? kNothingMoves : "";
      }},
     {"friction", unless_something_meets},
     {"static_friction", unless_something_strikes},

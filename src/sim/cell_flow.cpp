@@ -24,7 +24,6 @@ constexpr std::size_t kSpansPerChunk = 1024;
 constexpr double kNearYield = 1e-4;  // of it: strains are kept as floats
 // Of S with c = w and i = 1, which is soon found: below it no cell yields that never has.
 constexpr double kUnyielded = 0.25;
-constexpr double kAllShares = 12 * (kEdgeShare + kDiagonalShare);
 
 constexpr Springs kShares = [] {
     Springs shares{};
@@ -62,15 +61,6 @@ void distortion_block(const float* strain, const float* weight, const float* pla
         const double s = double(strain[n]) - double(plastic[n]) - theta[n];
         distortion[n] += weight[n] > 0 ? share * s * s : 0.0;
     }
-}
-
-// At least q of a cell (laws/yield.h) over mu, whose connections' strains lie between these. S is
-// least of all <e - x, e - x> with x pressure alone, and no c is more than w r^2 of the longest's
-// ratio r; S / S_0 is no more than that r^2; and i is off 1 by no more than the cell is off a cube.
-double most_stress(double distortion, double theta, double shortest, double longest) {
-    const double off_cube = std::min(1.0, 2 * (portable::exp(2 * (longest - shortest)) - 1));
-    const double root = std::sqrt(distortion) + std::abs(theta) * std::sqrt(kAllShares) * off_cube;
-    return std::sqrt(3.0) * portable::exp(2 * longest) * root;
 }
 
 // At least S / root S_0 (laws/yield.h) of any cell of a run that has never flowed. With q = r^2 - 1

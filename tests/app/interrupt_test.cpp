@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <map>
 #include <string>
 #include <thread>
 
@@ -39,6 +40,15 @@ void check_only_whole_files(const fs::path& run) {
             CHECK(bytes.compare(bytes.size() - 8, 4, "IEND") == 0);
         }
     }
+}
+
+// Puts a gnuplot that never ends into the folder; `first`: what it does before.
+std::map<std::string, std::string> hanging_gnuplot(const fs::path& folder,
+                                                   const std::string& first) {
+    const fs::path gnuplot = folder / "gnuplot";
+    put_text(gnuplot, "#!/bin/sh\n" + first + "\nsleep 1000 & wait\n");
+    fs::permissions(gnuplot, fs::perms::owner_all);
+    return {{"PATH", folder.string() + ":" + std::getenv("PATH")}};
 }
 
 }  // namespace
@@ -97,11 +107,8 @@ TEST_CASE("finished frames are kept though a plot hangs, which ends with the run
     const fs::path scene = put_small_scene(
         scratch.path(), 3, "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 3\n");
     const fs::path run = scratch.path() / "run";
-    const fs::path gnuplot = scratch.path() / "gnuplot";
-    put_text(gnuplot, "#!/bin/sh\necho $$ > pid\nmv pid plotting\nsleep 1000 & wait\n");
-    fs::permissions(gnuplot, fs::perms::owner_all);
     RunningSwage running({"run", scene.string(), "--out", run.string()}, scratch.path(),
-                         {{"PATH", scratch.path().string() + ":" + std::getenv("PATH")}});
+                         hanging_gnuplot(scratch.path(), "echo $$ > pid; mv pid plotting"));
     REQUIRE(wait_for(scratch.path() / "plotting", running));
     running.signal(SIGINT);
     const Outcome outcome = running.wait();
@@ -129,12 +136,8 @@ TEST_CASE("a run that is asked to stop while its last plot is drawn is not done"
     const Scratch scratch;
     const fs::path scene = put_small_scene(scratch.path());
     const fs::path run = scratch.path() / "run";
-    const fs::path gnuplot = scratch.path() / "gnuplot";
-    put_text(gnuplot, "#!/bin/sh\ntouch plotting\nsleep 1000 & wait\n");
-    fs::permissions(gnuplot, fs::perms::owner_all);
     RunningSwage running({"run", scene.string(), "--no-render", "--out", run.string()},
-                         scratch.path(),
-                         {{"PATH", scratch.path().string() + ":" + std::getenv("PATH")}});
+                         scratch.path(), hanging_gnuplot(scratch.path(), "touch plotting"));
     REQUIRE(wait_for(scratch.path() / "plotting", running));
     running.signal(SIGINT);
     const Outcome outcome = running.wait();

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-#include <random>
 
-#include "base/math.h"
-#include "laws/cell.h"
 #include "laws/cell_growth.h"
 #include "laws/cell_rest.h"
 #include "tests/catch.h"
+#include "tests/laws/shaken_cube.h"
 
 using namespace swage;
+using namespace swage::test;
 
 namespace {
 
-constexpr double kSpacing = 0.3;
 const CellModuli kLaw = cell_moduli(7.0, 0.3, kSpacing);
 // As steep at first as the matter is stiff, then level, then rising again.
 const std::vector<FlowPoint> kCurve = {{0, 0.02},   {0.005, 0.05}, {0.02, 0.05},
@@ -25,32 +22,6 @@ double stress_on_curve(double alpha) {
         if (alpha < to) return low + (high - low) * (alpha - from) / (to - from);
     }
     return kCurve.back().stress;
-}
-
-using Corners = Eigen::Matrix<double, 3, 8>;
-
-Corners cube() {
-    Corners x;
-    for (int c = 0; c < 8; ++c) x.col(c) = kSpacing * Vec3(c & 1, c >> 1 & 1, c >> 2);
-    return x;
-}
-
-CornerSums<double> sums_of(const Corners& x) {
-    double at[3][8];
-    for (int i = 0; i < 3; ++i) {
-        for (int c = 0; c < 8; ++c) at[i][c] = x(i, c);
-    }
-    return sum_corners(at);
-}
-
-Corners forces_of(const CornerSums<double>& r) {
-    Corners f;
-    double own[3][8];
-    spread_corners(r, own);
-    for (int i = 0; i < 3; ++i) {
-        for (int c = 0; c < 8; ++c) f(i, c) = own[i][c];
-    }
-    return f;
 }
 
 struct Cell {
@@ -78,8 +49,6 @@ State state_of(const Cell& cell, const Corners& x) {
 CellFlowed<double> flow_of(const CellModuli& law, const Cell& cell, const State& s) {
     return flow_cell(law, cell.history, s.strain.log, s.modes, cell.fill);
 }
-
-const double kVolume = kSpacing * kSpacing * kSpacing;
 
 // Of the increment: elastic energy after the return, and what the flow takes.
 double energy(const CellModuli& law, const Cell& cell, const Corners& x) {
@@ -116,25 +85,6 @@ Corners force(const CellModuli& law, const Cell& cell, const Corners& x) {
                                 s.elastic * (scale * cell_stress(law, s.strain, r.kept)) * a,
                                 (fill3 * r.kept) * r.mode_stress, cell.at, law.spacing));
 }
-
-class Draw {
-  public:
-    double operator()(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine_);
-    }
-    Corners shaken(double by) {
-        Corners x = cube();
-        for (double& v : x.reshaped()) v += by * kSpacing * (*this)(-1, 1);
-        return x;
-    }
-    Mat3 turn() {
-        const Vec3 axis((*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1));
-        return Eigen::AngleAxisd((*this)(-3, 3), axis.normalized()).toRotationMatrix();
-    }
-
-  private:
-    std::mt19937 engine_{7};
-};
 
 // Drawn to exp(far) times its length at the most, with a volume of one.
 Symmetric<double> random_stretch(Draw& draw, double far) {

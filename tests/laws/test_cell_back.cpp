@@ -1,41 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Geometry>
-#include <random>
-
-#include "base/math.h"
 #include "laws/back_growth.h"
 #include "laws/cell_forces.h"
 #include "laws/flow_forms.h"
 #include "laws/isotropic_part.h"
 #include "tests/catch.h"
+#include "tests/laws/shaken_cube.h"
 
 using namespace swage;
+using namespace swage::test;
 
 namespace {
 
-constexpr double kSpacing = 0.3, kVolume = kSpacing * kSpacing * kSpacing;
 constexpr double kBack = 0.04, kOver = 0.02;  // X_s, 1 / gamma
-
-using Corners = Eigen::Matrix<double, 3, 8>;
 
 CellModuli law_of(double yield_stress, double hardening, const std::vector<FlowPoint>& curve = {}) {
     CellModuli law = cell_moduli(7.0, 0.3, kSpacing, yield_stress, hardening, curve);
     law.back_stress = kBack;
     law.back_rate = 1 / kOver;
     return law;
-}
-
-Corners cube() {
-    Corners x;
-    for (int c = 0; c < 8; ++c) x.col(c) = kSpacing * Vec3(c & 1, c >> 1 & 1, c >> 2);
-    return x;
-}
-CornerSums<double> sums_of(const Corners& x) {
-    double at[3][8];
-    for (int i = 0; i < 3; ++i) {
-        for (int c = 0; c < 8; ++c) at[i][c] = x(i, c);
-    }
-    return sum_corners(at);
 }
 
 struct Cell {
@@ -80,13 +62,7 @@ Corners force(const CellModuli& law, const Cell& cell, const Corners& x) {
     const CornerSums<double> r = cell_forces<CellKind::kinematic, true, true>(
         constants, sums_of(x), CellShare<double>{cell.fill, cell.at}, cell.history, 1, nullptr,
         &cell.back);
-    double own[3][8];
-    spread_corners(r, own);
-    Corners f;
-    for (int i = 0; i < 3; ++i) {
-        for (int c = 0; c < 8; ++c) f(i, c) = own[i][c];
-    }
-    return f;
+    return forces_of(r);
 }
 void commit(const CellModuli& law, Cell& cell, const Corners& x) {
     const State s = state_of(law, cell, x);
@@ -95,25 +71,6 @@ void commit(const CellModuli& law, Cell& cell, const Corners& x) {
         flowed_on(cell.history, cell.back, s.flowed, s.gradient, s.sums);
     cell.history = grown.history, cell.back = grown.back;
 }
-
-class Draw {
-  public:
-    double operator()(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine_);
-    }
-    Corners shaken(double by) {
-        Corners x = cube();
-        for (double& v : x.reshaped()) v += by * kSpacing * (*this)(-1, 1);
-        return x;
-    }
-    Mat3 turn() {
-        const Vec3 axis((*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1));
-        return Eigen::AngleAxisd((*this)(-3, 3), axis.normalized()).toRotationMatrix();
-    }
-
-  private:
-    std::mt19937 engine_{7};
-};
 
 // One that has flowed this way and that, partly filled, and bent, drawn or pressed on the way.
 Cell worked_cell(Draw& draw, const CellModuli& law, double far) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -121,6 +122,40 @@ TEST_CASE("springs inside the yield surface do not flow, outside their stress re
         CHECK(flow->d_alpha ==
               Approx(std::sqrt(2. / 3) * log.norm() * (1 - stress / q)).epsilon(.01));
     }
+}
+
+TEST_CASE("the bound by which springs are passed over is one, and close where none has flowed") {
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<double> draw(-1, 1);
+    double closest = 0;
+    for (int round = 0; round < 20000; ++round) {
+        const double far = 0.8 * std::abs(draw(engine)) * (round % 4 > 0);
+        const double size = std::pow(10, -4 + 3 * std::abs(draw(engine)));
+        Mat3 gradient;
+        for (int n = 0; n < 9; ++n) gradient(n / 3, n % 3) = far * draw(engine) + (n % 4 == 0);
+        if (gradient.determinant() < 0.01) continue;
+        StrainedCell cell = strained_cell(gradient);
+        const auto [shortest, longest] =
+            std::minmax_element(cell.springs.strain.begin(), cell.springs.strain.end());
+        const double low = *shortest, high = *longest;
+        const double theta = size * draw(engine) * (round % 2 ? 1 : 20);
+        double distortion = 0;
+        Springs weight;
+        for (int b = 0; b < 24; ++b) {
+            const double off = round % 5 > 0 ? size * draw(engine) : 0;
+            cell.springs.strain[b] = theta + off;
+            distortion += cell.share[b] * off * off;
+            weight[b] = cell.share[b] * cell.springs.way[b].squaredNorm();
+        }
+        const SpringFrame frame(cell.springs.way, weight);
+        const Springs& strain = cell.springs.strain;
+        const double q =
+            frame.distortion(frame.sums(strain), frame.product(strain, strain)).stress(1);
+        const double bound = most_stress(distortion, theta, low, high);
+        CHECK(q <= bound * (1 + 1e-9) + 1e-5 * size);  // round-off of t^2 <i, i>
+        if (bound > 0) closest = std::max(closest, q / bound);
+    }
+    CHECK(closest > 0.99);
 }
 
 TEST_CASE("what springs flow never gives energy, however they lie") {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A cell's eight corners, their sums, and where they may go.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "base/math.h"
+#include "laws/cell.h"
+
+namespace swage::test {
+
+constexpr double kSpacing = 0.3, kVolume = kSpacing * kSpacing * kSpacing;
+
+using Corners = Eigen::Matrix<double, 3, 8>;
+
+inline Corners cube() {
+    Corners x;
+    for (int c = 0; c < 8; ++c) x.col(c) = kSpacing * Vec3(c & 1, c >> 1 & 1, c >> 2);
+    return x;
+}
+
+inline CornerSums<double> sums_of(const Corners& x) {
+    double at[3][8];
+    for (int i = 0; i < 3; ++i) {
+        for (int c = 0; c < 8; ++c) at[i][c] = x(i, c);
+    }
+    return sum_corners(at);
+}
+
+inline Corners forces_of(const CornerSums<double>& r) {
+    Corners f;
+    double own[3][8];
+    spread_corners(r, own);
+    for (int i = 0; i < 3; ++i) {
+        for (int c = 0; c < 8; ++c) f(i, c) = own[i][c];
+    }
+    return f;
+}
+
+class Draw {
+  public:
+    double operator()(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine_);
+    }
+    Corners shaken(double by) {
+        Corners x = cube();
+        for (double& v : x.reshaped()) v += by * kSpacing * (*this)(-1, 1);
+        return x;
+    }
+    Mat3 turn() {
+        const Vec3 axis((*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1));
+        return Eigen::AngleAxisd((*this)(-3, 3), axis.normalized()).toRotationMatrix();
+    }
+
+  private:
+    std::mt19937 engine_{7};
+};
+
+}  // namespace swage::test
