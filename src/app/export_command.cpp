@@ -40,16 +40,14 @@ UsdScene usd_scene_of(const Json& record, const std::optional<int>& frames_per_s
 
 int export_run(const ExportArguments& given) {
     const fs::path run = given.run;
-    const std::optional<Json> record = read_record(run / "run.json");
-    if (!record) fail(ExitCode::output, "{}: is no finished run of swage", run.string());
-    UsdScene scene = usd_scene_of(*record, given.frames_per_second);
+    UsdScene scene = usd_scene_of(record_of_run(run), given.frames_per_second);
     scene.tools = !given.no_tools;
     const fs::path file = given.out.empty() ? RunDirectory::exported(run) / (scene.name + ".usda")
                                             : fs::path(given.out);
     if (file.extension() != ".usda") {
         fail(ExitCode::command_line, "{}: can be written as .usda", file.string());
     }
-    const FrameStore store(run / "motion.bin");
+    const FrameStore store(RunDirectory::store_in(run));
     FrameRange frames{1, store.frame_count()};
     if (!given.frames.empty()) frames = parse_frame_range(given.frames, store.frame_count());
     Stopwatch watch;

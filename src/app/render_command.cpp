@@ -100,11 +100,8 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
 
 int render(const RenderArguments& given) {
     const fs::path run = given.run;
-    const std::optional<Json> record = read_record(run / "run.json");
-    if (!record) {
-        fail(ExitCode::output, "{}: is no finished run of swage", run.string());
-    }
-    const FrameStore store(run / "motion.bin");
+    const Json record = record_of_run(run);
+    const FrameStore store(RunDirectory::store_in(run));
     FrameRange frames{1, store.frame_count()};
     if (!given.frames.empty()) frames = parse_frame_range(given.frames, store.frame_count());
 
@@ -113,8 +110,8 @@ int render(const RenderArguments& given) {
     const RenderDirectory directory(out, given.out.empty());
     Stopwatch watch;
     const DrawOutcome drawn =
-        draw_run(store, settings_of(given, *record), frames, directory.files(), watch,
-                 record->contains("bodies") ? run_names_of(*record) : RunNames());
+        draw_run(store, settings_of(given, record), frames, directory.files(), watch,
+                 record.contains("bodies") ? run_names_of(record) : RunNames());
     const int removed = directory.remove_others(frames, drawn.film, drawn.passes);
     if (removed > 0) {
         log_info("{}: {} of an earlier drawing removed", out.string(),

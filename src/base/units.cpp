@@ -185,6 +185,8 @@ void refuse_decimal_comma(std::string_view text, std::size_t comma) {
 
 std::string quantity_name(Quantity quantity) { return about(quantity).name; }
 
+std::string quantity_with_article(Quantity quantity) { return about(quantity).with_article; }
+
 std::optional<Quantity> quantity_named(std::string_view name) {
     for (const QuantityName& one : kQuantities) {
         if (name == one.name) return one.quantity;

@@ -30,7 +30,8 @@ enum class Quantity {
     torque,        // [N m]
 };
 
-std::string quantity_name(Quantity quantity);  // "length"
+std::string quantity_name(Quantity quantity);          // "length"
+std::string quantity_with_article(Quantity quantity);  // "a length"
 std::optional<Quantity> quantity_named(std::string_view name);
 std::vector<std::string> quantity_names();
 std::string si_unit(Quantity quantity);  // "m"; a number's is empty

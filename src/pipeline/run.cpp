@@ -75,7 +75,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
     // Where nothing can have been done yet, nothing is made before it is known to be worth it.
     std::error_code unknown;
     const bool may_be_done =
-        !options.fresh && std::filesystem::exists(options.out / "run.json", unknown);
+        !options.fresh && std::filesystem::exists(RunDirectory::record_in(options.out), unknown);
     if (!may_be_done) refuse_early();
     RunDirectory directory(options.out, identity, options.fresh, options.go_on);
     const DrawnFiles files{directory.root()};
@@ -98,7 +98,10 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         record = *earlier;
         if (plots.has_undrawn()) draw_plots();
         if (!options.draw || is_drawn(record, files, wanted, scene.render)) {
-            log_info("{}: already complete", directory.root().string());
+            log_info("{}: {}", directory.root().string(),
+                     record.at("state") == RunState::complete
+                         ? "already complete"
+                         : "already simulated; as --no-render says, nothing is drawn");
             return record;
         }
     }

@@ -63,8 +63,14 @@ class RunDirectory {
     // The run is about to write its first frame: now what makes room for it is removed. `kept`: of
     // a run that is changed the meshes and curves that stay, from its root on and without endings.
     void begin(const std::vector<std::filesystem::path>& kept = {});
-    std::filesystem::path record() const { return root_ / "run.json"; }
-    std::filesystem::path store() const { return root_ / "motion.bin"; }
+    static std::filesystem::path record_in(const std::filesystem::path& run) {
+        return run / "run.json";
+    }
+    static std::filesystem::path store_in(const std::filesystem::path& run) {
+        return run / "motion.bin";
+    }
+    std::filesystem::path record() const { return record_in(root_); }
+    std::filesystem::path store() const { return store_in(root_); }
     // Of a run that is not done: what it goes on from, and its motion file until it ends.
     std::filesystem::path checkpoint() const { return root_ / "resume" / "checkpoint.bin"; }
     std::filesystem::path kept_motion() const { return root_ / "resume" / "motion.bin"; }

@@ -246,6 +246,14 @@ std::optional<Json> read_record(const fs::path& file) {
     return json;
 }
 
+Json record_of_run(const fs::path& run) {
+    std::error_code error;
+    if (!fs::exists(run, error)) fail(ExitCode::output, "{}: no such folder", run.string());
+    std::optional<Json> record = read_record(RunDirectory::record_in(run));
+    if (!record) fail(ExitCode::output, "{}: is no finished run of swage", run.string());
+    return *std::move(record);
+}
+
 RunNames run_names_of(const Json& record) {
     RunNames names;
     for (const Json& body : record.at("bodies")) names.body.push_back(body.at("name"));

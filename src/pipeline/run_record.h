@@ -42,6 +42,9 @@ void write_record(const RunDirectory& directory, Json& record, const Stopwatch& 
 // else has its name.
 std::optional<Json> read_record(const std::filesystem::path& file);
 
+// That of a run that was made before. Throws Error(output) where the folder is none.
+Json record_of_run(const std::filesystem::path& run);
+
 // Whether the record's pictures include all of these, and they still stand there.
 bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames,
               const RenderSettings& settings);

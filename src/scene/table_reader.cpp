@@ -161,9 +161,9 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
             return false;
         }
     }
-    const std::string kind = quantity_name(quantity);
-    reading_.mistakes.add(node.place, fmt::format("{} is {}; a {} is wanted, such as {}", key,
-                                                  kind_text(node), kind, example_of(quantity)));
+    reading_.mistakes.add(node.place,
+                          fmt::format("{} is {}; {} is wanted, such as {}", key, kind_text(node),
+                                      quantity_with_article(quantity), example_of(quantity)));
     return false;
 }
 

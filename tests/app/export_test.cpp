@@ -91,7 +91,7 @@ TEST_CASE("what cannot be exported is told, and leaves what was there as it was"
         CHECK(outcome.err.find(told) != std::string::npos);
     };
     refused(scratch.path(), "x.usda", 5, "is no finished run of swage");
-    refused(scratch.path() / "none", "x.usda", 5, "is no finished run of swage");
+    refused(scratch.path() / "none", "x.usda", 5, "no such folder");
     refused(run, "x.abc", 2, "x.abc: can be written as .usda");
     refused(run, "mine.usda", 8, "mine.usda: is no file that swage export wrote");
     refused(run, "folder.usda", 5, "is a folder, not a file");

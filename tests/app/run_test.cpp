@@ -83,6 +83,18 @@ TEST_CASE(
     CHECK(again.err.find("already complete") != std::string::npos);
     CHECK(files_below(run) == before);
 
+    // A run whose drawing was cut short is not called complete where none is to be drawn.
+    const std::string complete = before.at("run.json");
+    Json undrawn = Json::parse(complete);
+    undrawn["state"] = "simulated";
+    put_text(run / "run.json", undrawn.dump());
+    const Outcome not_drawn =
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+    CHECK(not_drawn.code == 0);
+    CHECK(not_drawn.err.find("already complete") == std::string::npos);
+    CHECK(not_drawn.err.find("already simulated") != std::string::npos);
+    put_text(run / "run.json", complete);
+
     // Lost pictures come back as they were, without simulating again.
     const std::string still = before.at("frames/frame_0003.png");
     fs::remove(run / "frames/frame_0003.png");
