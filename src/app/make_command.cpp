@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "geometry/make_shape.h"
 #include "geometry/mesh_check.h"
+#include "geometry/files_beside.h"
 #include "geometry/mesh_write.h"
 #include "render/png.h"
 

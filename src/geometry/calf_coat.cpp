@@ -5,7 +5,7 @@
 #include "base/portable_math.h"
 #include "geometry/calf.h"
 #include "geometry/implicit.h"
-#include "geometry/noise.h"
+#include "geometry/gradient_noise.h"
 
 namespace swage {
 

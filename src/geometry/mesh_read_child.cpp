@@ -2,11 +2,15 @@
 // Chooses the reader and finds the images that materials name.
 #include "geometry/mesh_read_child.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <new>
 
 #include "base/error.h"
+#include "base/file_contents.h"
+#include "geometry/picture_kind.h"
 #include "geometry/text_scan.h"
 
 namespace swage {
@@ -77,18 +81,45 @@ std::string url_decoded(const std::string& text) {
     return out;
 }
 
+// The first bytes of a file, as far as it has any.
+std::string head_of(const fs::path& file) {
+    std::string head(16, '\0'), why;
+    const FileHandle opened = open_plain_file(file, why);
+    if (opened.id() < 0) return {};
+    head.resize(read_up_to(opened.id(), head.data(), head.size()).value_or(0));
+    return head;
+}
+
+void tell_of_picture(const RawMaterial& material, MeshSource& source) {
+    if (material.texture.empty() && material.texture_bytes.empty()) return;
+    const std::optional<PictureKind> kind =
+        picture_kind(material.texture.empty() ? material.texture_bytes : head_of(material.texture));
+    if (!kind || kind->is_read) return;
+    const std::string name =
+        material.texture.empty()
+            ? ""
+            : fmt::format(" '{}'", fs::path(material.texture).filename().string());
+    source.finding.push_back(fmt::format(
+        "material '{}': its image{} is of the kind {}, and drawn are PNG, JPEG, BMP and TGA",
+        material.name, name, kind->name));
+}
+
 RawMesh read_raw(MeshSource& source) {
     RawMesh mesh = source.format == MeshFormat::obj   ? read_obj(source)
                    : source.format == MeshFormat::ply ? read_ply(source)
                    : source.format == MeshFormat::off ? read_off(source)
                                                       : read_by_assimp(source);
     for (RawMaterial& material : mesh.material) {
-        if (material.texture.empty()) continue;
+        if (material.texture.empty()) {
+            tell_of_picture(material, source);
+            continue;
+        }
         const fs::path image = find_image(source.file.parent_path(), material.texture);
         if (image.empty())
             source.finding.push_back(fmt::format("material '{}': its image '{}' is missing",
                                                  material.name, material.texture));
         material.texture = image.string();
+        tell_of_picture(material, source);
         // Exporters that leave the colour black beside an image do not mean it.
         if (!image.empty() && material.color.isZero()) material.color = Vec3::Ones();
     }

@@ -144,7 +144,8 @@ class ObjReader {
     // Counts from 1, or backwards from -1. Ranges are checked when all is read.
     int index(std::string_view word, std::size_t count) {
         long long value = 0;
-        if (!to_integer(word, value) || value == 0 || std::abs(value) > 0x7fffffff)
+        constexpr long long kMost = 0x7fffffff;
+        if (!to_integer(word, value) || value == 0 || value > kMost || value < -kMost)
             bad_line(line_, fmt::format("'{}' is not an index", word.substr(0, 40)));
         if (value > 0) return static_cast<int>(value - 1);
         value += static_cast<long long>(count);

@@ -11,7 +11,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "geometry/mesh_write.h"
+#include "geometry/files_beside.h"
 #include "geometry/usd_look.h"
 #include "geometry/usd_mesh.h"
 #include "geometry/usd_text.h"

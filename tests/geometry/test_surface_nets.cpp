@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "geometry/edges.h"
-#include "geometry/noise.h"
+#include "geometry/gradient_noise.h"
 #include "geometry/surface_nets.h"
 #include "tests/catch.h"
 
