@@ -26,7 +26,6 @@ class ExpressionReader {
     // The names that expressions see from now on, beside those of before.
     void add_name(const std::string& name) { known_.push_back(name); }
     void add_names(const std::vector<std::string>& names);
-    const std::vector<std::string>& names() const { return known_; }
     // One that also sees what motions and strengths see beside all that: t and duration, and stop,
     // but for blades, whose cut is settled when they first touch.
     ExpressionReader timed(bool stops = true) const;

@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/expression.h"
 #include "geometry/mesh_read.h"
+#include "scene/expressions.h"
 
 namespace swage {
 
@@ -52,13 +54,10 @@ std::string with_solver(const Section& at) {
 std::string unless_it_relaxes(const Section& at) {
     return relaxes(*at.stage) ? "" : with_solver(at);
 }
-std::string unless_it_is_explicit(const Section& at) {
-    return is_explicit(*at.stage) ? "" : with_solver(at);
-}
 std::string unless_it_makes_steps(const Section& at) {
     return is_explicit(*at.stage) || is_implicit(*at.stage) ? "" : with_solver(at);
 }
-std::string unless_it_drags(const Section& at) {
+std::string unless_it_moves_by_steps(const Section& at) {
     return moves_by_steps(*at.stage) ? "" : with_solver(at);
 }
 
@@ -69,6 +68,37 @@ constexpr const char* kNothingMeets =
 std::string unless_something_meets(const Section& at) {
     const auto meets = [&](const StageSpec& stage) { return meets_anything(at.scene, stage); };
     return any_stage(at.scene, meets) ? "" : kNothingMeets;
+}
+// Whether the friction of some tool goes by that of the material.
+bool has_tool_of_material_friction(const StageSpec& stage) {
+    std::vector<std::string> known = work_piece_names(), goes_by_it = {"material_friction"};
+    const auto names_it = [&](const Expression& text) {
+        if (text.empty()) return false;
+        const std::vector<std::string> used = Formula(text.text, known).used();
+        return std::find_first_of(used.begin(), used.end(), goes_by_it.begin(), goes_by_it.end()) !=
+               used.end();
+    };
+    for (const ParameterSpec& one : stage.machine.parameter) {
+        if (stage.parameter.count(one.name) == 0 && names_it(one.default_value))
+            goes_by_it.push_back(one.name);
+        known.push_back(one.name);
+    }
+    return std::any_of(
+        stage.machine.tool.begin(), stage.machine.tool.end(),
+        [&](const ToolSpec& tool) { return tool.friction.empty() || names_it(tool.friction); });
+}
+std::string unless_something_rubs(const Section& at) {
+    const std::string apart = unless_something_meets(at);
+    if (!apart.empty()) return apart;
+    const auto rubs = [&](const StageSpec& stage) {
+        // In motion a tool's holds before it slides in the proportion of the material's.
+        const bool meets_its_like = at.scene.body.size() > 1 || stage.sim.self_contact;
+        return meets_its_like || (!relaxes(stage) && meets_anything(at.scene, stage)) ||
+               has_tool_of_material_friction(stage);
+    };
+    return any_stage(at.scene, rubs)
+               ? ""
+               : ": every tool has a friction of its own, and nothing else touches";
 }
 constexpr const char* kNothingMoves =
     " where no stage is of motion (solver = \"explicit\", \"euler\" or \"energy-stepped\")";
@@ -138,7 +168,7 @@ const std::vector<IdleKey> kOfMaterials = {
          const bool is_still = !any_stage(at.scene, [](const StageSpec& s) { return !relaxes(s); });
          return is_still && at.material->damping_ratio > 0 ? kNothingMoves : "";
      }},
-    {"friction", unless_something_meets},
+    {"friction", unless_something_rubs},
     {"static_friction", unless_something_strikes},
     {"restitution", unless_something_strikes},
     {"stickiness", unless_something_strikes},
@@ -162,7 +192,7 @@ const std::vector<IdleKey> kOfStages = {
     {"tolerance", unless_it_relaxes},
     {"iteration_limit", unless_it_relaxes},
     {"halving_limit", unless_it_relaxes},
-    {"step_safety", unless_it_is_explicit},
+    {"step_safety", unless_it_moves_by_steps},
     {"retry_limit", unless_it_makes_steps},
     {"self_contact",
      [](const Section& at) -> std::string {
@@ -189,17 +219,17 @@ const std::vector<IdleKey> kOfStages = {
                     ? fmt::format(": the machine {} has no grip", at.stage->machine.name)
                     : "";
      }},
-    {"medium_density", unless_it_drags},
+    {"medium_density", unless_it_moves_by_steps},
     {"drag_coefficient",
      [](const Section& at) -> std::string {
-         const std::string other = unless_it_drags(at);
+         const std::string other = unless_it_moves_by_steps(at);
          if (!other.empty() || at.stage->sim.medium_density > 0) return other;
          return " without medium_density";
      }},
-    {"directional_drag", unless_it_drags},
+    {"directional_drag", unless_it_moves_by_steps},
     {"directional_drag_along",
      [](const Section& at) -> std::string {
-         const std::string other = unless_it_drags(at);
+         const std::string other = unless_it_moves_by_steps(at);
          if (!other.empty() || at.stage->sim.directional_drag > 0) return other;
          return " without directional_drag";
      }},

@@ -117,7 +117,6 @@ class TableReader {
     void leave_unknown() { judge_unknown_ = false; }
 
     const Place& place() const { return node_.place; }
-    const std::string& section() const { return section_; }
     // What is looked up from now on belongs to this narrower section ("[[stage]] with ...").
     void narrow(std::string section);
     bool has_other_keys(const std::string& than) const;

@@ -26,6 +26,9 @@ TEST_CASE("a material's key that nothing in the scene asks is told") {
         {"no contact",
          scene("rubber\"\nfriction = 0.3\n", "twist\"\n"),
          {"5:12: warning: friction has no effect: nothing can touch"}},
+        {"no tool that goes by it",
+         scene("rubber\"\nfriction = 0.3\n", "bend\"\nfriction = 0.2\n"),
+         {"5:12: warning: friction has no effect: every tool has a friction of its own"}},
         {"at rest",
          scene("rubber\"\nrestitution = 0.3\nstickiness = 3\ndamping_ratio = 0.1\n"
                "static_friction = 0.9\n",
@@ -59,6 +62,10 @@ TEST_CASE("a material's key that nothing in the scene asks is told") {
                    "self_contact = true\n"),
              scene("rubber\"\nfriction = 0.3\n", "twist\"\nself_contact = true\n"),
              scene("rubber\"\nfriction = 0.3\n", "bend\"\n"),
+             scene("rubber\"\nfriction = 0.3\n", "wring\"\n"),
+             scene("rubber\"\nfriction = 0.3\n", "bend\"\nfriction = 0.2\nself_contact = true\n"),
+             scene("rubber\"\nfriction = 0.3\n",
+                   "bend\"\nfriction = 0.2\n[[stage]]\nmachine = \"bend\"\n"),
              scene("rubber\"\ndamping_ratio = 0\n", "bend\"\n"),
              scene("rubber\"\ndamping_ratio = 0.1\n",
                    "bend\"\n[[stage]]\nmachine = \"twist\"\nsolver = \"explicit\"\n"),
@@ -86,6 +93,7 @@ TEST_CASE("a stage's key that its machine or solver does not ask is told") {
              scene("rubber\"\n", "bend\"\ncontact_stiffness = 3\n"),
              scene("rubber\"\n", "twist\"\ncontact_stiffness = 3\nself_contact = true\n"),
              scene("rubber\"\n", kDrop + "sleep = false\n"),
+             scene("rubber\"\n", kDrop + "solver = \"energy-stepped\"\nstep_safety = 0.1\n"),
          }) {
         INFO(right.text());
         CHECK(mistakes_in(right.text()).empty());
