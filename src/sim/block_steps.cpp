@@ -300,7 +300,6 @@ MoveOutcome BlockSolver::advance(const Drive& from, const Drive& to) {
     }
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         outcome.body[b].load = bodies_[b].load();
-        outcome.drag_bounded = outcome.drag_bounded || bodies_[b].drag_was_bounded();
         outcome.asleep += bodies_.is_asleep(b);
     }
     return outcome;

@@ -64,7 +64,7 @@ class ContactSide {
     OwnShare own_share(int point, const Vec3i& site, const Vec3& place) const;
     // Whether a point meets next to nothing in this cell and around it.
     bool is_own_place(int point, const Vec3i& site) const;
-    // Whether the point is within three cells of this one and connected to it within that distance.
+    // Whether the point is within four cells of this one, on each axis, and connected to it within these.
     bool is_neighbour(int point, const Vec3i& site) const;
 
   private:

@@ -94,11 +94,9 @@ bool ImplicitStep::move(MovingBody& body, const Drive& now, double step, BodyOut
     for (std::size_t p = 0; p < count; ++p) problem.diagonal[p] += inertia_[p];
     problem.drag = inertia_;
     Newton::Result result = newton_->solve(matter, problem);
-    iterations_ += result.steps;
     if (!result.converged) {
         matter.particle_position = from_aim ? carried : aim_;
         result = newton_->solve(matter, problem);
-        iterations_ += result.steps;
     }
     if (!result.converged) return false;
     for (std::size_t p = 0; p < count; ++p) {

@@ -32,13 +32,11 @@ class ImplicitStep {
     // anywhere.
     bool move(MovingBody& body, const Drive& now, double step, BodyOutcome& outcome);
 
-    int iterations() const { return iterations_; }  // of Newton, ever
 
   private:
     std::unique_ptr<Newton> newton_;
     std::vector<double> inertia_;  // m / h^2 [N/m]
     Vec3Array start_, aim_;
-    int iterations_ = 0;
 };
 
 }  // namespace swage

@@ -38,7 +38,6 @@ class MixedCells {
   public:
     // Cells with `carried` 0 are left out.
     void cells_changed(const Aggregate& matter, const std::vector<float>& carried);
-    bool any() const { return !batches_.cell.empty(); }
 
     // Adds their forces on the particles [N]. Laws: by material, as they are to hold now.
     void add_forces(const Aggregate& matter, const std::vector<MaterialLaw>& laws,

@@ -34,6 +34,7 @@ struct BodyOutcome {
     int broken = 0;                 // connections
     double damped_work = 0;         // [J]; in motion only
     double drag_work = 0;           // [J]; in motion only
+    bool drag_bounded = false;      // was more than a step can follow
     std::vector<double> work;       // by tool, then grip [J]
     std::vector<char> touched;      // likewise: at the end of any step; in motion only
     std::vector<double> push_work;  // by load, then gravity [J]
@@ -62,7 +63,6 @@ struct BodyOutcome {
 
 struct MoveOutcome : StepCounts {
     std::vector<BodyOutcome> body;
-    bool drag_bounded = false;    // was more than a step can follow; in motion only
     int asleep = 0;               // bodies at rest at the end; in motion only
     int inside_out = 0;           // cells at once that shorter steps did not keep from it
     int afloat = 0, hanging = 0;  // pieces that would fall, or swing about a hinge, from now on

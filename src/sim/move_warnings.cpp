@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/text.h"
 
 namespace swage {
@@ -47,7 +49,8 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
                         "{:.2g} N of forces may be out of balance",
                         outcome.left_over));
     }
-    if (outcome.drag_bounded) {
+    if (std::any_of(outcome.body.begin(), outcome.body.end(),
+                    [](const BodyOutcome& body) { return body.drag_bounded; })) {
         warning.emplace_back(
             "the drag is so strong that it stops some of the surface within a few steps; there it "
             "is held to what a step can follow");

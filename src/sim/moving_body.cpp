@@ -205,7 +205,11 @@ void MovingBody::find_inner_forces(double step, BodyOutcome& outcome) {
 
 void MovingBody::find_forces(const Drive& now, double step, BodyOutcome& outcome) {
     find_inner_forces(step, outcome);
-    if (drag_.acts()) outcome.drag_work += step * drag_.add_forces(matter_, force_);
+    if (drag_.acts()) {
+        const SurfaceDrag::Drag drag = drag_.add_forces(matter_, force_);
+        outcome.drag_work += step * drag.power;
+        outcome.drag_bounded = outcome.drag_bounded || drag.bounded;
+    }
     pushes_.add_forces(matter_, now, force_);
     gravity_ = pushes_.gravity(now);
     // Last: dashpots go by the speed that all else makes.

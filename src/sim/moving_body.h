@@ -119,7 +119,6 @@ class MovingBody {
     const LoadSet& pushes() const { return pushes_; }
     const std::vector<LoadSum>& load() const { return load_; }  // by tool, then grip
     bool drags() const { return drag_.acts(); }  // a medium does, which implicit steps have none of
-    bool drag_was_bounded() const { return drag_.was_bounded(); }
 
     // All that a step changes.
     struct State {

@@ -90,8 +90,6 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     move.let_go = unsolved == Unsolved::leave;
     Relaxation found = search_.find(forces_, move);
     outcome.iterations += found.iterations;
-    const double residual = std::exchange(outcome.residual, found.residual);
-    const bool buckled = std::exchange(outcome.buckled, outcome.buckled || found.buckled);
     if (!found.converged || smallest_cell_volume(matter_) <= kSmallestCellVolume) {
         const std::string met = this->met(move);
         if (take_back(found, move, outcome)) return increment(from, to, depth, outcome, unsolved);
@@ -104,8 +102,6 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
     }
     if (goes_beyond(move)) {
         put_back(move);
-        outcome.residual = residual;
-        outcome.buckled = buckled;
         return false;
     }
     if (const double share = share_to_yield(move); share < 1) {
@@ -114,6 +110,8 @@ bool QuasistaticSolver::increment(const Drive& from, const Drive& to, int depth,
         const Drive middle = between(from, to, share);
         return increment(from, middle, depth, outcome) && increment(middle, to, depth, outcome);
     }
+    outcome.residual = std::max(outcome.residual, found.residual);
+    outcome.buckled = outcome.buckled || found.buckled;
     keep(move, found.buckled, outcome);
     return true;
 }

@@ -84,7 +84,7 @@ struct SurfaceDrag::Kernel {
     }
 
     SWAGE_INLINE void find(std::size_t chunk) const {
-        Chunk result;
+        Drag result;
         const std::size_t stop = std::min(drag.cell_.size(), (chunk + 1) * kChunk);
         const Vec3Array &place = matter.particle_position, &speed = matter.particle_velocity;
         for (std::size_t n = chunk * kChunk; n < stop; ++n) {
@@ -118,30 +118,31 @@ struct SurfaceDrag::Kernel {
     }
 };
 
-double SurfaceDrag::add_forces(const Aggregate& matter, Vec3Array& force) {
+SurfaceDrag::Drag SurfaceDrag::add_forces(const Aggregate& matter, Vec3Array& force) {
     parallel_for(chunk_.size(), [&](std::size_t chunk) {
         by_fours([&]() __attribute__((always_inline)) { Kernel{*this, matter}.find(chunk); });
     });
-    double power = 0;
-    for (const Chunk& one : chunk_) {
-        was_bounded_ = was_bounded_ || one.bounded;
-        power += one.power;
+    Drag sum;
+    for (const Drag& one : chunk_) {
+        sum.bounded = sum.bounded || one.bounded;
+        sum.power += one.power;
     }
     for (std::size_t n = 0; n < cell_.size(); ++n) {
         for (int c = 0; c < 8; ++c) force.add(cell_[n].corner[c], vec3(push_[n][c]));
     }
-    return face_.empty() ? power : power + add_open_forces(matter, force);
+    add_open_forces(matter, force, sum);
+    return sum;
 }
 
-double SurfaceDrag::add_open_forces(const Aggregate& matter, Vec3Array& force) {
+void SurfaceDrag::add_open_forces(const Aggregate& matter, Vec3Array& force, Drag& sum) const {
     double power = 0;
     for (const auto& [open, most] : face_) {
         const Vec3 now = open.mean(matter.particle_velocity);
-        const Vec3 f = force_on(open.outward(matter.particle_position), now, most, was_bounded_);
+        const Vec3 f = force_on(open.outward(matter.particle_position), now, most, sum.bounded);
         spread(open, f, force);
         power -= f.dot(now);
     }
-    return power;
+    sum.power += power;
 }
 
 }  // namespace swage

@@ -27,9 +27,11 @@ class SurfaceDrag {
     // past what was laid open.
     void connections_changed(const Aggregate& matter);
 
-    // Adds the forces; returns the power that they take [W].
-    double add_forces(const Aggregate& matter, Vec3Array& force);
-    bool was_bounded() const { return was_bounded_; }  // whether any drag ever was
+    struct Drag {
+        double power = 0;      // that the forces take [W]
+        bool bounded = false;  // somewhere
+    };
+    Drag add_forces(const Aggregate& matter, Vec3Array& force);
 
   private:
     struct alignas(32) Patch {
@@ -42,10 +44,6 @@ class SurfaceDrag {
         std::size_t first, end;  // patches
         bool parted = false;
     };
-    struct Chunk {
-        double power = 0;
-        bool bounded = false;
-    };
     struct Face {
         OpenFace open;
         double most;  // force over speed [N s/m]
@@ -53,17 +51,16 @@ class SurfaceDrag {
     struct Kernel;
     // `outward`: area vector [m2]; `most`: force over speed [N s/m].
     Vec3 force_on(const Vec3& outward, const Vec3& velocity, double most, bool& bounded) const;
-    double add_open_forces(const Aggregate& matter, Vec3Array& force);
+    void add_open_forces(const Aggregate& matter, Vec3Array& force, Drag& sum) const;
 
     AmbientDrag ambient_;
     DirectionalDrag facing_;
     std::vector<Patch> patch_;
     std::vector<Cell> cell_;
     std::vector<std::array<Vec4, 8>> push_;  // of each cell's corners [N]
-    std::vector<Chunk> chunk_;
+    std::vector<Drag> chunk_;
     double step_;  // [s]
     std::vector<Face> face_;
-    bool was_bounded_ = false;
 };
 
 }  // namespace swage

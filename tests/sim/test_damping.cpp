@@ -230,7 +230,7 @@ TEST_CASE("drag does not grow as the gap of a crack or a cut opens") {
     const auto power = [&] {
         Vec3Array force;
         force.x = force.y = force.z = std::vector<double>(m.particle_count(), 0.0);
-        return drag.add_forces(m, force);
+        return drag.add_forces(m, force).power;
     };
     const double before = power();
     for (std::size_t p = 0; p < m.particle_count(); ++p) {
@@ -238,6 +238,23 @@ TEST_CASE("drag does not grow as the gap of a crack or a cut opens") {
     }
     CHECK(before > 0);
     CHECK(power() == Approx(before));
+}
+
+TEST_CASE("a drag is bounded as long as it is too strong for its steps, and no longer") {
+    Aggregate m = make_block(2, 2, 2, 0.1, kSpringy);
+    SimSettings settings = motion_settings();
+    settings.medium_density = 1000;
+    settings.drag_coefficient = 1;
+    SurfaceDrag drag(m, settings, 1e-4);
+    const auto is_bounded = [&](double speed) {
+        for (std::size_t p = 0; p < m.particle_count(); ++p)
+            m.particle_velocity.set(p, Vec3(speed, 0, 0));
+        Vec3Array force;
+        force.resize(m.particle_count());
+        return drag.add_forces(m, force).bounded;
+    };
+    CHECK(is_bounded(1e6));
+    CHECK_FALSE(is_bounded(1));
 }
 
 TEST_CASE("a medium meets what a cut has laid open") {
@@ -249,7 +266,7 @@ TEST_CASE("a medium meets what a cut has laid open") {
     const auto power = [&] {
         Vec3Array force;
         force.resize(m.particle_count());
-        return drag.add_forces(m, force);
+        return drag.add_forces(m, force).power;
     };
     const double front = 16 * 0.01;  // [m2]
     CHECK(power() == Approx(3 * front * 2 * 2));
