@@ -85,6 +85,21 @@ std::string range_text(const CostRange& range, std::string (*text)(double)) {
     return text(range.least) + " to " + text(range.most);
 }
 
+// How fast the film plays a stage that takes the time that it says.
+std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
+    const double played = double(stage.frames) / scene.render.frames_per_second,
+                 slower = played / scene.duration_of(stage);
+    const auto times = [](double ratio) { return fmt::format("{:.3g} times", ratio); };
+    const std::string speed = std::abs(slower - 1) < 0.01 ? "as fast as it goes"
+                              : slower > 1                ? times(slower) + " slower than it goes"
+                                           : times(1 / slower) + " faster than it goes";
+    return fmt::format("{} at {} a second play {} in {}: {}",
+                       counted(std::size_t(stage.frames), "frame", "frames"),
+                       scene.render.frames_per_second,
+                       quantity_text(scene.duration_of(stage), Quantity::time),
+                       quantity_text(played, Quantity::time), speed);
+}
+
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,
                       const RunCost& cost) {
     std::string text = scene.name + ": no mistakes\n";
@@ -128,6 +143,11 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         for (const std::string& limit : place.limit) line("limit", whose + limit);
     }
     line("frames", count_text(cost.frames));
+    for (const StageSpec& stage : scene.stage) {
+        if (stage.sim.solver == Solver::quasistatic) continue;
+        const std::string whose = scene.stage.size() == 1 ? "" : stage.name + ": ";
+        line("film", whose + film_text(scene, stage));
+    }
     line("steps", range_text(cost.steps, count_text));
     line("memory", fmt::format("about {}, the matter itself {}", bytes_text(cost.memory_bytes),
                                bytes_text(cost.mold.bytes)));

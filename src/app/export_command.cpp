@@ -26,15 +26,10 @@ UsdScene usd_scene_of(const Json& record, const std::optional<int>& frames_per_s
     UsdScene scene;
     scene.render = render_settings_of(record);
     if (frames_per_second) scene.render.frames_per_second = *frames_per_second;
-    try {
-        scene.name = fs::path(record.at("scene").get<std::string>()).stem().string();
-        RunNames names = run_names_of(record);
-        scene.body = std::move(names.body);
-        scene.stage = std::move(names.stage);
-    } catch (const Json::exception&) {
-        fail(ExitCode::output,
-             "run.json does not say what bodies and stages the run has; run it again with --fresh");
-    }
+    RunNames names = run_names_of(record);
+    scene.name = fs::path(names.scene).stem().string();
+    scene.body = std::move(names.body);
+    scene.stage = std::move(names.stage);
     return scene;
 }
 

@@ -164,7 +164,12 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
             picture.film_share = still_share(settings.camera, frame - 1, store.frame_count());
             image = renderer.draw(picture, settings.passes.empty() ? nullptr : &layers);
             mattes = source.mattes(passes);
-            if (has_legend) look->add_legend(image);
+            if (has_legend && !look->add_legend(image) && frame == frames.first) {
+                outcome.warning.push_back(fmt::format(
+                    "the colour scale has no room in pictures of {} x {} pixels and is left out",
+                    settings.width, settings.height));
+                log_warning_text(outcome.warning.back());
+            }
         }
         const auto lap = watch.lap("wait for files");
         if (writing.valid()) writing.get();

@@ -90,13 +90,13 @@ std::array<bool, 2> FieldLook::beyond() const {
     return {(extent_[0] < range_[0] - least), (extent_[1] > range_[1] + least)};
 }
 
-void FieldLook::add_legend(Image& image) const {
+bool FieldLook::add_legend(Image& image) const {
     const SkinFieldWords& words = words_of(field_);
     Legend legend = make_legend(words.title, words.unit, range_[0], range_[1]);
     legend.scale = scale();
     legend.below = beyond()[0];
     legend.above = beyond()[1];
-    draw_legend(legend, image);
+    return draw_legend(legend, image);
 }
 
 }  // namespace swage

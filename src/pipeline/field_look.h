@@ -22,7 +22,7 @@ class FieldLook {
     std::array<bool, 2> beyond() const;
     // Colours a skin by the body's field now, whatever it looked like.
     void dress(const StoredBody& body, TriMesh& skin) const;
-    void add_legend(Image& image) const;
+    bool add_legend(Image& image) const;
 
   private:
     ColorScale scale() const;

@@ -19,6 +19,7 @@ namespace swage {
 struct RunNames {
     std::vector<std::string> body;
     std::vector<UsdStage> stage;
+    std::string scene = {};  // the file's
 };
 
 using MatteColor = std::array<std::uint8_t, 3>;

@@ -256,9 +256,15 @@ Json record_of_run(const fs::path& run) {
 
 RunNames run_names_of(const Json& record) {
     RunNames names;
-    for (const Json& body : record.at("bodies")) names.body.push_back(body.at("name"));
-    for (const Json& stage : record.value("stages", Json::array())) {
-        names.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
+    try {
+        names.scene = record.at("scene");
+        for (const Json& body : record.at("bodies")) names.body.push_back(body.at("name"));
+        for (const Json& stage : record.value("stages", Json::array())) {
+            names.stage.push_back({stage.at("name"), stage.at("frames").at(1)});
+        }
+    } catch (const Json::exception&) {
+        fail(ExitCode::output,
+             "run.json does not say what bodies and stages the run has; run it again with --fresh");
     }
     return names;
 }

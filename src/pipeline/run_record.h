@@ -49,7 +49,7 @@ Json record_of_run(const std::filesystem::path& run);
 bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& frames,
               const RenderSettings& settings);
 
-// Of a record that has bodies and stages; throws Json::exception.
+// Throws Error(output) where it says no bodies and stages.
 RunNames run_names_of(const Json& record);
 
 }  // namespace swage

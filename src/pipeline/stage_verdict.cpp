@@ -16,7 +16,9 @@ namespace swage {
 
 namespace {
 
-constexpr double kOverlap = 0.5;  // spacings that a body may lie in itself untold
+constexpr double kLittleGain = 0.01;  // of the energy in play, from nowhere: no matter
+constexpr double kMostOfTaken = 0.2;  // likewise, of what friction and flow took
+constexpr double kOverlap = 0.5;      // spacings that a body may lie in itself untold
 
 // Tools and grips carry what they hold so far, at most [m]; between frames they go straight.
 double way_of(const StageEnd& end) {
@@ -191,12 +193,19 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             end.totals.severed));
     }
     if (const std::string pressed = pressed_at_start(end); !pressed.empty()) warn(pressed);
-    if (const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
-        // At rest, what snaps or slips through is lost, and no mistake.
-        sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {
+    const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
+    const double taken = end.last.friction + end.last.plastic;
+    // At rest, what snaps or slips through is lost, and no mistake.
+    if (sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {
         warn(fmt::format("the energy books do not close: {:.3g} % of the energy in play is {}; {}",
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
                          how_to_close(sim.solver)));
+    } else if (sim.solver == Solver::quasistatic && share < -kLittleGain &&
+               -end.last.remainder > kMostOfTaken * taken) {
+        warn(
+            fmt::format("of the {:.3g} J that friction and flow took, tools, loads and what was "
+                        "stored gave {:.3g} J less; {}",
+                        taken, -end.last.remainder, how_to_close(sim.solver)));
     }
     if (may_lie_in_itself(end) && ended != StageEnded::interrupted) {
         Aggregate& body = end.bodies.front().matter;

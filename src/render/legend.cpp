@@ -161,7 +161,7 @@ double legend_share(int picture_height) {
     return 2 * rows > picture_height ? 0 : double(rows) / picture_height;
 }
 
-void draw_legend(const Legend& legend, Image& image) {
+bool draw_legend(const Legend& legend, Image& image) {
     const LegendSize size = size_in(image.height);
     const int pad = size.pad, bar = size.bar;
     const auto width_of = [&](const std::string& text) {
@@ -172,7 +172,7 @@ void draw_legend(const Legend& legend, Image& image) {
     const int length = std::max(image.width * 2 / 5, width_of(legend.title));
     const int left = (image.width - length) / 2, right = left + length;
     const int top = image.height - size.height() - pad;
-    if (left < ends + 2 * pad || top < image.height / 2) return;
+    if (left < ends + 2 * pad || top < image.height / 2) return false;
 
     Paint paint{image};
     paint.fill(left - ends - pad, top, right + ends + pad, top + size.height(), kGround,
@@ -195,7 +195,7 @@ void draw_legend(const Legend& legend, Image& image) {
     const auto begin_of = [&](const Legend::Tick& one) {
         return at(one) + 0.5 * (size.mark - letters_width(one.text, size.letters));
     };
-    if (legend.tick.empty()) return;
+    if (legend.tick.empty()) return true;
     const double last = begin_of(legend.tick.back());
     double written = 0;  // up to there
     for (const Legend::Tick& one : legend.tick) {
@@ -205,6 +205,7 @@ void draw_legend(const Legend& legend, Image& image) {
         write(paint, from, y + bar + 2 * size.tick, size, one.text);
         written = to;
     }
+    return true;
 }
 
 }  // namespace swage

@@ -26,8 +26,9 @@ struct Legend {
 // empty; it gets the prefix that suits the range, low < high.
 Legend make_legend(const std::string& title, const std::string& unit, double low, double high);
 
-// At the bottom of the picture, on a darkened ground. A picture too small for it stays as it is.
-void draw_legend(const Legend& legend, Image& image);
+// At the bottom of the picture, on a darkened ground. A picture too small for it stays as it is:
+// false then.
+bool draw_legend(const Legend& legend, Image& image);
 // The share of the picture's height that it takes at the bottom, less than half; 0: it is too
 // small.
 double legend_share(int picture_height);

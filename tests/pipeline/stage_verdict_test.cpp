@@ -104,6 +104,25 @@ TEST_CASE("a gap in the books is told however much the start has thrown off") {
     CHECK(told(1e3 * work) == told(0));
 }
 
+TEST_CASE("a gap is told that is little beside what is stored, and much of what friction took") {
+    CutBar bar("copper");
+    const double work = 1e-9 * bar.stiffness();
+    const auto told = [&](double gap, double friction) {
+        FrameReport last;
+        last.pieces = 2;
+        last.work = work;
+        last.elastic = 0.9 * work;
+        last.friction = friction * work;
+        last.remainder = -gap * work;
+        return bar.told_of(bar.reading.scene->stage[0], last, 1).find("friction and flow took") !=
+               std::string::npos;
+    };
+    CHECK(told(0.03, 0.1));
+    CHECK_FALSE(told(0.03, 0.3));
+    CHECK_FALSE(told(-0.03, 0.1));
+    CHECK_FALSE(told(0.003, 0.01));
+}
+
 TEST_CASE("the work of drawing away what an equilibrium left pushed a little is no open book") {
     CutBar bar(GENERATE("copper", "structural_steel", "rubber"));
     const double left = 0.01, way = 0.03;
