@@ -4,7 +4,7 @@
 #include "frame.glsl"
 #include "normal.glsl"
 in vec3 position;
-in vec3 normal;
+centroid in vec3 normal;
 layout(location = 0) out vec4 normal_and_depth;
 
 void main() {

@@ -10,8 +10,8 @@ layout(std140) uniform Frame {
     vec4 lens;       // tangents of the half angles x and y
     vec4 size;       // width, height, 1 / width, 1 / height
     vec4 half_size;  // the same of the half-size passes
-    vec4 key;        // directions towards the lights
-    vec4 fill;
+    vec4 key;        // directions towards the lights; here and in fill the fourth is x and z of
+    vec4 fill;       // where the film's first view looks from
     vec4 rim;
     vec4 ground;     // height, where its shadows start to fade, where it ends, 1: nothing is behind
     vec4 shadow;     // texel [stage], texel [texture], penumbra [texture] a unit of depth, least one

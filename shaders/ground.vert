@@ -3,7 +3,7 @@
 // A square of ground, four corners of a strip.
 #include "frame.glsl"
 out vec3 position;
-out vec3 normal;
+centroid out vec3 normal;
 
 void main() {
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;

@@ -7,7 +7,7 @@ layout(location = 2) in vec2 mesh_uv;
 layout(location = 3) in vec3 mesh_color;
 uniform mat4 stage_from_mesh;
 out vec3 position;
-out vec3 normal;
+centroid out vec3 normal;
 out vec2 uv;
 out vec3 color;
 

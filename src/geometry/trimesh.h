@@ -31,6 +31,7 @@ struct SurfaceMaterial {
     Vec3 color = {0.8, 0.8, 0.8};
     double roughness = 0.55;
     double metallic = 0.0;
+    double clear = 0.0;                  // share of the light that goes in and through, 0 to 1
     bool takes_colors = true;            // a mesh's position_color multiplies `color`
     std::filesystem::path texture = {};  // absolute; empty for none. Multiplies `color`.
     // The image itself (a PNG or JPEG file's bytes) when it came inside the mesh file, as in GLB;

@@ -16,7 +16,7 @@ bool is_same(const SurfaceMaterial& a, const SurfaceMaterial& b) {
     const auto& image_a = a.embedded_texture;
     const auto& image_b = b.embedded_texture;
     return a.name == b.name && a.color == b.color && a.roughness == b.roughness &&
-           a.metallic == b.metallic && a.texture == b.texture &&
+           a.metallic == b.metallic && a.clear == b.clear && a.texture == b.texture &&
            (image_a == image_b || (image_a && image_b && *image_a == *image_b));
 }
 
@@ -92,8 +92,11 @@ void UsdLooks::write(UsdText& out, const std::string& path,
         write_shader(
             out, "surface", "UsdPreviewSurface",
             fmt::format("color3f inputs:diffuseColor{}\nfloat inputs:metallic = {}\n"
-                        "float inputs:roughness = {}\ntoken outputs:surface",
-                        diffuse, float(look.material.metallic), float(look.material.roughness)));
+                        "float inputs:roughness = {}\n{}token outputs:surface",
+                        diffuse, float(look.material.metallic), float(look.material.roughness),
+                        look.material.clear > 0 ? fmt::format("float inputs:opacity = {}\n",
+                                                              float(1 - look.material.clear))
+                                                : ""));
         if (!image[n].empty()) {
             std::string scale;
             if (look.material.color != Vec3::Ones()) {

@@ -33,8 +33,8 @@ void visit(Io& io, DrawnPart& part) {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3630'6567'6177'7300;  // "\0swage06" on a little-endian machine
-constexpr std::uint64_t kFieldMagic = 0x3730'6567'6177'7300;  // "\0swage07"
+constexpr std::uint64_t kMagic = 0x3830'6567'6177'7300;  // "\0swage08" on a little-endian machine
+constexpr std::uint64_t kFieldMagic = 0x3930'6567'6177'7300;  // "\0swage09"
 bool is_magic(std::uint64_t word) { return word == kMagic || word == kFieldMagic; }
 
 enum RecordKind : std::uint32_t { kSkin = 1, kMachine, kFrame, kImage, kEnd, kFields };

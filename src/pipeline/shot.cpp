@@ -36,8 +36,8 @@ std::optional<SurfaceMaterial> look_of(const DrawnPart& part, const RenderSettin
     SurfaceMaterial look;
     look.name = part.name;
     look.color = part.color;
-    look.roughness = part.finish == Finish::metal ? 0.4 : 0.95;
-    look.metallic = part.finish == Finish::metal ? 0.6 : 0;
+    look.roughness = part.finish == Finish::metal ? 0.3 : 0.95;
+    look.metallic = part.finish == Finish::metal ? 1 : 0;
     return look;
 }
 

@@ -71,6 +71,21 @@ glm::vec4 disc_of(const DrawItem& item, const Stage& stage) {
     return {to_glm(middle), 0.5 * across / stage.radius};
 }
 
+// The upper side of a flat item: its normal, and how far along that it lies in the stage; zeros for
+// what is not flat.
+glm::vec4 plane_of(const DrawItem& item, const Stage& stage) {
+    constexpr double kFlat = 0.2;
+    const Box box = box_of(item.mesh->position);
+    Eigen::Index thin = 0;
+    const double thickness = box.size().minCoeff(&thin);
+    const double across = box.size().sum() - thickness - box.size().maxCoeff();
+    if (!(thickness < kFlat * across)) return glm::vec4(0);
+    Vec3 normal = item.world_from_mesh.rotation * Vec3::Unit(thin);
+    if (normal.y() < 0) normal = -normal;
+    const Vec3 top = item.world_from_mesh * box.center() + 0.5 * thickness * normal;
+    return {to_glm(normal), normal.dot(top - stage.center) / stage.radius};
+}
+
 }  // namespace
 
 struct Renderer::Parts {
@@ -124,7 +139,7 @@ struct Renderer::Parts {
     GlHandle nothing, frame_buffer;
     Target shadow, half, visibility, blurred;
     Target plain, sampled, smoothed, layered;  // the latter three are made when first needed
-    std::optional<Shader> layer_shader, ground_layer_shader;  // with the last
+    std::optional<Shader> layer_shader, horizon_shader;  // with the last
     bool eye_is_outside = true;       // of the box of all that is drawn, in this picture
     Stopwatch* watch = nullptr;
 
@@ -243,7 +258,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
                                             : plain_material;
             const glm::vec4 color(to_glm(material.color), 1);
             const glm::vec4 finish(material.roughness, material.metallic,
-                                   material.takes_colors ? 1 : 0, 0);
+                                   material.takes_colors ? 1 : 0, material.clear);
             const GLuint texture = range.textured ? textures.texture(material) : 0;
             const Shader& shader = texture != 0 ? textured_shader : surface_shader;
             shader.use();
@@ -317,7 +332,7 @@ Layers Renderer::Parts::draw_layers(const Picture& picture, const std::vector<Dr
                                     bool ground) {
     if (layered.width == 0) {
         layer_shader.emplace(gl, "surface.vert", "layers.frag");
-        ground_layer_shader.emplace(gl, "ground.vert", "layers.frag");
+        horizon_shader.emplace(gl, "screen.vert", "horizon.frag");
         layered = make_target(gl, settings.width, settings.height,
                               {.color = GL_RGBA32F, .depth_buffer = true});
     }
@@ -333,10 +348,23 @@ Layers Renderer::Parts::draw_layers(const Picture& picture, const std::vector<Dr
         set_number(*layer_shader, static_cast<int>(d.item - picture.item.data()));
         draw_shapes(*layer_shader, {d});
     }
-    if (ground) {
-        set_number(*ground_layer_shader, kGroundThere);
-        draw_ground();
+    // The ground and what stands for it go on to the horizon.
+    const auto draw_plane = [&](const glm::vec4& plane, int item) {
+        set_number(*horizon_shader, item);
+        horizon_shader->set4("plane", glm::value_ptr(plane));
+        cover_screen();
+    };
+    gl.DepthFunc(GL_LEQUAL);
+    for (const Drawable& d : drawables) {
+        if (!d.item->endless) continue;
+        const glm::vec4 plane = plane_of(*d.item, stage);
+        if (plane.y > 0) draw_plane(plane, static_cast<int>(d.item - picture.item.data()));
     }
+    if (ground) {
+        const double height = (ground_height - stage.center.y()) / stage.radius;
+        draw_plane(glm::vec4(0, 1, 0, height), kGroundThere);
+    }
+    gl.DepthFunc(GL_LESS);
     std::vector<float> rgba(4 * static_cast<std::size_t>(layered.width) *
                             static_cast<std::size_t>(layered.height));
     gl.ReadPixels(0, 0, layered.width, layered.height, GL_RGBA, GL_FLOAT, rgba.data());

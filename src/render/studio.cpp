@@ -109,8 +109,8 @@ FrameBlock frame_block(const RenderSettings& settings, const Stage& stage, const
     frame.size = size(settings.width, settings.height);
     frame.half_size = size((settings.width + 1) / 2, (settings.height + 1) / 2);
     const Lamps lamps = lamps_of(settings.light, front);
-    frame.key = four(lamps.key, 0);
-    frame.fill = four(lamps.fill, 0);
+    frame.key = four(lamps.key, std::sin(front));
+    frame.fill = four(lamps.fill, std::cos(front));
     frame.rim = four(lamps.rim, 0);
     const bool is_clear = settings.background == Background::transparent;
     frame.ground = glm::dvec4(ground, kGroundFade, kGroundEnd, is_clear ? 1 : 0);

@@ -52,6 +52,12 @@ SurfaceMaterial cut_look(const TriMesh& mesh) {
         look.roughness = std::max(0.45, outside.roughness);  // as a saw leaves it
         return look;
     }
+    if (outside.clear > 0.5) {
+        look.color = outside.color;
+        look.clear = outside.clear;
+        look.roughness = std::max(0.3, outside.roughness);
+        return look;
+    }
     look.color = hides ? kPale : Vec3(outside.color + kPaler * (kPale - outside.color));
     look.roughness = 0.7;
     return look;

@@ -29,6 +29,7 @@ TriMesh tetrahedron() {
     mesh.material.resize(2);
     mesh.material[1].name = "hide";
     mesh.material[1].color = {0.1, 0.2, 0.3};
+    mesh.material[1].clear = 0.4;
     mesh.material[1].texture = "/somewhere/hide.png";
     mesh.material[0].embedded_texture = std::make_shared<const std::string>("PNG and so on");
     mesh.triangle_part = {0, 0, 0, 0};
@@ -88,6 +89,7 @@ TEST_CASE("a motion file gives back what was put in") {
     CHECK(skin.material[1].name == "hide");
     CHECK(skin.material[1].texture == "/somewhere/hide.png");
     CHECK(skin.material[1].color == Vec3(0.1, 0.2, 0.3));
+    CHECK(skin.material[1].clear == 0.4);
     REQUIRE(skin.material[0].embedded_texture);
     CHECK(*skin.material[0].embedded_texture == "PNG and so on");
     CHECK_FALSE(skin.material[1].embedded_texture);

@@ -47,6 +47,7 @@ TriMesh cut_pyramid(const fs::path& texture) {
     mesh.triangle_material.push_back(1);
     mesh.material.push_back({"cut", {0.5, 0.25, 1}});
     mesh.material.back().takes_colors = false;
+    mesh.material.back().clear = 0.75;
     smooth_by_crease_angle(mesh);
     return mesh;
 }
@@ -250,6 +251,9 @@ TEST_CASE("every face has the material of the skin, a textured one its image bes
     const std::string looks = "/two_falls/materials/";
     CHECK(usd.text(looks + "hide/image.inputs:file") == "@./spots_of_it.png@");
     CHECK(usd.text(looks + "cut/surface.inputs:diffuseColor") == "(0.5, 0.25, 1)");
+    // What lets light through is open by that; all else says nothing of it.
+    CHECK(usd.text(looks + "cut/surface.inputs:opacity") == "0.25");
+    CHECK_FALSE(usd.has(looks + "hide/surface.inputs:opacity"));
     // A face that has no place in the image has the colour alone.
     CHECK(usd.has(looks + "hide_2/surface.inputs:diffuseColor"));
     CHECK(usd.text(kBody + "/hide.material:binding") == "<" + looks + "hide>");

@@ -153,7 +153,7 @@ TEST_CASE("tools in USD are to be seen as long as their stage lasts, in their co
     CHECK(usd.text("/line/machine/_1_bend/post.material:binding") == "<" + looks + "post>");
     CHECK(usd.text("/line/machine/_1_bend/post_2.material:binding") == "<" + looks + "post>");
     CHECK(usd.text(looks + "post/surface.inputs:diffuseColor") == "(0.25, 0.5, 0.75)");
-    CHECK(number(usd, looks + "post/surface.inputs:metallic") == Approx(0.6));
+    CHECK(number(usd, looks + "post/surface.inputs:metallic") == Approx(1));
     CHECK(number(usd, looks + "blade/surface.inputs:metallic") == 0);
     CHECK(usd.numbers("/line/machine/_1_bend/post.primvars:displayColor", 1) ==
           std::vector<float>{0.25f, 0.5f, 0.75f});

@@ -90,6 +90,39 @@ TEST_CASE("depth goes along the view, whatever the direction, also on the ground
     CHECK(seen > 15000);
 }
 
+TEST_CASE("ground and endless floors go on to the horizon, which is level") {
+    if (!can_draw()) return;
+    const TriMesh slab = box_mesh(Vec3(-8, -0.2, -8), Vec3(8, 0, 8));
+    RenderSettings settings = small_picture();
+    const bool is_floor = GENERATE(false, true);
+    settings.camera[0].eye = Vec3(3, 1, 4);  // aslant to the floor's edges
+    settings.camera[0].target = Vec3(0, 0.4, 0);
+    const View view = look_at(*settings.camera[0].eye, *settings.camera[0].target);
+    const Lens lens = lens_of(settings);
+    std::vector<DrawItem> items;
+    if (is_floor) items.push_back({&slab, nullptr, {}, std::nullopt, true});
+    const Layers layers = layers_drawn(settings, items);
+    int above = 0;
+    for (int y = 0; y < 120; ++y) {
+        for (int x = 0; x < 160; ++x) {
+            const std::size_t i = std::size_t(y) * 160 + x;
+            const Vec3 sight =
+                view.world_from_view * Vec3(lens.tangent_x * ((x + 0.5) / 80 - 1),
+                                            lens.tangent_y * (1 - (y + 0.5) / 60), -1);
+            if (sight.y() > -1e-3) {
+                ++above;
+                if (sight.y() > 1e-3) CHECK(layers.item[i] == kNothingThere);
+                continue;
+            }
+            REQUIRE(layers.item[i] == (is_floor ? 0 : kGroundThere));
+            CHECK(layers.depth[i] == Approx(-view.eye.y() / sight.y()).epsilon(1e-3));
+            CHECK((layers.normal[i] - Eigen::Vector3f::UnitY()).norm() < 1e-5);
+        }
+    }
+    CHECK(above > 160 * 10);
+    CHECK(above < 160 * 110);
+}
+
 TEST_CASE("each pixel is one item's, the nearest, and a still is the same with them") {
     if (!can_draw()) return;
     const TriMesh box = box_mesh(Vec3::Constant(-0.25), Vec3::Constant(0.25));
