@@ -22,13 +22,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kAuto = "auto";
+
 struct RenderArguments {
     std::string run, out, size, frames, up, gl, background, color;
     std::vector<double> color_range;
     std::vector<std::string> passes;
-    std::optional<double> azimuth, elevation, zoom, turn, field_of_view;  // degrees
-    std::optional<double> light_azimuth, light_elevation;                 // likewise
-    std::vector<double> eye, target;                                      // [m]
+    std::string azimuth, elevation;                        // degrees, or "auto"
+    std::optional<double> zoom, turn, field_of_view;       // degrees
+    std::optional<double> light_azimuth, light_elevation;  // likewise
+    std::vector<double> eye, target;                       // [m]
     std::optional<int> frames_per_second;
     bool film = false, no_film = false, no_tools = false, no_ground = false, no_legend = false,
          json = false;
@@ -43,16 +46,22 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     const auto radians = [&](const std::optional<double>& degrees) {
         return degrees ? std::optional(*degrees * kDegree) : std::nullopt;
     };
+    // As where nobody says: the usual one, which gives way to where more is seen.
+    const auto angle = [&](const std::string& text, double usual, bool& open) {
+        if (text.empty()) return std::optional<double>();
+        open = text == kAuto;
+        return std::optional(open ? usual : std::strtod(text.c_str(), nullptr) * kDegree);
+    };
+    const CameraKey usual;
     const auto place = [](const std::vector<double>& p) { return Vec3(p[0], p[1], p[2]); };
-    CameraChange change{radians(given.azimuth), radians(given.elevation), given.zoom,
-                        radians(given.turn)};
+    CameraChange change{angle(given.azimuth, usual.azimuth, settings.open.azimuth),
+                        angle(given.elevation, usual.elevation, settings.open.elevation),
+                        given.zoom, radians(given.turn)};
     if (given.eye.empty() && !given.target.empty()) change.target = place(given.target);
     if (change.any() && stands_at_eye(settings.camera)) {
         log_info("the scene's eye and target give way to the camera that is asked for");
     }
     settings.camera = changed_camera(std::move(settings.camera), change);
-    settings.open.azimuth &= !given.azimuth;
-    settings.open.elevation &= !given.elevation;
     if (!given.eye.empty()) {
         settings.open = {};
         CameraKey key;
@@ -136,6 +145,23 @@ const CLI::Validator kFinite(
     },
     "");
 
+// An angle of the camera, or "auto".
+CLI::Validator angle_or_auto(double low, double high) {
+    return CLI::Validator(
+        [low, high](const std::string& text) {
+            if (text == kAuto) return std::string();
+            char* end = nullptr;
+            const double angle = std::strtod(text.c_str(), &end);
+            if (text.empty() || *end != '\0' || !std::isfinite(angle)) {
+                return "\"" + text + "\" is no angle: give degrees, or auto";
+            }
+            return angle < low || angle > high
+                       ? fmt::format("{} is out of range: {:g} to {:g}, or auto", text, low, high)
+                       : std::string();
+        },
+        "");
+}
+
 }  // namespace
 
 void add_render_command(CLI::App& app, Action& chosen) {
@@ -157,19 +183,21 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(kSomewhere)
         ->type_name("DIR");
     command
-        ->add_option("--camera-azimuth", given.azimuth,
-                     "where the camera stands about the upward axis, at the film's start: 0 is +z "
-                     "and 90 +x, or with z up +x and +y. What the scene has it do from there on "
-                     "(orbit, keys) it does; an eye and target of the scene give way to this and "
-                     "the next three, and to a target alone")
-        ->check(kFinite)
-        ->type_name("DEG");
+        ->add_option(
+            "--camera-azimuth", given.azimuth,
+            "where the camera stands about the upward axis, at the film's start: 0 is +z "
+            "and 90 +x, or with z up +x and +y. What the scene has it do from there on "
+            "(orbit, keys) it does; an eye and target of the scene give way to this and "
+            "the next three, and to a target alone. auto: chosen, as swage keys render.camera "
+            "tells")
+        ->check(angle_or_auto(-1e9, 1e9))
+        ->type_name("DEG|auto");
     command
         ->add_option("--camera-elevation", given.elevation,
                      "how high it stands, all through the film. Of these two, what neither the "
-                     "scene nor this gives is chosen, as swage keys render.camera tells")
-        ->check(kFinite & CLI::Range(-90.0, 90.0))
-        ->type_name("DEG");
+                     "scene nor this gives is chosen as if auto stood here")
+        ->check(angle_or_auto(-90, 90))
+        ->type_name("DEG|auto");
     command->add_option("--camera-zoom", given.zoom, "2 is twice as near, all through the film")
         ->check(kFinite & CLI::Range(0.01, 1000.0));
     command

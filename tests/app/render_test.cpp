@@ -220,4 +220,13 @@ TEST_CASE("a drawing tells which view it chose for angles that nobody gave") {
     CHECK(view({"--camera-elevation", "50"}).at("elevation").get<double>() == Approx(0.8726646));
     CHECK(view({"--camera-azimuth", "90", "--camera-elevation", "50"}).is_null());
     CHECK(view({"--camera-eye", "1", "1", "1", "--camera-target", "0", "0", "0"}).is_null());
+    // As where nobody gives them, whatever stood there before.
+    CHECK(view({"--camera-azimuth", "auto", "--camera-elevation", "auto"}) == chosen);
+    CHECK(view({"--camera-azimuth", "90", "--camera-elevation", "auto"}) ==
+          view({"--camera-azimuth", "90"}));
+    const fs::path given = drawable.out();
+    const Outcome wrong = drawable.draw(given, {"--camera-elevation", "automatic"});
+    CHECK(wrong.code == 2);
+    CHECK(wrong.err.find("give degrees, or auto") != std::string::npos);
+    CHECK(drawable.draw(given, {"--camera-elevation", "91"}).code == 2);
 }
