@@ -5,6 +5,7 @@
 #include "app/scene_argument.h"
 #include "app/table_text.h"
 #include "base/error.h"
+#include "base/srgb.h"
 #include "base/suggest.h"
 #include "base/units.h"
 #include "matter/material_names.h"
@@ -39,8 +40,31 @@ std::string list_text(const std::vector<Material>& materials) {
            "\nswage materials NAME tells all numbers of one, as a scene may give them\n";
 }
 
+Vec3 on_screen(const Vec3& color) {
+    return {srgb_from_linear(color.x()), srgb_from_linear(color.y()), srgb_from_linear(color.z())};
+}
+
+std::string look_text(const SurfaceMaterial& look) {
+    const Vec3 c = on_screen(look.color);
+    return fmt::format(
+        "look = {{color = [{:.3g}, {:.3g}, {:.3g}], roughness = {:g}, metalness = {:g}, clear = "
+        "{:g}}}\n",
+        c.x(), c.y(), c.z(), look.roughness, look.metallic, look.clear);
+}
+
+Json told(const Material& material, const std::optional<SurfaceMaterial>& look) {
+    Json json = material_json(material);
+    if (!look) return json;
+    const Vec3 c = on_screen(look->color);
+    json["look"] = {{"color", {c.x(), c.y(), c.z()}},
+                    {"roughness", look->roughness},
+                    {"metalness", look->metallic},
+                    {"clear", look->clear}};
+    return json;
+}
+
 // As a scene may say it.
-std::string material_text(const Material& m) {
+std::string material_text(const Material& m, const std::optional<SurfaceMaterial>& look) {
     std::string text = fmt::format("[material]\nname = \"{}\"\n", m.name);
     const auto number = [&](const char* key, double value) {
         text += fmt::format("{} = {:g}\n", key, value);
@@ -75,6 +99,7 @@ std::string material_text(const Material& m) {
     number("damping_ratio", m.damping_ratio);
     number("restitution", m.restitution);
     if (m.stickiness > 0) quantity("stickiness", m.stickiness, Quantity::stress);
+    if (look) text += "# in pictures alone:\n" + look_text(*look);
     return text;
 }
 
@@ -91,7 +116,9 @@ int materials(const MaterialsArguments& given) {
     }
     if (given.name.empty()) {
         Json list = Json::array();
-        for (const Material& one : catalogue.material) list.push_back(material_json(one));
+        for (std::size_t n = 0; n < catalogue.material.size(); ++n) {
+            list.push_back(told(catalogue.material[n], catalogue.look[n]));
+        }
         if (given.json) {
             put_json(list);
         } else {
@@ -100,13 +127,14 @@ int materials(const MaterialsArguments& given) {
         return 0;
     }
     std::vector<std::string> known;
-    for (const Material& one : catalogue.material) {
+    for (std::size_t n = 0; n < catalogue.material.size(); ++n) {
+        const Material& one = catalogue.material[n];
         known.push_back(one.name);
         if (one.name != given.name) continue;
         if (given.json) {
-            put_json(material_json(one));
+            put_json(told(one, catalogue.look[n]));
         } else {
-            put_out(material_text(one));
+            put_out(material_text(one, catalogue.look[n]));
         }
         return 0;
     }

@@ -15,6 +15,7 @@
 #include "mold/carry_motion.h"
 #include "mold/mold.h"
 #include "mold/prepare.h"
+#include "pipeline/body_look.h"
 #include "pipeline/probes.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
@@ -101,12 +102,10 @@ void weigh(double mass, Aggregate& matter) {
     for (double& m : matter.particle_mass) m *= share;
 }
 
-// One colour all over.
-void paint(TriMesh& skin, const Vec3& color, bool metal) {
-    SurfaceMaterial look;
-    look.color = color;
-    if (metal) look.metallic = 1, look.roughness = 0.35;
-    skin.material = {look};
+// One look all over, where there is one.
+void paint(TriMesh& skin, const std::optional<SurfaceMaterial>& look) {
+    if (!look) return;
+    skin.material = {*look};
     skin.triangle_material.assign(skin.triangle.size(), 0);
     skin.position_color.clear();
 }
@@ -244,13 +243,13 @@ WorkPiece make_work_piece(const InputMesh& input, const BodySpec& body, const Sk
     piece.matter = mold_body(input, body, piece.finding);
     if (skin.kind == SkinKind::boundary) {
         TriMesh like = body.mold.kind == MoldKind::block ? block_mesh(input.to_mold()) : input.mesh;
-        if (body.color) paint(like, *body.color, body.metal);
+        paint(like, body_look(body, input.mesh));
         name_looks(like, piece.label);
         piece.look = std::make_shared<const NewLook>(like);
         lay_boundary(piece);
     } else {
         piece.skin = skin.divide ? divided_skin(input.mesh, piece.matter) : input.mesh;
-        if (body.color) paint(piece.skin, *body.color, body.metal);
+        paint(piece.skin, body_look(body, input.mesh));
         name_looks(piece.skin, piece.label);
         piece.mount = mount_mesh(piece.skin.position, piece.matter, skin.kind);
     }

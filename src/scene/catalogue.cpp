@@ -2,6 +2,7 @@
 #include "scene/catalogue.h"
 
 #include "scene/document.h"
+#include "scene/read_look.h"
 #include "scene/read_material.h"
 #include "scene/table_reader.h"
 
@@ -44,6 +45,7 @@ MaterialCatalogue material_catalogue(const AssetPaths& assets,
                 material.name = entry.key;
                 TableReader table(entry.value, "[" + entry.key + "]", reading);
                 read_material_numbers(table, true, material);
+                read_look(table, catalogue.look.emplace_back());
                 table.finish();
                 catalogue.material.push_back(material);
             }

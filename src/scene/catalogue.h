@@ -2,8 +2,10 @@
 // What there is to choose from: machines and materials.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "geometry/trimesh.h"
 #include "matter/material.h"
 #include "scene/find.h"
 #include "scene/mistake.h"
@@ -21,7 +23,8 @@ MachineCatalogue machine_catalogue(const AssetPaths& assets,
                                    const std::filesystem::path& scene_folder = {});
 
 struct MaterialCatalogue {
-    std::vector<Material> material;  // in the order of the files
+    std::vector<Material> material;                    // in the order of the files
+    std::vector<std::optional<SurfaceMaterial>> look;  // of each, where its file says
     std::vector<Mistake> mistakes;
     std::vector<std::filesystem::path> files;  // those that were read
 };

@@ -13,7 +13,14 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[mesh]", "spin", "at the start, about its centre of mass"},
         {"[mesh]", "color", "red, green, blue instead of what its file says",
          "[red, green, blue], each 0 to 1"},
-        {"[mesh]", "finish", "of that color"},
+        {"[mesh]",
+         "finish",
+         "of that color; left out: as matt or clear as the material looks, where it is no metal",
+         {},
+         "-"},
+        {"[mesh]", "look",
+         "file: as the mesh's file says, and where it says nothing as the material does; material: "
+         "as the material's look has it"},
 
         {"[material]",
          "name",
@@ -63,6 +70,12 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[material]", "stickiness",
          "tension that a contact holds; explicit and energy-chosen "
          "steps only"},
+
+        {"[material]", "look",
+         "of meshes whose file or [mesh] says none: color as on a screen (of metal what it "
+         "reflects), roughness, metalness, and how much light goes through; a known material has "
+         "one",
+         "{color = [red, green, blue], roughness, metalness, clear}, all 0 to 1", "-"},
 
         {"[[inset]]", "file",
          "a mesh inside which the matter is of another material; the keys of "
@@ -302,7 +315,9 @@ const std::vector<KeyHelp>& machine_key_help() {
          {},
          "2"},
         {"[[tool]]", "color", "red, green, blue", "[red, green, blue], each 0 to 1"},
-        {"[[tool]]", "finish", "endless: matt, and fades out into the backdrop"},
+        {"[[tool]]", "finish",
+         "endless: matt, and fades out into the backdrop; in its color, of which [0.748, 0.755, "
+         "0.764] is the backdrop's own"},
         {"[[tool]]", "motion", "a section [tool.motion]", "section"},
 
         {"[tool.motion]", "move",

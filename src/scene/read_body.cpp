@@ -51,10 +51,12 @@ void read_start(TableReader& table, BodySpec& body) {
     table.vector("velocity", Quantity::speed, body.start.velocity);
     table.vector("spin", Quantity::spin, body.start.spin);
     read_color(table, body.color);
-    if (table.choice<bool>("finish", {{"matt", false}, {"metal", true}}, body.metal) &&
+    if (table.choice<std::optional<bool>>("finish", {{"matt", false}, {"metal", true}},
+                                          body.metal) &&
         !body.color) {
         table.mistake("finish", "finish is that of a color, and there is none");
     }
+    table.choice<bool>("look", {{"file", false}, {"material", true}}, body.wears_material);
 }
 
 void read_fineness(TableReader& table, MoldSettings& mold) {
@@ -87,6 +89,16 @@ void read_mesh_section(TableReader& table, const fs::path& scene_folder, BodySpe
     read_file(table, scene_folder, "the mesh to be worked on", body.mesh);
     read_start(table, body);
     table.finish();
+}
+
+void refuse_look(TableReader& table, const BodySpec& body) {
+    if (!body.wears_material) return;
+    if (body.color) table.mistake("look", "look = \"material\" and a color: give one of them");
+    if (!body.look) {
+        table.mistake("look",
+                      "look = \"material\", but the material says none: give it one, such as "
+                      "look = {color = [0.6, 0.4, 0.3], roughness = 0.8} in [material]");
+    }
 }
 
 void read_mold(TableReader& table, MoldSettings& mold) {
@@ -126,20 +138,23 @@ void BodyReader::read_material_key(TableReader& table, SceneSpec& scene, BodySpe
         return;
     }
     body.material = {};
+    body.look.reset();
     TableReader material(*node, "[body.material]", reading_);
-    read_material(material, assets_, scene_folder_, body.material, scene.inputs);
+    read_material(material, assets_, scene_folder_, body.material, body.look, scene.inputs);
 }
 
 void BodyReader::read(const Node& node, SceneSpec& scene) {
     TableReader table(node, "[[body]]", reading_);
     BodySpec body;
     body.material = scene.work_piece().material;
+    body.look = scene.work_piece().look;
     body.mold = scene.work_piece().mold;
     read_name(table, scene, body);
     read_file(table, scene_folder_, "the mesh of the body", body.mesh);
     read_start(table, body);
     read_fineness(table, body.mold);
     read_material_key(table, scene, body);
+    refuse_look(table, body);
     table.finish();
     scene.body.push_back(std::move(body));
 }

@@ -9,8 +9,8 @@ namespace swage {
 namespace fs = std::filesystem;
 
 const std::vector<std::string>& keys_of_whole_bodies() {
-    static const std::vector<std::string> keys = {"mechanics", "friction", "static_friction",
-                                                  "restitution", "stickiness"};
+    static const std::vector<std::string> keys = {"mechanics",   "friction",   "static_friction",
+                                                  "restitution", "stickiness", "look"};
     return keys;
 }
 
@@ -56,7 +56,8 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
         if (table.find(key) == nullptr) continue;
         table.mistake(key, fmt::format("{} is the whole body's: say it in [material]", key));
     }
-    read_material(table, assets, scene_folder, inset.material, inputs);
+    std::optional<SurfaceMaterial> look;  // cut faces show the whole body's
+    read_material(table, assets, scene_folder, inset.material, look, inputs);
     return inset;
 }
 

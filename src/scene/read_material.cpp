@@ -11,6 +11,7 @@
 #include "matter/material_names.h"
 #include "scene/read_back_stress.h"
 #include "scene/read_flow_curve.h"
+#include "scene/read_look.h"
 
 namespace swage {
 
@@ -113,6 +114,7 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
 
 void read_material(TableReader& table, const AssetPaths& assets,
                    const std::filesystem::path& scene_folder, Material& material,
+                   std::optional<SurfaceMaterial>& look,
                    std::vector<std::filesystem::path>& inputs) {
     const Node* node = table.find("name");
     std::string name;
@@ -128,10 +130,12 @@ void read_material(TableReader& table, const AssetPaths& assets,
         }
         std::vector<std::string> known;
         bool is_known = false;
-        for (const Material& one : reading.materials->material) {
+        for (std::size_t n = 0; n < reading.materials->material.size(); ++n) {
+            const Material& one = reading.materials->material[n];
             known.push_back(one.name);
             if (is_known || one.name != name) continue;
             material = one;
+            look = reading.materials->look[n];
             is_known = true;
         }
         if (!is_known) {
@@ -154,6 +158,7 @@ void read_material(TableReader& table, const AssetPaths& assets,
     }
     table.choice<Mechanics>("mechanics", kMechanicsNames, material.mechanics);
     read_material_numbers(table, is_custom, material);
+    read_look(table, look);
     const bool asks_elasticity = table.find("elasticity") != nullptr;
     if (material.elasticity != Elasticity::hencky && std::isfinite(material.yield_stress)) {
         const std::string name = name_in(kElasticityNames, material.elasticity);

@@ -12,9 +12,10 @@ namespace swage {
 void read_material_numbers(TableReader& table, bool needs_all, Material& material);
 
 // The section [material] of a scene: a known material, with its own numbers over it, or a custom
-// one. `catalogue` is read when a name asks for it.
+// one, and how it looks, where that is told. Materials are looked up when a name asks for one.
 void read_material(TableReader& table, const AssetPaths& assets,
                    const std::filesystem::path& scene_folder, Material& material,
+                   std::optional<SurfaceMaterial>& look,
                    std::vector<std::filesystem::path>& inputs);
 
 }  // namespace swage

@@ -145,7 +145,8 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
                 skin = section("skin"), render = section("render"), output = section("output");
     BodySpec& work_piece = scene.body.emplace_back();
     read_mesh_section(mesh, folder, work_piece);
-    read_material(material, assets, folder, work_piece.material, scene.inputs);
+    read_material(material, assets, folder, work_piece.material, work_piece.look, scene.inputs);
+    refuse_look(mesh, work_piece);
     work_piece.gives_damping =
         work_piece.material.damping_ratio > 0 && material.find("damping_ratio");
     for (const Node* node : root.tables("inset", "[[inset]]")) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/trimesh.h"
 #include "machines/machine_spec.h"
 #include "matter/material.h"
 #include "matter/skin_field.h"
@@ -53,10 +54,12 @@ struct BodySpec {
     std::string name = "work-piece";  // a file name
     MeshSpec mesh;
     StartSpec start;
-    std::optional<Vec3> color;  // linear RGB, instead of what its file says
-    bool metal = false;         // that colour is
+    std::optional<Vec3> color;    // linear RGB, instead of what its file says
+    std::optional<bool> metal;    // that colour is; none: matt, or clear, as the material looks
+    bool wears_material = false;  // looks as its material does whatever its file says
     Material material;
-    bool gives_damping = false;  // its own, not what a known material has
+    std::optional<SurfaceMaterial> look;  // of that, where anyone says
+    bool gives_damping = false;           // its own, not what a known material has
     std::vector<InsetSpec> inset;
     std::vector<ProbeSpec> probe;
     MoldSettings mold;

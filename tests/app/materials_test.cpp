@@ -50,6 +50,17 @@ TEST_CASE("what is told of a material is a material that a scene may give") {
     }
 }
 
+TEST_CASE("how a material looks is told as a scene may give it") {
+    const Scratch scratch;
+    const std::string copper = run_swage({"materials", "copper"}, scratch.path()).out;
+    CHECK(copper.find("look = {color = [0.93, 0.66, 0.54], roughness = 0.3, metalness = 1, clear = "
+                      "0}\n") != std::string::npos);
+    const Outcome told = run_swage({"materials", "glass", "--json"}, scratch.path());
+    const Json look = Json::parse(told.out).at("look");
+    CHECK(look.at("clear").get<double>() > 0.5);
+    CHECK(look.at("color").at(1).get<double>() == Approx(0.98));
+}
+
 TEST_CASE("a material that is not there is answered by the nearest") {
     const Outcome outcome = run_swage({"materials", "ruber"});
     CHECK(outcome.code == 2);

@@ -55,7 +55,7 @@ friction = 0.4
     CHECK(body[1].start.velocity == Vec3(0, -3, 0));
     CHECK(body[1].start.spin.x() == Approx(kPi));
     CHECK(body[1].color.value().y() == Approx(0.2140).epsilon(1e-3));
-    CHECK(body[1].metal);
+    CHECK(body[1].metal.value());
     CHECK(body[2].name == "egg");
     CHECK(body[2].mesh.length.value() == Approx(0.05));
     CHECK(body[2].material.name == "wax");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a scene asks to be seen.
+#include "scene/catalogue.h"
 #include "tests/scene/bad_scene.h"
 
 using namespace swage;
@@ -47,4 +48,86 @@ TEST_CASE("angles of the camera are open where the scene does not give them") {
     CHECK(open("camera = { azimuth = 1, elevation = 1 }") == none);
     CHECK(open("camera = { eye = [1, 1, 1], target = [0, 0, 0] }") == none);
     CHECK(open("camera = { keys = [{ at = 0 }, { at = 1, zoom = 2 }] }") == none);
+}
+
+TEST_CASE("every shipped material has a look, metal where it is one") {
+    const MaterialCatalogue catalogue = material_catalogue(shipped());
+    REQUIRE(catalogue.look.size() == catalogue.material.size());
+    for (std::size_t n = 0; n < catalogue.material.size(); ++n) {
+        const Material& one = catalogue.material[n];
+        INFO(one.name);
+        REQUIRE(catalogue.look[n]);
+        const SurfaceMaterial& look = *catalogue.look[n];
+        // Nothing but metal is as heavy and as stiff.
+        const bool is_metal = one.density > 2600 && one.young_modulus > 10e9;
+        CHECK(look.metallic == (is_metal ? 1 : 0));
+        CHECK(look.roughness >= 0.05);
+        if (is_metal) CHECK(look.color.minCoeff() > 0.25);  // what a clean metal reflects at least
+        if (look.clear > 0.5) CHECK(look.roughness < 0.35);
+    }
+}
+
+TEST_CASE("a scene's look goes over its material's, and a body has that of its own material") {
+    const Scratch scratch;
+    scratch.write("materials.toml",
+                  "[goo]\nyoung_modulus = 1e5\ndensity = 900\n"
+                  "look = {color = [1, 0.5, 0], roughness = 0.7, clear = 0.2}\n"
+                  "[plain]\nyoung_modulus = 1e5\ndensity = 900\n");
+    const auto body = [&](const std::string& material, const std::string& rest = "") {
+        Parts parts = with(&Parts::material, "[material]\n" + material);
+        parts.rest += rest;
+        const SceneReading reading =
+            read_scene(scratch.write("s.toml", parts.text()), {}, shipped());
+        INFO(told(reading.mistakes, scratch.folder()));
+        REQUIRE(reading.scene);
+        return reading.scene->body;
+    };
+    const auto goo = body("name = \"goo\"\n")[0].look;
+    REQUIRE(goo);
+    CHECK(goo->color.y() == Approx(0.2140).epsilon(1e-3));
+    CHECK(goo->roughness == 0.7);
+    CHECK(goo->clear == 0.2);
+    const auto over = body("name = \"goo\"\nlook = {roughness = 0.1, metalness = 0.5}\n")[0].look;
+    CHECK(over->color == goo->color);
+    CHECK(over->roughness == 0.1);
+    CHECK(over->metallic == 0.5);
+    CHECK_FALSE(body("name = \"plain\"\n")[0].look);
+    const std::string custom = "young_modulus = 1e5\ndensity = 900\n";
+    CHECK_FALSE(body(custom)[0].look);
+    CHECK(body(custom + "look = {color = [1, 1, 1]}\n")[0].look->color == Vec3::Ones());
+    const std::string ball = "[[body]]\nfile = \"bar.obj\"\n";
+    CHECK(body("name = \"goo\"\n", ball)[1].look->roughness == 0.7);
+    CHECK_FALSE(body("name = \"goo\"\n", ball + "material = \"plain\"\n")[1].look);
+    CHECK(body("name = \"plain\"\n", ball + "material = \"goo\"\n")[1].look->roughness == 0.7);
+    const std::string worn = ball + "material = \"goo\"\nlook = \"material\"\n";
+    CHECK(body("name = \"plain\"\n", worn)[1].wears_material);
+    CHECK_FALSE(body("name = \"plain\"\n", worn)[0].wears_material);
+}
+
+TEST_CASE("mistakes in looks are told at their places") {
+    const std::string head = "[mesh]\nfile = \"bar.obj\"\n";
+    Parts both = with(&Parts::mesh, head + "look = \"material\"\ncolor = [1, 0, 0]\n");
+    Parts none = with(&Parts::mesh, head + "look = \"material\"\n");
+    none.material = "[material]\nyoung_modulus = 1e5\ndensity = 900\n";
+    Parts bare = none;
+    bare.mesh = head;
+    bare.material += "look = {roughness = 0.5}\n";
+    check_all({
+        {"no table", material("look = \"metal\""), {"5:8: look has to be a table"}},
+        {"too much",
+         material("look = {roughness = 2, metalness = -1}"),
+         {"roughness = 2", "metalness = -1"}},
+        {"a colour beyond", material("look = {color = [2, 0, 0]}"), {"5:17: color = [2, 0, 0]"}},
+        {"clear metal", material("look = {metalness = 1, clear = 0.5}"), {"metal lets no light"}},
+        {"no such key", material("look = {shiny = 1}"), {"unknown key \"shiny\""}},
+        {"no colour", bare, {"look needs \"color\""}},
+        {"two looks", both, {"3:8: look = \"material\" and a color"}},
+        {"a material without", none, {"3:8: look = \"material\", but the material says none"}},
+        {"no such look", with(&Parts::mesh, head + "look = \"gold\"\n"), {"3:8: look"}},
+        {"of an inset",
+         with(&Parts::rest,
+              "[[inset]]\nname = \"lead\"\nfrom = [0, 0, 0]\nto = [1, 1, 0.5]\n"
+              "look = {roughness = 1}\n"),
+         {"look is the whole body's"}},
+    });
 }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/body_look.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kMetalRoughness = 0.35;
+
+bool is_metal(const SurfaceMaterial& look) { return look.metallic > 0.5; }
+
+}  // namespace
+
+std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh) {
+    if (body.color) {
+        SurfaceMaterial look;
+        look.color = *body.color;
+        if (body.metal.value_or(false)) {
+            look.metallic = 1;
+            look.roughness = kMetalRoughness;
+        } else if (!body.metal && body.look && !is_metal(*body.look)) {
+            look.roughness = body.look->roughness;
+            look.clear = body.look->clear;
+        }
+        return look;
+    }
+    const bool says_none = mesh.material.empty() && mesh.position_color.empty();
+    return body.wears_material || says_none ? body.look : std::nullopt;
+}
+
+}  // namespace swage

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "scene/spec.h"
+
+namespace swage {
+
+// How all of a body looks: by the scene's colour, or else by its material, where the mesh says
+// nothing or the scene asks for it. None: as the mesh says.
+std::optional<SurfaceMaterial> body_look(const BodySpec& body, const TriMesh& mesh);
+
+}  // namespace swage
