@@ -240,6 +240,11 @@ TEST_CASE("metal is metal inside, a plain colour goes through, what a texture hi
     CHECK(cut(mesh).metallic == 1);
     CHECK(cut(mesh).color == look.color);
     look.metallic = 0;
+    look.clear = 0.9;  // ice is ice inside
+    CHECK(cut(mesh).clear == 0.9);
+    CHECK(cut(mesh).color == look.color);
+    CHECK(cut(mesh).roughness >= 0.3);
+    look.clear = 0;
     look.texture = "/texture.png";
     const Vec3 pale = cut(mesh).color;
     look.color = {0.1, 0.1, 0.8};
