@@ -80,9 +80,16 @@ std::vector<NearPair> near_pairs(const std::vector<Vec3>& point, const std::vect
         ++begin[hashed(bin.back()) + 1];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<int> place(near.size()), next(begin.begin(), begin.end() - 1);
+    // By bucket, for boxes go through them side by side.
+    struct Binned {
+        Vec3 at;
+        Bin bin;
+        int point;
+    };
+    std::vector<Binned> binned(near.size());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
     for (std::size_t n = 0; n < near.size(); ++n) {
-        place[next[hashed(bin[n])]++] = static_cast<int>(n);
+        binned[next[hashed(bin[n])]++] = {point[near[n]], bin[n], near[n]};
     }
 
     std::vector<NearPair> pair;
@@ -104,9 +111,8 @@ std::vector<NearPair> near_pairs(const std::vector<Vec3>& point, const std::vect
                     const Bin here{i, j, k};
                     const std::size_t at = hashed(here);
                     for (int n = begin[at]; n < begin[at + 1]; ++n) {
-                        const int p = near[place[n]];
-                        if (bin[place[n]] == here && holds(box[b], point[p])) {
-                            pair.push_back({p, id});
+                        if (holds(box[b], binned[n].at) && binned[n].bin == here) {
+                            pair.push_back({binned[n].point, id});
                         }
                     }
                 }

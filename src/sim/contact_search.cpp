@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/contact_search.h"
 
+#include <limits>
+
 #include "base/parallel.h"
 #include "geometry/near_pairs.h"
 
@@ -25,10 +27,17 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
     // New surface lies up to half a cell outside the cells that hold it.
     const bool is_broken = onto.points().size() > onto.own_points();
     margin += (is_broken ? 0.5 : kSliver) * other.lattice.spacing;
-    std::vector<Vec3> point(from.points().size());
-    parallel_each(point.size(), kChunk,
-                  [&](std::size_t p) { point[p] = from.position(static_cast<int>(p)); });
-    Box all = box_of(point);
+    // What meets nothing is nowhere.
+    std::vector<Vec3> point(from.points().size(),
+                            Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    parallel_each(point.size(), kChunk, [&](std::size_t n) {
+        const int p = static_cast<int>(n);
+        if (from.meets(p)) point[n] = from.position(p);
+    });
+    Box all;
+    for (std::size_t n = 0; n < point.size(); ++n) {
+        if (from.meets(static_cast<int>(n))) all.grow(point[n]);
+    }
     all.low.array() -= margin;
     all.high.array() += margin;
     std::vector<CellId> cell;
@@ -75,7 +84,6 @@ void find_contacts(const ContactSide& from, const ContactSide& onto, double marg
         nearest.clear();
         for (; n < pair.size() && pair[n].point == p; ++n) {
             const int b = pair[n].box;
-            if (!from.meets(p)) continue;
             if (&from == &onto && from.is_own_place(p, site[b])) continue;
             const double far = (box[b].center() - point[p]).squaredNorm();
             bool is_new = true;

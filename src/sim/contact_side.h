@@ -87,6 +87,8 @@ class ContactSide {
     // box around its home.
     std::vector<int> near_set_;
     std::vector<std::array<std::uint64_t, 12>> near_;
+    std::vector<Vec3i> set_home_;
+    std::vector<char> near_whole_;  // TouchPoints::whole() that they were found with; empty: none
 };
 
 }  // namespace swage

@@ -37,6 +37,10 @@ CutSurface::CutSurface(const Lattice& lattice, const std::vector<char>& is_whole
         skin_.push_back(run.first + n);
         site_of_skin.push_back(site);
     });
+    // Once each: up to twelve faces share a corner.
+    const auto order = [](const Vec3i& a, const Vec3i& b) { return key_of(a) < key_of(b); };
+    std::sort(open.begin(), open.end(), order);
+    open.erase(std::unique(open.begin(), open.end()), open.end());
     std::unordered_map<std::uint64_t, float> depth;  // looked up only
     for (const Vec3i& corner : open) {
         around(kReach, [&](const Vec3i& way) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/advance.h"
+#include "sim/contact_side.h"
 #include "sim/own_overlap.h"
 #include "sim/sever.h"
 #include "tests/catch.h"
@@ -116,4 +117,48 @@ TEST_CASE("pieces after a cut do not pass through each other") {
         CHECK((nearest > 0.3) == meets);
         CHECK(r.kinetic + r.elastic < 1.01 * start);
     }
+}
+
+TEST_CASE("what is connected to a point is the same, told break by break or all at once") {
+    const Aggregate sound = make_block(30, 6, 12, 0.05, soft());
+    Aggregate block = sound;
+    ContactSide side(block, true);
+    const auto check = [&](const char* what) {
+        side.connections_changed();
+        Aggregate same = block;
+        const ContactSide anew(same, true);
+        REQUIRE(anew.own_points() == side.own_points());
+        int differ = 0, neighbours = 0;
+        for (int p = 0; p < static_cast<int>(side.own_points()); ++p) {
+            const Vec3 at = (side.points().reference(std::size_t(p), block.particle_reference) -
+                             block.lattice.origin) /
+                            block.lattice.spacing;
+            const Vec3i middle = at.array().floor().cast<int>();
+            for (int n = 0; n < 9 * 9 * 9; ++n) {
+                const Vec3i site = middle + Vec3i(n % 9, n / 9 % 9, n / 81) - Vec3i::Constant(4);
+                differ += side.is_neighbour(p, site) != anew.is_neighbour(p, site);
+                neighbours += side.is_neighbour(p, site);
+            }
+        }
+        INFO(what);
+        CHECK(differ == 0);
+        return neighbours;
+    };
+    const int all = check("whole");
+    const auto cut = [&](double x, double z) {
+        sever_plane(block, Vec3(x, 0, 0), Vec3::UnitX(),
+                    [&](const Vec3& at) { return at.z() < z; });
+    };
+    cut(-0.5, 1);
+    const int once = check("one cut, right through");
+    CHECK(once < all);
+    cut(0.21, -0.1);
+    cut(0.21, 0.02);
+    const int twice = check("another, half way");
+    CHECK(twice < once);
+    // A slit is gone round within reach of its end, and not beyond.
+    cut(0.21, 0.2);
+    CHECK(check("and through") < twice);
+    block.connection = sound.connection;
+    CHECK(check("all taken back") == all);
 }
