@@ -143,10 +143,28 @@ std::string pressed_at_start(const StageEnd& end) {
                        how_deep(end.last.body[worst], end, thrown));
 }
 
-// What to look for at the end: folds of what is at rest, and in motion pieces that do not meet.
+// What to look for at the end: folds, and in motion pieces, that nothing has kept apart; at rest
+// also whether what meets is held.
 bool may_lie_in_itself(const StageEnd& end) {
-    const bool in_pieces = end.last.pieces > 1, meets = end.stage.sim.self_contact;
-    return end.stage.sim.solver == Solver::quasistatic ? meets || !in_pieces : in_pieces && !meets;
+    if (end.stage.sim.solver != Solver::quasistatic) return !end.stage.sim.self_contact;
+    return end.stage.sim.self_contact || end.last.pieces == static_cast<int>(end.bodies.size());
+}
+
+// How deep a body lies in itself, and what is to be said of that, if anything.
+std::pair<double, std::string> lies_in_itself(const StageEnd& end, WorkPiece& body) {
+    const SimSettings& sim = end.stage.sim;
+    const double overlap = own_overlap(body.matter);
+    if (overlap <= kOverlap * body.matter.lattice.spacing) return {overlap, {}};
+    const std::string name = end.bodies.size() == 1 ? "the work-piece" : body.name;
+    const bool folded = sim.solver == Solver::quasistatic || find_pieces(body.matter).count == 1;
+    return {
+        overlap,
+        fmt::format(
+            "{}, by {} at the end: {}",
+            folded ? name + " has gone into itself" : "pieces of " + name + " lie in each other",
+            length_text(overlap),
+            sim.self_contact ? "it is pressed together harder than its contact_stiffness holds"
+                             : "self_contact = true in this stage keeps it from that")};
 }
 
 std::string how_to_close(Solver solver) {
@@ -208,16 +226,10 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
                         taken, -end.last.remainder, how_to_close(sim.solver)));
     }
     if (may_lie_in_itself(end) && ended != StageEnded::interrupted) {
-        Aggregate& body = end.bodies.front().matter;
-        verdict.overlap = own_overlap(body);
-        if (verdict.overlap > kOverlap * body.lattice.spacing) {
-            warn(fmt::format(
-                "{}, by {} at the end: {}",
-                sim.solver == Solver::quasistatic ? "the work-piece has gone into itself"
-                                                  : "pieces of the work-piece lie in each other",
-                length_text(verdict.overlap),
-                sim.self_contact ? "it is pressed together harder than its contact_stiffness holds"
-                                 : "self_contact = true in this stage keeps it from that"));
+        for (WorkPiece& body : end.bodies) {
+            const auto [overlap, told] = lies_in_itself(end, body);
+            verdict.overlap = std::max(verdict.overlap, overlap);
+            if (!told.empty()) warn(told);
         }
     }
     return verdict;

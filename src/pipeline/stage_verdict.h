@@ -11,7 +11,7 @@ namespace swage {
 
 struct StageVerdict {
     std::vector<std::string> warning;
-    double overlap = 0;  // of the work-piece with itself, where that is looked for [m]
+    double overlap = 0;  // the deepest of a body with itself, where that is looked for [m]
 };
 
 // `pieces_before`: of all bodies. A stage that ended early is not blamed for what it had not come

@@ -68,6 +68,22 @@ TEST_CASE("pieces that have fallen into each other are told of, and those that m
     CHECK(!says(told_of(pile, fall + "self_contact = true\n"), "lie in each other"));
 }
 
+TEST_CASE("a body in one piece that has sunk into itself in motion is told of") {
+    // A hairpin on its side, the upper arm of which sags through the lower.
+    const swage::TriMesh hairpin = together(together(box_mesh({0, 0, 0}, {0.12, 0.01, 0.01}),
+                                                     box_mesh({0, 0.02, 0}, {0.12, 0.03, 0.01})),
+                                            box_mesh({0, 0, 0}, {0.01, 0.03, 0.01}));
+    const std::string sag =
+        "[[stage]]\nmachine = \"floor\"\ngravity = \"60 m/s2\"\nframes = 2\n"
+        "drop = \"0.1 mm\"\nduration = \"60 ms\"\n";
+    const std::string told = told_of(hairpin, sag);
+    INFO(told);
+    CHECK(says(told, "the work-piece has gone into itself, by "));
+    CHECK(says(told, "self_contact = true in this stage keeps it from that"));
+    CHECK(!says(told_of(hairpin, sag + "self_contact = true\n"), "gone into itself"));
+    CHECK(!says(told_of(kBar, sag), "gone into itself"));
+}
+
 TEST_CASE("tools are said to have touched nothing only where that is known") {
     const std::string apart =
         "[[stage]]\nmachine = \"floor\"\ndrop = \"20 cm\"\nframes = 2\nduration = \"1 ms\"\n"
