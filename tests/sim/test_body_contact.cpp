@@ -82,6 +82,32 @@ TEST_CASE("two blocks press on each other as both tools' springs in series") {
     }
 }
 
+TEST_CASE("parts of one body press on each other as two bodies do") {
+    const auto block = [](const Vec3& x, double low, double half) {
+        return (Vec3(x.x(), x.y() - low - 0.3, x.z()).cwiseAbs() - Vec3(half, 0.3, half))
+            .maxCoeff();
+    };
+    Aggregate both =
+        make_shape([&](const Vec3& x) { return std::min(block(x, 0, 0.35), block(x, 1, 0.25)); },
+                   Vec3(-0.35, 0, -0.35), Vec3i(7, 16, 7), 0.1);
+    both.material = kSpringy;
+    const double depth = 0.003;
+    for (std::size_t p = 0; p < both.particle_count(); ++p) {
+        if (both.particle_reference.at(p).y() > 0.8) {
+            both.particle_position.add(p, Vec3(0.031, -0.4 - depth, 0.043));
+        }
+    }
+    SimSettings settings = motion_settings();
+    settings.self_contact = true;
+    const Pressed p = pressed({&both}, settings);
+    double on_upper = 0;
+    for (std::size_t n = 0; n < both.particle_count(); ++n) {
+        if (both.particle_reference.at(n).y() > 0.8) on_upper += p.force[0].y[n];
+    }
+    const double k = 2 * 1e6 * 0.25 / 0.1;
+    CHECK(on_upper == Approx(0.5 * k * depth).epsilon(0.03));
+}
+
 TEST_CASE("a small block presses on a face alike on its points and between them") {
     Material m = kSpringy;
     m.friction = 0;
