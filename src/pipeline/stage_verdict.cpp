@@ -143,11 +143,10 @@ std::string pressed_at_start(const StageEnd& end) {
                        how_deep(end.last.body[worst], end, thrown));
 }
 
-// What to look for at the end: folds, and in motion pieces, that nothing has kept apart; at rest
-// also whether what meets is held.
+// What to look for at the end: folds and pieces that nothing has kept apart, and at rest also
+// whether what meets is held.
 bool may_lie_in_itself(const StageEnd& end) {
-    if (end.stage.sim.solver != Solver::quasistatic) return !end.stage.sim.self_contact;
-    return end.stage.sim.self_contact || end.last.pieces == static_cast<int>(end.bodies.size());
+    return end.stage.sim.solver == Solver::quasistatic || !end.stage.sim.self_contact;
 }
 
 // How deep a body lies in itself, and what is to be said of that, if anything.
@@ -156,7 +155,7 @@ std::pair<double, std::string> lies_in_itself(const StageEnd& end, WorkPiece& bo
     const double overlap = own_overlap(body.matter);
     if (overlap <= kOverlap * body.matter.lattice.spacing) return {overlap, {}};
     const std::string name = end.bodies.size() == 1 ? "the work-piece" : body.name;
-    const bool folded = sim.solver == Solver::quasistatic || find_pieces(body.matter).count == 1;
+    const bool folded = sim.self_contact || find_pieces(body.matter).count == 1;
     return {
         overlap,
         fmt::format(

@@ -14,12 +14,13 @@ namespace {
 
 // What a run of this body in these stages says; `keys` stand in [mesh].
 std::string told_of(const swage::TriMesh& mesh, const std::string& stages,
-                    const std::string& keys = {}, const std::string& material = "rubber") {
+                    const std::string& keys = {}, const std::string& material = "rubber",
+                    int across = 2) {
     const Scratch scratch;
     const fs::path scene = scratch.path() / "scene.toml";
     swage::write_obj(scratch.path() / "body.obj", mesh);
     put_text(scene, "[mesh]\nfile = \"body.obj\"\n" + keys + "[material]\nname = \"" + material +
-                        "\"\n[mold]\nacross = 2\n" + stages);
+                        "\"\n[mold]\nacross = " + std::to_string(across) + "\n" + stages);
     const Outcome outcome = run_swage(
         {"run", scene.string(), "--out", (scratch.path() / "run").string(), "--no-render"});
     INFO(outcome.err);
@@ -82,6 +83,18 @@ TEST_CASE("a body in one piece that has sunk into itself in motion is told of") 
     CHECK(says(told, "self_contact = true in this stage keeps it from that"));
     CHECK(!says(told_of(hairpin, sag + "self_contact = true\n"), "gone into itself"));
     CHECK(!says(told_of(kBar, sag), "gone into itself"));
+}
+
+TEST_CASE("pieces that are pressed into each other at rest are told of") {
+    const std::string cut = "[[stage]]\nmachine = \"cut\"\nframes = 2\npart = 0.02\n";
+    const std::string press =
+        "[[stage]]\nmachine = \"press\"\naxis = \"y\"\nup = \"x\"\ndepth = 0.4\npress = 1\n"
+        "release = 0\nframes = 3\n";
+    CHECK(!says(told_of(kBar, cut), "lie in each other"));
+    const std::string told = told_of(kBar, cut + press, {}, "rubber", 4);
+    INFO(told);
+    CHECK(says(told, "2-press: pieces of the work-piece lie in each other, by "));
+    CHECK(says(told, "self_contact = true in this stage keeps it from that"));
 }
 
 TEST_CASE("tools are said to have touched nothing only where that is known") {
