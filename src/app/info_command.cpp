@@ -6,6 +6,7 @@
 #include "geometry/mesh_numbered.h"
 #include "geometry/mesh_repair.h"
 #include "pipeline/run_record.h"
+#include "pipeline/use_watch.h"
 
 namespace swage {
 
@@ -76,7 +77,36 @@ std::string text_of(const std::string& file, const InputMesh& input, bool is_man
     return text;
 }
 
+// Of a run's folder: how far it came, and what its bodies have used of what they can bear.
+int info_of_run(const InfoArguments& given, const Json& record) {
+    if (given.json) {
+        put_json(record);
+        return 0;
+    }
+    const auto text_at = [](const Json& of, const char* key) {
+        return of.at(key).get<std::string>();
+    };
+    std::string text =
+        fmt::format("{}\n  {:<12} {}\n", given.file, "state", text_at(record, "state"));
+    for (const Json& stage : record.value("stages", Json::array())) {
+        text += fmt::format("  {:<12} {}, frames {} to {}\n", text_at(stage, "name"),
+                            text_at(stage, "machine"), stage.at("frames").at(0).get<int>(),
+                            stage.at("frames").at(1).get<int>());
+        for (const std::string& use : use_texts(stage)) text += fmt::format("  {}\n", use);
+    }
+    put_out(text);
+    return 0;
+}
+
 int info(const InfoArguments& given) {
+    if (std::filesystem::is_directory(given.file)) {
+        const std::filesystem::path file = std::filesystem::path(given.file) / "run.json";
+        const std::optional<Json> record = read_record(file);
+        if (!record) {
+            fail(ExitCode::command_line, "{} is a folder without a run.json: no run's", given.file);
+        }
+        return info_of_run(given, *record);
+    }
     const InputMesh input = read_mesh_as_it_is(given.file, std::nullopt);
     const std::vector<std::string> repairs = repairs_of(input);
     const bool is_manifold = is_manifold_as_numbered(given.file, input.report);
@@ -96,12 +126,14 @@ int info(const InfoArguments& given) {
 
 void add_info_command(CLI::App& app, Action& chosen) {
     static InfoArguments given;
-    CLI::App* command =
-        add_command(app, "info", "Say what a mesh file holds, and what is wrong with it",
-                    "  swage info assets/meshes/calf.obj\n"
-                    "  swage info assets/meshes/calf.obj --json\n",
-                    chosen, [] { return info(given); });
-    command->add_option("mesh", given.file, "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS or 3MF file")
+    CLI::App* command = add_command(
+        app, "info", "Say what a mesh file holds, and what is wrong with it; or how far a run came",
+        "  swage info assets/meshes/calf.obj\n"
+        "  swage info assets/meshes/calf.obj --json\n",
+        chosen, [] { return info(given); });
+    command
+        ->add_option("mesh", given.file,
+                     "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS or 3MF file; or the folder of a run")
         ->required()
         ->type_name("MESH");
     command->add_flag("--json", given.json, "print one JSON object");

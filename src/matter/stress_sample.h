@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "matter/cell_parts.h"
 
@@ -24,6 +25,8 @@ struct StressSample {
     std::array<double, 6> stress{};
     double plastic_strain = 0;
     double yields_at = 0;  // equivalent stress, now [Pa]; infinite: it never does
+    // E times the strain at which it breaks, or would [Pa]; likewise.
+    double breaks_at = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace swage

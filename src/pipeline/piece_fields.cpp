@@ -6,10 +6,32 @@
 
 namespace swage {
 
+namespace {
+
+bool flows_by_another(const Aggregate& matter) {
+    if (matter.material.mechanics == Mechanics::springs) return matter.yields();
+    for (std::size_t m = 0; m < matter.material_count(); ++m) {
+        if (matter.material_at(m).shifts()) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 SkinFieldValues fields_on_skin(const WorkPiece& piece, const std::vector<SkinField>& fields) {
     if (fields.empty()) return {};
     const std::vector<CellId> cells = cells_under(piece.mount, piece.matter);
-    return skin_fields(piece.mount, piece.matter, stress_samples(piece.matter, cells), fields);
+    SkinFieldValues values =
+        skin_fields(piece.mount, piece.matter, stress_samples(piece.matter, cells), fields);
+    // What counts for flow may be another stress.
+    if (!flows_by_another(piece.matter)) return values;
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+        if (fields[f] != SkinField::yield_use) continue;
+        values[f] = skin_fields(piece.mount, piece.matter,
+                                stress_samples(piece.matter, cells, Bears::of_flow), {fields[f]})
+                        .front();
+    }
+    return values;
 }
 
 std::vector<SkinFieldValues> fields_on_skins(const std::vector<WorkPiece>& bodies,

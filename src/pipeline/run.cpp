@@ -11,6 +11,7 @@
 #include "pipeline/interrupt.h"
 #include "pipeline/run_record.h"
 #include "pipeline/simulate.h"
+#include "pipeline/use_watch.h"
 
 namespace swage {
 
@@ -129,7 +130,13 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         record["drawing"] =
             drawing_json(draw_run(store, scene.render, drawn, files, watch, run_names_of(record)));
     };
+    const auto tell_use = [&] {
+        for (const Json& stage : record.at("stages")) {
+            for (const std::string& text : use_texts(stage)) log_info("{}", text);
+        }
+    };
     if (ended.stopped) {
+        tell_use();
         // What ended the run is its outcome, whether that can be drawn and told or not.
         try {
             draw();
@@ -144,6 +151,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
     draw();
     record["state"] = RunState::complete;
     write_record(directory, record, watch);
+    tell_use();
     log_info("{}: done", directory.root().string());
     return record;
 }

@@ -23,6 +23,7 @@
 #include "pipeline/start_overlap.h"
 #include "pipeline/start_warnings.h"
 #include "pipeline/stiffness_note.h"
+#include "pipeline/use_watch.h"
 #include "scene/product_names.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
@@ -123,6 +124,7 @@ class StageRun {
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
           way_(stage, machine_, bodies.front().matter, context.scene.duration_of(stage)),
           limits_(stage, machine_),
+          use_(bodies),
           cuts_(bodies.size(), 0) {
         const std::string axes = axes_text(machine_.frame);
         if (!axes.empty()) log_info("{}: {}", stage.name, axes);
@@ -271,6 +273,7 @@ class StageRun {
     void book(int number, FrameReport frame, StageCurves& curves) {
         last_ = std::move(frame);
         dress(number);
+        use_.look(number, bodies_);
         curves.add(number, last_, probes());
         if (body_table_) body_table_->add(number, bodies_, last_);
         totals_.add(last_, machine_.apparatus.tool.size());
@@ -365,6 +368,7 @@ class StageRun {
         outcome_.steps = totals_.iterations + totals_.steps;
         outcome_.record = stage_record(end, curves, verdict.overlap, outcome_.warning);
         limits_.add_to(outcome_.record);
+        outcome_.record["use"] = use_.json(bodies_);
     }
 
     const StageSpec& stage_;
@@ -375,6 +379,7 @@ class StageRun {
     const int pieces_before_;
     StageWay way_;
     LimitWatch limits_;
+    UseWatch use_;
     std::vector<char> cuts_;  // a body each: whether its cut is settled
     std::vector<fs::path> meshes_;
     std::optional<BodyTable> body_table_;  // of a stage in motion

@@ -133,8 +133,16 @@ bool creases_matter(const SceneSpec& scene) {
     });
 }
 
-constexpr const char* kNoYield =
-    ": no material yields (yield_stress, flow_curve), so it is 0 everywhere";
+// Why a field is 0 everywhere; empty: it need not be.
+std::string tells_nothing(const std::string& field, const SceneSpec& scene) {
+    if ((field == "plastic_strain" || field == "yield_use") && !yields(scene)) {
+        return ": no material yields (yield_stress, flow_curve), so it is 0 everywhere";
+    }
+    if (field == "strength_use" && !breaks(scene)) {
+        return ": no material breaks (strength, toughness), so it is 0 everywhere";
+    }
+    return {};
+}
 
 struct IdleKey {
     const char* key;
@@ -254,7 +262,7 @@ const std::vector<IdleKey> kOfRender = {
      }},
     {"color",
      [](const Section& at) -> std::string {
-         return at.says("color", "plastic_strain") && !yields(at.scene) ? kNoYield : "";
+         return tells_nothing(at.node.find("color")->value.text, at.scene);
      }},
 };
 
@@ -272,10 +280,11 @@ void judge(const std::vector<IdleKey>& keys, const Section& section, MistakeList
 // Of a list, so each at its own place.
 void judge_fields(const Node& output, const SceneSpec& scene, MistakeList& mistakes) {
     const Entry* fields = output.find("fields");
-    if (fields == nullptr || yields(scene)) return;
+    if (fields == nullptr) return;
     for (const Node& item : fields->value.item) {
-        if (item.text != "plastic_strain") continue;
-        mistakes.warn(item.place, fmt::format("fields: plastic_strain tells nothing{}", kNoYield));
+        const std::string why = tells_nothing(item.text, scene);
+        if (why.empty()) continue;
+        mistakes.warn(item.place, fmt::format("fields: {} tells nothing{}", item.text, why));
     }
 }
 

@@ -22,9 +22,7 @@ constexpr std::size_t kRunsPerChunk = 64;
 // Cells whose strain is within this share of the largest go together: symmetric places do, and a
 // fast crack needs fewer rounds.
 constexpr double kTogether = 0.98;
-// Particles far from the material of their cell do not tell its strain.
-constexpr float kOffCentre = 0.15f;  // of the cell
-constexpr double kSpared = 1.5;      // times onset
+constexpr double kSpared = 1.5;  // times onset
 constexpr std::size_t kTracksAtOnce = 64;
 
 // Largest principal strain where the cell's material is, less what has flowed.
@@ -148,10 +146,7 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
                     if (share >= 1) beyond.push_back({&run, n, share});
                     continue;
                 }
-                double strain = springs ? 0 : material_strain(matter, run, n, onset);
-                if (!flowed && matter.cell_centroid[cell].norm() < kOffCentre) {
-                    strain = std::max(strain, largest_connection_strain(matter, row));
-                }
+                const double strain = breaking_strain(matter, run, n, onset);
                 if (strain >= onset) beyond.push_back({&run, n, strain / onset});
             }
         }
@@ -160,6 +155,25 @@ std::vector<Beyond> all_beyond(const Aggregate& matter, const FractureLaws& laws
 }
 
 }  // namespace
+
+double breaking_strain(const Aggregate& matter, const CellRun& run, int n, double least) {
+    const CellId cell = run.first + n;
+    const bool springs = matter.material.mechanics == Mechanics::springs;
+    const bool flowed = !springs && matter.cell_history.hardening_of(cell) > 0;
+    const double strain = springs ? 0 : material_strain(matter, run, n, least);
+    if (flowed || matter.cell_centroid[cell].norm() >= kOffCentre) return strain;
+    return std::max(strain, largest_connection_strain(matter, run.row_at(n)));
+}
+
+void find_strain_measures(const Aggregate& matter, const CellRun& run,
+                          std::vector<double>& measure) {
+    strain_measures(matter, run, measure);
+}
+
+double breaks_at(const Material& material, double spacing) {
+    if (!material.breaks()) return material.strength;
+    return strength_at(material.young_modulus, material.strength, material.toughness, spacing);
+}
 
 std::vector<const CellRun*> cells_beside(
     const Aggregate& matter, const std::vector<std::vector<const SpringRun*>>& particles) {

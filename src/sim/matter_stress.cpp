@@ -9,11 +9,13 @@
 #include "laws/laminate.h"
 #include "sim/cell_volume.h"
 #include "sim/connection_shares.h"
+#include "sim/cracking.h"
 #include "sim/fracture_laws.h"
 #include "sim/lattice_sweep.h"
 #include "sim/material_laws.h"
 #include "sim/mixed_cells.h"
 #include "sim/rest_lengths.h"
+#include "sim/strength_use.h"
 
 namespace swage {
 
@@ -48,11 +50,16 @@ double yields_at(const MaterialLaw& law, Mechanics mechanics, double plastic_str
 
 class Sampler {
   public:
-    explicit Sampler(const Aggregate& matter)
+    Sampler(const Aggregate& matter, Bears what)
         : matter_(matter),
+          of_flow_(what == Bears::of_flow),
           law_(material_laws(matter)),
           fracture_(matter),
-          stiffness_(lattice_stiffness(matter)) {}
+          stiffness_(lattice_stiffness(matter)) {
+        for (std::size_t m = 0; m < matter.material_count(); ++m) {
+            breaks_at_.push_back(breaks_at(matter.material_at(m), matter.lattice.spacing));
+        }
+    }
 
     void add(CellId cell, std::vector<StressSample>& to) const {
         const std::array<ParticleId, 8> corner = matter_.lattice.cell_corners(cell);
@@ -83,6 +90,7 @@ class Sampler {
         one.place = matter_.lattice.cell_site(cell).cast<double>() + Vec3::Constant(0.5);
         one.plastic_strain = plastic_strain;
         one.yields_at = yields_at(law_[material], matter_.material.mechanics, plastic_strain);
+        one.breaks_at = breaks_at_[material];
         return one;
     }
 
@@ -111,7 +119,30 @@ class Sampler {
         state.modes = pulled_back(f * taken_back(phase.history), sums);
         find_stress(phase, f, state);
         one.stress = turned_back(matrix_of(state.stress), matrix_of(f));
+        if (of_flow_ && shifts) shift_back(cell, law_[material].moduli, one);
         return one;
+    }
+
+    // Of the axes of its history, which turn with the matter too.
+    void shift_back(CellId cell, const CellModuli& law, StressSample& one) const {
+        const BackStrain<double> back = committed_back(matter_, cell);
+        const Symmetric<double>& b = back.strain;
+        const std::array<double, 6> shift = {b.xx, b.yy, b.zz, b.xy, b.yz, b.zx};
+        for (std::size_t i = 0; i < 6; ++i) one.stress[i] -= 2 * law.shear * shift[i];
+        one.yields_at = yield_radius(law, one.plastic_strain);
+    }
+
+    // Of springs, what works of it.
+    void scale_to_flow(CellId cell, StressSample& one) const {
+        if (!of_flow_ || !matter_.yields()) return;
+        one.yields_at = spring_flow_stress(matter_.material, one.plastic_strain);
+        const auto& [xx, yy, zz, xy, yz, zx] = one.stress;
+        const double mises = std::sqrt(
+            0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) +
+            3 * (xy * xy + yz * yz + zx * zx));
+        if (!(mises > 0)) return;
+        const double works = spring_stress(matter_, cell, matter_.lattice.cell_row(cell));
+        for (double& s : one.stress) s *= works / mises;
     }
 
     // A group of corners each: what a blade or a crack has parted bears nothing together.
@@ -147,6 +178,7 @@ class Sampler {
             } else if (const Mat3 f = gradient_of(corner); f.determinant() > kLeastVolume) {
                 const Mat3 turn = nearest_rotation(f);
                 one.stress = components(turn.transpose() * virial * turn / f.determinant());
+                if (springs) scale_to_flow(cell, one);
             }
             to.push_back(one);
         }
@@ -178,16 +210,18 @@ class Sampler {
     }
 
     const Aggregate& matter_;
+    const bool of_flow_;
     const std::vector<MaterialLaw> law_;
+    std::vector<double> breaks_at_;  // by material
     const FractureLaws fracture_;
     const double stiffness_;
 };
 
 }  // namespace
 
-std::vector<StressSample> stress_samples(const Aggregate& matter,
-                                         const std::vector<CellId>& cells) {
-    const Sampler sampler(matter);
+std::vector<StressSample> stress_samples(const Aggregate& matter, const std::vector<CellId>& cells,
+                                         Bears what) {
+    const Sampler sampler(matter, what);
     return parallel_collect<StressSample>(
         cells.size(), kCellsPerChunk,
         [&](std::size_t begin, std::size_t end, std::vector<StressSample>& found) {

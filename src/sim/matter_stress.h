@@ -20,7 +20,12 @@
 
 namespace swage {
 
+// What a stress is to be: all of it, or what counts for flow, which is less by the back stress, and
+// of springs as much as works (laws/yield.h); `yields_at` is then of that.
+enum class Bears { all, of_flow };
+
 // Of the cells that are asked for, in that order.
-std::vector<StressSample> stress_samples(const Aggregate& matter, const std::vector<CellId>& cells);
+std::vector<StressSample> stress_samples(const Aggregate& matter, const std::vector<CellId>& cells,
+                                         Bears what = Bears::all);
 
 }  // namespace swage

@@ -134,6 +134,22 @@ std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector
     return largest;
 }
 
+std::array<double, 2> part_yield_shares(const Aggregate& matter,
+                                        const std::vector<MaterialLaw>& laws,
+                                        const MixedCell& cell) {
+    const OneMixed one = one_mixed(matter, laws, cell, matter.lattice.cell_corners(cell.cell));
+    std::array<double, 2> share{};
+    for (int p = 0; p < 2; ++p) {
+        const Phase<double>& phase = one.phase[p];
+        if (phase.kind != CellKind::yielding) continue;
+        const CellFlowed<double>& r = one.found.phase[p].flowed;
+        const double alpha = phase.history.alpha;
+        share[p] = (r.over + r.line.stress + r.line.slope * alpha) /
+                   mean_flow_stress(*phase.law, alpha, 0);
+    }
+    return share;
+}
+
 std::array<PartStress, 2> part_stresses(const Aggregate& matter,
                                         const std::vector<MaterialLaw>& laws,
                                         const MixedCell& cell) {

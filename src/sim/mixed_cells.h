@@ -26,6 +26,12 @@ struct MixedBatches {
 std::array<double, 2> largest_strains(const Aggregate& matter, const std::vector<MaterialLaw>& laws,
                                       const MixedCell& cell);
 
+// Of each of its two materials the equivalent stress, before any return, over that at which it
+// flows; 0: it does not yield.
+std::array<double, 2> part_yield_shares(const Aggregate& matter,
+                                        const std::vector<MaterialLaw>& laws,
+                                        const MixedCell& cell);
+
 // Gradient, and P = dW/dF per volume of material [Pa], of each of its two materials.
 struct PartStress {
     Mat3 gradient, stress;

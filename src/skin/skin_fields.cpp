@@ -4,8 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
+#include "matter/broken_cells.h"
 #include "matter/mixed_place.h"
 
 namespace swage {
@@ -16,6 +18,7 @@ constexpr std::size_t kPerChunk = 256;
 // Squared spread of the cells along an axis, in cells, below which no line is drawn along it: of a
 // second layer that is filled by less than a twelfth.
 constexpr double kLeastSpread = 0.02;
+constexpr double kOfSprings = 0.25;  // Poisson's ratio
 
 // Stress, plastic strain, and where it yields.
 constexpr int kParts = 8;
@@ -43,15 +46,23 @@ struct Told {
     Parts sum;
 };
 
+// How far the matter of a vertex may be strained.
+struct Limit {
+    double breaks_at, poisson_ratio;
+    bool has_broken;
+};
+
 class Fitter {
   public:
     Fitter(const Mount& mount, const Aggregate& matter, const std::vector<StressSample>& samples)
-        : mount_(mount), matter_(matter), sample_(samples) {
+        : mount_(mount), matter_(matter), sample_(samples), is_damaged_(any_damaged(matter)) {
         first_.assign(matter.cell_fill.size() + 1, 0);
         for (const StressSample& s : samples) ++first_[static_cast<std::size_t>(s.cell) + 1];
         for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
         site_.reserve(samples.size());
         for (const StressSample& s : samples) site_.push_back(matter.lattice.cell_site(s.cell));
+        breaks_at_.assign(matter.material_count(), std::numeric_limits<double>::infinity());
+        for (const StressSample& s : samples) breaks_at_[s.material] = s.breaks_at;
         draw_lines();
         tell_particles();
     }
@@ -80,6 +91,16 @@ class Fitter {
             }
         }
         return Parts::Zero();
+    }
+
+    Limit limit_at(const Mount::CellGroup& group, int n) const {
+        const std::uint8_t material = material_at(group.cell, mount_.carrier[n].local);
+        const bool springs = matter_.material.mechanics == Mechanics::springs;
+        const bool has_broken =
+            is_damaged_ &&
+            cell_has_broken(matter_, group.cell, matter_.lattice.cell_row(group.cell));
+        return {breaks_at_[material],
+                springs ? kOfSprings : matter_.material_at(material).poisson_ratio, has_broken};
     }
 
   private:
@@ -189,8 +210,10 @@ class Fitter {
     const Mount& mount_;
     const Aggregate& matter_;
     const std::vector<StressSample>& sample_;
-    std::vector<int> first_;   // of a cell's samples; the end
-    std::vector<Vec3i> site_;  // of each sample's cell
+    const bool is_damaged_;
+    std::vector<double> breaks_at_;  // by material
+    std::vector<int> first_;         // of a cell's samples; the end
+    std::vector<Vec3i> site_;        // of each sample's cell
     std::vector<Line> line_;
     std::vector<std::vector<Told>> told_;  // to each of the mount's particles
 };
@@ -198,7 +221,7 @@ class Fitter {
 // Of a vertex, of its stress and what it has flowed.
 class Numbers {
   public:
-    explicit Numbers(const Parts& parts) : parts_(parts) {
+    Numbers(const Parts& parts, const Limit& limit) : parts_(parts), limit_(limit) {
         const double mean = (parts[0] + parts[1] + parts[2]) / 3;
         Parts s = parts;
         for (int i = 0; i < 3; ++i) s[i] -= mean;
@@ -214,6 +237,11 @@ class Numbers {
     }
     double of(SkinField field) const {
         switch (field) {
+            case SkinField::yield_use:
+                return parts_[7] > 0 ? equivalent_ / parts_[7] : 0;
+            case SkinField::strength_use:
+                return strength_use();
+
             case SkinField::plastic_strain:
                 return std::max(0.0, parts_[6]);
             case SkinField::stress:
@@ -223,15 +251,28 @@ class Numbers {
             case SkinField::principal_stress:
                 break;
         }
+        return largest_principal();
+    }
+
+  private:
+    double largest_principal() const {
         Mat3 s;
         s << parts_[0], parts_[3], parts_[5], parts_[3], parts_[1], parts_[4], parts_[5], parts_[4],
             parts_[2];
         s = mean_ * Mat3::Identity() + share_ * (s - mean_ * Mat3::Identity());
         return Eigen::SelfAdjointEigenSolver<Mat3>(s, Eigen::EigenvaluesOnly).eigenvalues()[2];
     }
+    // By Hooke's law, as what breaks does so at small strains.
+    double strength_use() const {
+        if (limit_.has_broken) return 1;
+        if (!std::isfinite(limit_.breaks_at)) return 0;
+        const double strain =
+            (1 + limit_.poisson_ratio) * largest_principal() - 3 * limit_.poisson_ratio * mean_;
+        return std::clamp(strain / limit_.breaks_at, 0.0, 1.0);
+    }
 
-  private:
     const Parts parts_;
+    const Limit limit_;
     double mean_ = 0, equivalent_ = 0, share_ = 1;
 };
 
@@ -270,7 +311,7 @@ SkinFieldValues skin_fields(const Mount& mount, const Aggregate& matter,
         for (int c = 0; c < 8; ++c) corner[c] = mount.particle[group.corner[c]];
         const CornerGroups groups = corner_groups(matter, corner);
         for (int n = group.first; n < group.first + group.count; ++n) {
-            const Numbers of(fitter.at_vertex(group, groups, n));
+            const Numbers of(fitter.at_vertex(group, groups, n), fitter.limit_at(group, n));
             for (std::size_t f = 0; f < fields.size(); ++f) {
                 values[f][mount.vertex[n]] = static_cast<float>(of.of(fields[f]));
             }

@@ -245,3 +245,62 @@ TEST_CASE("fields of a bent bar are the same bytes at any number of threads") {
     }
     set_thread_count(0);
 }
+
+TEST_CASE("a bent bar's skin tells what its surface uses of its yield stress and its strength") {
+    constexpr double kCurvature = 0.001, kSurface = kModulus * kCurvature * kHalf;
+    const std::vector<SkinField> uses = {SkinField::yield_use, SkinField::strength_use};
+    Material metal = plastic();
+    metal.yield_stress = 2 * kSurface;
+    metal.strength = 1.6 * kSurface, metal.toughness = 1e4;
+    WorkPiece piece = bar(metal, 4);
+    test::deform(piece.matter, [=](const Vec3& p) -> Vec3 {
+        const double x = p.x(), y = p.y(), z = p.z();
+        return p + kCurvature * Vec3(-x * y, 0.5 * (x * x + 0.3 * (y * y - z * z)), 0.3 * y * z);
+    });
+    follow_matter(piece);
+    const SkinFieldValues is = fields_on_skin(piece, uses);
+    for (std::size_t v = 0; v < piece.position.size(); ++v) {
+        const double should = -piece.mount.reference[v].y() / kHalf;
+        REQUIRE(is[0][v] == Approx(std::abs(should) / 2).margin(0.005));
+        // What is pressed is stretched across.
+        REQUIRE(is[1][v] == Approx((should > 0 ? 1 : -0.3) * should / 1.6).margin(0.01));
+    }
+    // By the law of springs, too, whose own stress is another.
+    metal.mechanics = Mechanics::springs;
+    WorkPiece springs = bar(metal, 4, 0.4);
+    test::deform(springs.matter, [](const Vec3& x) -> Vec3 {
+        return x.cwiseProduct(Vec3(1 + 5e-5, 1 - 1.25e-5, 1 - 1.25e-5));
+    });
+    follow_matter(springs);
+    const SkinFieldValues of_springs = fields_on_skin(springs, uses);
+    for (const float use : of_springs[0]) {
+        REQUIRE(use == Approx(kModulus * 5e-5 / metal.yield_stress).epsilon(5e-3));
+    }
+}
+
+TEST_CASE(
+    "the skin of what has broken has used all of its strength, elsewhere as much as it bears") {
+    Material brittle = plastic();
+    brittle.strength = 1e6, brittle.toughness = 1e4;
+    WorkPiece piece = bar(brittle, 4, 0.4);
+    piece.matter.cell_cracked.assign(piece.matter.cell_fill.size(), 0);
+    int cracked = 0;
+    for (std::size_t cell = 0; cell < piece.matter.cell_fill.size(); ++cell) {
+        if (piece.matter.lattice.cell_site(static_cast<CellId>(cell)).x() != 5) continue;
+        piece.matter.cell_cracked[cell] = 1;
+        ++cracked;
+    }
+    REQUIRE(cracked > 0);
+    test::deform(piece.matter, [](const Vec3& x) -> Vec3 {
+        return x.cwiseProduct(Vec3(1 + 1e-4, 1 - 0.3e-4, 1 - 0.3e-4));
+    });
+    follow_matter(piece);
+    const SkinFieldValues is = fields_on_skin(piece, {SkinField::strength_use});
+    int broken = 0;
+    for (const float use : is[0]) {
+        broken += use == 1;
+        if (use != 1) REQUIRE(use == Approx(kModulus * 1e-4 / 1e6).epsilon(1e-2));
+    }
+    CHECK(broken > 0);
+    CHECK(broken < int(is[0].size()) / 2);
+}

@@ -115,6 +115,13 @@ TEST_CASE("looks of what cannot come about are told") {
                "fields = [\"stress\", \"plastic_strain\"]\n"),
          {"10:9: warning: color has no effect: no material yields",
           "12:21: warning: fields: plastic_strain tells nothing: no material yields"}},
+        {"nothing that could be used",
+         scene("rubber\"\n", bend,
+               "[render]\ncolor = \"strength_use\"\n[output]\n"
+               "fields = [\"yield_use\", \"strength_use\"]\n"),
+         {"10:9: warning: color has no effect: no material breaks",
+          "12:11: warning: fields: yield_use tells nothing: no material yields",
+          "12:24: warning: fields: strength_use tells nothing: no material breaks"}},
         {"a legend of nothing",
          scene("rubber\"\n", bend, "[render]\nlegend = false\n"),
          {"10:10: warning: legend has no effect without color"}},
@@ -125,7 +132,8 @@ TEST_CASE("looks of what cannot come about are told") {
     for (const Parts& right : {
              scene("ice\"\n", bend, "[skin]\nroughness = 0.2\n"),
              scene("copper\"\n", bend, "[render]\ncolor = \"plastic_strain\"\nlegend = false\n"),
-             scene("copper\"\n", bend, "[output]\nfields = [\"plastic_strain\"]\n"),
+             scene("copper\"\n", bend, "[output]\nfields = [\"plastic_strain\", \"yield_use\"]\n"),
+             scene("ice\"\n", bend, "[output]\nfields = [\"strength_use\"]\n"),
              scene("rubber\"\n", bend, "[render]\ncolor = \"stress\"\nlegend = false\n"),
              scene("rubber\"\n", bend,
                    "[render]\nlegend = false\n[output]\n"

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What load has broken of a body.
+#pragma once
+
+#include "matter/aggregate.h"
+
+namespace swage {
+
+bool any_damaged(const Aggregate& matter);
+// Whether it has reached its strength, or a blade has crossed it and load has damaged what is left.
+// `row`: its low row ends.
+bool cell_has_broken(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row);
+
+}  // namespace swage
