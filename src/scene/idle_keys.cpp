@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/expression.h"
 #include "geometry/mesh_read.h"
+#include "laws/spring_moduli.h"
 #include "scene/expressions.h"
 
 namespace swage {
@@ -152,10 +153,10 @@ struct IdleKey {
 const std::vector<IdleKey> kOfMaterials = {
     {"poisson_ratio",
      [](const Section& at) -> std::string {
-         constexpr double kOfSprings = 0.25, kSlack = 0.005;
-         const bool is_other = std::abs(at.material->poisson_ratio - kOfSprings) > kSlack;
+         constexpr double kSlack = 0.005;
+         const bool is_other = std::abs(at.material->poisson_ratio - kPoissonOfSprings) > kSlack;
          return at.material->mechanics == Mechanics::springs && is_other
-                    ? fmt::format(": a lattice of springs has {}", kOfSprings)
+                    ? fmt::format(": a lattice of springs has {}", kPoissonOfSprings)
                     : "";
      }},
     {"elasticity",

@@ -6,13 +6,8 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "base/portable_math.h"
 #include "laws/spring_damper.h"
-#include "laws/volume_guard.h"
-#include "laws/yield.h"
 #include "sim/cell_batch.h"
-#include "sim/cell_volume.h"
-#include "sim/connection_shares.h"
 #include "sim/vector_clones.h"
 
 namespace swage {
@@ -20,25 +15,9 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kRunsPerChunk = 256;
+constexpr std::size_t kCellsPerChunk = 1024;  // about
 constexpr std::size_t kSpansPerChunk = 1024;
 constexpr double kNearYield = 1e-4;  // of it: strains are kept as floats
-// Of S with c = w and i = 1, which is soon found: below it no cell yields that never has.
-constexpr double kUnyielded = 0.25;
-
-constexpr Springs kShares = [] {
-    Springs shares{};
-    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-        shares[slot] = kCellConnection[slot].direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
-    }
-    return shares;
-}();
-
-ParticleId at_corner(const std::array<ParticleId, 4>& row, int corner) {
-    return row[corner >> 1] + (corner & 1);
-}
-ParticleId lower_end(const std::array<ParticleId, 4>& row, int slot) {
-    return at_corner(row, kCellConnection[slot].corner);
-}
 
 SWAGE_VECTOR_CLONES
 void strain_block(const double* x, const double* y, const double* z, const double* ux,
@@ -48,18 +27,6 @@ void strain_block(const double* x, const double* y, const double* z, const doubl
         const double dx = ux[n] - x[n], dy = uy[n] - y[n], dz = uz[n] - z[n];
         const double ratio = std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_reference;
         strain[n] = static_cast<float>(log_ratio(ratio));
-    }
-}
-
-SWAGE_VECTOR_CLONES
-void distortion_block(const float* strain, const float* weight, const float* plastic,
-                      const double* theta, double share, int count, float* __restrict shortest,
-                      float* __restrict longest, double* __restrict distortion) {
-    for (int n = 0; n < count; ++n) {
-        shortest[n] = strain[n] < shortest[n] ? strain[n] : shortest[n];
-        longest[n] = strain[n] > longest[n] ? strain[n] : longest[n];
-        const double s = double(strain[n]) - double(plastic[n]) - theta[n];
-        distortion[n] += weight[n] > 0 ? share * s * s : 0.0;
     }
 }
 
@@ -132,7 +99,7 @@ CellFlow::CellFlow(const Aggregate& matter) {
     law_ = {matter.material.yield_stress, matter.material.hardening, shear,
             flow_curve(matter.material.flow_curve, shear)};
     yield_distortion_ = yield_distortion(law_);
-    for (auto& strain : strain_) strain.resize(matter.particle_count());
+    for (auto& strain : strain_) strain.resize(matter.particle_count() + kStrainsBehind);
     history_changed(matter);
 }
 
@@ -142,6 +109,7 @@ void CellFlow::history_changed(const Aggregate& matter) {
         rest_[d].resize(matter.particle_count());
     }
     flowing_.clear();
+    sound_.clear();
 }
 
 // Nothing has ever flowed and nothing does.
@@ -169,147 +137,58 @@ void CellFlow::find_strains(const Aggregate& matter) {
     });
 }
 
-CellSprings CellFlow::springs_of(const Aggregate& matter, CellId cell,
-                                 const std::array<ParticleId, 4>& row) const {
-    CellSprings springs;
-    for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-        const int d = kCellConnection[slot].direction;
-        const ParticleId lower = lower_end(row, slot);
-        const ParticleId upper = at_corner(row, upper_corner(kCellConnection[slot]));
-        const double plastic =
-            matter.cell_plastic[slot].empty() ? 0.0 : double(matter.cell_plastic[slot][cell]);
-        springs.way[slot] =
-            (matter.particle_position.at(upper) - matter.particle_position.at(lower)) /
-            reference_length(matter.lattice, d);
-        springs.strain[slot] = double(strain_[d][lower]) - plastic;
-    }
-    return springs;
-}
-
-void CellFlow::find_flowing(const Aggregate& matter) {
+void CellFlow::find_sound(const Aggregate& matter) {
     const std::vector<CellRun>& runs = matter.lattice.cell_run;
-    const bool fresh = matter.cell_plastic[0].empty();
-    const std::vector<float>& hardening = matter.cell_history.hardening();
-    const std::array<float, kCellBlock> unyielded{};
-    const auto find = [&](std::size_t first, std::size_t last, std::vector<FlowingCell>& flowing) {
-        double theta[kCellBlock], distortion[kCellBlock];
-        float weight[kCellBlock], shortest[kCellBlock], longest[kCellBlock];
-        for (std::size_t r = first; r < last; ++r) {
-            const CellRun& run = runs[r];
-            for (int at = 0; at < run.count; at += kCellBlock) {
-                const int count = std::min(kCellBlock, run.count - at);
-                const auto plastic = [&](int slot) {
-                    return fresh ? unyielded.data()
-                                 : matter.cell_plastic[slot].data() + run.first + at;
-                };
-                cell_volumes(matter, run, at, count, theta);
-                for (int n = 0; n < count; ++n) {
-                    theta[n] =
-                        log_ratio(std::clamp(theta[n], kGuardedVolume, 1 / kGuardedVolume)) / 3;
-                }
-                std::fill_n(distortion, count, 0.0);
-                std::fill_n(shortest, count, std::numeric_limits<float>::infinity());
-                std::fill_n(longest, count, -std::numeric_limits<float>::infinity());
-                for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-                    const int d = kCellConnection[slot].direction;
-                    const ParticleId lower = lower_end(run.row, slot) + at;
-                    matter.connection[d].weight.copy(lower, count, weight);
-                    distortion_block(strain_[d].data() + lower, weight, plastic(slot), theta,
-                                     kShares[slot], count, shortest, longest, distortion);
-                }
-                for (int n = 0; n < count; ++n) {
-                    const CellId id = run.first + at + n;
-                    const double alpha = fresh ? 0.0 : double(hardening[id]);
-                    const bool is_far =
-                        alpha > 0 ? law_.shear_modulus * most_stress(distortion[n], theta[n],
-                                                                     shortest[n], longest[n]) <
-                                        flow_stress(law_, alpha)
-                                  : !(distortion[n] > kUnyielded * yield_distortion_);
-                    if (is_far) continue;
-                    const std::array<ParticleId, 4> row = run.row_at(at + n);
-                    if (!cell_is_sound(matter, id, row)) continue;  // has no size any more
-                    if (const auto flow = return_springs(law_, springs_of(matter, id, row), kShares,
-                                                         theta[n], alpha)) {
-                        flowing.push_back({id, row, *flow});
-                    }
-                }
-            }
+    sound_.resize(matter.cell_fill.size());
+    parallel_each(runs.size(), kRunsPerChunk, [&](std::size_t r) {
+        for (int n = 0; n < runs[r].count; ++n) {
+            const CellId cell = runs[r].first + n;
+            sound_[cell] = cell_is_sound(matter, cell, runs[r].row_at(n));
         }
-    };
-    flowing_ = parallel_collect<FlowingCell>(runs.size(), kRunsPerChunk, find);
+    });
 }
 
 const RestStrains& CellFlow::rest_strains(const Aggregate& matter) {
     // Only what flowed last time has to be put back.
-    for (const FlowingCell& cell : flowing_) {
+    for (const FlowingCells& cells : flowing_) {
         for (int slot = 0; slot < kCellConnectionCount; ++slot) {
             const int d = kCellConnection[slot].direction;
-            const ParticleId lower = lower_end(cell.row, slot);
-            rest_[d][lower] = static_cast<float>(matter.connection[d].plastic_of(lower));
+            const ParticleId lower = cells.lower(slot);
+            const std::vector<float>& plastic = matter.connection[d].plastic;
+            if (plastic.empty()) {
+                std::fill_n(rest_[d].begin() + lower, cells.count, 0.0f);
+            } else {
+                std::copy_n(plastic.begin() + lower, cells.count, rest_[d].begin() + lower);
+            }
         }
     }
-    if (is_far_from_yield(matter)) {
-        flowing_.clear();
-        return rest_;
-    }
+    flowing_.clear();
+    if (is_far_from_yield(matter)) return rest_;
+    if (sound_.empty()) find_sound(matter);  // others have no size any more
     find_strains(matter);
-    find_flowing(matter);
-    for (const FlowingCell& cell : flowing_) {
-        const double fill = matter.cell_fill[cell.cell];
-        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-            const int d = kCellConnection[slot].direction;
-            const ParticleId lower = lower_end(cell.row, slot);
-            const double weight = matter.connection[d].weight[lower];
-            if (weight <= 0) continue;  // severed: its rest length no longer matters
-            const double share = cell_share(d) * fill / weight;
-            rest_[d][lower] = static_cast<float>(
-                (1.0 + rest_[d][lower]) * portable::exp(share * cell.flow.grows[slot]) - 1.0);
-        }
-    }
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const std::size_t chunks = matter.cell_fill.size() / kCellsPerChunk + 1;
+    flowing_ = parallel_collect<FlowingCells>(
+        chunks, 1, [&](std::size_t begin, std::size_t end, std::vector<FlowingCells>& found) {
+            find_flowing({matter, law_, strain_, sound_},
+                         runs.data() + runs.size() * begin / chunks,
+                         runs.data() + runs.size() * end / chunks, found);
+        });
+    add_flow(matter, flowing_, rest_);
     return rest_;
-}
-
-// What a growing rest length takes from a connection's elastic energy: its tension times the
-// growth.
-double CellFlow::plastic_work(const Aggregate& matter, int d, ParticleId lower,
-                              double growth) const {
-    const double reference = reference_length(matter.lattice, d);
-    const double elastic = portable::exp(double(strain_[d][lower])) - 1 - rest_[d][lower];
-    return lattice_stiffness(matter) * matter.connection[d].weight[lower] * reference * reference *
-           elastic * growth;
 }
 
 double CellFlow::commit(Aggregate& matter, bool found, RestGrowths* growths) {
     if (!(yield_distortion_ > 0)) return 0;
     if (!found) rest_strains(matter);
     if (flowing_.empty()) return 0;
-    double lost = 0;
     for (std::vector<float>& slot : matter.cell_plastic) slot.resize(matter.cell_fill.size());
     for (ConnectionArrays& c : matter.connection) c.plastic.resize(matter.particle_count());
-    std::vector<float>& hardening = matter.cell_history.hardening();
-    hardening.resize(matter.cell_fill.size());
-    for (const FlowingCell& cell : flowing_) {
-        for (int slot = 0; slot < kCellConnectionCount; ++slot) {
-            const int d = kCellConnection[slot].direction;
-            const ParticleId lower = lower_end(cell.row, slot);
-            float& plastic = matter.connection[d].plastic[lower];
-            if (plastic != rest_[d][lower]) {
-                const double growth = rest_[d][lower] - plastic;
-                lost += plastic_work(matter, d, lower, growth);
-                plastic = rest_[d][lower];
-                if (growths) {
-                    const double weight = matter.connection[d].weight[lower];
-                    (*growths)[d].push_back(
-                        {lower,
-                         static_cast<float>(weight * growth / (1 + plastic - 0.5 * growth))});
-                }
-            }
-            matter.cell_plastic[slot][cell.cell] += static_cast<float>(cell.flow.grows[slot]);
-        }
-        hardening[cell.cell] += static_cast<float>(cell.flow.d_alpha);
-    }
+    matter.cell_history.hardening().resize(matter.cell_fill.size());
+    const double taken = keep_flow(matter, flowing_, strain_, rest_, growths);
     flowing_.clear();
-    return lost;
+    const double spacing = matter.lattice.spacing;
+    return lattice_stiffness(matter) * spacing * spacing * taken;
 }
 
 }  // namespace swage

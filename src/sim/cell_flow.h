@@ -2,13 +2,9 @@
 // Plastic flow of the lattice: cells that yield hand their connections new rest lengths.
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include "laws/yield.h"
-#include "matter/aggregate.h"
-#include "sim/lattice_sweep.h"
-#include "sim/rest_lengths.h"
+#include "sim/flowing_cells.h"
 
 namespace swage {
 
@@ -31,23 +27,16 @@ class CellFlow {
     void history_changed(const Aggregate& matter);
 
   private:
-    struct FlowingCell {
-        CellId cell;
-        std::array<ParticleId, 4> row;  // low ends of its four edges along x
-        SpringReturn flow;
-    };
     bool is_far_from_yield(const Aggregate& matter) const;
     void find_strains(const Aggregate& matter);
-    void find_flowing(const Aggregate& matter);
-    CellSprings springs_of(const Aggregate& matter, CellId cell,
-                           const std::array<ParticleId, 4>& row) const;
-    double plastic_work(const Aggregate& matter, int d, ParticleId lower, double growth) const;
+    void find_sound(const Aggregate& matter);
 
     Yield law_{};
     double yield_distortion_ = 0;  // of a cell that has not yielded yet; 0: never yields
-    std::array<std::vector<float>, kForwardCount> strain_;  // logarithmic, of each connection now
+    SpringStrains strain_;
     RestStrains rest_;
-    std::vector<FlowingCell> flowing_;  // what rest_ holds beyond the committed strains
+    std::vector<char> sound_;            // of each cell; empty: not known
+    std::vector<FlowingCells> flowing_;  // what rest_ holds beyond the committed strains
 };
 
 }  // namespace swage

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "laws/spring_moduli.h"
 #include "laws/volume_guard.h"
 #include "sim/cell_volume.h"
 #include "sim/flowed_stretch.h"
@@ -27,7 +28,8 @@ std::vector<MaterialLaw> guard_laws(const Aggregate& matter, Flow flow) {
         const Material& m = matter.material_at(n);
         if (m.mechanics != Mechanics::springs) continue;
         CellModuli& law = laws[n].moduli;
-        law = cell_moduli(m.young_modulus, 0.25, law.spacing, law.yield_stress, law.hardening);
+        law = cell_moduli(m.young_modulus, kPoissonOfSprings, law.spacing, law.yield_stress,
+                          law.hardening);
     }
     return laws;
 }

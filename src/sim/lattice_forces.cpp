@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/cell_flow.h"
 #include "sim/cracking.h"
 #include "sim/crushed_cells.h"
 #include "sim/hinges.h"
@@ -31,6 +32,9 @@ LatticeForces::LatticeForces(const Aggregate& matter, bool in_motion)
     if (cells_) cells_->watch_strain(loose_.laws().watched_onset());
     take_in(matter);
 }
+
+LatticeForces::LatticeForces(LatticeForces&&) noexcept = default;
+LatticeForces::~LatticeForces() = default;
 
 void LatticeForces::connections_changed(Aggregate& matter, bool severed) {
     const bool in_excess = in_motion_ && matter.breaks();

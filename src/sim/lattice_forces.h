@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "matter/aggregate.h"
-#include "sim/cell_flow.h"
 #include "sim/cell_sweep.h"
 #include "sim/lattice_sweep.h"
 #include "sim/loose_springs.h"
 
 namespace swage {
+
+class CellFlow;
 
 // What a converged state took for good.
 struct Committed {
@@ -33,6 +34,8 @@ class LatticeForces {
     // made. NOTE: at rest it is gone at once, and shapes at rest that were laid down for it load
     // what is beside a crack as the crack closes: a bar of ice went to 23 pieces instead of 2.
     explicit LatticeForces(const Aggregate& matter, bool in_motion = false);
+    LatticeForces(LatticeForces&&) noexcept;
+    ~LatticeForces();
 
     // Connections have been severed or broken, or cells cracked. Such a cell is no cell any more;
     // what it has left acts as plain springs, with the plastic strain it had. In motion those of

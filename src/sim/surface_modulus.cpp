@@ -3,12 +3,14 @@
 
 #include <algorithm>
 
+#include "laws/spring_moduli.h"
 #include "matter/mixed_place.h"
 
 namespace swage {
 
 double pressed_modulus(const Material& material, Solver solver) {
-    const double nu = material.mechanics == Mechanics::springs ? 0.25 : material.poisson_ratio;
+    const bool springs = material.mechanics == Mechanics::springs;
+    const double nu = springs ? kPoissonOfSprings : material.poisson_ratio;
     const double bulk = material.young_modulus / (3 * (1 - 2 * nu));
     return solver == Solver::quasistatic ? material.young_modulus
                                          : std::max(material.young_modulus, bulk);
