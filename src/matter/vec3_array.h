@@ -16,6 +16,11 @@ struct Vec3Array {
     Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
     void set(std::size_t i, const Vec3& v) { x[i] = v[0], y[i] = v[1], z[i] = v[2]; }
     void add(std::size_t i, const Vec3& v) { x[i] += v[0], y[i] += v[1], z[i] += v[2]; }
+
+    template <typename Io>
+    void visit(Io& io) {  // as SparseArray has it
+        io(x, y, z);
+    }
 };
 
 }  // namespace swage

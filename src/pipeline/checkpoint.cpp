@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The file: a magic word, what is kept, and a hash of that.
 #include "pipeline/checkpoint.h"
 
-#include <cstring>
-#include <string_view>
-
-#include "base/atomic_file.h"
-#include "base/file_contents.h"
-#include "base/hash.h"
+#include "pipeline/sealed_file.h"
 #include "pipeline/work_piece_bytes.h"
 
 namespace swage {
@@ -48,12 +42,6 @@ void visit(Io& io, Head& head) {
 }
 
 template <typename Io>
-void visit(Io& io, MotionMark& mark) {
-    auto& [size, hash] = mark;
-    io(size, hash);
-}
-
-template <typename Io>
 void visit(Io& io, Reached& reached) {
     auto& [stages, bodies, matter, stage, start_warning, warning, steps, seconds, motion, skin] =
         reached;
@@ -65,21 +53,14 @@ void visit(Io& io, Reached& reached) {
 
 void write_checkpoint(const fs::path& file, const StageKeys& keys, const Reached& reached) {
     ByteWriter out(true);
-    out(kMagic, head_of(keys, reached.stages), state_hash(reached.bodies), reached);
-    out(hash_of(std::string_view(out.bytes()).substr(sizeof kMagic)));
-    write_file_whole(file, out.bytes());
+    out(head_of(keys, reached.stages), state_hash(reached.bodies), reached);
+    write_sealed(file, kMagic, out.bytes());
 }
 
 int stages_kept(const fs::path& file, const StageKeys& keys) {
-    std::string why;
-    const FileHandle handle = open_plain_file(file, why);
-    std::string bytes(kLongestHead, '\0');
-    const auto got = handle.is_open() ? read_up_to(handle.id(), bytes.data(), bytes.size())
-                                      : std::optional<std::size_t>(0);
+    const std::string bytes = start_of_sealed(file, kMagic, kLongestHead);
     try {
-        ByteReader in(std::span(bytes.data(), got.value_or(0)));
-        if (in.get<std::uint64_t>() != kMagic) return 0;
-        const auto head = in.get<Head>();
+        const auto head = ByteReader(bytes).get<Head>();
         return is_of(keys, head) ? head.stages : 0;
     } catch (const Error&) {
         return 0;
@@ -88,41 +69,25 @@ int stages_kept(const fs::path& file, const StageKeys& keys) {
 
 std::optional<Reached> read_checkpoint(const fs::path& file, const StageKeys& keys,
                                        std::string& why) {
-    why.clear();
-    std::error_code unknown;
-    if (!fs::exists(file, unknown)) return std::nullopt;
-    const FileHandle handle = open_plain_file(file, why);
-    if (!handle.is_open()) return std::nullopt;
-    // However long what is none may be.
-    std::uint64_t magic = 0, hash = 0;
-    if (read_up_to(handle.id(), &magic, sizeof magic) != sizeof magic || magic != kMagic) {
-        why = "is damaged";
-        return std::nullopt;
-    }
-    const std::optional<std::string> bytes = rest_of_file(handle.id(), kAnyLength, why);
+    const std::optional<std::string> bytes = read_sealed(file, kMagic, why);
     if (!bytes) return std::nullopt;
-    why = "is damaged";
-    if (bytes->size() < sizeof hash) return std::nullopt;
-    const std::string_view hashed(bytes->data(), bytes->size() - sizeof hash);
-    std::memcpy(&hash, hashed.data() + hashed.size(), sizeof hash);
-    if (hash != hash_of(hashed)) return std::nullopt;
     try {
-        ByteReader in(hashed);
+        ByteReader in(*bytes);
         const auto head = in.get<Head>();
         if (!is_of(keys, head)) {
             why = "is of another run, or of another build of swage";
             return std::nullopt;
         }
-        in(hash);
+        const auto hash = in.get<std::uint64_t>();
         auto reached = in.get<Reached>();
-        if (in.left() > 0 || reached.stages != head.stages ||
-            reached.skin.size() != reached.bodies.size() || state_hash(reached.bodies) != hash) {
-            return std::nullopt;
+        if (in.left() == 0 && reached.stages == head.stages &&
+            reached.skin.size() == reached.bodies.size() && state_hash(reached.bodies) == hash) {
+            return reached;
         }
-        return reached;
     } catch (const Error&) {
     } catch (const Json::exception&) {
     }
+    why = "is damaged";
     return std::nullopt;
 }
 

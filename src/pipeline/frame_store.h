@@ -41,6 +41,8 @@ struct StoredFrame {
 
 // How far a motion file goes: its bytes but for the end, and a hash of what they are.
 struct MotionMark {
+    using IsPlain = MotionMark;
+
     std::uint64_t size = 0, hash = 0;
 };
 
@@ -65,6 +67,7 @@ class FrameStoreWriter {
     int add_machine(const std::vector<DrawnPart>& part);
     void add_frame(const StoredFrame& frame);
     int frame_count() const { return frames_; }
+    int machine_count() const { return machines_; }
 
     // Flushed to disk under that name, it stays there until `finish`, whatever becomes of the
     // process: what the mark says then can be gone on from.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meshes as bytes (pipeline/bytes.h).
+// Meshes as bytes (base/bytes.h).
 #pragma once
 
+#include "base/bytes.h"
 #include "geometry/trimesh.h"
-#include "pipeline/bytes.h"
 
 namespace swage {
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <span>
 
 #include "base/atomic_file.h"
@@ -24,6 +23,7 @@
 #include "pipeline/start_warnings.h"
 #include "pipeline/stiffness_note.h"
 #include "pipeline/use_watch.h"
+#include "pipeline/warning_book.h"
 #include "scene/product_names.h"
 #include "sim/advance.h"
 #include "sim/sever.h"
@@ -38,32 +38,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kOpenSkin = "the skin could not be closed everywhere that matter broke";
-
-// Warnings that come back frame after frame are told once, with the frames they came in.
-class WarningBook {
-  public:
-    void add(int frame, const std::string& sentence) {
-        auto [at, is_new] = frames_.try_emplace(sentence);
-        if (is_new) order_.push_back(sentence);
-        // It may come in several legs of a frame.
-        if (is_new || at->second.back() != frame) at->second.push_back(frame);
-    }
-    std::vector<std::string> told(const std::string& stage) const {
-        std::vector<std::string> lines;
-        for (const std::string& sentence : order_) {
-            const std::vector<int>& frames = frames_.at(sentence);
-            lines.push_back(frames.size() == 1
-                                ? fmt::format("{}, frame {}: {}", stage, frames[0], sentence)
-                                : fmt::format("{}, {} frames from {} on: {}", stage, frames.size(),
-                                              frames[0], sentence));
-        }
-        return lines;
-    }
-
-  private:
-    std::map<std::string, std::vector<int>> frames_;
-    std::vector<std::string> order_;
-};
 
 // OBJ has no place for fields.
 void write_meshes(const WorkPiece& body, const std::vector<SkinField>& fields,

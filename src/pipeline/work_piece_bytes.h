@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A work-piece as bytes (pipeline/bytes.h): all of it, but for what is derived from the rest.
+// A work-piece as bytes (base/bytes.h): all of it, but for what is derived from the rest.
 #pragma once
 
 #include "pipeline/mesh_bytes.h"
@@ -43,11 +43,6 @@ void visit(Io& io, Lattice& lattice) {
     io(origin, spacing, cell_count, particle_run, span, cell_run, cell_row_begin);
 }
 
-template <typename Io>
-void visit(Io& io, Vec3Array& array) {
-    auto& [x, y, z] = array;
-    io(x, y, z);
-}
 template <typename Io>
 void visit(Io& io, ConnectionArrays& arrays) {
     auto& [weight, plastic, damage] = arrays;

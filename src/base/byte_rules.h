@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How values pass to bytes and back (pipeline/bytes.h). What a thing consists of is said once for
+// How values pass to bytes and back (base/bytes.h). What a thing consists of is said once for
 // both ways, so that a member that is added to it and forgotten here does not compile:
 //
 //     template <typename Io>
@@ -8,12 +8,15 @@
 //         io(one, other);
 //     }
 //
-// Where members are private, `thing.visit(io)` does that.
+// Where members are private, `thing.visit(io)` does that. What is one run of bytes, and points to
+// nothing, may say so instead: `using IsPlain = Thing;`. Its gaps pass as they are.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -24,9 +27,14 @@
 
 namespace swage {
 
-// What is one run of numbers, without gaps.
 template <typename T>
-struct IsRaw : std::bool_constant<std::is_arithmetic_v<T> || std::is_enum_v<T>> {};
+concept SaysPlain = std::is_same_v<typename T::IsPlain, T>;  // and not what it derives from
+template <typename T>
+struct IsRaw : std::bool_constant<std::is_arithmetic_v<T> || std::is_enum_v<T> || SaysPlain<T>> {};
+template <>
+struct IsRaw<Pose> : std::true_type {};
+template <>
+struct IsRaw<Twist> : std::true_type {};
 template <typename T, int rows, int columns>
 struct IsRaw<Eigen::Matrix<T, rows, columns>> : std::bool_constant<(rows > 0 && columns > 0)> {};
 template <typename T, std::size_t count>
@@ -68,6 +76,26 @@ void pass(Io& io, std::vector<T>& values) {
         for (T& value : values) io(value);
     }
 }
+template <typename Io, typename T>
+void pass(Io& io, std::deque<T>& values) {
+    values.resize(io.count(values.size(), 1));
+    for (T& value : values) io(value);
+}
+template <typename Io>
+void pass(Io& io, Eigen::MatrixXd& matrix) {
+    std::int64_t rows = matrix.rows(), columns = matrix.cols();
+    io(rows, columns);
+    std::vector<double> values(matrix.data(), matrix.data() + matrix.size());
+    io(values);
+    values.resize(static_cast<std::size_t>(rows * columns));
+    if constexpr (Io::kReads) matrix = Eigen::Map<Eigen::MatrixXd>(values.data(), rows, columns);
+}
+template <typename Io, typename K, typename T>
+void pass(Io& io, std::map<K, T>& values) {
+    std::vector<std::pair<K, T>> all(values.begin(), values.end());
+    io(all);
+    if constexpr (Io::kReads) values = std::map<K, T>(all.begin(), all.end());
+}
 template <typename Io, Visited T, std::size_t count>
 void pass(Io& io, std::array<T, count>& values) {
     for (T& value : values) io(value);
@@ -80,6 +108,7 @@ template <typename Io, typename T>
 void pass(Io& io, std::optional<T>& value) {
     bool is_there = value.has_value();
     io(is_there);
+    if (!is_there) value.reset();
     if (is_there && !value) value.emplace();
     if (is_there) io(*value);
 }

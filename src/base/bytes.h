@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values as bytes of this machine's order (pipeline/byte_rules.h), for files and for hashes.
+// Values as bytes of this machine's order (base/byte_rules.h), for files and for hashes.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
+#include "base/byte_rules.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "pipeline/byte_rules.h"
 
 namespace swage {
 
