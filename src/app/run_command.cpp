@@ -2,6 +2,7 @@
 #include "app/command.h"
 #include "app/scene_argument.h"
 #include "base/error.h"
+#include "base/units.h"
 #include "pipeline/cost.h"
 #include "pipeline/run.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 struct RunArguments {
     SceneArgument scene;
-    std::string out, frames;
+    std::string out, frames, keep_every;
     bool no_render = false, fresh = false, go_on = false, force = false, json = false;
 };
 
@@ -25,6 +26,9 @@ Json run(const RunArguments& given, const SceneSpec& scene) {
     options.fresh = given.fresh;
     options.go_on = given.go_on;
     options.insist = given.force;
+    if (!given.keep_every.empty()) {
+        options.keep_every = parse_quantity(given.keep_every, Quantity::time);
+    }
     return run_scene(scene, options);
 }
 
@@ -76,6 +80,19 @@ void add_run_command(CLI::App& app, Action& chosen) {
                    "where the scene was changed from some stage on, and the run in the directory "
                    "ended early: keep the stages that it finished before, throw away the others")
         ->excludes(fresh);
+    command
+        ->add_option("--keep-every", given.keep_every,
+                     "keep what a run that ends early goes on from after each frame that ends so "
+                     "long after the last (\"10 min\"; default: when that takes a fiftieth of "
+                     "the time, or less)")
+        ->check([](const std::string& text) -> std::string {
+            try {
+                return parse_quantity(text, Quantity::time) >= 0 ? "" : "is less than 0";
+            } catch (const std::exception& error) {
+                return error.what();
+            }
+        })
+        ->type_name("TIME");
     command->add_flag("--force", given.force,
                       "run even if it seems to need more memory, disk or time than there is");
     command->add_flag(

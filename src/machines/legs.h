@@ -12,6 +12,8 @@
 namespace swage {
 
 struct Leg {
+    using IsPlain = Leg;
+
     int frame;          // 0 for the first
     double begin, end;  // of the stage, 0 to 1
     bool bends =

@@ -176,6 +176,11 @@ bool cell_is_sound(const Aggregate& matter, CellId cell, const std::array<Partic
 struct Pieces {
     int count = 0;
     std::vector<int> particle_piece;
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(count, particle_piece);
+    }
 };
 Pieces find_pieces(const Aggregate& matter);
 

@@ -86,6 +86,7 @@ struct Apparatus {
 // How what moves unevenly sets out on its way from the drive before, and comes to the end of it: as
 // the twist from its first pose grows there, were the whole way gone so.
 struct WayEnds {
+    using IsPlain = WayEnds;
     Twist leaving, coming;
 };
 
@@ -100,6 +101,12 @@ struct Drive {
     // Of what comes from the drive before otherwise than straight (as a screw) and evenly; empty:
     // nothing does. What is in motion would feel each corner of such a way as a blow.
     std::vector<std::optional<WayEnds>> tool_way{}, grip_way{};
+
+    template <typename Io>
+    void visit(Io& io) {
+        auto& [at, tool, grip, blade, load, gravity, tools, grips] = *this;
+        io(at, tool, grip, blade, load, gravity, tools, grips);
+    }
 };
 
 // The pose a share `s` of a way that bends: by the cubic that has its ends.
@@ -122,6 +129,11 @@ struct LimitStop {
     Drive at;
     double borne = 0;   // of it, there
     double beyond = 0;  // what it jumps to at the least way farther; 0: it was met
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(limit, at, borne, beyond);
+    }
 };
 
 }  // namespace swage

@@ -34,6 +34,11 @@ class TouchPoints {
     const std::vector<Vec3i>& home() const { return home_; }
     const std::vector<char>& whole() const { return whole_; }  // of each cell
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(points_, carrier_, home_, meets_, whole_, face_, loose_);
+    }
+
   private:
     int face_point(const Lattice& lattice, CellId cell, const Vec3i& site, int face);
     int loose_point(double spacing, ParticleId particle);

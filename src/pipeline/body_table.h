@@ -29,8 +29,15 @@ class BodyTable {
     // unit.
     std::string csv_text() const;
 
+    template <typename Io>
+    void visit(Io& io) {
+        io(row_);
+    }
+
   private:
     struct Row {
+        using IsPlain = Row;
+
         int frame;
         double time;
         std::size_t body;

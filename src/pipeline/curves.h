@@ -24,6 +24,12 @@ struct LoadCurve {
     std::vector<double> work;         // [J] done on the matter
     std::vector<double> penetration;  // [m]
     std::vector<int> contacts;
+
+    template <typename Io>
+    void visit(Io& io) {
+        auto& [of, at, turned, gone, pushes, turns, done, deep, points] = *this;
+        io(of, at, turned, gone, pushes, turns, done, deep, points);
+    }
 };
 
 class StageCurves {
@@ -47,6 +53,12 @@ class StageCurves {
     std::size_t parts() const { return parts_; }
     const std::vector<std::vector<ProbePlace>>& probes() const { return probes_; }  // by row
 
+    template <typename Io>
+    void visit(Io& io) {
+        auto& [stage, frame, report, load, probes, parts, way] = *this;
+        io(stage, frame, report, load, probes, parts, way);
+    }
+
   private:
     std::string stage_;
     std::vector<int> frame_;
@@ -55,6 +67,8 @@ class StageCurves {
     std::vector<std::vector<ProbePlace>> probes_;
     std::size_t parts_;
     struct Way {
+        using IsPlain = Way;
+
         Pose pose;
         Vec3 turn_axis = Vec3::Zero();  // its largest component more than 0
         double turn = 0, travel = 0;

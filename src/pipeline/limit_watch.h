@@ -30,8 +30,15 @@ class LimitWatch {
     // `limits` and `stopped_at`, where there are any limits.
     void add_to(Json& record) const;
 
+    template <typename Io>
+    void visit(Io& io) {
+        io(most_, stop_, frame_);
+    }
+
   private:
     struct Most {
+        using IsPlain = Most;
+
         double borne = 0;
         int frame = 0;
     };

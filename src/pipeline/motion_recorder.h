@@ -18,7 +18,7 @@ class MotionRecorder {
     explicit MotionRecorder(const std::filesystem::path& file,
                             const std::vector<SkinField>& fields = {})
         : writer_(file, fields) {}
-    // Goes on behind the mark, where the bodies had these skins.
+    // Goes on behind the mark, where the bodies had these skins, at the machine that was last.
     MotionRecorder(const std::filesystem::path& file, const std::filesystem::path& from,
                    const MotionMark& mark, const std::vector<WorkPiece>& bodies,
                    const std::vector<int>& skins);

@@ -12,6 +12,11 @@ namespace swage {
 struct ProbePlace {
     std::string name;
     Vec3 place;  // [m], where the matter is now
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(name, place);
+    }
 };
 
 // Binds the probes of a body that was just molded and not placed yet. Throws SceneError where one

@@ -114,7 +114,8 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         log_info("{}: already simulated", directory.root().string());
     } else {
         record = begin_record(scene, options, identity, input);
-        ended = simulate(scene, input, cost.warning, directory, plots, record, watch);
+        ended = simulate(scene, input, cost.warning, directory, plots, record, watch,
+                         options.keep_every);
     }
     const int reached = record.at("frames").get<int>();
     if (ended.interrupted) {

@@ -71,8 +71,10 @@ class RunDirectory {
     }
     std::filesystem::path record() const { return record_in(root_); }
     std::filesystem::path store() const { return store_in(root_); }
-    // Of a run that is not done: what it goes on from, and its motion file until it ends.
+    // Of a run that is not done: what it goes on from, after a stage and within the next, and its
+    // motion file until it ends.
     std::filesystem::path checkpoint() const { return root_ / "resume" / "checkpoint.bin"; }
+    std::filesystem::path stage_mark() const { return root_ / "resume" / "stage.bin"; }
     std::filesystem::path kept_motion() const { return root_ / "resume" / "motion.bin"; }
     void remove_checkpoint() const;
     // Where `swage render` draws a run that is not told where.

@@ -30,8 +30,9 @@ struct RunOptions {
     std::optional<FrameRange> frames;    // draw only these; none: all
     bool draw = true;                    // false: no picture, and nothing of OpenGL is touched
     bool fresh = false;                  // throw away what an earlier run left in `out`
-    bool go_on = false;   // from what it did before the first stage that is another now
-    bool insist = false;  // run even if it seems to need more than there is
+    bool go_on = false;  // from what it did before the first stage that is another now
+    std::optional<double> keep_every{};  // keeps a stage that it is within after so long [s]
+    bool insist = false;                 // run even if it seems to need more than there is
 };
 
 }  // namespace swage

@@ -13,6 +13,7 @@
 #include "pipeline/checkpoint.h"
 #include "pipeline/cost.h"
 #include "pipeline/disk_reserve.h"
+#include "pipeline/kept_run.h"
 #include "pipeline/run_record.h"
 #include "pipeline/stage.h"
 #include "scene/product_names.h"
@@ -54,32 +55,6 @@ Reached molded(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     }
     reached.start_warning = at_start.all();
     return reached;
-}
-
-// What an earlier run got to, and the motion file that it left, if they are whole.
-struct Kept {
-    Reached reached;
-    fs::path motion;
-};
-std::optional<Kept> kept_by_earlier_run(const RunDirectory& directory) {
-    if (directory.is_anew()) return std::nullopt;
-    std::string why;
-    std::optional<Reached> reached =
-        read_checkpoint(directory.checkpoint(), directory.stage_keys(), why);
-    for (const fs::path& motion : {directory.kept_motion(), directory.store()}) {
-        if (reached && holds_motion(motion, reached->motion)) {
-            return Kept{std::move(*reached), motion};
-        }
-    }
-    if (reached) why = "goes with a motion file that is damaged";
-    if (directory.is_changed()) {
-        fail(ExitCode::foreign, "{}: {}; choose another --out, or --fresh to throw that run away",
-             directory.checkpoint().string(), why);
-    }
-    if (!why.empty()) {
-        log_warning("{}: {}, so the run begins anew", directory.checkpoint().string(), why);
-    }
-    return std::nullopt;
 }
 
 // What the first of them leave in a run directory, but for endings.
@@ -132,31 +107,38 @@ fs::path missing_product(const SceneSpec& scene, const RunDirectory& directory) 
 }
 
 Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch) {
-    std::optional<Kept> kept = kept_by_earlier_run(directory);
+               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch,
+               std::optional<double> keep_every) {
+    std::optional<KeptRun> kept = kept_by_earlier_run(directory);
+    const MotionMark motion = kept ? kept->motion_mark() : MotionMark{};
     Reached reached;
-    if (!kept || directory.is_changed()) {
+    if (!kept || !kept->reached || directory.is_changed()) {
         // What is told of the start foresees later stages too.
         reached = molded(scene, input, std::move(at_start), watch);
     }
-    if (kept) {
-        if (directory.is_changed()) kept->reached.start_warning = std::move(reached.start_warning);
-        reached = std::move(kept->reached);
+    if (kept && kept->reached) {
+        if (directory.is_changed()) kept->reached->start_warning = std::move(reached.start_warning);
+        reached = std::move(*kept->reached);
     }
+    StageMark* mark = kept && kept->mark ? &*kept->mark : nullptr;
     for (std::size_t b = 0; b < reached.matter.size(); ++b) {
         record["bodies"][b]["matter"] = reached.matter[b];
     }
     const auto recorder =
-        kept ? std::make_unique<MotionRecorder>(directory.store(), kept->motion, reached.motion,
-                                                reached.bodies, reached.skin)
+        kept ? std::make_unique<MotionRecorder>(directory.store(), kept->motion, motion,
+                                                mark ? mark->bodies : reached.bodies,
+                                                mark ? mark->skin : reached.skin)
              : std::make_unique<MotionRecorder>(directory.store(), scene.output.fields);
+    StageKeeper keeper(directory, *recorder, watch, keep_every);
 
     DiskReserve reserve;
     bool has_begun = false;
     const auto begin = [&] {
         if (std::exchange(has_begun, true)) return;
-        directory.begin(products_of_stages(scene, kept ? reached.stages : 0));
+        // Of the stage that it is within there may be meshes of frames.
+        directory.begin(products_of_stages(scene, kept ? reached.stages + (mark ? 1 : 0) : 0));
         if (!kept) directory.remove_checkpoint();
+        if (!mark) keeper.forget();
         plots.forget_from(static_cast<std::size_t>(reached.stages));
         reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
                                            kStageRecordRoom * scene.stage.size());
@@ -165,8 +147,15 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     };
     const auto stages = static_cast<int>(scene.stage.size());
     if (kept) {
-        for (const auto& [phase, seconds] : reached.seconds) watch.add(phase, seconds);
+        for (const auto& [phase, seconds] : mark ? mark->seconds : reached.seconds) {
+            watch.add(phase, seconds);
+        }
         record["stages"] = reached.stage;
+    }
+    if (mark) {
+        log_info("goes on from frame {}, in stage {} of {}", mark->frame, reached.stages + 1,
+                 stages);
+    } else if (kept) {
         log_info("goes on after stage {} of {}, frame {}", reached.stages, stages,
                  recorder->frame_count());
     }
@@ -177,9 +166,14 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     };
     Ended ended;
     int kept_stages = reached.stages;  // that are to be gone on from
+    int kept_frame = mark ? 0 : recorder->frame_count();
     while (reached.stages < stages) {
         const StageSpec& stage = scene.stage[static_cast<std::size_t>(reached.stages)];
-        const StageContext context{scene, directory.root(), *recorder, watch, progress, begin};
+        StageMark* const from = std::exchange(mark, nullptr);
+        const StageContext context{scene, directory.root(), *recorder, watch, progress,
+                                   begin, keeper,           from};
+        keeper.begin(reached.stages, from ? std::optional(from->frame) : std::nullopt,
+                     kept_stages == reached.stages);
         try {
             throw_if_interrupted();
             StageOutcome outcome =
@@ -201,7 +195,11 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         }
         if (ended.early()) break;
         if (++reached.stages == stages) break;
-        if (keep(directory, *recorder, watch, reached)) kept_stages = reached.stages;
+        if (keep(directory, *recorder, watch, reached)) {
+            kept_stages = reached.stages;
+            kept_frame = recorder->frame_count();
+            keeper.forget();
+        }
         const auto lap = watch.lap("plot");
         plots.draw();
     }
@@ -220,13 +218,20 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
                       : ended.stopped   ? RunState::stopped
                                         : RunState::simulated;
     if (ended.stopped) record["stopped"] = ended.stopped->what();
+    if (ended.early() && (keeper.frame() || kept_stages > 0)) {
+        record["goes_on_from"] = {{"stage", kept_stages + 1},
+                                  {"frame", keeper.frame().value_or(kept_frame)}};
+    }
     write_record(directory, record, watch);
     if (!ended.early()) {
         directory.remove_checkpoint();
+    } else if (keeper.frame()) {
+        log_info("swage run goes on from frame {}, in stage {} of {}", *keeper.frame(),
+                 kept_stages + 1, stages);
     } else if (kept_stages > 0) {
         log_info("swage run goes on after stage {} of {}", kept_stages, stages);
     } else {
-        log_info("swage run begins anew, as no finished stage is kept");
+        log_info("swage run begins anew, as nothing of it is kept yet");
     }
     return ended;
 }

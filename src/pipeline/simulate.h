@@ -31,8 +31,9 @@ std::filesystem::path missing_product(const SceneSpec& scene, const RunDirectory
 
 // The motion file and run.json stand when it returns, and the plots of all stages but the last that
 // it did are tried. `record`: begin_record's. `at_start`: what can be said before anything is
-// molded.
+// molded. `keep_every`: as StageKeeper takes it.
 Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
-               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch);
+               RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch,
+               std::optional<double> keep_every);
 
 }  // namespace swage

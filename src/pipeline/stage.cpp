@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/atomic_file.h"
+#include "base/bytes.h"
 #include "base/failure.h"
 #include "base/units.h"
 #include "geometry/mesh_write.h"
@@ -129,22 +130,17 @@ class StageRun {
         if (each_frame()) {
             for (const fs::path& folder : meshes_) make_folder(folder);
         }
-        context_.recorder.set_machine(machine_.apparatus);
-        if (last_frame == 0) {
-            last_frame = 1;
-            const std::vector<SkinFieldValues> values = fields_now();
-            context_.recorder.add_frame(bodies_, way_.now(), values);
-            if (each_frame()) keep([&] { write_meshes_of(last_frame, values); });
-        }
-        const Apparatus& apparatus = machine_.apparatus;
-        first_ = simulation.start();
-        StageCurves curves(stage_.name, last_frame, simulation.loads(way_.now()), first_,
-                           apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
-                           probes());
-        if (in_motion()) body_table_.emplace(last_frame, bodies_, first_);
-        for (int n = 1; n <= stage_.frames && !outcome_.stopped; ++n) {
-            if (!work(simulation, n, last_frame + n, curves)) break;
-            keep([&] { record(last_frame + n); });
+        before_ = std::max(last_frame, 1);
+        if (context_.from == nullptr) record_start(last_frame == 0);
+        begin_books(simulation);
+        if (context_.from != nullptr) come_back(simulation, *context_.from);
+        const int gone = context_.from != nullptr ? context_.from->frame - before_ : 0;
+        for (int n = gone + 1; n <= stage_.frames && !outcome_.stopped; ++n) {
+            if (!work(simulation, n, before_ + n)) break;
+            keep([&] { record(before_ + n); });
+            if (n < stage_.frames && !outcome_.stopped && context_.keeper.is_due()) {
+                keep_stage(simulation, before_ + n);
+            }
         }
         const auto lap = context_.watch.lap("write");
         // Where memory ran out, matter may stand in the middle of a step.
@@ -157,10 +153,10 @@ class StageRun {
         }
         const fs::path folder = context_.root / "curves";
         const fs::path table = folder / (stage_.name + ".csv");
-        keep([&] { write_file_whole(table, csv_text(curves)); });
+        keep([&] { write_file_whole(table, csv_text(*curves_)); });
         keep([&] {
             write_file_whole(plot_program_of(table),
-                             plot_program(curves, machine_.frame.size.norm()));
+                             plot_program(*curves_, machine_.frame.size.norm()));
         });
         if (body_table_) {
             keep([&] {
@@ -168,7 +164,7 @@ class StageRun {
                                  body_table_->csv_text());
             });
         }
-        finish(last_frame + 1, last_frame + static_cast<int>(curves.rows()) - 1, curves);
+        finish();
         return std::move(outcome_);
     }
 
@@ -205,12 +201,61 @@ class StageRun {
         }
     }
 
+    // The untouched start of the run has a frame of its own.
+    void record_start(bool of_run) {
+        context_.recorder.set_machine(machine_.apparatus);
+        if (!of_run) return;
+        const std::vector<SkinFieldValues> values = fields_now();
+        context_.recorder.add_frame(bodies_, way_.now(), values);
+        if (each_frame()) keep([&] { write_meshes_of(before_, values); });
+    }
+
+    void begin_books(const Simulation& simulation) {
+        const Apparatus& apparatus = machine_.apparatus;
+        first_ = simulation.start();
+        curves_.emplace(stage_.name, before_, simulation.loads(way_.now()), first_,
+                        apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
+                        probes());
+        if (in_motion()) body_table_.emplace(before_, bodies_, first_);
+    }
+
+    // What its frames change, beside the bodies and their simulation.
+    template <typename Io>
+    void visit(Io& io) {
+        io(before_, way_, limits_, use_, cuts_, first_, last_, totals_, warnings_, *curves_);
+        if (body_table_) io(*body_table_);
+    }
+
+    void keep_stage(const Simulation& simulation, int number) {
+        ByteWriter state;
+        visit(state);
+        simulation.save(state);
+        context_.keeper.keep(number, state.bytes(), bodies_);
+    }
+
+    // The machine and the simulation have been set up as the stage began.
+    void come_back(Simulation& simulation, StageMark& mark) {
+        try {
+            bodies_ = mark.bodies;
+            ByteReader state(mark.state);
+            visit(state);
+            simulation.load(state);
+            if (state.left() > 0) fail(ExitCode::output, "it holds more than that");
+            mark.bodies.clear();  // the room
+            mark.state.clear();
+        } catch (const Error& error) {
+            context_.keeper.forget();
+            fail(ExitCode::output, "{}: what was kept of it cannot be gone on from: {}",
+                 stage_.name, error.what());
+        }
+    }
+
     bool in_motion() const { return stage_.sim.solver != Solver::quasistatic; }
     bool cuts_any() const { return !machine_.apparatus.blade.empty(); }
 
     // The machine goes through the n-th frame; false where that was given up. What legs of it were
     // done is on the books and in the skins either way.
-    bool work(Simulation& simulation, int n, int number, StageCurves& curves) {
+    bool work(Simulation& simulation, int n, int number) {
         int legs = 0;
         FrameReport frame;
         try {
@@ -230,7 +275,7 @@ class StageRun {
                 }
                 limits_.look(number, report);
                 frame.go_on(std::move(report));
-                curves.pass(frame.load);
+                curves_->pass(frame.load);
             }
         } catch (const Interrupted& interrupted) {
             outcome_.interrupted = interrupted;
@@ -239,16 +284,16 @@ class StageRun {
             outcome_.stopped.emplace(failure.code(), fmt::format("{}, frame {}: {}", stage_.name,
                                                                  number, failure.what()));
         }
-        if (legs > 0) book(number, std::move(frame), curves);
+        if (legs > 0) book(number, std::move(frame));
         return !outcome_.interrupted && !outcome_.stopped;
     }
 
     // What the matter has gone through is on the books, whether the frame can be kept or not.
-    void book(int number, FrameReport frame, StageCurves& curves) {
+    void book(int number, FrameReport frame) {
         last_ = std::move(frame);
         dress(number);
         use_.look(number, bodies_);
-        curves.add(number, last_, probes());
+        curves_->add(number, last_, probes());
         if (body_table_) body_table_->add(number, bodies_, last_);
         totals_.add(last_, machine_.apparatus.tool.size());
         for (const std::string& sentence : last_.warning) warnings_.add(number, sentence);
@@ -304,15 +349,15 @@ class StageRun {
         context_.progress.advance(number - 1, stage_.name);
     }
 
-    void finish(int first_frame, int last_frame, const StageCurves& curves) {
+    void finish() {
         const StageEnd end{.stage = stage_,
                            .machine = machine_,
                            .bodies = bodies_,
                            .totals = totals_,
                            .first = first_,
                            .last = last_,
-                           .first_frame = first_frame,
-                           .last_frame = last_frame,
+                           .first_frame = before_ + 1,
+                           .last_frame = before_ + static_cast<int>(curves_->rows()) - 1,
                            .legs = way_.legs(),
                            .duration = context_.scene.duration_of(stage_),
                            .connections_before = connections_before_,
@@ -340,7 +385,7 @@ class StageRun {
             log_warning("{}", outcome_.warning[n]);
         }
         outcome_.steps = totals_.iterations + totals_.steps;
-        outcome_.record = stage_record(end, curves, verdict.overlap, outcome_.warning);
+        outcome_.record = stage_record(end, *curves_, verdict.overlap, outcome_.warning);
         limits_.add_to(outcome_.record);
         outcome_.record["use"] = use_.json(bodies_);
     }
@@ -356,6 +401,8 @@ class StageRun {
     UseWatch use_;
     std::vector<char> cuts_;  // a body each: whether its cut is settled
     std::vector<fs::path> meshes_;
+    int before_ = 0;  // the last frame before the stage
+    std::optional<StageCurves> curves_;
     std::optional<BodyTable> body_table_;  // of a stage in motion
     FrameReport first_, last_;
     StageTotals totals_;

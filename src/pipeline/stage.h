@@ -16,6 +16,7 @@
 #include "base/stopwatch.h"
 #include "pipeline/json.h"
 #include "pipeline/motion_recorder.h"
+#include "pipeline/stage_keeper.h"
 #include "pipeline/work_piece.h"
 #include "scene/spec.h"
 
@@ -28,6 +29,8 @@ struct StageContext {
     Stopwatch& watch;
     Progress& progress;
     std::function<void()> begin;  // called once a stage is set up, before its first frame
+    StageKeeper& keeper;
+    StageMark* from = nullptr;  // within the stage, where it goes on; null: it begins
 };
 
 struct StageOutcome {
@@ -41,7 +44,8 @@ struct StageOutcome {
 };
 
 // `last_frame`: the number of the last frame before the stage, 0 for the first stage, which then
-// also records frame 1, the untouched start.
+// also records frame 1, the untouched start. The bodies are as the stage begins, wherever it goes
+// on from.
 // The first of the bodies is the work-piece, which the machine is set up at.
 StageOutcome run_stage(const StageSpec& stage, int last_frame, std::vector<WorkPiece>& bodies,
                        const StageContext& context);

@@ -18,6 +18,8 @@ namespace swage {
 
 // Over all frames of a stage.
 struct StageTotals : StepCounts {
+    using IsPlain = StageTotals;
+
     long severed = 0, broken = 0;
     double penetration = 0;  // [m]
     double stored = 0;       // at the end of any frame, the most [J]

@@ -54,6 +54,7 @@ void StageWay::stop(const Drive& here) {
     const bool part_way = here.time > now().time;
     gone_ += part_way ? 1 : 0;
     before_ = gone_;
+    has_stopped_ = true;
     machine_.stop = here.time / duration_;
     const Drive stopped = here;
     set_out(machine_.stop);

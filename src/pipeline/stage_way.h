@@ -36,6 +36,15 @@ class StageWay {
     std::size_t legs() const { return before_ + legs_.leg.size(); }
     int lost() const { return lost_; }  // frames, as Legs::lost
 
+    template <typename Io>
+    void visit(Io& io) {  // what has changed since it began
+        io(leg_, before_, gone_, has_stopped_);
+        if (has_stopped_) io(machine_.stop, legs_.leg, steps_, way_);
+        if constexpr (Io::kReads) {
+            ahead_ = std::span<const Drive>(way_).subspan(leg_ * static_cast<std::size_t>(steps_));
+        }
+    }
+
   private:
     void set_out(double begin);
 
@@ -48,6 +57,7 @@ class StageWay {
     std::vector<Drive> way_;
     std::span<const Drive> ahead_;
     std::size_t leg_ = 0, before_ = 0, gone_ = 0;  // before_: legs gone when it stopped
+    bool has_stopped_ = false;
 };
 
 }  // namespace swage

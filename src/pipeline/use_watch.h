@@ -20,12 +20,18 @@ class UseWatch {
     // After each frame.
     void look(int frame, const std::vector<WorkPiece>& bodies);
 
+    template <typename Io>
+    void visit(Io& io) {  // what looking changes
+        for (OfBody& of : body_) io(of.use, of.yield, of.strength);
+    }
+
     // For run.json: of each body by its name what may flow and what may break; `bodies` as the
     // stage ends.
     Json json(const std::vector<WorkPiece>& bodies) const;
 
   private:
     struct Peak : Used {
+        using IsPlain = Peak;
         int frame = 0;
     };
     struct OfBody {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "sim/block_steps.h"
 #include "sim/crumbs.h"
@@ -56,6 +57,11 @@ struct WorkedBody {
     bool begun = false;
     double stored_at_start = 0;                  // [J]
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(pieces, crumbs, books, begun, stored_at_start, plan);
+    }
 };
 
 }  // namespace
@@ -85,6 +91,13 @@ struct Simulation::Rooms {
     const Apparatus& apparatus;
     AnySolver solver;
     std::vector<double> work, push_work;  // of each tool and grip, load and gravity, on all bodies
+
+    template <typename Io>
+    void visit(Io& io) {
+        std::visit([&](auto& any) { io(any); }, solver);
+        for (WorkedBody& one : body) io(one);
+        io(work, push_work);
+    }
 
     const LoadSet& pushes(std::size_t b) const {
         return std::visit([&](const auto& any) -> const LoadSet& { return any.pushes(b); }, solver);
@@ -359,6 +372,10 @@ FrameReport Simulation::advance(const Drive& from, const Drive& to, const DriveA
     }
     return report;
 }
+
+void Simulation::save(ByteWriter& out) const { out(*rooms_); }
+
+void Simulation::load(ByteReader& in) { in(*rooms_); }
 
 double explicit_steps_per_second(const Aggregate& matter, const SimSettings& settings) {
     return 1 / explicit_step(matter, settings);

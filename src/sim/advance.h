@@ -15,9 +15,18 @@
 
 namespace swage {
 
+class ByteReader;
+class ByteWriter;
+
 // What a tool, grip, blade or load does to the matter. The pose of a load, and of gravity, is the
 // middle of what it acts on.
 struct ToolLoad {
+    template <typename Io>
+    void visit(Io& io) {
+        auto& [of, at, pushes, turns, done, deep, points, met] = *this;
+        io(of, at, pushes, turns, done, deep, points, met);
+    }
+
     std::string name;
     Pose pose;
     Vec3 force = Vec3::Zero();   // that it exerts on the matter [N]
@@ -30,6 +39,8 @@ struct ToolLoad {
 
 // The energy books of one body, or of all.
 struct Books {
+    using IsPlain = Books;
+
     double kinetic = 0, elastic = 0;           // now [J]
     double contact = 0, contact_at_start = 0;  // in contacts and grips: now, and when the
                                                // stage began [J]
@@ -63,6 +74,12 @@ struct FrameReport : Books, StepCounts {  // of all bodies
 
     // What comes next belongs to the same frame. To be begun with an empty one.
     void go_on(FrameReport next);
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(static_cast<Books&>(*this), static_cast<StepCounts&>(*this), body, time, asleep, load,
+           severed, broken, pieces, warning, stop);
+    }
 };
 
 class Simulation {
@@ -99,6 +116,12 @@ class Simulation {
     // is reached, it goes no farther than there, and later no limit is looked at. `way`: the drives
     // between the two, where they are not on the straight way.
     FrameReport advance(const Drive& from, const Drive& to, const DriveAt& way = {});
+
+    // All that its moves have changed, but for the bodies. What was saved of a simulation goes on
+    // in another that began as it did, once the bodies are those of then: by the same bits. Throws
+    // Error(output) where that is none of this simulation.
+    void save(ByteWriter& out) const;
+    void load(ByteReader& in);
 
   private:
     struct Rooms;

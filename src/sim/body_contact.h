@@ -77,6 +77,13 @@ class BodyContact {
     std::vector<PressedPlaces> pressed() const;
     int let_be(double deeper);  // see sim/contact_way.h
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(listed_, near_, step_, allowance_);
+        for (ContactSide& side : side_) io(side);
+        for (ContactWay& way : way_) io(way);
+    }
+
   private:
     struct Pair {
         std::size_t from, onto;
@@ -89,9 +96,9 @@ class BodyContact {
     std::vector<ContactWay> way_;
     std::vector<Pair> pair_;         // the sides of each way
     std::vector<std::size_t> near_;  // ways of bodies that are near each other, in their order
-    double least_spacing_ = 0;  // [m]
-    double step_ = 0;           // that stiffness is held to; 0: any [s]
-    double allowance_ = -1;     // that any particle may go until renew() finds anew [m]
+    double least_spacing_ = 0;       // [m]
+    double step_ = 0;                // that stiffness is held to; 0: any [s]
+    double allowance_ = -1;          // that any particle may go until renew() finds anew [m]
 };
 
 }  // namespace swage

@@ -26,6 +26,11 @@ class CellFlow {
     // What is committed is not what it was when this last looked.
     void history_changed(const Aggregate& matter);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(yield_distortion_, strain_, rest_, sound_, flowing_);
+    }
+
   private:
     bool is_far_from_yield(const Aggregate& matter) const;
     void find_strains(const Aggregate& matter);

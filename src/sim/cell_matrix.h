@@ -21,6 +21,7 @@ struct CellMatrix {
 // Which tangent: of what flows or not; a share `geometric` of what the stress does by turning
 // with the matter, 1 being exact, and 0 the part that never makes a body unstable.
 struct TangentKind {
+    using IsPlain = TangentKind;
     Flow flow = Flow::trial;
     double geometric = 1;
     bool operator==(const TangentKind&) const = default;

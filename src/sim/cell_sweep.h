@@ -49,6 +49,11 @@ class CellSweep {
     const SlabRuns& crushed_runs() const { return crushed_; }
     const SlabRuns& strained_runs() const { return strained_; }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(mixed_);
+    }
+
   private:
     const MaterialLaw& law_of(const Aggregate& matter, CellId cell) const {
         return law_[matter.material_number(cell)];

@@ -46,6 +46,11 @@ class CoarseSpace {
     // velocity = keep velocity + P C P^T (step force)
     void add(const Vec3Array& force, double step, double keep, Vec3Array& velocity) const;
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(probed_, stiffness_, held_, inertia_, most_gain_, gains_);
+    }
+
   private:
     // Nodes that move the same matter as a node does, itself among them.
     struct Neighbor {

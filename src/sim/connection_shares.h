@@ -37,6 +37,11 @@ class ConnectionShares {
     }
     void copy(const Aggregate& matter, int direction, ParticleId first, int count, float* to) const;
 
+    template <typename Io>
+    void visit(Io& io) {
+        io(share_);
+    }
+
   private:
     std::array<std::vector<float>, kForwardCount> share_;
 };

@@ -12,6 +12,7 @@ namespace swage {
 
 // A point and the cell that holds it, or the last that did.
 struct Contact : CellPlace {
+    using IsPlain = Contact;
     int point;
     // What carries the point, in its body's patch; first those with a share.
     int carriers = 0;
@@ -22,6 +23,7 @@ struct Contact : CellPlace {
 
 // What it remembers, committed once a step.
 struct ContactMemory {
+    using IsPlain = ContactMemory;
     // Where it met the other, and from there to where it sticks: in cells. What that holds is kept
     // apart, for the other may be strained by now, which stretches the way, but not the spring.
     Vec3 place = Vec3::Zero(), reach = Vec3::Zero();
@@ -46,6 +48,11 @@ struct ContactList {
     std::vector<Contact> contact;
     std::vector<ContactMemory> memory;
     std::size_t size() const { return contact.size(); }
+
+    template <typename Io>
+    void visit(Io& io) {
+        io(contact, memory);
+    }
 };
 
 }  // namespace swage

@@ -44,6 +44,17 @@ class ContactPatch {
     const Vec4& springs(int slot) const { return force_[slot].springs; }
     Motion motion_of(ParticleId particle) const;
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(particle_);
+        if constexpr (Io::kReads) {
+            slot_.assign(slot_.size(), -1);
+            for (std::size_t n = 0; n < particle_.size(); ++n) slot_[particle_[n]] = int(n);
+            motion_.assign(particle_.size(), Motion{});
+            force_.assign(particle_.size(), Force{});
+        }
+    }
+
   private:
     void read(std::size_t begin, std::size_t end);
 

@@ -64,8 +64,14 @@ class ContactSide {
     OwnShare own_share(int point, const Vec3i& site, const Vec3& place) const;
     // Whether a point meets next to nothing in this cell and around it.
     bool is_own_place(int point, const Vec3i& site) const;
-    // Whether the point is within four cells of this one, on each axis, and connected to it within these.
+    // Whether the point is within four cells of this one on each axis, and connected to it within these.
     bool is_neighbour(int point, const Vec3i& site) const;
+
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(patch_, touch_);
+        if constexpr (Io::kReads) find_cells();
+    }
 
   private:
     RestSurface::Depth least_depth(const Vec3i& site, CellId cell, const Vec3& place) const;

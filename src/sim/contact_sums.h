@@ -9,6 +9,7 @@ namespace swage {
 // Of one body; what two share is halved between them. A force does half of its work on the way to
 // where it was found and half on the way from there.
 struct ContactSums {
+    using IsPlain = ContactSums;
     double stored = 0, stored_at_start = 0;  // in contacts [J]
     double friction = 0;                     // taken [J]
     double damped = 0;                       // taken by dashpots and by parting [J]

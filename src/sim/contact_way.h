@@ -103,6 +103,13 @@ class ContactWay {
     // The step is kept: remembers where points stick and how they met.
     void commit();
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(has_changed_, begins_, stiffness_, stiffest_, hold_, is_let_be_, share_, gone_, broken_,
+           turned_, kept_, list_, meeting_, next_, plane_, is_found_, point_push_, cell_push_, met_,
+           sums_);
+    }
+
   private:
     // Nothing has a speed.
     bool is_static() const { return solver_ == Solver::quasistatic; }
@@ -110,6 +117,7 @@ class ContactWay {
     // How a point meets the cell that holds it, at the present positions. What has no vector lies
     // in the fourth lane of one.
     struct alignas(32) Meeting {
+        using IsPlain = Meeting;
         Vec4 normal;
         Vec4 reach;       // from the point to where it sticks [m]
         Vec4 now;         // speed of the point over the other side [m/s]
@@ -148,6 +156,7 @@ class ContactWay {
     struct Pushed {
         int low = 0, high = -1;
         struct alignas(32) Force {
+            using IsPlain = Force;
             Vec4 value{};
         };
         std::vector<Force> force;
@@ -165,9 +174,15 @@ class ContactWay {
             grow(slot);
         }
         void add_to(ContactPatch& patch, double share) const;
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(low, high, force);
+        }
     };
     // In one cell, which holds the place or lies beside it: depth as it goes on from one place.
     struct Plane {
+        using IsPlain = Plane;
         bool is_met = false;
         Vec3 place, gradient;
         double distance;

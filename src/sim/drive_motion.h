@@ -31,6 +31,11 @@ class Foresight {
     void keep(const Vec3Array& start, DriveMotion motion);
     void forget() { motion_.clear(); }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(start_, motion_);
+    }
+
   private:
     Vec3Array start_;
     DriveMotion motion_;  // empty: nothing to go on from
@@ -50,6 +55,11 @@ class SlipWatch {
     // Any of them may have lost its load.
     void forget();
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(tool_);
+    }
+
   private:
     struct Bearing {
         std::string name;
@@ -57,6 +67,11 @@ class SlipWatch {
         bool carries = false;  // it is loaded, and has not drawn back since
         // When it last pressed: loaded, and working on the matter. Six numbers.
         DriveMotion pressing = DriveMotion(6, 0.0);
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(name, most, carries, pressing);
+        }
     };
     std::vector<Bearing> tool_;
 };

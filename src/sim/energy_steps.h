@@ -66,6 +66,12 @@ class EnergySteps {
     // Writes down every step from now on.
     void record(std::vector<Tried>* tried) { tried_ = tried; }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        for (Mover& one : mover_) io(one);
+        io(contact_, by_contact_, steps_);
+    }
+
   private:
     struct Mover {
         MovingBody body;
@@ -75,6 +81,11 @@ class EnergySteps {
         double last_step = 0;         // [s] of the last step kept
         bool was_taken_back = false;  // the step before was taken back
         double budget = 0;            // energy ever put in [J]
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(body, before, step, last_step, was_taken_back, budget);
+        }
     };
     using Group = std::vector<std::size_t>;
     struct Try;

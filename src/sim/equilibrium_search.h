@@ -25,6 +25,19 @@ class EquilibriumSearch {
     // means nothing, but to a search for why.
     Relaxation find(StaticForces& forces, StaticMove& move);
 
+    template <typename Io>
+    void visit(Io& io, const StaticForces& forces) {  // what steps change, where these are known
+        io(newton_rests_, newton_pause_, enough_hold_, begun_at_);
+        bool has_coarse = coarse_.has_value();
+        io(has_coarse);
+        if constexpr (Io::kReads) {
+            connections_changed(forces);
+            if (has_coarse) coarse_.emplace(forces.matter);
+        }
+        if (coarse_) io(*coarse_);
+        if (newton_) io(*newton_);
+    }
+
   private:
     Relaxation relax(StaticForces& forces, const StaticMove& move, double accuracy);
     Relaxation solve_smooth(StaticForces& forces, const StaticMove& move, double accuracy);

@@ -15,6 +15,7 @@ namespace swage {
 // Cells of a run side by side, some of which flow. Always of kLanes, whatever the width of the
 // kernels: what meets on a connection is added in one order everywhere.
 struct FlowingCells {
+    using IsPlain = FlowingCells;
     std::array<ParticleId, 4> row;  // of the first: low ends of its four edges along x
     CellId first;
     int count;

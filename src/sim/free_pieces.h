@@ -50,6 +50,11 @@ class FreePieces {
     int let_hang(LoadSet& pushes, const Drive& to, const std::vector<HeldPoint>& held,
                  const Vec3Array& own);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(gripped_, fallen_);
+    }
+
   private:
     Vec3Array pushes_on(const LoadSet& pushes, const Drive& to) const;
     void keep_loose(const Vec3Array& push, const std::vector<double>& borne);

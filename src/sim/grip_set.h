@@ -55,6 +55,11 @@ class GripSet {
     // The farthest that any point's place moves [m].
     double travel(const Drive& from, const Drive& to) const;
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(limit_, torn_);
+    }
+
   private:
     // Calls act(g, point, position, force, stiffness) for each point in a grip.
     template <typename Act>

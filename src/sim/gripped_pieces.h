@@ -20,6 +20,11 @@ struct GrippedPieces {
     std::vector<int> by;
     std::vector<char> firm;  // of each piece: in a grip that holds it in every way
 
+    template <typename Io>
+    void visit(Io& io) {
+        io(pieces, at, by, firm);
+    }
+
     bool is_held(int piece) const { return by[std::size_t(piece)] != kNone; }
 };
 

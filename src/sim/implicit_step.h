@@ -33,6 +33,19 @@ class ImplicitStep {
     bool move(MovingBody& body, const Drive& now, double step, BodyOutcome& outcome);
 
 
+    template <typename Io>
+    void visit(Io& io, const MovingBody& body) {  // what steps change, of the body as it is now
+        bool has_newton = newton_ != nullptr;
+        io(has_newton);
+        if constexpr (Io::kReads) {
+            const std::vector<float>* cells = body.cells_alone();
+            if (has_newton && cells != nullptr) {
+                newton_ = std::make_unique<Newton>(body.matter(), *cells);
+            }
+        }
+        if (newton_) io(*newton_);
+    }
+
   private:
     std::unique_ptr<Newton> newton_;
     std::vector<double> inertia_;  // m / h^2 [N/m]

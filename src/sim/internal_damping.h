@@ -36,6 +36,11 @@ class InternalDamping {
 
     double stored_energy(const Aggregate& matter, LatticeForces& lattice) const;  // [J]
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(growths_, taken_, grown_);
+    }
+
   private:
     // What flowed takes the branches along in the next step: then they have pulled as they were
     // when it did, and the books are of second order.

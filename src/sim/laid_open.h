@@ -17,6 +17,7 @@ namespace swage {
 // f the cell's fill and A, along the face's normal, what its surface points' area vectors sum to:
 // both faces across and the surface between them close, and their mean is f, as in a prism.
 struct OpenFace {
+    using IsPlain = OpenFace;
     std::array<ParticleId, 4> corner;  // the outside sees them counter-clockwise
     double share;                      // s
 

@@ -86,6 +86,25 @@ class LatticeForces {
     // particle.
     std::vector<double> stiffness_bound(const Aggregate& matter) const;
 
+    template <typename Io>
+    void visit(Io& io, const Aggregate& matter) {  // what steps change, of the matter as it is now
+        if constexpr (Io::kReads) {
+            if (cells_) cells_->cells_changed(matter);
+        }
+        bool has_sweep = spring_sweep_ != nullptr;
+        std::size_t branches = branch_sweep_.size();
+        io(has_sweep, branches);
+        if constexpr (Io::kReads) {
+            if (has_sweep && !spring_sweep_) spring_sweep_ = std::make_unique<LatticeSweep>(matter);
+            while (branch_sweep_.size() < branches) branch_sweep_.emplace_back(matter);
+        }
+        if (spring_sweep_) io(*spring_sweep_);
+        for (LatticeSweep& own : branch_sweep_) io(own);
+        if (spring_flow_) io(*spring_flow_);
+        if (cells_) io(*cells_);
+        io(loose_);
+    }
+
   private:
     // By sound cells, 0 by others; null: springs.
     const std::vector<float>* carried() const { return cells_ ? &cells_->carried_fill() : nullptr; }

@@ -64,6 +64,11 @@ class LatticeSweep {
     // Runs of the last sweep with a strain above the limit, slab by slab.
     const std::vector<std::vector<const SpringRun*>>& stretched_runs() const { return stretched_; }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(shares_, batch_, weight_, softens_, softened_);
+    }
+
   private:
     ConnectionShares shares_;
     std::vector<SpringRun> run_;
@@ -74,6 +79,7 @@ class LatticeSweep {
     std::vector<std::int32_t> batch_;
     std::vector<float> weight_;
     struct SofteningEnd {
+        using IsPlain = SofteningEnd;
         ParticleId lower;
         std::int32_t at;  // in weight_, of the first direction
     };

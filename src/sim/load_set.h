@@ -67,12 +67,28 @@ class LoadSet {
     std::vector<PushSum> sums(const Aggregate& matter, const Drive& now) const;
     std::size_t count() const { return apparatus_->load.size() + has_gravity(); }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        bool parted = parted_ != nullptr;
+        io(started_, parted, last_, left_alone_, heavy_mass_);
+        Parted now = parted_ ? *parted_ : Parted{};
+        if (parted) io(now);
+        if constexpr (Io::kReads) {
+            parted_ = parted ? std::make_shared<const Parted>(std::move(now)) : nullptr;
+        }
+    }
+
   private:
     // What has come of the surface since a blade or a crack has parted cells.
     struct Parted {
         std::vector<char> is_off;  // of each point: its cell is parted
         Pieces pieces;
         std::vector<std::vector<OpenFace>> face;  // of each load
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(is_off, pieces, face);
+        }
     };
     // Those laid open on pieces that it presses on all round. Wherever a load's points are listed
     // they follow these.
@@ -114,6 +130,11 @@ class LoadSet {
         std::vector<std::vector<Vec3>> moment, force;  // of what is pushed; on the whole point
         Vec3 mass_moment = Vec3::Zero();               // sum of mass times position [kg m]
         Vec3 gravity = Vec3::Zero();
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(moment, force, mass_moment, gravity);
+        }
     };
     Settled settled(const Aggregate& matter, const Drive& now) const;
 

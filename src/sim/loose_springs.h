@@ -63,6 +63,11 @@ class LooseSprings {
 
     void add_stiffness_bound(std::vector<double>& bound) const;
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(spring_, now_, pull_);
+    }
+
   private:
     template <typename Factor>
     void lay_down(Aggregate& matter, CellId cell, const Factor& longer_by);
@@ -72,6 +77,7 @@ class LooseSprings {
         closing,    // a broken edge: only resists being pressed
     };
     struct Spring {
+        using IsPlain = Spring;
         ParticleId lower, upper;
         char direction, slot;
         Kind kind;
@@ -101,6 +107,7 @@ class LooseSprings {
     std::array<double, kForwardCount> reference_;  // [m]
     std::vector<Spring> spring_;
     struct Stretch {
+        using IsPlain = Stretch;
         Vec3 reach;                       // from lower to upper [m]
         double distance, length, strain;  // length: at rest [m]
         double softens_by;                // the strain of its face, or its own

@@ -56,11 +56,17 @@ class MixedCells {
 
     // What the last forces saw in a cell, and where the search for its jump ended.
     struct Seen {
+        using IsPlain = Seen;
         bool may_flow;
         bool jump_found;
         std::array<double, 3> jump;
         std::array<double, 9> inverse;  // laws/laminate.h
     };
+
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(seen_);
+    }
 
   private:
     std::vector<Seen> seen_;

@@ -50,6 +50,7 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
 // The energy that all bodies hold against what was put in.
 class EnergyGuard {
   public:
+    using IsPlain = EnergyGuard;
     // A stage begins with this in the bodies [J].
     void start(double stored) { budget_ = stored > 0 ? stored : 0; }
     // In a block of steps `done` was put in, `turned_over` with every sign made positive, `lost`

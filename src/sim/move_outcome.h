@@ -17,6 +17,7 @@ namespace swage {
 
 // What a body holds at one time [J].
 struct Stored {
+    using IsPlain = Stored;
     double kinetic = 0, elastic = 0;
     double contact = 0;  // in the springs of contacts and grips
 

@@ -80,6 +80,13 @@ class MovingBodies {
     // The same where nothing has moved since, but for a step of another length.
     std::vector<Stored> still_stored(double step);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(contact_, by_contact_, sleeping_, asleep_since_, stored_, inside_out_, may_crush_,
+           in_block_);
+        for (MovingBody& body : body_) io(body);
+    }
+
   private:
     static constexpr std::size_t kThreadShare = 512;  // particles that a thread is worth waking for
 

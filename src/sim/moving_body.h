@@ -136,6 +136,13 @@ class MovingBody {
     // when the block began is booked as damped.
     void restore(const State& state, BodyOutcome& outcome);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        lattice_.visit(io, matter_);
+        io(damping_, contacts_, pushes_, present_step_, flowed_, drag_, force_, load_, turned_,
+           gone_, implicit_, branch_energy_, block_energy_, gravity_, inside_out_);
+    }
+
   private:
     double branch_energy();
     void let_go();  // the branches

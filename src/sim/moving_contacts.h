@@ -55,6 +55,12 @@ class MovingContacts {
     // dashpots and friction took in it.
     ToolLosses commit(const Drive& now);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(rest_, memory_, last_step_, way_step_, tool_way_, world_from_tool_at_start_, load_,
+           stored_);
+    }
+
   private:
     // What a point did, at the end of a step.
     struct Touch {
@@ -71,11 +77,13 @@ class MovingContacts {
     };
     // Of a pair, beside what that itself remembers.
     struct Memory {
+        using IsPlain = Memory;
         ImpactHistory history{};  // touches: as ToolPairs::Pair::stuck
         Touch last{}, next{};     // before the present step and after it
     };
     // How a tool went in the last step.
     struct ToolWay {
+        using IsPlain = ToolWay;
         Pose from, to;
     };
     struct Meeting;

@@ -37,11 +37,22 @@ class Multigrid {
 
     bool is_direct() const { return level_.size() == 1 && level_[0].ratio == Vec3i::Ones(); }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(inverse_blocks_, finest_, level_);
+        io(*direct_);
+    }
+
   private:
     struct Smoother {
         double largest = 0;  // eigenvalue of the scaled matrix; 0: not known yet
         Vec3Array mode;      // about its vector
         Vec3Array step, residual, product;
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(largest, mode);
+        }
     };
     struct Level {
         Vec3i ratio;  // to the body's own lattice
@@ -51,6 +62,11 @@ class Multigrid {
         std::vector<Mat3> inverse_diagonal;
         Smoother smoother;
         Vec3Array b, x;
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(*matrix, inverse_diagonal, smoother);
+        }
     };
     void add_points(Level& level, const std::vector<HeldPoint>& held) const;
     void find_own_blocks(const Aggregate& matter, const CellTangent& tangent,

@@ -52,6 +52,11 @@ class Newton {
     };
     Astray astray(const Aggregate& matter, const Vec3Array& force, const Vec3Array& start) const;
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(multigrid_, falls_, prepared_, softest_, firmness_, since_, unwatched_);
+    }
+
   private:
     bool prepare(const Aggregate& matter, const NewtonProblem& problem, bool exact);
     bool find_direction(const Aggregate& matter, const NewtonProblem& problem, double accuracy);
@@ -81,6 +86,11 @@ class Newton {
         bool is_for(const NewtonProblem& problem, const Aggregate& matter) const;
         // In a solution of so many iterations.
         void serve(int count);
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(stands, kind, at, points, iterations, is_stale);
+        }
     };
 
     CellTangent tangent_;

@@ -33,6 +33,11 @@ class NodeStiffness {
         return block_[p * std::size_t(kNear) + near];
     }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(block_);
+    }
+
   private:
     std::vector<ParticleId> neighbour_;
     std::vector<Mat3> block_;

@@ -14,6 +14,8 @@ namespace swage {
 
 class PushMeasure {
   public:
+    using IsPlain = PushMeasure;
+
     // `least`: what the first touch of a slender body, next to nothing, is measured by where no
     // load has asked for anything.
     explicit PushMeasure(double least) : least_(least) {}

@@ -35,6 +35,13 @@ class QuasistaticSolver {
     double elastic_energy(std::size_t = 0) { return forces_.elastic_energy(); }  // [J]
     const LoadSet& pushes(std::size_t = 0) const { return forces_.pushes; }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(forces_, foresight_, slips_, load_, splits_, seats_, begun_, severed_, stands_, beyond_,
+           has_stopped_);
+        search_.visit(io, forces_);
+    }
+
   private:
     enum class Unsolved { stop, leave };
     // Whether there is an equilibrium at `to` within the limits; without one the matter stays as it
@@ -61,6 +68,7 @@ class QuasistaticSolver {
 
     // How near the parts are to their limits: the nearest, and what it bears over its limit.
     struct Reach {
+        using IsPlain = Reach;
         std::size_t limit = 0;
         double share = 0;
     };
@@ -95,6 +103,11 @@ class QuasistaticSolver {
     struct Beyond {
         Drive at;
         Reach reach;
+
+        template <typename Io>
+        void visit(Io& io) {
+            io(at, reach);
+        }
     };
     Beyond beyond_;
     bool has_stopped_ = false;

@@ -18,6 +18,7 @@ SlotLengths rest_lengths(const Aggregate& matter, CellId cell, const MixedCell* 
 // What a flow adds to the logarithm of a connection's rest length, times the share of the
 // connection that is the cell's: all of a connection add up to its growth times its weight.
 struct RestGrowth {
+    using IsPlain = RestGrowth;
     ParticleId lower;
     float by;
 };

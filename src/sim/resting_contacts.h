@@ -82,6 +82,11 @@ class RestingContacts {
     const GripSet& grips() const { return grips_; }
     GripSet& grips() { return grips_; }
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(pairs_, grips_);
+    }
+
   private:
     struct TouchNow;  // a pair that touches
     struct ToolFrame {

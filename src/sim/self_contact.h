@@ -47,6 +47,12 @@ class SelfContact {
     // more, whatever is taken back; how many did until now.
     int let_be(double deeper);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(sums_, weighed_);
+        if (contact_ != nullptr) io(*contact_);
+    }
+
   private:
     void find();
 

@@ -12,6 +12,7 @@
 namespace swage {
 
 struct SeverEvent {
+    using IsPlain = SeverEvent;
     int direction;     // of the connection, into kForward
     ParticleId lower;  // its ends
     ParticleId upper;

@@ -22,6 +22,11 @@ class SlabCholesky {
     // x = K^-1 b
     void solve(const Vec3Array& b, Vec3Array& x) const;
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(diagonal_, below_);
+    }
+
   private:
     std::vector<std::vector<ParticleId>> slab_;
     std::vector<int> place_;  // of each particle in its slab

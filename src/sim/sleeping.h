@@ -31,6 +31,12 @@ class Sleeping {
     void put_to_sleep(std::size_t body) { asleep_[body] = 1; }
     void wake(std::size_t body);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(asleep_);
+        for (Watched& one : body_) io(one.since, one.lies, one.from);
+    }
+
   private:
     struct Watched {
         const Aggregate* matter;

@@ -22,6 +22,11 @@ class SoftMode {
 
     const Vec3Array& motion() const { return motion_; }  // of any length
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(motion_, last_);
+    }
+
   private:
     Vec3Array motion_, last_;  // the last step towards it
 };

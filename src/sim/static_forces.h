@@ -72,6 +72,12 @@ struct StaticForces {
     Vec3Array force;
     int mirrored = 0;  // cells inside out
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        lattice.visit(io, matter);
+        io(contacts, pushes, self, free, measure, stiffness_bound, hold, held, force, mirrored);
+    }
+
   private:
     void find_bounds();
 };

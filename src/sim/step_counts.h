@@ -8,6 +8,8 @@ namespace swage {
 
 // Of one move, a frame or a stage.
 struct StepCounts {
+    using IsPlain = StepCounts;
+
     long iterations = 0, increments = 0, halvings = 0;
     long steps = 0, rejected = 0;  // in motion: kept, and taken back
     long rescued = 0;              // of those kept: implicit ones where explicit ones went wrong

@@ -32,6 +32,7 @@ namespace swage {
 
 // The most of it, and the middle of the matter in that cell, as it is now; 0: nothing.
 struct Used {
+    using IsPlain = Used;
     double share = 0;
     Vec3 place = Vec3::Zero();
 };
@@ -50,6 +51,11 @@ class StrengthUse {
     // Where it is more than this, which is soon told of most cells; a converged state. Of equals
     // that of the first cell.
     Most beyond(const Aggregate& matter, double yield, double strength);
+
+    template <typename Io>
+    void visit(Io& io) {  // what looking changes
+        io(flowed_);
+    }
 
   private:
     double yield_share(const Aggregate& matter, const CellRun& run, int n) const;

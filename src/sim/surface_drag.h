@@ -33,6 +33,12 @@ class SurfaceDrag {
     };
     Drag add_forces(const Aggregate& matter, Vec3Array& force);
 
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(face_);
+        for (Cell& cell : cell_) io(cell.parted);
+    }
+
   private:
     struct alignas(32) Patch {
         Vec4 place;  // in the cell; most force over speed [N s/m]
@@ -45,6 +51,7 @@ class SurfaceDrag {
         bool parted = false;
     };
     struct Face {
+        using IsPlain = Face;
         OpenFace open;
         double most;  // force over speed [N s/m]
     };

@@ -36,6 +36,11 @@ class SurfaceLayer {
         return times * modulus(point) * points.area(point) / spacing_;
     }
 
+    template <typename Io>
+    void visit(Io& io) {
+        io(spacing_, pressed_, modulus_);
+    }
+
   private:
     double spacing_ = 1, pressed_ = 0;
     std::vector<double> modulus_;

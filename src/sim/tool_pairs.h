@@ -23,6 +23,7 @@ class ToolPairs {
 
     // What is remembered is committed once a move or step.
     struct Pair {
+        using IsPlain = Pair;
         int tool, point;
         bool stuck = false;           // touched, and has an anchor
         bool gone = false;            // its cell is no longer whole; until forget_gone()
@@ -94,6 +95,13 @@ class ToolPairs {
     // the candidates were found [m].
     double travel(const Aggregate& matter, const Drive& from, const Drive& to) const;
     double near_travel(const Drive& from, const Drive& to) const;
+
+    template <typename Io>
+    void visit(Io& io) {  // what steps change
+        io(layer_, stiffness_limit_, limit_step_, pair_, clearance_, start_position_,
+           tool_from_world_at_start_);
+        if (touch_ != nullptr) io(*touch_);
+    }
 
   private:
     void find_limits(const Aggregate& matter);

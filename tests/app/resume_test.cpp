@@ -7,76 +7,16 @@
 #include <thread>
 
 #include "pipeline/json.h"
-#include "tests/app/program.h"
+#include "tests/app/resumed_run.h"
 #include "tests/app/small_disk.h"
 #include "tests/catch.h"
 #include "tests/pipeline/scratch.h"
 
 namespace fs = std::filesystem;
+using namespace resumed;
 using swage::Json;
 
 namespace {
-
-const std::string kMesh = "[mesh]\nfile = \"bar.obj\"\n", kBox = "[mesh]\nfile = \"box.obj\"\n";
-std::string falls(int speed) {
-    return fmt::format("turn = [0, \"20 deg\", \"30 deg\"]\nvelocity = [0, \"-{} m/s\", 0]\n",
-                       speed);
-}
-const std::string kBrittle =
-    "[material]\nyoung_modulus = \"50 MPa\"\npoisson_ratio = 0.2\ndensity = \"1200 kg/m3\"\n"
-    "damping_ratio = 0.02\nstrength = \"0.5 MPa\"\ntoughness = \"50 J/m2\"\n";
-const std::string kMold = "[mold]\nacross = 3\n";
-const std::string kBoundary = "[skin]\nkind = \"boundary\"\n";
-const std::string kOutput =
-    "[output]\nmeshes_per_frame = true\nfields = [\"plastic_strain\", \"stress\"]\n";
-std::string floor(int frames) {
-    return fmt::format(
-        "[[stage]]\nmachine = \"floor\"\ndrop = \"2 mm\"\nframes = {}\nduration = \"4 ms\"\n",
-        frames);
-}
-
-std::string metal(const std::string& more) {
-    return "[material]\nname = \"lead\"\n" + more + kMold;
-}
-std::string worked(const std::string& at_the_cut = "") {
-    return "[[stage]]\nmachine = \"bend\"\nangle = \"40 deg\"\nframes = 3\n"
-           "[[stage]]\nmachine = \"twist\"\nangle = \"40 deg\"\nframes = 4\n"
-           "[[stage]]\nmachine = \"cut\"\ntilt = \"20 deg\"\nframes = 4\n" +
-           at_the_cut + "[[stage]]\nmachine = \"stretch\"\nstrain = 0.05\nframes = 3\n";
-}
-
-fs::path put_scene(const fs::path& folder, const std::string& text) {
-    run_swage({"make", "bar", "--length", "10 cm", "--out", "bar.obj"}, folder);
-    put_text(folder / "box.obj",
-             "v 0 0 0\nv .1 0 0\nv .1 .02 0\nv 0 .02 0\nv 0 0 .02\nv .1 0 .02\nv .1 .02 .02\n"
-             "v 0 .02 .02\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-    put_text(folder / "scene.toml", text);
-    return folder / "scene.toml";
-}
-
-Outcome run(const fs::path& scene, const fs::path& out, std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {"run", scene.string(), "--no-render", "--out", out.string()});
-    return run_swage(more);
-}
-
-// All that a run left, but for what it took.
-std::map<std::string, std::string> products(const fs::path& folder) {
-    std::map<std::string, std::string> files = files_below(folder);
-    Json record = Json::parse(files.at("run.json"));
-    record["seconds"] = nullptr;
-    files["run.json"] = record.dump(1);
-    return files;
-}
-
-void check_same(const fs::path& one, const fs::path& other) {
-    const auto there = products(one), here = products(other);
-    for (const auto& [name, bytes] : there) {
-        INFO(name);
-        REQUIRE(here.contains(name));
-        CHECK((here.at(name) == bytes));
-    }
-    CHECK(here.size() == there.size());
-}
 
 // Two stages; what the second is at shows.
 const std::string kTwo = kOutput +

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an earlier run in a directory has left to go on from.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "pipeline/run_directory.h"
+#include "pipeline/stage_mark.h"
+
+namespace swage {
+
+struct KeptRun {
+    std::optional<Reached> reached;  // none: no stage is finished
+    std::optional<StageMark> mark;   // within the stage after those
+    std::filesystem::path motion;    // which holds its motion
+    const MotionMark& motion_mark() const { return mark ? mark->motion : reached->motion; }
+};
+
+// If that is whole; what is not is told of. Throws Error(foreign) where a run that is to go on from
+// stages that are the same has none.
+std::optional<KeptRun> kept_by_earlier_run(const RunDirectory& directory);
+
+}  // namespace swage

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/stage_keeper.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/failure.h"
+#include "base/log.h"
+
+namespace swage {
+
+namespace {
+
+constexpr double kTimes = 50;  // what keeping takes, until it is due again: a fiftieth of the time
+constexpr double kLeast = 5;   // [s]; less is soon done again
+
+}  // namespace
+
+void StageKeeper::begin(int stages, std::optional<int> frame, bool can) {
+    stages_ = stages;
+    frame_ = frame;
+    can_ = can;
+    since_ = Clock::now();
+}
+
+bool StageKeeper::is_due() const {
+    const double worked = std::chrono::duration<double>(Clock::now() - since_).count();
+    return can_ && worked >= every_.value_or(std::max(kLeast, kTimes * cost_));
+}
+
+void StageKeeper::keep(int frame, std::string state, const std::vector<WorkPiece>& bodies) {
+    const auto lap = watch_.lap("keep");
+    const Clock::time_point start = Clock::now();
+    try {
+        make_folder(directory_.stage_mark().parent_path());
+        recorder_.keep(directory_.kept_motion());
+        write_stage_mark(directory_.stage_mark(), directory_.stage_keys(),
+                         {stages_,
+                          frame,
+                          recorder_.mark(),
+                          recorder_.skins(),
+                          watch_.phases(),
+                          std::move(state),
+                          {}},
+                         bodies);
+        frame_ = frame;
+    } catch (const std::exception& error) {
+        const std::optional<Error> failure = failure_of(error);
+        if (!failure) throw;
+        log_warning("{}; what comes of this stage is not kept", failure->what());
+        can_ = false;
+    }
+    since_ = Clock::now();
+    cost_ = std::chrono::duration<double>(since_ - start).count();
+}
+
+void StageKeeper::forget() {
+    std::error_code ignored;
+    std::filesystem::remove(directory_.stage_mark(), ignored);
+    frame_.reset();
+}
+
+}  // namespace swage

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keeps a stage at the end of a frame (pipeline/stage_mark.h) whenever so much has been worked
+// since the last time that keeping it is little beside it. When that is changes nothing of the
+// results.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/stopwatch.h"
+#include "pipeline/motion_recorder.h"
+#include "pipeline/run_directory.h"
+#include "pipeline/stage_mark.h"
+
+namespace swage {
+
+class StageKeeper {
+  public:
+    // The references must outlive it. `every`: keeps it after so long [s]; none: as above.
+    StageKeeper(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& watch,
+                std::optional<double> every)
+        : directory_(directory), recorder_(recorder), watch_(watch), every_(every) {}
+
+    // One begins after so many, or goes on from this frame. `can`: how it begins is kept too.
+    void begin(int stages, std::optional<int> frame, bool can);
+    bool is_due() const;
+    // Where that cannot be written it is told, and nothing more is kept of this stage.
+    void keep(int frame, std::string state, const std::vector<WorkPiece>& bodies);
+    // The stage is done, or what is kept of it serves nothing.
+    void forget();
+
+    // Of the run, that the present stage can be gone on from; none: its start.
+    std::optional<int> frame() const { return frame_; }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    const RunDirectory& directory_;
+    MotionRecorder& recorder_;
+    Stopwatch& watch_;
+    std::optional<double> every_;
+    int stages_ = 0;
+    bool can_ = false;
+    std::optional<int> frame_;
+    Clock::time_point since_;  // it was kept or begun
+    double cost_ = 0;          // of keeping it the last time [s]
+};
+
+}  // namespace swage
