@@ -13,6 +13,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "sim/block_steps.h"
+#include "sim/cell_flow.h"
 #include "sim/crumbs.h"
 #include "sim/energy_steps.h"
 #include "sim/lattice_forces.h"

@@ -64,29 +64,30 @@ Vec3 place_of(const Aggregate& matter, CellId cell) {
 }  // namespace
 
 double spring_stress(const Aggregate& matter, CellId cell, const std::array<ParticleId, 4>& row) {
-    std::array<Vec3, kCellConnectionCount> way;
-    Springs strain, weight;
+    CellSprings<double> springs;
+    Springs share;
     for (int slot = 0; slot < kCellConnectionCount; ++slot) {
         const CellConnection& c = kCellConnection[slot];
         const int high = upper_corner(c);
-        way[slot] = (matter.particle_position.at(row[high >> 1] + (high & 1)) -
-                     matter.particle_position.at(row[c.corner >> 1] + (c.corner & 1))) /
-                    reference_length(matter.lattice, c.direction);
+        const Vec3 way = (matter.particle_position.at(row[high >> 1] + (high & 1)) -
+                          matter.particle_position.at(row[c.corner >> 1] + (c.corner & 1))) /
+                         reference_length(matter.lattice, c.direction);
+        springs.way[slot] = {way.x(), way.y(), way.z()};
         const auto& plastic = matter.cell_plastic[slot];
-        strain[slot] =
-            log_ratio(way[slot].norm()) - (plastic.empty() ? 0.0 : double(plastic[cell]));
-        weight[slot] =
-            (c.direction < kEdgeCount ? kEdgeShare : kDiagonalShare) * way[slot].squaredNorm();
+        springs.strain[slot] =
+            log_ratio(way.norm()) - (plastic.empty() ? 0.0 : double(plastic[cell]));
+        share[slot] = c.direction < kEdgeCount ? kEdgeShare : kDiagonalShare;
     }
-    const SpringFrame now(way, weight);
-    return now.distortion(now.sums(strain), now.product(strain, strain))
+    return frame_of(springs, share)
+        .distortion(springs.strain)
         .stress(lattice_stiffness(matter.material.young_modulus, 1.0));
 }
 
 double spring_flow_stress(const Material& of, double alpha) {
     const double shear = lattice_stiffness(of.young_modulus, 1.0);
     return flow_stress({of.yield_stress, of.hardening, shear, flow_curve(of.flow_curve, shear)},
-                       alpha);
+                       alpha)
+        .stress;
 }
 
 double yield_radius(const CellModuli& law, double alpha) {
