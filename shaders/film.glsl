@@ -33,9 +33,18 @@ float dither(vec2 pixel) {
     return (float(rank) + 0.5) / 64.0 - 0.5;
 }
 
-vec4 developed(vec3 light, vec2 pixel) {
+vec3 shown(vec3 light) {
     vec3 c = srgb(film_curve(light));
     // A little of an S-curve: deeper darks without touching white or the middle.
-    c = mix(c, c * c * (3.0 - 2.0 * c), 0.18);
-    return vec4(c + dither(pixel) / 255.0, 1.0);
+    return mix(c, c * c * (3.0 - 2.0 * c), 0.18);
+}
+
+vec4 developed(vec3 light, vec2 pixel) { return vec4(shown(light) + dither(pixel) / 255.0, 1.0); }
+
+// A floor of which only the shadow is wanted, where it is `lit` and where it is `dimmed`: black,
+// and so dense that bytes laid over each other show the same as if it were there. Premultiplied, as
+// all of a picture is until it is read back.
+vec4 caught(vec3 lit, vec3 dimmed) {
+    float kept = dot(shown(dimmed), vec3(1.0)) / max(dot(shown(lit), vec3(1.0)), 1e-6);
+    return vec4(0.0, 0.0, 0.0, 1.0 - min(kept, 1.0));
 }

@@ -90,12 +90,6 @@ vec3 surroundings(vec3 position, vec3 ray, vec3 wall, float spread2) {
     return light;
 }
 
-// Where nothing is behind, the ground is as black and as dense as what it keeps of the light:
-// premultiplied, as all of a picture is until it is read back.
-vec4 caught(vec3 share, float near) {
-    return vec4(0.0, 0.0, 0.0, near * (1.0 - min(dot(share, vec3(1.0 / 3.0)), 1.0)));
-}
-
 // The backdrop where it lies as a floor, with `share` of its light, lighter about the middle.
 vec3 paper_floor(vec3 position, vec2 pixel, vec3 share, float near) {
     vec3 light = backdrop(sight(pixel), pixel) * mix(vec3(1.0), share, near);

@@ -66,15 +66,17 @@ void main() {
                  (key_mirrored(there, spread2) * seen.y +
                   surroundings(position, behind, there, spread2));
     }
-    float near = 0.0;
-    vec3 share = vec3(1.0);
+    pixel_color = developed(light, gl_FragCoord.xy);
     if (endless.w > 0.0) {  // the backdrop's own paper, but for its colour
         float out_of_action = smoothstep(ground.y, 6.0, length(position));
         float to_its_edge = smoothstep(0.6, 0.98, distance(position, endless.xyz) / endless.w);
-        near = 1.0 - max(out_of_action, to_its_edge);
-        share = (KEY * nl * seen.y + ambient(n) * seen.x) / open_light();
-        light = paper_floor(position, gl_FragCoord.xy, share * base / PAPER, near);
+        float near = 1.0 - max(out_of_action, to_its_edge);
+        vec3 share = (KEY * nl * seen.y + ambient(n) * seen.x) / open_light();
+        vec3 paper = base / PAPER;
+        vec3 floor_light = paper_floor(position, gl_FragCoord.xy, share * paper, near);
+        pixel_color =
+            ground.w > 0.0
+                ? caught(paper_floor(position, gl_FragCoord.xy, paper, near), floor_light)
+                : developed(floor_light, gl_FragCoord.xy);
     }
-    pixel_color = endless.w > 0.0 && ground.w > 0.0 ? caught(share, near)
-                                                    : developed(light, gl_FragCoord.xy);
 }

@@ -93,11 +93,10 @@ std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
     const std::string speed = std::abs(slower - 1) < 0.01 ? "as fast as it goes"
                               : slower > 1                ? times(slower) + " slower than it goes"
                                            : times(1 / slower) + " faster than it goes";
-    return fmt::format("{} at {} a second play {} in {}: {}",
+    return fmt::format("{} at {} a second play its {} {}",
                        counted(std::size_t(stage.frames), "frame", "frames"),
                        scene.render.frames_per_second,
-                       quantity_text(scene.duration_of(stage), Quantity::time),
-                       quantity_text(played, Quantity::time), speed);
+                       quantity_text(scene.duration_of(stage), Quantity::time), speed);
 }
 
 std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& input,

@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "pipeline/cost.h"
 #include "pipeline/run.h"
+#include "pipeline/run_record.h"
 
 namespace swage {
 
@@ -16,7 +17,7 @@ struct RunArguments {
     bool no_render = false, fresh = false, go_on = false, force = false, json = false;
 };
 
-Json run(const RunArguments& given, const SceneSpec& scene) {
+RunOptions options_of(const RunArguments& given, const SceneSpec& scene) {
     RunOptions options;
     if (!given.frames.empty()) options.frames = parse_frame_range(given.frames, frame_count(scene));
     options.out = given.out.empty() ? std::filesystem::path("renders") / scene.name
@@ -29,17 +30,28 @@ Json run(const RunArguments& given, const SceneSpec& scene) {
     if (!given.keep_every.empty()) {
         options.keep_every = parse_quantity(given.keep_every, Quantity::time);
     }
-    return run_scene(scene, options);
+    return options;
 }
 
 int run(const RunArguments& given) {
     const SceneReading reading = read_scene_argument(given.scene);
     log_mistakes(reading.mistakes);
     Json record;
+    RunOptions options;
     try {
-        record = run(given, scene_of(reading, given.scene));
+        const SceneSpec& scene = scene_of(reading, given.scene);
+        options = options_of(given, scene);
+        record = run_scene(scene, options);
     } catch (const Error& error) {
         if (!given.json) throw;
+        // It ran, and as far as it came it is on record.
+        if (error.code() == ExitCode::stopped) {
+            const std::optional<Json> ended = read_record(RunDirectory::record_in(options.out));
+            if (ended && ended->at("state") == RunState::stopped) {
+                put_json(*ended);
+                throw;
+            }
+        }
         std::vector<Mistake> mistakes = reading.mistakes;
         if (reading.scene) {
             const std::vector<Mistake> late = mistakes_of(error, given.scene);
@@ -97,7 +109,8 @@ void add_run_command(CLI::App& app, Action& chosen) {
                       "run even if it seems to need more memory, disk or time than there is");
     command->add_flag(
         "--json", given.json,
-        "print the run's record on stdout, or what kept it from running as `swage check` does");
+        "print the run's record on stdout, that of one that stopped too, or what kept it from "
+        "running as `swage check` does");
 }
 
 }  // namespace swage

@@ -17,6 +17,7 @@
 #include "pipeline/piece_fields.h"
 #include "pipeline/plot.h"
 #include "pipeline/run_directory.h"
+#include "pipeline/run_record.h"
 #include "pipeline/stage_machine.h"
 #include "pipeline/stage_verdict.h"
 #include "pipeline/stage_way.h"
@@ -388,6 +389,9 @@ class StageRun {
         outcome_.record = stage_record(end, *curves_, verdict.overlap, outcome_.warning);
         limits_.add_to(outcome_.record);
         outcome_.record["use"] = use_.json(bodies_);
+        outcome_.record["state"] = ended == StageEnded::interrupted ? RunState::interrupted
+                                   : ended == StageEnded::stopped   ? RunState::stopped
+                                                                    : RunState::complete;
     }
 
     const StageSpec& stage_;

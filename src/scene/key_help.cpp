@@ -207,7 +207,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "ground", "draw a ground under it all; false hides an endless floor too"},
         {"[render]", "legend", "put a scale of what color shows on the stills"},
         {"[render]", "background",
-         "transparent: stills have alpha, of the ground only its shadows, and there is no film"},
+         "transparent: stills have alpha (straight, to be laid over sRGB bytes), of the ground only "
+         "its shadows, and there is no film"},
         {"[render]", "passes",
          "files beside each still, for compositing, without blending at edges: depth (EXR, metres "
          "along the view), matte (PNG, a colour for each body, tool and the ground, which "

@@ -56,12 +56,11 @@ struct WorkedBody {
     std::ptrdiff_t crumbs;  // particles
     Books books{};
     bool begun = false;
-    double stored_at_start = 0;                  // [J]
     std::deque<std::vector<SeverEvent>> plan{};  // cuts of the coming frames
 
     template <typename Io>
     void visit(Io& io) {
-        io(pieces, crumbs, books, begun, stored_at_start, plan);
+        io(pieces, crumbs, books, begun, plan);
     }
 };
 
@@ -69,7 +68,9 @@ struct WorkedBody {
 
 void Books::add(const Books& other) {
     kinetic += other.kinetic;
+    kinetic_at_start += other.kinetic_at_start;
     elastic += other.elastic;
+    elastic_at_start += other.elastic_at_start;
     work += other.work;
     load_work += other.load_work;
     gravity_work += other.gravity_work;
@@ -220,16 +221,18 @@ void Simulation::Rooms::book(const MoveOutcome& outcome, FrameReport& report) {
         books.elastic = part.after.elastic;
         books.contact = part.after.contact;
         if (!body[b].begun) {
-            // What the blades took before the first move was in it too.
-            body[b].stored_at_start = part.before.sum() + books.severed_energy;
+            books.kinetic_at_start = part.before.kinetic;
+            books.elastic_at_start = part.before.elastic + books.severed_energy;
             books.contact_at_start = part.before.contact;
             books.among_at_start = part.by_contact.stored_at_start;
             body[b].begun = true;
         }
+        const double stored_at_start =
+            books.kinetic_at_start + books.elastic_at_start + books.contact_at_start;
         books.remainder = books.work + books.load_work + books.gravity_work + books.passed -
-                          (part.after.sum() - body[b].stored_at_start) - books.plastic -
-                          books.damped - books.friction - books.drag - books.severed_energy -
-                          books.fracture - books.set_free;
+                          (part.after.sum() - stored_at_start) - books.plastic - books.damped -
+                          books.friction - books.drag - books.severed_energy - books.fracture -
+                          books.set_free;
         report.body.push_back(books);
         report.add(books);
     }

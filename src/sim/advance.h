@@ -41,9 +41,10 @@ struct ToolLoad {
 struct Books {
     using IsPlain = Books;
 
-    double kinetic = 0, elastic = 0;           // now [J]
-    double contact = 0, contact_at_start = 0;  // in contacts and grips: now, and when the
-                                               // stage began [J]
+    // Now, and when the stage began [J]; elastic energy that a blade took at once was in it too.
+    double kinetic = 0, kinetic_at_start = 0;
+    double elastic = 0, elastic_at_start = 0;
+    double contact = 0, contact_at_start = 0;  // in contacts and grips
     double among_at_start = 0;  // of that, in contacts with other bodies and itself [J]
     double work = 0, load_work = 0, gravity_work = 0;  // done on it since the stage began [J], by
                                                        // tools and grips, loads, gravity

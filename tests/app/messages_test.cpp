@@ -81,7 +81,7 @@ TEST_CASE("data for a stdout that is closed ends with 5, and what has none is do
 
 TEST_CASE("check tells how fast the film plays what takes its time") {
     const Scratch scratch;
-    const fs::path scene = put_small_scene(scratch.path(), 1);
+    const fs::path scene = put_small_scene(scratch.path(), 1, "fps = 25\n");
     const auto told = [&] { return run_swage({"check", scene.string()}).out; };
     CHECK(told().find("film ") == std::string::npos);
     const std::string still = bytes_of(scene);
@@ -93,9 +93,9 @@ TEST_CASE("check tells how fast the film plays what takes its time") {
         return told();
     };
     CHECK(with_fall("50 ms").find(
-              "film         fall: 5 frames at 25 a second play 50 ms in 200 ms: 4 times slower "
-              "than it goes\n") != std::string::npos);
-    CHECK(with_fall("200 ms").find("200 ms: as fast as it goes\n") != std::string::npos);
+              "film         fall: 5 frames at 25 a second play its 50 ms 4 times slower than it "
+              "goes\n") != std::string::npos);
+    CHECK(with_fall("200 ms").find("its 200 ms as fast as it goes\n") != std::string::npos);
     CHECK(with_fall("0.4 s").find("2 times faster than it goes\n") != std::string::npos);
 }
 

@@ -207,6 +207,33 @@ TEST_CASE("drawn again, a run has no pictures of another time beside the new one
     CHECK(fs::exists(run / "again/notes.txt"));
 }
 
+TEST_CASE("the books of each stage close by what run.json says of it") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(
+        scratch.path(), 2, "[[stage]]\nmachine = \"bend\"\nangle = \"20 deg\"\nframes = 2\n");
+    const Outcome outcome =
+        run_swage({"run", scene.string(), "--no-render", "--json", "--set", "material.name=lead"},
+                  scratch.path());
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const Json stages = Json::parse(outcome.out).at("stages");
+    CHECK(stages.at(1).at("energies_J").at("elastic_at_start") > 0);
+    for (const Json& stage : stages) {
+        CHECK(stage.at("state") == "complete");
+        const auto sum = [&](std::initializer_list<const char*> names) {
+            double all = 0;
+            for (const char* name : names) all += stage.at("energies_J").at(name).get<double>();
+            return all;
+        };
+        const double begun = sum({"kinetic_at_start", "elastic_at_start", "contact_at_start"}),
+                     in = sum({"machine_work", "load_work", "gravity_work"}),
+                     out = sum({"kinetic", "elastic", "contact", "plastic", "damped", "friction",
+                                "drag", "severed", "fracture", "set_free", "remainder"});
+        CHECK(in > 0);
+        CHECK(out - begun == Approx(in).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("how often a run is looked at does not change what its machine does") {
     const Scratch scratch;
     run_swage({"make", "bar", "--length", "10 cm", "--out", (scratch.path() / "bar.obj").string()},

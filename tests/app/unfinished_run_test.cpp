@@ -135,12 +135,14 @@ TEST_CASE(
              "[[stage]]\nmachine = \"twist\"\nangle = \"3600 deg\"\nframes = 1\n"
              "tolerance = 1e-4\niteration_limit = 100\nhalving_limit = 0\n");
     const Outcome outcome =
-        run_swage({"run", scene.string(), "--out", run.string(), "--no-render"});
+        run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--json"});
     INFO(outcome.err);
     REQUIRE(outcome.err.find("1-twist, frame 2: twist: no equilibrium found") != std::string::npos);
     const Json record = Json::parse(bytes_of(run / "run.json"));
     CHECK(record.at("frames") == 1);
+    CHECK(Json::parse(outcome.out) == record);
     const Json& stage = record.at("stages").at(0);
+    CHECK(stage.at("state") == "stopped");
     CHECK(stage.at("frames") == Json({2, 2}));
     CHECK(stage.at("increments") > 0);
     CHECK(stage.at("energies_J").at("machine_work") > 0);

@@ -26,6 +26,7 @@ TEST_CASE("a transparent still has the body's colours, the ground's shadow and n
     RenderSettings settings = small_picture();
     const Image studio = box_on_ground(settings);
     CHECK(studio.alpha.empty());
+    const Image bare = box_on_ground(settings, false);
     settings.background = Background::transparent;
     const Image clear = box_on_ground(settings), empty = box_on_ground(settings, false);
     REQUIRE(clear.alpha.size() == std::size_t(clear.width * clear.height));
@@ -39,6 +40,11 @@ TEST_CASE("a transparent still has the body's colours, the ground's shadow and n
             for (int c = 0; c < 3; ++c) CHECK(p[c] == studio.rgb[3 * i + c]);
         } else if (p[0] + p[1] + p[2] == 0) {
             shadow += alpha > 60;
+            // Laid over the studio it is the shadow that falls there.
+            for (int c = 0; c < 3; ++c) {
+                const double laid = bare.rgb[3 * i + c] * (1 - alpha / 255.0);
+                CHECK(std::abs(laid - studio.rgb[3 * i + c]) < 4);
+            }
         } else {
             ++edge;  // the body's own colour, however little of it there is
             CHECK(p[0] > p[2]);
