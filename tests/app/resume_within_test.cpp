@@ -137,8 +137,11 @@ TEST_CASE("what is in motion goes on from within a stage, to the byte") {
                                               "drop = \"2 mm\"\nframes = 10\nduration = \"4 ms\"\n"
                                               "self_contact = true")},
         {"falls asleep", kBox + rubber + "damping_ratio = 0.3\nyoung_modulus = \"500 kPa\"\n" +
-                             kMold + other + kOutput +
-                             fall("duration = \"3 s\"\ncontact_stiffness = 0.1")},
+                             "[mold]\nacross = 2\n[[body]]\nname = \"other\"\n" +
+                             "file = \"box.obj\"\nat = [0, \"2.5 cm\", 0]\nacross = 2\n" + kOutput +
+                             stage("floor",
+                                   "drop = \"1 mm\"\ngravity = \"9.81 m/s2\"\nframes = 10\n"
+                                   "duration = \"2.5 s\"\ncontact_stiffness = 0.1")},
         {"breaks in a medium", kMesh + falls(8) + kBrittle + kMold + kOutput +
                                    stage("floor",
                                          "drop = \"2 mm\"\nframes = 10\nduration = \"4 ms\"\n"
