@@ -78,34 +78,38 @@ std::string text_of(const std::string& file, const InputMesh& input, bool is_man
 }
 
 // Of a run's folder: how far it came, and what its bodies have used of what they can bear.
-int info_of_run(const InfoArguments& given, const Json& record) {
-    if (given.json) {
-        put_json(record);
-        return 0;
-    }
+std::string run_text(const std::string& folder, const Json& record) {
     const auto text_at = [](const Json& of, const char* key) {
         return of.at(key).get<std::string>();
     };
-    std::string text =
-        fmt::format("{}\n  {:<12} {}\n", given.file, "state", text_at(record, "state"));
+    std::string text = fmt::format("{}\n  {:<12} {}\n", folder, "state", text_at(record, "state"));
     for (const Json& stage : record.value("stages", Json::array())) {
         text += fmt::format("  {:<12} {}, frames {} to {}\n", text_at(stage, "name"),
                             text_at(stage, "machine"), stage.at("frames").at(0).get<int>(),
                             stage.at("frames").at(1).get<int>());
         for (const std::string& use : use_texts(stage)) text += fmt::format("  {}\n", use);
     }
-    put_out(text);
-    return 0;
+    return text;
 }
 
 int info(const InfoArguments& given) {
     if (std::filesystem::is_directory(given.file)) {
-        const std::filesystem::path file = std::filesystem::path(given.file) / "run.json";
+        const std::filesystem::path file = RunDirectory::record_in(given.file);
         const std::optional<Json> record = read_record(file);
         if (!record) {
-            fail(ExitCode::command_line, "{} is a folder without a run.json: no run's", given.file);
+            fail(ExitCode::command_line, "{} is a folder without a whole run.json: no run's",
+                 given.file);
         }
-        return info_of_run(given, *record);
+        if (given.json) {
+            put_json(*record);
+            return 0;
+        }
+        try {
+            put_out(run_text(given.file, *record));
+        } catch (const Json::exception&) {
+            fail(ExitCode::output, "{}: is damaged", file.string());
+        }
+        return 0;
     }
     const InputMesh input = read_mesh_as_it_is(given.file, std::nullopt);
     const std::vector<std::string> repairs = repairs_of(input);

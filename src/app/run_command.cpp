@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "pipeline/cost.h"
 #include "pipeline/run.h"
-#include "pipeline/run_record.h"
 
 namespace swage {
 
@@ -37,21 +36,14 @@ int run(const RunArguments& given) {
     const SceneReading reading = read_scene_argument(given.scene);
     log_mistakes(reading.mistakes);
     Json record;
-    RunOptions options;
     try {
         const SceneSpec& scene = scene_of(reading, given.scene);
-        options = options_of(given, scene);
-        record = run_scene(scene, options);
+        record = run_scene(scene, options_of(given, scene));
+    } catch (const StoppedRun& stopped) {
+        if (given.json) put_json(stopped.record);
+        throw;
     } catch (const Error& error) {
         if (!given.json) throw;
-        // It ran, and as far as it came it is on record.
-        if (error.code() == ExitCode::stopped) {
-            const std::optional<Json> ended = read_record(RunDirectory::record_in(options.out));
-            if (ended && ended->at("state") == RunState::stopped) {
-                put_json(*ended);
-                throw;
-            }
-        }
         std::vector<Mistake> mistakes = reading.mistakes;
         if (reading.scene) {
             const std::vector<Mistake> late = mistakes_of(error, given.scene);

@@ -147,7 +147,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
             if (!failure) throw;
             log_warning("{}", failure->what());
         }
-        throw *ended.stopped;
+        throw StoppedRun(*ended.stopped, std::move(record));
     }
     draw();
     record["state"] = RunState::complete;

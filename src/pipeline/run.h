@@ -2,6 +2,9 @@
 // One execution of a scene, from the mesh to the film.
 #pragma once
 
+#include <utility>
+
+#include "base/error.h"
 #include "pipeline/json.h"
 #include "pipeline/run_directory.h"
 #include "pipeline/run_options.h"
@@ -9,9 +12,15 @@
 
 namespace swage {
 
+// What ended a run on its way, with what run.json holds of it.
+struct StoppedRun : Error {
+    StoppedRun(const Error& why, Json ended) : Error(why), record(std::move(ended)) {}
+    Json record;
+};
+
 // Returns what run.json holds. Throws Error (see base/error.h for the codes) and Interrupted; the
 // files that exist are whole. When the simulation gives up, what was reached is written and drawn
-// before Error(stopped).
+// before StoppedRun.
 Json run_scene(const SceneSpec& scene, const RunOptions& options);
 
 }  // namespace swage

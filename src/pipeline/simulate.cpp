@@ -121,6 +121,7 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         reached = std::move(*kept->reached);
     }
     StageMark* mark = kept && kept->mark ? &*kept->mark : nullptr;
+    const bool goes_on_within = mark != nullptr;  // the stage that it was at
     for (std::size_t b = 0; b < reached.matter.size(); ++b) {
         record["bodies"][b]["matter"] = reached.matter[b];
     }
@@ -136,9 +137,9 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
     const auto begin = [&] {
         if (std::exchange(has_begun, true)) return;
         // Of the stage that it is within there may be meshes of frames.
-        directory.begin(products_of_stages(scene, kept ? reached.stages + (mark ? 1 : 0) : 0));
+        directory.begin(products_of_stages(scene, kept ? reached.stages + goes_on_within : 0));
         if (!kept) directory.remove_checkpoint();
-        if (!mark) keeper.forget();
+        if (!goes_on_within) keeper.forget();
         plots.forget_from(static_cast<std::size_t>(reached.stages));
         reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
                                            kStageRecordRoom * scene.stage.size());
@@ -165,8 +166,11 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         return recorder->frame_count() == 0 || (!has_begun && directory.is_changed());
     };
     Ended ended;
-    int kept_stages = reached.stages;  // that are to be gone on from
-    int kept_frame = mark ? 0 : recorder->frame_count();
+    int kept_stages = reached.stages;          // that are to be gone on from
+    int kept_frame = recorder->frame_count();  // the last of these
+    if (goes_on_within) {
+        kept_frame = reached.stage.empty() ? 0 : reached.stage.back().at("frames").at(1).get<int>();
+    }
     while (reached.stages < stages) {
         const StageSpec& stage = scene.stage[static_cast<std::size_t>(reached.stages)];
         StageMark* const from = std::exchange(mark, nullptr);

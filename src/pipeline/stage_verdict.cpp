@@ -16,7 +16,7 @@ namespace swage {
 
 namespace {
 
-constexpr double kLittleGain = 0.01;  // of the energy in play, from nowhere: no matter
+constexpr double kLittleGain = 0.01;  // of the energy in play: no matter
 constexpr double kMostOfTaken = 0.2;  // likewise, of what friction and flow took
 constexpr double kOverlap = 0.5;      // spacings that a body may lie in itself untold
 
@@ -218,6 +218,7 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
                          how_to_close(sim.solver)));
     } else if (sim.solver == Solver::quasistatic && share < -kLittleGain &&
+               taken > kLittleGain * (end.last.remainder / share) &&
                -end.last.remainder > kMostOfTaken * taken) {
         warn(
             fmt::format("of the {:.3g} J that friction and flow took, tools, loads and what was "

@@ -84,6 +84,9 @@ bool has_tool_of_material_friction(const StageSpec& stage) {
             goes_by_it.push_back(one.name);
         known.push_back(one.name);
     }
+    for (const ToolSpec& tool : stage.machine.tool) {
+        for (const char* axis : {"_x", "_y", "_z"}) known.push_back(tool.name + axis);
+    }
     return std::any_of(
         stage.machine.tool.begin(), stage.machine.tool.end(),
         [&](const ToolSpec& tool) { return tool.friction.empty() || names_it(tool.friction); });

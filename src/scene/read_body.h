@@ -13,9 +13,10 @@ namespace swage {
 void read_mesh_section(TableReader& table, const std::filesystem::path& scene_folder,
                        BodySpec& body);
 
-// The section [mold].
 // Once its material is known.
 void refuse_look(TableReader& table, const BodySpec& body);
+
+// The section [mold].
 void read_mold(TableReader& table, MoldSettings& mold);
 
 // Reads the tables [[body]] of a scene whose work-piece has been read.

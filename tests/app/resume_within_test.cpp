@@ -164,6 +164,32 @@ TEST_CASE("a run goes on within whichever stage it was at") {
                   {6, 14, 15, 19});
 }
 
+TEST_CASE("a run that ends again before any more of it is kept loses nothing that was") {
+    const std::string text = kMesh + metal("") + kOutput;
+    check_goes_on(text + kBends, {5, 5, 9});
+    check_goes_on(text + stage("twist", "angle = \"9 deg\"\nframes = 3") + kBends, {8, 8, 12});
+}
+
+TEST_CASE("where later stages were changed, a run goes on within the one that it was at") {
+    const Scratch scratch;
+    const auto text = [](const char* strain) {
+        return kMesh + metal("") + kOutput + stage("twist", "angle = \"9 deg\"\nframes = 3") +
+               kBends + stage("stretch", std::string("frames = 3\nstrain = ") + strain);
+    };
+    const fs::path scene = put_scene(scratch.path(), text("0.05")),
+                   whole = scratch.path() / "whole", out = scratch.path() / "run",
+                   other = scratch.path() / "other";
+    REQUIRE(run(scene, whole).code == 0);
+    run_up_to(9, scene, whole, out);
+    put_scene(scratch.path(), text("0.03"));
+    REQUIRE(run(scene, other).code == 0);
+    const Outcome outcome = run(scene, out, {"--go-on"});
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.find("goes on from frame 8, in stage 2 of 3") != std::string::npos);
+    check_same(other, out);
+}
+
 TEST_CASE("what is kept of a stage that is damaged is told, and the stage begins anew") {
     const Scratch scratch;
     const fs::path scene = put_scene(scratch.path(), kMesh + metal("") + kOutput + kBends),

@@ -121,6 +121,7 @@ TEST_CASE("a gap is told that is little beside what is stored, and much of what 
     CHECK_FALSE(told(0.03, 0.3));
     CHECK_FALSE(told(-0.03, 0.1));
     CHECK_FALSE(told(0.003, 0.01));
+    CHECK_FALSE(told(0.03, 0));  // nothing was taken
 }
 
 TEST_CASE("the work of drawing away what an equilibrium left pushed a little is no open book") {

@@ -75,6 +75,24 @@ TEST_CASE("a material's key that nothing in the scene asks is told") {
     }
 }
 
+TEST_CASE("a tool's friction may go by the place of another tool") {
+    const auto told_with = [](const std::string& friction) {
+        const Scratch scratch;
+        scratch.write("machines/pair.toml",
+                      "[[tool]]\nname = \"one\"\nshape = \"sphere\"\nradius = 0.1\n"
+                      "at = [0, 1, 0]\nfriction = 0.3\n"
+                      "[[tool]]\nname = \"two\"\nshape = \"sphere\"\nradius = 0.1\n"
+                      "at = [0, 1, 0]\nfriction = \"" +
+                          friction + "\"\n");
+        const Parts parts = scene("rubber\"\nfriction = 0.3\n", "pair\"\n");
+        return told(read_scene(scratch.write("s.toml", parts.text()), {}, shipped()).mistakes,
+                    scratch.folder());
+    };
+    CHECK(told_with("0.2 + 0*one_x").find("5:12: warning: friction has no effect") !=
+          std::string::npos);
+    CHECK(told_with("material_friction + 0*one_x").empty());
+}
+
 TEST_CASE("a stage's key that its machine or solver does not ask is told") {
     check_all({
         {"no grip",
