@@ -89,7 +89,9 @@ std::string range_text(const CostRange& range, std::string (*text)(double)) {
 std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
     const double played = double(stage.frames) / scene.render.frames_per_second,
                  slower = played / scene.duration_of(stage);
-    const auto times = [](double ratio) { return fmt::format("{:.3g} times", ratio); };
+    const auto times = [](double ratio) {
+        return (ratio < 100 ? fmt::format("{:.3g}", ratio) : count_text(ratio)) + " times";
+    };
     const std::string speed = std::abs(slower - 1) < 0.01 ? "as fast as it goes"
                               : slower > 1                ? times(slower) + " slower than it goes"
                                            : times(1 / slower) + " faster than it goes";

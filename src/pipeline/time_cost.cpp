@@ -19,6 +19,7 @@ constexpr CostRange kMachine = {0.6, 1.7};
 // Of an explicit step [s]: of each particle its cells and its move; its dashpots; its flow; of each
 // point of the surface what drags it, what it has near of tools, and what it presses of bodies.
 constexpr double kCells = 45e-9, kDashpots = 45e-9, kFlow = 30e-9;
+constexpr double kFlowOfSprings = 350e-9;  // where all of it flows
 constexpr double kDrag = 25e-9, kTools = 12e-9, kMeets = 60e-9;
 // What is struck, by the energy of its motion over what it holds until it breaks or flows.
 // Breaking: its springs, and all that is found anew after it (pieces, surfaces, what lies near),
@@ -60,6 +61,10 @@ bool breaks(const SceneSpec& scene) {
 }
 bool yields(const SceneSpec& scene) {
     return scene.any_material([](const Material& m) { return m.yields(); });
+}
+bool yields_as_springs(const SceneSpec& scene) {
+    return scene.any_material(
+        [](const Material& m) { return m.yields() && m.mechanics == Mechanics::springs; });
 }
 bool damps(const SceneSpec& scene) {
     return scene.any_material([](const Material& m) { return m.damping_ratio > 0; });
@@ -158,6 +163,7 @@ StageTime moved(const SceneSpec& scene, const StageSpec& stage, const WorkLoad& 
     double meeting = 0;
     if (!stage.machine.tool.empty()) meeting += load.surface_points * kTools;
     if (scene.body.size() > 1 || stage.sim.self_contact) meeting += load.surface_points * kMeets;
+    if (yields_as_springs(scene)) meeting += load.particles * kFlowOfSprings;
     if (breaks(scene)) {
         const double driven = is_driven ? kBreakingByMachines : 0;
         steps.most *= kTakenBack;

@@ -3,6 +3,8 @@
 // tried by its counts alone, in tests/app/check_test.cpp.
 #include "pipeline/time_cost.h"
 
+#include <limits>
+
 #include "base/parallel.h"
 #include "geometry/make_shape.h"
 #include "pipeline/cost.h"
@@ -37,6 +39,18 @@ constexpr Solver kSolvers[] = {Solver::quasistatic, Solver::explicit_steps, Solv
                                Solver::energy_stepped, Solver::implicit_steps};
 
 }  // namespace
+
+TEST_CASE("springs that flow may take longer than cells that do, and elastic ones no longer") {
+    const auto most = [](Mechanics mechanics, double yield_stress) {
+        Work work(Solver::explicit_steps);
+        work.scene.body[0].material.mechanics = mechanics;
+        work.scene.body[0].material.yield_stress = yield_stress;
+        return work.seconds().most;
+    };
+    const double never = std::numeric_limits<double>::infinity();
+    CHECK(most(Mechanics::springs, 1e6) > 2 * most(Mechanics::cells, 1e6));
+    CHECK(most(Mechanics::springs, never) == most(Mechanics::cells, never));
+}
 
 TEST_CASE("more cells, more frames or a longer time are never told to take less") {
     for (const Solver solver : kSolvers) {
