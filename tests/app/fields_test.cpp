@@ -127,3 +127,42 @@ TEST_CASE("a field that is misspelled, and a range that is none, are told at the
         CHECK(outcome.err.find(told) != std::string::npos);
     }
 }
+
+TEST_CASE(
+    "a run tells by stage what its bodies have used of what they can bear, and an idle one none") {
+    const Scratch scratch;
+    const fs::path scene = put_small_scene(scratch.path(), 3), out = scratch.path() / "run";
+    const auto stage_of = [&](const std::string& material, const fs::path& to) {
+        const Outcome done = run(scene, to, {"--no-render", "--set", "material.name=" + material});
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        return std::pair(Json::parse(bytes_of(to / "run.json")).at("stages").at(0), done.err);
+    };
+    const auto [rubber, of_rubber] = stage_of("rubber", out / "rubber");
+    CHECK(rubber.at("use").empty());
+    CHECK(of_rubber.find(": used") == std::string::npos);
+
+    const auto [tin, of_tin] = stage_of("tin", out / "tin");
+    const Json& use = tin.at("use").begin().value();
+    CHECK(use.at("yield").at("share") == 1);
+    CHECK(use.at("yield").at("place_m").size() == 3);
+    CHECK(use.at("yield").at("frame") >= 2);
+    CHECK(use.at("plastic_strain").at("most") > 0);
+    CHECK_FALSE(use.contains("strength"));
+    CHECK(of_tin.find("1-bend: used 100 % of its yield stress (frame ") != std::string::npos);
+
+    const auto [iron, of_iron] = stage_of("cast_iron", out / "iron");
+    CHECK(iron.at("use").begin().value().at("strength").at("share") > 0);
+    CHECK(of_iron.find(" of its strength") != std::string::npos);
+
+    const Outcome told = run_swage({"info", (out / "iron").string()});
+    CHECK(told.code == 0);
+    CHECK(told.out.find("1-bend: used ") != std::string::npos);
+    CHECK(run_swage({"info", scratch.path().string()}).code == 2);
+    Json damaged = Json::parse(bytes_of(out / "iron/run.json"));
+    damaged.at("stages").at(0).erase("frames");
+    put_text(out / "iron/run.json", damaged.dump());
+    const Outcome refused = run_swage({"info", (out / "iron").string()});
+    CHECK(refused.code == 5);
+    CHECK(refused.err.find("run.json: is damaged") != std::string::npos);
+}
