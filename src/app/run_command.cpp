@@ -81,8 +81,9 @@ void add_run_command(CLI::App& app, Action& chosen) {
         "throw away what an earlier run left in the directory, once this one is set up");
     command
         ->add_flag("--go-on", given.go_on,
-                   "where the scene was changed from some stage on, and the run in the directory "
-                   "ended early: keep the stages that it finished before, throw away the others")
+                   "where the run in the directory ended early, and of the scene only stages were "
+                   "changed that come after those that it had finished: keep these, throw away the "
+                   "others")
         ->excludes(fresh);
     command
         ->add_option("--keep-every", given.keep_every,

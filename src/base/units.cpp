@@ -281,6 +281,11 @@ double parse_quantity(std::string_view text, Quantity wanted) {
     const std::string_view rest = inner.substr(at);
     if (rest.empty()) return number->value;
 
+    if (std::string_view("+-*/^(").find(rest.front()) != std::string_view::npos) {
+        refuse(begin + at,
+               fmt::format("\"{}\" is to be reckoned, which machine files alone are; {}", inner,
+                           wanted_text(wanted)));
+    }
     const std::optional<LeadingUnit> unit = leading_unit(rest);
     if (!unit || unit->size != rest.size()) {
         refuse(begin + at,

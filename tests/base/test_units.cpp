@@ -80,6 +80,8 @@ TEST_CASE("what is no quantity is refused with place and reason") {
         {"long", Quantity::length, "0: \"long\" is no number; a length is wanted"},
         {"1,5 cm", Quantity::length, "1: \"1,5 cm\" has a decimal comma; write \"1.5 cm\""},
         {"10 apples", Quantity::length, "3: unknown unit \"apples\"; a length is wanted"},
+        {"2*60 deg", Quantity::angle, "1: \"2*60 deg\" is to be reckoned, which machine files"},
+        {"1/5", Quantity::length, "1: \"1/5\" is to be reckoned"},
         {"1e5x", Quantity::number, "3: unknown unit \"x\"; a plain number is wanted"},
         {"18 cm long", Quantity::length, "3: unknown unit \"cm long\"; a length is wanted"},
         {"1.2.3", Quantity::number, "3: unknown unit \".3\""},
