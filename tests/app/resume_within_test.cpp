@@ -183,11 +183,7 @@ TEST_CASE("where later stages were changed, a run goes on within the one that it
     run_up_to(9, scene, whole, out);
     put_scene(scratch.path(), text("0.03"));
     REQUIRE(run(scene, other).code == 0);
-    const Outcome outcome = run(scene, out, {"--go-on"});
-    INFO(outcome.err);
-    CHECK(outcome.code == 0);
-    CHECK(outcome.err.find("goes on from frame 8, in stage 2 of 3") != std::string::npos);
-    check_same(other, out);
+    check_goes_through(scene, other, out, "goes on from frame 8, in stage 2 of 3", {"--go-on"});
 }
 
 TEST_CASE("what is kept of a stage that is damaged is told, and the stage begins anew") {
@@ -248,11 +244,7 @@ TEST_CASE("a run that was killed goes on from the last frame that was kept") {
         CHECK(fs::exists(out / "resume/stage.bin"));
         CHECK((frame == 6 || ended.err.find("goes on from frame ") != std::string::npos));
     }
-    const Outcome outcome = run(scene, out);
-    INFO(outcome.err);
-    CHECK(outcome.code == 0);
-    CHECK(outcome.err.find("goes on from frame ") != std::string::npos);
-    check_same(whole, out);
+    check_goes_through(scene, whole, out, "goes on from frame ");
 }
 
 TEST_CASE("a stage goes on where what is kept of it finds no room") {
@@ -270,11 +262,7 @@ TEST_CASE("a stage goes on where what is kept of it finds no room") {
         largest = std::max<std::uintmax_t>(largest, bytes.size());
     }
     const SmallDisk disk(largest);
-    const Outcome outcome = run(scene, out, kEachFrame);
-    INFO(outcome.err);
-    CHECK(outcome.code == 0);
-    CHECK(outcome.err.find("what comes of this stage is not kept") != std::string::npos);
-    check_same(whole, out);
+    check_goes_through(scene, whole, out, "what comes of this stage is not kept", kEachFrame);
 }
 
 TEST_CASE("how often a run is to be kept is a time") {

@@ -79,4 +79,14 @@ inline void check_same(const fs::path& one, const fs::path& other) {
     CHECK(here.size() == there.size());
 }
 
+// Gone on with, it says so and leaves what a run that went through did.
+inline void check_goes_through(const fs::path& scene, const fs::path& whole, const fs::path& out,
+                               const std::string& told, const std::vector<std::string>& more = {}) {
+    const Outcome outcome = run(scene, out, more);
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(outcome.err.find(told) != std::string::npos);
+    check_same(whole, out);
+}
+
 }  // namespace resumed

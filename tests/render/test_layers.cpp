@@ -35,6 +35,12 @@ Layers layers_drawn(const RenderSettings& settings, const std::vector<DrawItem>&
     return layers;
 }
 
+// Through the middle of a pixel of a small picture; 1 deep.
+Vec3 sight_through(const View& view, const Lens& lens, int x, int y) {
+    return view.world_from_view *
+           Vec3(lens.tangent_x * ((x + 0.5) / 80 - 1), lens.tangent_y * (1 - (y + 0.5) / 60), -1);
+}
+
 }  // namespace
 
 TEST_CASE("the depth of what stands at a known distance is that, and beside it nothing is") {
@@ -77,9 +83,7 @@ TEST_CASE("depth goes along the view, whatever the direction, also on the ground
     for (int y = 0; y < 120; ++y) {
         for (int x = 0; x < 160; ++x) {
             const std::size_t i = std::size_t(y) * 160 + x;
-            const Vec3 sight =
-                view.world_from_view * Vec3(lens.tangent_x * ((x + 0.5) / 80 - 1),
-                                            lens.tangent_y * (1 - (y + 0.5) / 60), -1);
+            const Vec3 sight = sight_through(view, lens, x, y);
             const double depth = -view.eye.y() / sight.y();
             if (layers.item[i] != kGroundThere) continue;
             ++seen;
@@ -106,9 +110,7 @@ TEST_CASE("ground and endless floors go on to the horizon, which is level") {
     for (int y = 0; y < 120; ++y) {
         for (int x = 0; x < 160; ++x) {
             const std::size_t i = std::size_t(y) * 160 + x;
-            const Vec3 sight =
-                view.world_from_view * Vec3(lens.tangent_x * ((x + 0.5) / 80 - 1),
-                                            lens.tangent_y * (1 - (y + 0.5) / 60), -1);
+            const Vec3 sight = sight_through(view, lens, x, y);
             if (sight.y() > -1e-3) {
                 ++above;
                 if (sight.y() > 1e-3) CHECK(layers.item[i] == kNothingThere);

@@ -7,9 +7,11 @@
 
 #include "tests/catch.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/equivalent_stress.h"
 
 using namespace swage;
 using test::deform;
+using test::equivalent;
 using test::make_block;
 
 namespace {
@@ -37,13 +39,6 @@ std::vector<StressSample> bear(const Material& material, const Mat3& f) {
 }
 
 Mat3 stretch(double along, double across) { return Vec3(along, across, across).asDiagonal(); }
-
-double equivalent(const std::array<double, 6>& s) {
-    const double mean = (s[0] + s[1] + s[2]) / 3;
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) sum += (s[i] - mean) * (s[i] - mean) + 2 * s[i + 3] * s[i + 3];
-    return std::sqrt(1.5 * sum);
-}
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "sim/matter_stress.h"
 #include "tests/catch.h"
 #include "tests/shared/lattice_fixture.h"
+#include "tests/sim/equivalent_stress.h"
 #include "tests/sim/pulled_bar.h"
 
 using namespace swage;
@@ -48,13 +49,6 @@ void bend(Aggregate& m, double curvature) {
         return p +
                curvature * Vec3(x * z, -kRatio * y * z, -0.5 * (x * x + kRatio * (z * z - y * y)));
     });
-}
-
-double equivalent(const std::array<double, 6>& s) {
-    const double mean = (s[0] + s[1] + s[2]) / 3;
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) sum += (s[i] - mean) * (s[i] - mean) + 2 * s[i + 3] * s[i + 3];
-    return std::sqrt(1.5 * sum);
 }
 
 }  // namespace
