@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "app/help_format.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -44,9 +45,13 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
         ->add_option("--threads", common.threads,
                      "threads to use (default, and beyond 16 at most: one a core)")
         ->check(CLI::Range(1, 4096))
-        ->type_name("N");
-    auto* quiet = command->add_flag("-q,--quiet", common.quiet, "say only what is wrong");
-    command->add_flag("-v,--verbose", common.verbose, "say more")->excludes(quiet);
+        ->type_name("N")
+        ->group(kCommonOptions);
+    auto* quiet = command->add_flag("-q,--quiet", common.quiet, "say only what is wrong")
+                      ->group(kCommonOptions);
+    command->add_flag("-v,--verbose", common.verbose, "say more")
+        ->excludes(quiet)
+        ->group(kCommonOptions);
     command->footer("\nExamples:\n" + examples);
     command->callback([&chosen, act = std::move(act)] { chosen = act; });
     return command;

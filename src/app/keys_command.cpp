@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "app/command.h"
+#include "app/word_wrap.h"
 #include "base/error.h"
 #include "base/suggest.h"
 #include "scene/key_reference.h"
@@ -59,12 +60,12 @@ std::string section_text(const SectionReference& section) {
     for (const KeyReference& key : section.key) {
         text += "  " + key.key + std::string(width - key.key.size() + 2, ' ');
         if (key.takes.empty()) {  // of expressions
-            text += key.help + "\n";
+            text += wrapped(key.help, width + 4, width + 4) + "\n";
             continue;
         }
-        text += key.takes;
-        if (!key.usual.empty()) text += "; default " + key.usual;
-        text += "\n" + std::string(width + 4, ' ') + key.help + "\n";
+        const std::string usual = key.usual.empty() ? "" : "; default " + key.usual;
+        text += wrapped(key.takes + usual, width + 4, width + 4) + "\n";
+        text += std::string(width + 4, ' ') + wrapped(key.help, width + 4, width + 4) + "\n";
     }
     return text;
 }

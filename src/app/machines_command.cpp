@@ -4,6 +4,7 @@
 #include "app/command.h"
 #include "app/scene_argument.h"
 #include "app/table_text.h"
+#include "app/word_wrap.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "scene/catalogue.h"
@@ -20,26 +21,30 @@ struct MachinesArguments {
 };
 
 std::string range_text(const ParameterSpec& parameter) {
-    if (parameter.low.empty() && parameter.high.empty()) return "any";
-    if (parameter.low.empty()) return "up to " + parameter.high.text;
-    if (parameter.high.empty()) return parameter.low.text + " and more";
-    return parameter.low.text + " to " + parameter.high.text;
+    if (parameter.low.empty() && parameter.high.empty()) return "";
+    if (parameter.low.empty()) return ", up to " + parameter.high.text;
+    if (parameter.high.empty()) return ", at least " + parameter.low.text;
+    return ", " + parameter.low.text + " to " + parameter.high.text;
 }
 
-// Of a plain number.
-std::string unit_text(const ParameterSpec& parameter) {
+// As `swage keys` has it: what it takes, with the unit of a plain number.
+std::string takes_text(const ParameterSpec& parameter) {
     const std::string unit = si_unit(parameter.quantity);
-    return unit.empty() ? "-" : unit;
+    return quantity_name(parameter.quantity) + (unit.empty() ? "" : " [" + unit + "]") +
+           range_text(parameter) + "; default " + parameter.default_value.text;
 }
 
 std::string machine_text(const MachineSpec& machine) {
     std::string text = machine.name + ": " + machine.help + "\n  " + machine.file.string() + "\n\n";
-    std::vector<std::vector<std::string>> rows = {{"PARAMETER", "UNIT", "DEFAULT", "RANGE", ""}};
+    std::size_t column = 0;
+    for (const ParameterSpec& p : machine.parameter) column = std::max(column, p.name.size() + 4);
     for (const ParameterSpec& parameter : machine.parameter) {
-        rows.push_back({parameter.name, unit_text(parameter), parameter.default_value.text,
-                        range_text(parameter), parameter.help});
+        std::string line = "  " + parameter.name;
+        line.resize(column, ' ');
+        text += line + wrapped(takes_text(parameter), column, column) + "\n";
+        if (parameter.help.empty()) continue;
+        text += std::string(column, ' ') + wrapped(parameter.help, column, column) + "\n";
     }
-    text += table_text(rows);
     std::vector<std::string> parts;
     for (const ToolSpec& tool : machine.tool) parts.push_back("tool " + tool.name);
     for (const GripSpec& grip : machine.grip) parts.push_back("grip " + grip.name);
@@ -50,8 +55,8 @@ std::string machine_text(const MachineSpec& machine) {
     text += machine.stops ? "\n  can stop at a force or torque ([[stage.limit]])"
                           : "\n  goes all its way: no motion of it can stop at a force";
     return text +
-           "\n  a number without a unit is in UNIT; length, height and width are those of the "
-           "work-piece's box, spacing that of its lattice\n";
+           "\n  a number without a unit is in that in brackets; length, height and width are those "
+           "of\n  the work-piece's box, spacing is that of its lattice\n";
 }
 
 Json machine_json(const MachineSpec& machine) {

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "app/command.h"
+#include "app/help_format.h"
 #include "app/suggest.h"
 #include "base/failure.h"
 #include "base/log.h"
@@ -25,12 +26,21 @@ constexpr int kUnexpected = 70;  // a mistake in swage itself
 
 int exit_code(ExitCode code) { return static_cast<int>(code); }
 
+// The help of what was given without one of its commands, "swage" or "swage make"; else empty.
+std::string commands_left_out(const CLI::App& app) {
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    const CLI::App& given = chosen.empty() ? app : *chosen.front();
+    if (given.get_subcommands({}).empty() || !given.get_subcommands().empty()) return "";
+    return given.help(chosen.empty() ? "" : app.get_name());
+}
+
 int run_command_line(int argc, char** argv) {
     CLI::App app(
         "swage: a machine shop for meshes. A mesh goes in, is molded into matter, bent,\n"
         "twisted and cut by machines, and comes out as meshes, stills and force curves.");
     app.name("swage");
     app.set_version_flag("-V,--version", fmt::format("swage {} (build {})", kVersion, kBuildName));
+    app.formatter(std::make_shared<HelpFormat>());
     app.require_subcommand(1);
     app.footer(
         "\nExamples:\n"
@@ -40,7 +50,7 @@ int run_command_line(int argc, char** argv) {
         "  swage keys stage\n\n"
         "Exit codes: 0 done, 2 command line, 3 scene, 4 mesh, 5 output or drawing, 6 "
         "simulation\nstopped, 7 refused for resources, 8 output directory belongs to another "
-        "run, 128+n by\nsignal n.");
+        "run, 128+n by\nsignal n");
     Action chosen;
     add_run_command(app, chosen);
     add_check_command(app, chosen);
@@ -61,6 +71,12 @@ int run_command_line(int argc, char** argv) {
             app.exit(error, text);
             put_out(text.str());
             return exit_code(ExitCode::done);
+        }
+        if (error.get_name() == "RequiredError") {
+            if (const std::string commands = commands_left_out(app); !commands.empty()) {
+                put_out(commands);
+                return exit_code(ExitCode::command_line);
+            }
         }
         log_error_text(parse_error_text(app, error, {argv + 1, argv + argc}));
         log_text("swage --help, or swage COMMAND --help, tells what there is");

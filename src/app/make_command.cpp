@@ -2,13 +2,14 @@
 #include <map>
 
 #include "app/command.h"
+#include "app/help_format.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text_error.h"
 #include "base/units.h"
+#include "geometry/files_beside.h"
 #include "geometry/make_shape.h"
 #include "geometry/mesh_check.h"
-#include "geometry/files_beside.h"
 #include "geometry/mesh_write.h"
 #include "render/png.h"
 
@@ -86,6 +87,10 @@ void add_make_command(CLI::App& app, Action& chosen) {
     static MakeArguments given;
     CLI::App* command = app.add_subcommand("make", "Make one of the project's own meshes");
     command->require_subcommand(1);
+    const auto format = std::make_shared<HelpFormat>();
+    format->label("COMMAND", "SHAPE");
+    format->label("Commands", "Shapes");
+    command->formatter(format);
     command->footer(
         "\nExamples:\n"
         "  swage make bar --out /tmp/bar.obj\n"

@@ -30,7 +30,8 @@ TEST_CASE("a machine's parameters are told with the unit of a number that has no
         std::string shown;
         rest >> shown >> std::ws;
         std::getline(rest, shown);
-        CHECK(shown.rfind((unit.empty() ? "-" : unit) + " ", 0) == 0);
+        const auto quantity = parameter.at("quantity").get<std::string>();
+        CHECK(shown == quantity + (unit.empty() ? "" : " [" + unit + "]") + "; default 3");
     }
 }
 

@@ -51,19 +51,6 @@ TEST_CASE("run tells what keeps it from running as JSON, as check does") {
     both({"--set", "mold.cell_limit=3"});  // which its mold goes beyond
 }
 
-TEST_CASE("help is told where it is asked for by that word, of one command too") {
-    CHECK(run_swage({"help"}).out == run_swage({"--help"}).out);
-    for (const char* command : {"run", "check", "keys", "machines", "help"}) {
-        const Outcome told = run_swage({"help", command});
-        CHECK(told.code == 0);
-        CHECK(told.out == run_swage({command, "--help"}).out);
-    }
-    const Outcome wrong = run_swage({"help", "chek"});
-    CHECK(wrong.code == 2);
-    CHECK(wrong.out.empty());
-    CHECK(wrong.err.find("no command \"chek\", did you mean \"check\"?") != std::string::npos);
-}
-
 TEST_CASE("data for a stdout that is closed ends with 5, and what has none is done") {
     const Scratch scratch;
     for (const char* command : {"swage keys >&-", "swage --version >&-", "swage help >&-"}) {
