@@ -21,9 +21,4 @@ void add_triangle(TriMesh& mesh, const Corners& corners, std::size_t like, const
 // Leaves out positions, with their colours, that no triangle uses.
 void drop_unused_positions(TriMesh& mesh);
 
-// Appends all of another mesh: its positions are not welded to those here. Attributes that only
-// one of the two has are filled up: white, no texture coordinates, a default material or part.
-// Smooth groups and polygons stay apart.
-void append_mesh(TriMesh& mesh, const TriMesh& other);
-
 }  // namespace swage

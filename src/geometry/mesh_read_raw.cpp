@@ -2,11 +2,10 @@
 // The plain arrays that cross the pipe between the reading process and its parent.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "geometry/mesh_read_child.h"
-#include "geometry/polygon.h"
 
 namespace swage {
 
@@ -15,102 +14,6 @@ namespace {
 constexpr std::uint64_t kMagic = 0x3168'7365'6d77'7301;
 constexpr double kLargest = 1e9;    // [m], coordinates
 constexpr double kSmallest = 1e-9;  // [m], the box's diagonal
-
-// One list of fields for both directions.
-template <typename Mesh, typename F>
-void each_field(Mesh& mesh, const F& f) {
-    f(mesh.position);
-    f(mesh.color);
-    f(mesh.uv);
-    f(mesh.normal);
-    f(mesh.triangle);
-    f(mesh.triangle_uv);
-    f(mesh.triangle_normal);
-    f(mesh.polygon);
-    f(mesh.triangle_material);
-    f(mesh.triangle_part);
-    f(mesh.triangle_smooth);
-    f(mesh.part_name);
-    f(mesh.finding);
-    f(mesh.at_vertices);
-    f(mesh.material);
-}
-
-struct Packer {
-    std::string& bytes;
-
-    void raw(const void* data, std::size_t size) const {
-        bytes.append(static_cast<const char*>(data), size);
-    }
-    void operator()(int value) const { raw(&value, sizeof value); }
-    void operator()(double value) const { raw(&value, sizeof value); }
-    void operator()(const std::string& text) const {
-        count(text.size());
-        raw(text.data(), text.size());
-    }
-    void operator()(const Vec3& v) const { raw(v.data(), sizeof v); }
-    void operator()(const RawMaterial& m) const {
-        (*this)(m.name);
-        (*this)(m.color);
-        (*this)(m.roughness);
-        (*this)(m.metallic);
-        (*this)(m.texture);
-        (*this)(m.texture_bytes);
-    }
-    template <typename T>
-    void operator()(const std::vector<T>& values) const {
-        count(values.size());
-        if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, RawMaterial>) {
-            for (const T& value : values) (*this)(value);
-        } else if (!values.empty()) {
-            raw(values.data(), values.size() * sizeof(T));
-        }
-    }
-    void count(std::uint64_t n) const { raw(&n, sizeof n); }
-};
-
-struct Unpacker {
-    std::string_view& bytes;
-
-    void raw(void* data, std::size_t size) const {
-        if (size > bytes.size())
-            fail(ExitCode::mesh, "the reading process sent an incomplete mesh");
-        if (size > 0) std::memcpy(data, bytes.data(), size);
-        bytes.remove_prefix(size);
-    }
-    void operator()(int& value) const { raw(&value, sizeof value); }
-    void operator()(double& value) const { raw(&value, sizeof value); }
-    void operator()(std::string& text) const {
-        text.resize(count(1));
-        raw(text.data(), text.size());
-    }
-    void operator()(Vec3& v) const { raw(v.data(), sizeof v); }
-    void operator()(RawMaterial& m) const {
-        (*this)(m.name);
-        (*this)(m.color);
-        (*this)(m.roughness);
-        (*this)(m.metallic);
-        (*this)(m.texture);
-        (*this)(m.texture_bytes);
-    }
-    template <typename T>
-    void operator()(std::vector<T>& values) const {
-        if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, RawMaterial>) {
-            values.resize(count(sizeof(std::uint64_t)));
-            for (T& value : values) (*this)(value);
-        } else {
-            values.resize(count(sizeof(T)));
-            raw(values.data(), values.size() * sizeof(T));
-        }
-    }
-    std::size_t count(std::size_t item_bytes) const {
-        std::uint64_t n = 0;
-        raw(&n, sizeof n);
-        if (n > bytes.size() / item_bytes)
-            fail(ExitCode::mesh, "the reading process sent an incomplete mesh");
-        return n;
-    }
-};
 
 void check_indices(const std::vector<Corners>& corners, std::size_t count, int least,
                    const char* what) {
@@ -131,84 +34,39 @@ void check_ids(const std::vector<int>& ids, std::size_t triangles, std::size_t c
 
 }  // namespace
 
-void add_polygons(const PolygonList& polygons, RawMesh& mesh) {
-    const auto where = [&](std::size_t p) {
-        return polygons.line[p] > 0 ? fmt::format("line {}", polygons.line[p])
-                                    : fmt::format("face {}", p);
-    };
-    const auto check = [&](std::size_t p, int index, std::size_t count, const char* what) {
-        if (index >= static_cast<long long>(count))
-            fail(ExitCode::mesh, "{}: {} {} is used, there are only {}", where(p), what,
-                 static_cast<long long>(index) + 1, count);
-    };
-    const auto any = [](const std::vector<int>& ids) {
-        return std::any_of(ids.begin(), ids.end(), [](int i) { return i >= 0; });
-    };
-    const bool has_uv = any(polygons.uv), has_normal = any(polygons.normal);
-    const bool has_material = any(polygons.material), has_part = any(polygons.part);
-    const bool has_smooth = !polygons.smooth.empty();
-    std::size_t thin = 0, crossed = 0;
-    std::vector<int> corner;
-    std::vector<Vec3> place;
-    std::vector<Corners> cut;
-    for (std::size_t p = 0; p < polygons.size(); ++p) {
-        corner.clear();
-        place.clear();
-        cut.clear();
-        for (int c = polygons.first[p]; c < polygons.first[p + 1]; ++c) {
-            check(p, polygons.position[c], mesh.position.size(), "vertex");
-            check(p, polygons.uv[c], mesh.uv.size(), "texture coordinate");
-            check(p, polygons.normal[c], mesh.normal.size(), "normal");
-            if (!corner.empty() && polygons.position[corner.back()] == polygons.position[c])
-                continue;
-            corner.push_back(c);
-        }
-        while (corner.size() > 1 &&
-               polygons.position[corner.front()] == polygons.position[corner.back()])
-            corner.pop_back();
-        if (corner.size() < 3) {
-            ++thin;
-            continue;
-        }
-        for (const int c : corner) place.push_back(mesh.position[polygons.position[c]]);
-        if (!cut_polygon(place, cut)) ++crossed;
-        for (const Corners& t : cut) {
-            const auto pick = [&](const std::vector<int>& ids) {
-                return Corners{ids[corner[t[0]]], ids[corner[t[1]]], ids[corner[t[2]]]};
-            };
-            mesh.triangle.push_back(pick(polygons.position));
-            if (has_uv) mesh.triangle_uv.push_back(pick(polygons.uv));
-            if (has_normal) mesh.triangle_normal.push_back(pick(polygons.normal));
-            mesh.polygon.push_back(static_cast<int>(p));
-            if (has_material) mesh.triangle_material.push_back(polygons.material[p]);
-            if (has_part) mesh.triangle_part.push_back(polygons.part[p]);
-            if (has_smooth) mesh.triangle_smooth.push_back(polygons.smooth[p]);
-        }
-    }
-    if (thin > 0)
-        mesh.finding.push_back(
-            fmt::format("{} faces of fewer than three different corners were left out", thin));
-    if (crossed > 0)
-        mesh.finding.push_back(fmt::format(
-            "{} polygons cross themselves; they were cut into triangles as well as may be",
-            crossed));
+template <typename Io>
+void visit(Io& io, RawMaterial& material) {
+    auto& [name, color, roughness, metallic, texture, texture_bytes] = material;
+    io(name, color, roughness, metallic, texture, texture_bytes);
+}
+
+template <typename Io>
+void visit(Io& io, RawMesh& mesh) {
+    auto& [position, color, uv, normal, triangle, triangle_uv, triangle_normal, polygon,
+           triangle_material, triangle_part, triangle_smooth, material, part_name, finding,
+           at_vertices] = mesh;
+    io(position, color, uv, normal, triangle, triangle_uv, triangle_normal, polygon,
+       triangle_material, triangle_part, triangle_smooth, material, part_name, finding,
+       at_vertices);
 }
 
 std::string to_bytes(const RawMesh& mesh) {
-    std::string bytes;
-    const Packer pack{bytes};
-    pack.count(kMagic);
-    each_field(mesh, pack);
-    return bytes;
+    ByteWriter writer;
+    writer(kMagic, mesh);
+    return writer.bytes();
 }
 
 RawMesh from_bytes(std::string_view bytes) {
+    ByteReader reader(bytes);
     RawMesh mesh;
-    const Unpacker unpack{bytes};
-    std::uint64_t magic = 0;
-    unpack.raw(&magic, sizeof magic);
-    if (magic != kMagic) fail(ExitCode::mesh, "the reading process sent no mesh");
-    each_field(mesh, unpack);
+    try {
+        if (reader.get<std::uint64_t>() != kMagic)
+            fail(ExitCode::mesh, "the reading process sent no mesh");
+        reader(mesh);
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::mesh) throw;
+        fail(ExitCode::mesh, "the reading process sent an incomplete mesh");
+    }
     return mesh;
 }
 
