@@ -104,6 +104,18 @@ std::optional<int> wait_for(pid_t child) {
     return ended == child ? std::optional(status) : std::nullopt;
 }
 
+bool ends_within(pid_t child, double seconds) {
+    constexpr int kLooksPerSecond = 200;
+    for (double looks = seconds * kLooksPerSecond;; --looks) {
+        siginfo_t ended{};
+        const int failed = ::waitid(P_PID, id_t(child), &ended, WEXITED | WNOHANG | WNOWAIT);
+        if ((failed != 0 && errno != EINTR) || ended.si_pid == child) return true;
+        if (looks <= 0 || asked_to_stop() != 0) return false;
+        const timespec pause{0, 1'000'000'000 / kLooksPerSecond};
+        ::nanosleep(&pause, nullptr);
+    }
+}
+
 void become_child(pid_t parent) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);  // it was too late for that
@@ -190,25 +202,18 @@ int PipedProgram::finish() {
 
 int PipedProgram::finish_within(double seconds) {
     input_.close();
-    constexpr int kLooksPerSecond = 200;
-    for (double looks = seconds * kLooksPerSecond; process_ > 0; --looks) {
-        siginfo_t ended{};
-        const int failed = ::waitid(P_PID, id_t(process_), &ended, WEXITED | WNOHANG | WNOWAIT);
-        if ((failed != 0 && errno != EINTR) || ended.si_pid == process_) break;
-        if (looks <= 0 || asked_to_stop() != 0) {
-            ::kill(-process_, SIGKILL);
-            break;
-        }
-        const timespec pause{0, 1'000'000'000 / kLooksPerSecond};
-        ::nanosleep(&pause, nullptr);
-    }
+    if (process_ > 0 && !ends_within(process_, seconds)) ::kill(-process_, SIGKILL);
     return status_of_end();
 }
 
 int PipedProgram::status_of_end() {
     if (process_ <= 0) return -1;
-    const std::optional<int> status = wait_for(process_);
+    // Forgotten before it is gone: its number may be another's then, which nobody is to kill.
+    siginfo_t ended{};
+    while (::waitid(P_PID, id_t(process_), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
+    }
     exchange_running(process_, 0);
+    const std::optional<int> status = wait_for(process_);
     process_ = -1;
     if (!status) return -1;
     return WIFSIGNALED(*status) ? 128 + WTERMSIG(*status) : WEXITSTATUS(*status);

@@ -22,6 +22,9 @@ void expect_children();
 // Waits for a child of this process and gives what waitpid() says of it; nothing, and errno, where
 // nobody can know how it ended.
 std::optional<int> wait_for(pid_t child);
+// False where it still runs after so many seconds, or once somebody asks this process to end. It is
+// still to be waited for.
+bool ends_within(pid_t child, double seconds);
 // First thing in a forked child that starts no program: it ends with its parent, and leaves no
 // image of its memory where it crashes.
 void become_child(pid_t parent);

@@ -37,12 +37,14 @@ void FilesBeside::write(const fs::path& file, const std::string& bytes) {
 std::string FilesBeside::add(const fs::path& folder, const std::string& wanted,
                              const std::string& bytes) {
     std::string name = wanted;
-    std::optional<std::string> there;
-    for (int n = 2; (there = file_contents(folder / name)) && *there != bytes; ++n) {
+    std::error_code ignored;
+    // What cannot be read is somebody's too.
+    for (int n = 2; fs::exists(fs::symlink_status(folder / name, ignored)); ++n) {
+        if (file_contents(folder / name) == bytes) return name;
         name = fmt::format("{}_{}{}", fs::path(wanted).stem().string(), n,
                            fs::path(wanted).extension().string());
     }
-    if (!there) write(folder / name, bytes);
+    write(folder / name, bytes);
     return name;
 }
 

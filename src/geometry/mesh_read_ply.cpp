@@ -281,7 +281,7 @@ class PlyReader {
             case Number::float64:
                 return static_cast<float>(std::clamp(c, 0.0, 1.0));
             case Number::uint16:
-                return static_cast<float>(linear_from_srgb(c / 65535));
+                return static_cast<float>(linear_from_srgb(std::clamp(c / 65535, 0.0, 1.0)));
             default:
                 return static_cast<float>(linear_from_srgb(std::clamp(c / 255, 0.0, 1.0)));
         }

@@ -253,7 +253,9 @@ void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) 
     for (const Expression3& point : spec.edge) edge.push_back(length3(setting, point));
     if (edge.size() < 2 || (edge.back() - edge.front()).norm() == 0) {
         refuse(spec.edge.empty() ? Expression() : spec.edge[0][0],
-               fmt::format("the edge of blade {} needs two points or more", spec.name));
+               fmt::format("the edge of blade {} {}", spec.name,
+                           edge.size() < 3 ? "needs two different points or more"
+                                           : "begins and ends at one point"));
     }
     const double thickness = evaluate(spec.thickness, setting.known, Quantity::length);
     if (!(thickness > 0)) {

@@ -43,8 +43,9 @@ FolderLock::FolderLock(const fs::path& folder) : file_(folder / kName) {
         std::string host;
         std::istringstream(text.data()) >> pid >> host;
         if (!ours || (pid != 0 && host != host_name())) {
-            fail(ExitCode::foreign, "{}: process {} on {} is writing there{}", folder.string(), pid,
-                 host.empty() ? "this machine" : host,
+            // Who has only just begun has not said yet who it is.
+            fail(ExitCode::foreign, "{}: {} is writing there{}", folder.string(),
+                 pid == 0 ? "another process" : fmt::format("process {} on {}", pid, host),
                  ours ? fmt::format("; if it has died, remove {}", file_.string()) : "");
         }
         // The holder before us may have removed the file between our open and our lock.

@@ -53,8 +53,10 @@ extern "C" void take_signal(int signal) {
         if (!insists || now - first < kOneAsking) return;
     }
     ask_to_stop(signal);
+    const int error = errno;  // of what was interrupted, which is yet to look at it
     const char byte = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
+    errno = error;
 }
 
 // Whether one came in time.

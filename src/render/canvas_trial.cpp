@@ -23,6 +23,7 @@ namespace swage {
 namespace {
 
 constexpr std::size_t kLongestReason = 4096;  // which a pipe holds
+constexpr int kPatience = 60;                 // [s]; a window opens in one or two
 
 [[noreturn]] void try_here(GlProviderKind kind, int threads, int to_parent, pid_t parent) {
     become_child(parent);
@@ -48,11 +49,19 @@ void try_canvas(GlProviderKind kind, int threads) {
     if (child < 0) return;
     if (child == 0) try_here(kind, threads, to_parent.id(), parent);
     to_parent.close();
+    const bool hangs = !ends_within(child, kPatience);
+    if (hangs) ::kill(child, SIGKILL);
     const std::optional<int> ended = wait_for(child);
     std::string reason(kLongestReason, '\0');
     reason.resize(read_up_to(from_child.id(), reason.data(), reason.size()).value_or(0));
     if (!reason.empty()) fail(ExitCode::output, "{}", reason);
     throw_if_interrupted();
+    if (hangs) {
+        fail(ExitCode::output,
+             "OpenGL did not open within {} s: does GALLIUM_DRIVER, or another variable that "
+             "drivers read, name what waits for a server? --no-render does without it",
+             kPatience);
+    }
     if (ended && *ended != 0) {
         fail(ExitCode::output,
              "OpenGL {} as it was opened: does GALLIUM_DRIVER, or another variable that drivers "

@@ -193,7 +193,9 @@ void MistakeList::add(const Place& place, const std::string& text, ExitCode code
 }
 
 void MistakeList::warn(const Place& place, const std::string& text) {
-    put({place.source->file, place.line, place.column, text, true, ExitCode::scene});
+    Mistake warning = mistake_at(place, text, ExitCode::scene);
+    warning.warning = true;
+    put(std::move(warning));
 }
 
 void MistakeList::add(std::vector<Mistake> mistakes) {

@@ -41,6 +41,7 @@ void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
     std::vector<Mat6> bars(mass.size(), Mat6(Mat6::Zero()));
     for (std::size_t n = 0; n < mass.size(); ++n) {
         reach.push_back(std::sqrt(inertia[n].trace() / mass[n]));
+        if (!(reach[n] > 0)) reach[n] = 1;  // a single particle: it has no turns
     }
     for (std::size_t g = 0; g < apparatus.grip.size(); ++g) {
         const Grip& grip = apparatus.grip[g];
@@ -61,7 +62,9 @@ void add_steadying_forces(const Aggregate& matter, const Apparatus& apparatus,
     for (std::size_t n = 0; n < mass.size(); ++n) {
         Mat6 stiff = kBars * mass[n] / std::max(1.0, barred[n]) * bars[n];
         stiff.topLeftCorner<3, 3>() += mass[n] * Mat3::Identity();
-        stiff.bottomRightCorner<3, 3>() += inertia[n] / (reach[n] * reach[n]);
+        stiff.bottomRightCorner<3, 3>() += inertia[n].trace() > 0
+                                               ? Mat3(inertia[n] / (reach[n] * reach[n]))
+                                               : Mat3(mass[n] * Mat3::Identity());
         Vec6 wrench;
         wrench << net[n], torque[n] / reach[n];
         const Vec6 goes = stiff.llt().solve(wrench);

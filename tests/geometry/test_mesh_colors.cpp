@@ -131,6 +131,7 @@ TEST_CASE("a PLY's colours are bytes whatever whole numbers hold them") {
     }
     CHECK(red_of("int", "-3") == 0);
     CHECK(red_of("ushort", "51400") == Approx(light));
+    CHECK(red_of("ushort", "655350") == 1);
     CHECK(red_of("float", "0.25") == 0.25f);
 }
 

@@ -292,6 +292,9 @@ TEST_CASE("exports beside each other share equal textures and never overwrite ot
     CHECK(test::bytes_of(folder / "out/t_2.png") == "one");
     CHECK(!std::filesystem::exists(folder / "out/t_3.png"));
     CHECK(read_quietly(folder / "out/f2.obj").material[0].texture.filename() == "t_2.png");
+    std::filesystem::create_directories(folder / "in/t.png");  // no file, and somebody's
+    write_obj(folder / "in/f.obj", box);
+    CHECK(test::bytes_of(folder / "in/t_2.png") == "one");
 }
 
 TEST_CASE("a mesh that cannot be written leaves no library and no picture, but those of others") {

@@ -357,6 +357,8 @@ TEST_CASE("a blade's edge goes where its motion says, its plate behind it") {
 
     spec.blade[0].edge.pop_back();
     CHECK(says(refusal(spec), {"guillotine", "blade", "edge"}));
+    spec.blade[0].edge = {blade.edge[0], blade.edge[1], blade.edge[0]};
+    CHECK(says(refusal(spec), {"guillotine", "blade", "begins and ends at one point"}));
     spec.blade = {blade};
     spec.blade[0].thickness = "0";
     CHECK(says(refusal(spec), {"guillotine", "blade", "thickness"}));

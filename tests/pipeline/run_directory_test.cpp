@@ -202,6 +202,9 @@ TEST_CASE("a run that is only being made is not taken for files of somebody else
     const FolderLock first(root);
     CHECK_THROWS_WITH(RunDirectory(root, identity_of("1"), false),
                       Catch::Contains("is writing there"));
+    put_text(root / ".swage-lock", "");  // as long as it has not said who it is
+    CHECK_THROWS_WITH(RunDirectory(root, identity_of("1"), false),
+                      Catch::Contains("another process is writing there"));
 }
 
 TEST_CASE("the lock of a process that died here is taken over, that of another host is not") {
