@@ -74,6 +74,7 @@ int keys(const KeysArguments& given) {
     std::vector<SectionReference> all =
         given.machine ? machine_key_reference() : scene_key_reference();
     if (given.machine) all.push_back(expression_reference());
+    all.push_back(unit_reference());
     if (!given.word.empty()) all = chosen(all, given.word);
     if (given.json) {
         Json list = Json::array();

@@ -21,6 +21,8 @@ struct Unit {
 };
 
 constexpr double kInch = 0.0254;
+constexpr double kPound = 0.45359237;             // [kg]
+constexpr double kPoundForce = 9.80665 * kPound;  // [N]
 constexpr double kDegree = kPi / 180;
 
 constexpr Unit kUnits[] = {
@@ -56,6 +58,8 @@ constexpr Unit kUnits[] = {
     {"um/s", Quantity::speed, 1e-6, true},
     {"cm/s", Quantity::speed, 1e-2},
     {"km/h", Quantity::speed, 1 / 3.6},
+    {"in/s", Quantity::speed, kInch},
+    {"ft/s", Quantity::speed, 12 * kInch},
     {"GPa", Quantity::stress, 1e9, true},
     {"MPa", Quantity::stress, 1e6, true},
     {"kPa", Quantity::stress, 1e3, true},
@@ -63,28 +67,37 @@ constexpr Unit kUnits[] = {
     {"N/m2", Quantity::stress, 1},
     {"N/mm2", Quantity::stress, 1e6},
     {"bar", Quantity::stress, 1e5},
-    {"psi", Quantity::stress, 6894.757293168361},
+    {"psi", Quantity::stress, kPoundForce / (kInch * kInch)},
+    {"ksi", Quantity::stress, 1e3 * kPoundForce / (kInch * kInch)},
     {"kg/m3", Quantity::density, 1, true},
     {"g/cm3", Quantity::density, 1e3},
     {"kg/dm3", Quantity::density, 1e3},
     {"kg/l", Quantity::density, 1e3},
     {"t/m3", Quantity::density, 1e3},
+    {"lb/in3", Quantity::density, kPound / (kInch * kInch * kInch)},
+    {"lb/ft3", Quantity::density, kPound / (1728 * kInch * kInch * kInch)},
     {"kg", Quantity::mass, 1, true},
     {"g", Quantity::mass, 1e-3, true},
     {"mg", Quantity::mass, 1e-6, true},
     {"t", Quantity::mass, 1e3},
+    {"lb", Quantity::mass, kPound},
     {"MN", Quantity::force, 1e6, true},
     {"kN", Quantity::force, 1e3, true},
     {"N", Quantity::force, 1, true},
     {"mN", Quantity::force, 1e-3, true},
+    {"kgf", Quantity::force, 9.80665},
+    {"lbf", Quantity::force, kPoundForce},
     {"kN m", Quantity::torque, 1e3, true},
     {"N m", Quantity::torque, 1, true},
     {"N mm", Quantity::torque, 1e-3, true},
     {"kNm", Quantity::torque, 1e3},
     {"Nm", Quantity::torque, 1},
     {"Nmm", Quantity::torque, 1e-3},
+    {"lbf in", Quantity::torque, kInch* kPoundForce},
+    {"lbf ft", Quantity::torque, 12 * kInch* kPoundForce},
     {"m/s2", Quantity::acceleration, 1, true},
     {"mm/s2", Quantity::acceleration, 1e-3},
+    {"ft/s2", Quantity::acceleration, 12 * kInch},
     {"kJ/m2", Quantity::toughness, 1e3, true},
     {"J/m2", Quantity::toughness, 1, true},
     {"N/m", Quantity::toughness, 1},

@@ -323,25 +323,16 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
 
 // The scene's reader has found the part, and that it turns where a torque is meant.
 void add_limit(Machine& machine, const LimitSpec& spec) {
-    const Apparatus& apparatus = machine.apparatus;
-    LoadLimit limit{.most = spec.most, .of_torque = spec.of_torque};
-    const auto find = [&](const auto& parts, const std::vector<Pose>& work_from_part,
-                          const std::vector<Motion>& motion, std::size_t before) {
-        for (std::size_t n = 0; n < parts.size(); ++n) {
-            if (parts[n].name != spec.part) continue;
-            const Pose part_from_work = work_from_part[n].inverse();
-            limit.part = before + n;
-            limit.axis = part_from_work.turn(motion[n].axis());
-            limit.at = part_from_work * motion[n].pivot_at(0);
-            return true;
-        }
-        return false;
-    };
-    if (!find(apparatus.tool, machine.work_from_tool, machine.tool_motion, 0) &&
-        !find(apparatus.grip, machine.work_from_grip, machine.grip_motion, apparatus.tool.size())) {
+    std::vector<std::string> names;
+    for (const Tool& tool : machine.apparatus.tool) names.push_back(tool.name);
+    for (const Grip& grip : machine.apparatus.grip) names.push_back(grip.name);
+    const auto at = std::find(names.begin(), names.end(), spec.part);
+    if (at == names.end()) {
         refuse({"", spec.place}, fmt::format("no tool or grip is called \"{}\"", spec.part));
     }
-    machine.apparatus.limit.push_back(limit);
+    const auto part = static_cast<std::size_t>(at - names.begin());
+    machine.apparatus.limit.push_back(
+        {part, spec.most, spec.of_torque, turn_axes(machine)[part].value_or(TurnAxis())});
 }
 
 template <typename Part>
@@ -378,6 +369,23 @@ Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame) 
             {"spacing", matter.lattice.spacing},
             {"lattice_reach", lattice_reach(matter, frame)},
             {kMaterialFriction, matter.material.friction}};
+}
+
+std::vector<std::optional<TurnAxis>> turn_axes(const Machine& machine) {
+    std::vector<std::optional<TurnAxis>> axes;
+    const auto add = [&](const std::vector<Pose>& work_from_part,
+                         const std::vector<Motion>& motion) {
+        for (std::size_t n = 0; n < motion.size(); ++n) {
+            const Pose part_from_work = work_from_part[n].inverse();
+            axes.emplace_back();
+            if (!motion[n].turns()) continue;
+            axes.back() = {part_from_work.turn(motion[n].axis()),
+                           part_from_work * motion[n].pivot_at(0)};
+        }
+    };
+    add(machine.work_from_tool, machine.tool_motion);
+    add(machine.work_from_grip, machine.grip_motion);
+    return axes;
 }
 
 namespace {

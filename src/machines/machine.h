@@ -54,6 +54,10 @@ struct Machine {
     double stop = 1;                                     // the motions' variable of this name
 };
 
+// Of its tools, then its grips, those that turn about one as their motions say. At the start; what
+// moves along takes it with it.
+std::vector<std::optional<TurnAxis>> turn_axes(const Machine& machine);
+
 // What expressions know of the work-piece: length, height, width, spacing, lattice_reach and
 // material_friction.
 Variables work_piece_variables(const Aggregate& matter, const WorkFrame& frame);

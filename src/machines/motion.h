@@ -29,6 +29,7 @@ class Timed {
     Timed(const Expression& text, const Variables& known, Quantity quantity);
     // Safe to call from any thread. Throws as evaluate().
     double at(double t, double stop = 1) const;
+    bool varies() const { return varies_; }
 
   private:
     Expression text_;
@@ -51,6 +52,7 @@ class Motion {
 
     Vec3 pivot_at(double t, double stop = 1) const;
     const Vec3& axis() const { return axis_; }  // of the turn; unit
+    bool turns() const { return turn_[0].varies(); }
 
   private:
     std::vector<Timed> move_, pivot_, turn_;  // 3, 3, 1

@@ -9,19 +9,29 @@
 
 namespace swage {
 
+// The axis that a part of a machine turns about, in the part's frame.
+struct TurnAxis {
+    using IsPlain = TurnAxis;
+
+    Vec3 along = Vec3::UnitZ(), at = Vec3::Zero();
+
+    // The part's torque about it [N m]. `torque`: about the pose's origin.
+    double torque_of(const Vec3& force, const Vec3& torque, const Pose& world_from_part) const {
+        const Vec3 arm = world_from_part.turn(-at);
+        return world_from_part.turn(along).dot(torque + arm.cross(force));
+    }
+};
+
 struct LoadLimit {
     std::size_t part = 0;  // of an apparatus: its tools, then its grips
     double most = 0;       // [N], or [N m] of a torque
     bool of_torque = false;
-    // Of a torque: the axis that the part turns about, in its frame.
-    Vec3 axis = Vec3::UnitZ(), at = Vec3::Zero();
+    TurnAxis axis = {};  // of a torque
 
     // Of what a part exerts on the matter, that which is limited: the size of its force, or of its
-    // torque along the axis. `torque`: about the pose's origin.
+    // torque about the axis. `torque`: about the pose's origin.
     double borne(const Vec3& force, const Vec3& torque, const Pose& world_from_part) const {
-        if (!of_torque) return force.norm();
-        const Vec3 arm = world_from_part.turn(-at);
-        return std::abs(world_from_part.turn(axis).dot(torque + arm.cross(force)));
+        return of_torque ? std::abs(axis.torque_of(force, torque, world_from_part)) : force.norm();
     }
 };
 

@@ -14,10 +14,18 @@ namespace swage {
 
 namespace {
 
+// That way or the opposite one, whichever has its largest component above 0.
+Vec3 forward(const Vec3& way) {
+    int most;
+    way.cwiseAbs().maxCoeff(&most);
+    return way[most] < 0 ? Vec3(-way) : way;
+}
+
 void begin_row(LoadCurve& load, const Pose& pose) {
     load.pose.push_back(pose);
     load.force.push_back(Vec3::Zero());
     load.torque.push_back(Vec3::Zero());
+    load.axial_torque.push_back(0);
     for (std::vector<double>* column : {&load.turn, &load.travel, &load.work, &load.penetration}) {
         column->push_back(column->empty() ? 0.0 : column->back());
     }
@@ -28,6 +36,7 @@ void begin_row(LoadCurve& load, const Pose& pose) {
 
 StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
                          FrameReport bodies, std::size_t parts,
+                         const std::vector<std::optional<TurnAxis>>& axis,
                          const std::vector<ProbePlace>& probes)
     : stage_(std::move(stage)),
       frame_{first_frame},
@@ -37,6 +46,12 @@ StageCurves::StageCurves(std::string stage, int first_frame, const std::vector<T
     for (std::size_t n = 0; n < start.size(); ++n) {
         load_.emplace_back();
         load_.back().name = start[n].name;
+        if (n < axis.size() && axis[n]) {
+            TurnAxis about = *axis[n];
+            about.along =
+                start[n].pose.rotation.conjugate() * forward(start[n].pose.turn(about.along));
+            load_.back().axis = about;
+        }
         begin_row(load_.back(), start[n].pose);
         way_.push_back({start[n].pose});
     }
@@ -49,10 +64,7 @@ void StageCurves::pass(const std::vector<ToolLoad>& loads) {
         const Vec3 turn = turn_between(way.pose, now);
         const double angle = turn.norm();
         if (way.turn_axis.isZero() && angle > 1e-12) {
-            way.turn_axis = turn / angle;
-            int most;
-            way.turn_axis.cwiseAbs().maxCoeff(&most);
-            if (way.turn_axis[most] < 0) way.turn_axis = -way.turn_axis;
+            way.turn_axis = forward(turn / angle);
         }
         way.turn += turn.dot(way.turn_axis) < 0 ? -angle : angle;
         way.travel += (now.translation - way.pose.translation).norm();
@@ -75,6 +87,9 @@ void StageCurves::add(int frame, const FrameReport& report, const std::vector<Pr
         load.travel.back() = way_[n].travel;
         load.force.back() = felt.force;
         load.torque.back() = felt.torque;
+        if (load.axis) {
+            load.axial_torque.back() = load.axis->torque_of(felt.force, felt.torque, felt.pose);
+        }
         load.work.back() = felt.work;
         load.penetration.back() = felt.penetration;
         load.contacts.back() = felt.contacts;
@@ -86,8 +101,9 @@ std::string csv_text(const StageCurves& curves) {
     for (const LoadCurve& load : curves.load()) {
         for (const char* column :
              {"x [m]", "y [m]", "z [m]", "turn [rad]", "travel [m]", "force x [N]", "force y [N]",
-              "force z [N]", "torque x [N m]", "torque y [N m]", "torque z [N m]", "work [J]",
-              "penetration [m]", "contacts"}) {
+              "force z [N]", "torque x [N m]", "torque y [N m]", "torque z [N m]",
+              "torque about its axis [N m]", "work [J]", "penetration [m]", "contacts"}) {
+            if (!load.axis && std::string_view(column).starts_with("torque about")) continue;
             text += ',';
             text += csv_text_cell(load.name + " " + column);
         }
@@ -111,6 +127,7 @@ std::string csv_text(const StageCurves& curves) {
             cells.push_back(csv_number(load.travel[row]));
             for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.force[row][c]));
             for (int c = 0; c < 3; ++c) cells.push_back(csv_number(load.torque[row][c]));
+            if (load.axis) cells.push_back(csv_number(load.axial_torque[row]));
             cells.push_back(csv_number(load.work[row]));
             cells.push_back(csv_number(load.penetration[row]));
             cells.push_back(std::to_string(load.contacts[row]));

@@ -2,10 +2,12 @@
 // What the machines of a stage did and felt, frame by frame: the table of curves/<stage>.csv.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
+#include "matter/load_limit.h"
 #include "pipeline/probes.h"
 #include "sim/advance.h"
 
@@ -18,17 +20,20 @@ struct LoadCurve {
     // [rad] since the start of the stage, past 180 degrees too; about the axis of its first turn,
     // pointed so that its largest component is more than 0.
     std::vector<double> turn;
-    std::vector<double> travel;       // [m] of path since the start of the stage
-    std::vector<Vec3> force;          // [N] exerted on the matter
-    std::vector<Vec3> torque;         // [N m] about the pose's origin
+    std::vector<double> travel;  // [m] of path since the start of the stage
+    std::vector<Vec3> force;     // [N] exerted on the matter
+    std::vector<Vec3> torque;    // [N m] about the pose's origin
+    // Of a part that turns: the axis, pointed as that of `turn`, and the torque about it [N m].
+    std::optional<TurnAxis> axis;
+    std::vector<double> axial_torque;
     std::vector<double> work;         // [J] done on the matter
     std::vector<double> penetration;  // [m]
     std::vector<int> contacts;
 
     template <typename Io>
     void visit(Io& io) {
-        auto& [of, at, turned, gone, pushes, turns, done, deep, points] = *this;
-        io(of, at, turned, gone, pushes, turns, done, deep, points);
+        auto& [of, at, turned, gone, pushes, turns, about, axial, done, deep, points] = *this;
+        io(of, at, turned, gone, pushes, turns, about, axial, done, deep, points);
     }
 };
 
@@ -37,9 +42,10 @@ class StageCurves {
     // The first row is the start of the stage, where nothing is felt yet: names and poses, and what
     // is known of the bodies (Simulation::start); what contacts hold there the first add() tells.
     // The first `parts` of the loads, if not all, are of the machine, and go where they are driven.
-    // `probes`: the same ones every time.
+    // `axis`: of those that turn about one (turn_axes()). `probes`: the same ones every time.
     StageCurves(std::string stage, int first_frame, const std::vector<ToolLoad>& start,
                 FrameReport bodies = {}, std::size_t parts = static_cast<std::size_t>(-1),
+                const std::vector<std::optional<TurnAxis>>& axis = {},
                 const std::vector<ProbePlace>& probes = {});
     void add(int frame, const FrameReport& report, const std::vector<ProbePlace>& probes = {});
     // Where the loads are within a frame, so that no turn between its ends is missed.

@@ -36,29 +36,41 @@ constexpr int kLongest = 30;  // s, that gnuplot may take
 
 constexpr double kLever = 2e-3;  // below it the lattice makes torques of forces, or the reverse
 
-double most_of(const StageCurves& curves, std::vector<Vec3> LoadCurve::*felt) {
+// What is drawn of a load, by row.
+using Felt = std::vector<double> (*)(const LoadCurve& load);
+
+std::vector<double> sizes_of(const std::vector<Vec3>& felt) {
+    std::vector<double> sizes;
+    for (const Vec3& v : felt) sizes.push_back(v.norm());
+    return sizes;
+}
+std::vector<double> force_of(const LoadCurve& load) { return sizes_of(load.force); }
+std::vector<double> torque_of(const LoadCurve& load) {
+    std::vector<double> sizes = load.axis ? load.axial_torque : sizes_of(load.torque);
+    for (double& size : sizes) size = std::abs(size);
+    return sizes;
+}
+
+double most_of(const StageCurves& curves, Felt felt) {
     double most = 0;
     for (const LoadCurve& load : curves.load()) {
-        for (const Vec3& v : load.*felt) most = std::max(most, v.norm());
+        for (double size : felt(load)) most = std::max(most, size);
     }
     return most;
 }
 
 // One graph of what is felt, for every load that ever feels any; empty when none does.
-std::string graph(const StageCurves& curves, const std::string& label,
-                  std::vector<Vec3> LoadCurve::*felt) {
+std::string graph(const StageCurves& curves, const std::string& label, Felt felt) {
     const PlotAxis axis = plot_axis(curves);
     std::string program;
     std::vector<std::string> plots;
     for (std::size_t n = 0; n < curves.load().size(); ++n) {
         const LoadCurve& load = curves.load()[n];
-        if (std::all_of((load.*felt).begin(), (load.*felt).end(),
-                        [](const Vec3& v) { return v.isZero(0); })) {
-            continue;
-        }
+        const std::vector<double> size = felt(load);
+        if (std::all_of(size.begin(), size.end(), [](double s) { return s == 0; })) continue;
         program += fmt::format("$load{} << EOD\n", n);
         for (std::size_t row = 0; row < curves.rows(); ++row) {
-            program += fmt::format("{:.9g} {:.9g}\n", axis.value[row], (load.*felt)[row].norm());
+            program += fmt::format("{:.9g} {:.9g}\n", axis.value[row], size[row]);
         }
         program += "EOD\n";
         plots.push_back(fmt::format("$load{} using 1:2 with lines linetype {} linewidth 2 title {}",
@@ -99,14 +111,14 @@ std::string draw_plot(const fs::path& program, const fs::path& svg) {
 }  // namespace
 
 std::string plot_program(const StageCurves& curves, double size) {
-    const double most_force = most_of(curves, &LoadCurve::force) * size;
-    const double most_torque = most_of(curves, &LoadCurve::torque);
+    const double most_force = most_of(curves, force_of) * size;
+    const double most_torque = most_of(curves, torque_of);
     std::string force, torque;
     if (most_force > kLever * most_torque) {
-        force = graph(curves, "force on the matter [N]", &LoadCurve::force);
+        force = graph(curves, "force on the matter [N]", force_of);
     }
     if (most_torque > kLever * most_force) {
-        torque = graph(curves, "torque about the tool's centre [N m]", &LoadCurve::torque);
+        torque = graph(curves, "torque about the axis of its turn, or its centre [N m]", torque_of);
     }
     const int panels = !force.empty() + !torque.empty();
     std::string program = fmt::format(

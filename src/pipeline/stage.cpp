@@ -216,7 +216,7 @@ class StageRun {
         first_ = simulation.start();
         curves_.emplace(stage_.name, before_, simulation.loads(way_.now()), first_,
                         apparatus.tool.size() + apparatus.grip.size() + apparatus.blade.size(),
-                        probes());
+                        turn_axes(machine_), probes());
         if (in_motion()) body_table_.emplace(before_, bodies_, first_);
     }
 

@@ -194,8 +194,8 @@ const std::vector<KeyHelp>& scene_key_help() {
          "-"},
         {"[[stage.limit]]",
          "torque",
-         "instead of force: that about the axis that it turns about, whichever way; of a `bend` "
-         "the moment at the support",
+         "instead of force: that about the axis that it turns about, whichever way, which curves "
+         "have as `torque about its axis`; of a `bend` the moment at the support",
          {},
          "-"},
 

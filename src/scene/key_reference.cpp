@@ -5,6 +5,8 @@
 #include <map>
 
 #include "base/expression.h"
+#include "base/text.h"
+#include "base/units.h"
 #include "scene/expressions.h"
 #include "scene/key_help.h"
 #include "scene/read_inset.h"
@@ -130,6 +132,17 @@ SectionReference expression_reference() {
         "then; what goes by min(t, stop) comes no farther");
     add("duration", "likewise: of the stage, so that t*duration is the time in it");
     for (const FormulaFunction& f : formula_functions()) add(f.call, f.help);
+    return all;
+}
+
+SectionReference unit_reference() {
+    SectionReference all{"units", {}};
+    all.key.push_back(
+        {"a number alone", "", "", "is in SI units: metres, radians, seconds, pascals"});
+    for (const std::string& name : quantity_names()) {
+        const std::vector<std::string> units = unit_names(*quantity_named(name));
+        if (!units.empty()) all.key.push_back({name, "", "", joined(units, ", ")});
+    }
     return all;
 }
 

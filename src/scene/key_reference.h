@@ -25,4 +25,7 @@ std::vector<SectionReference> machine_key_reference();
 // What stands in expressions, of which `key` holds the writing and `help` the meaning.
 SectionReference expression_reference();
 
+// The units that numbers may have: `key` holds the quantity, `help` its units.
+SectionReference unit_reference();
+
 }  // namespace swage

@@ -29,6 +29,36 @@ StageCurves turning_grip(int frames, double total) {
 
 }  // namespace
 
+TEST_CASE(
+    "a part's torque about the axis that it turns about goes with the part, signed as its turn") {
+    // About -z through (0, -2, 0) in the world, which a part at (3, 0, 0) on its side has
+    // elsewhere.
+    const Pose start{Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitX())), Vec3(3, 0, 0)};
+    const TurnAxis axis{start.inverse().turn(-Vec3::UnitZ()), start.inverse() * Vec3(0, -2, 0)};
+    StageCurves curves("s", 1, {{"arm", start}, {"anvil", Pose{}}}, {}, 2, {axis, std::nullopt});
+    const Vec3 force(0, 5, 1), torque(0.5, 0, 0.25);
+    FrameReport report;
+    report.load = {{"arm", start}, {"anvil", Pose{}}};
+    report.load[0].force = force, report.load[0].torque = torque;
+    curves.add(2, report);
+    const Quat turn(Eigen::AngleAxisd(0.7, Vec3::UnitZ()));  // all of it, about that axis
+    const Pose about{turn, Vec3(0, -2, 0) - turn * Vec3(0, -2, 0)};
+    report.load[0].pose = about * start;
+    report.load[0].force = turn * force, report.load[0].torque = turn * torque;
+    curves.add(3, report);
+    REQUIRE(curves.load()[0].axial_torque.size() == 3);
+    CHECK(curves.load()[0].axial_torque[1] == Approx(0.25 + 3 * 5));  // x F_y - y F_x, about +z
+    CHECK(curves.load()[0].axial_torque[2] == Approx(0.25 + 3 * 5));
+    CHECK(csv_text(curves).find("arm torque about its axis [N m]") != std::string::npos);
+    CHECK(csv_text(curves).find("anvil torque about") == std::string::npos);
+    for (const std::string& line : lines_of(csv_text(curves))) {
+        CHECK(std::count(line.begin(), line.end(), ',') ==
+              std::count(csv_text(curves).begin(),
+                         csv_text(curves).begin() + static_cast<long>(csv_text(curves).find('\n')),
+                         ','));
+    }
+}
+
 TEST_CASE("a turn is followed past half a turn and past a whole one") {
     for (double total : {0.3, -0.3, 5.0, -5.0, 15.0}) {
         const StageCurves curves = turning_grip(20, total);

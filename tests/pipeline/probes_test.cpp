@@ -110,7 +110,7 @@ TEST_CASE("a probe beside the matter is refused where the scene asks for it") {
 }
 
 TEST_CASE("probes stand in the table, a place a row, the start's first") {
-    StageCurves curves("1-rest", 1, {}, {}, 0, {{"tip", Vec3(1, 2, 3)}});
+    StageCurves curves("1-rest", 1, {}, {}, 0, {}, {{"tip", Vec3(1, 2, 3)}});
     curves.add(2, FrameReport{}, {{"tip", Vec3(1, 2, 2.5)}});
     const std::string text = csv_text(curves);
     CHECK(text.find("frame,time [s],tip x [m],tip y [m],tip z [m],kinetic energy [J]") == 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "base/units.h"
 #include "scene/key_help.h"
 #include "scene/key_reference.h"
 #include "tests/catch.h"
@@ -39,4 +40,18 @@ TEST_CASE("every key that a scene's readers ask for is told, and no other") {
 
 TEST_CASE("every key that a machine file's reader asks for is told, and no other") {
     check_reference(machine_key_reference(), machine_key_help());
+}
+
+TEST_CASE("every quantity that has units tells them") {
+    const SectionReference told = unit_reference();
+    for (const std::string& name : quantity_names()) {
+        const std::vector<std::string> units = unit_names(*quantity_named(name));
+        const bool is_told =
+            std::any_of(told.key.begin(), told.key.end(), [&](const KeyReference& k) {
+                return k.key == name && !units.empty() &&
+                       k.help.find(units.back()) != std::string::npos;
+            });
+        INFO(name);
+        CHECK(is_told == !units.empty());
+    }
 }
