@@ -95,6 +95,7 @@ class StageRun {
           bodies_(bodies),
           context_(context),
           connections_before_(connection_count(bodies)),
+          volumes_before_(body_volumes(bodies)),
           machine_(stage_machine(stage, bodies.front().matter, materials_beside(bodies),
                                  context.scene.duration_of(stage))),
           pieces_before_(cuts_any() ? piece_count(bodies) : 0),
@@ -362,6 +363,7 @@ class StageRun {
                            .legs = way_.legs(),
                            .duration = context_.scene.duration_of(stage_),
                            .connections_before = connections_before_,
+                           .volumes_before = volumes_before_,
                            .probes = probes()};
         const StageEnded ended = outcome_.interrupted ? StageEnded::interrupted
                                  : outcome_.stopped   ? StageEnded::stopped
@@ -398,6 +400,7 @@ class StageRun {
     std::vector<WorkPiece>& bodies_;
     const StageContext& context_;
     const std::size_t connections_before_;
+    const std::vector<BodyVolume> volumes_before_;
     Machine machine_;  // it may come to stop
     const int pieces_before_;
     StageWay way_;

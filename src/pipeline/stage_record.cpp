@@ -92,6 +92,7 @@ Json stage_record(const StageEnd& end, const StageCurves& curves, double overlap
         {"duration_s", end.duration},
         {"remolded", end.stage.remold},
         {"masses_kg", masses},
+        {"volumes_m3", volumes_json(end.bodies, end.volumes_before)},
         {"particles", particle_count(end.bodies)},
         {"connections_before", end.connections_before},
         {"connections_after", connection_count(end.bodies)},

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "machines/machine.h"
+#include "pipeline/body_volumes.h"
 #include "pipeline/curves.h"
 #include "pipeline/json.h"
 #include "pipeline/probes.h"
@@ -49,6 +50,7 @@ struct StageEnd {
     std::size_t legs;
     double duration;  // [s]
     std::size_t connections_before;
+    const std::vector<BodyVolume>& volumes_before;
     std::vector<ProbePlace> probes;
 };
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kLittleGain = 0.01;  // of the energy in play: no matter
 constexpr double kMostOfTaken = 0.2;  // likewise, of what friction and flow took
+constexpr double kSwollen = 0.01;     // of its volume that a skin may be off by untold
 constexpr double kOverlap = 0.5;      // spacings that a body may lie in itself untold
 
 // Tools and grips carry what they hold so far, at most [m]; between frames they go straight.
@@ -166,6 +167,19 @@ std::pair<double, std::string> lies_in_itself(const StageEnd& end, WorkPiece& bo
                              : "self_contact = true in this stage keeps it from that")};
 }
 
+// Flow that keeps the volume, and a skin that does not. Empty: as large as it should be.
+std::string swollen(const StageEnd& end, const WorkPiece& body) {
+    const double by = swollen_by(body).value_or(0);
+    if (std::abs(by) <= kSwollen) return {};
+    const bool frame4 = body.mount.kind == SkinKind::frame4;
+    return fmt::format(
+        "the skin of {} encloses {:.2g} % {} than its matter, which flows at one volume: {}",
+        end.bodies.size() == 1 ? "the work-piece" : body.name, 100 * std::abs(by),
+        by > 0 ? "more" : "less",
+        frame4 ? "skin.kind = \"mount\" keeps it"
+               : "it has folded within single cells, and smaller ones make it less");
+}
+
 std::string how_to_close(Solver solver) {
     if (solver == Solver::quasistatic) {
         return "between frames that lie far apart the work of tools is misjudged: try more frames";
@@ -224,6 +238,10 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
             fmt::format("of the {:.3g} J that friction and flow took, tools, loads and what was "
                         "stored gave {:.3g} J less; {}",
                         taken, -end.last.remainder, how_to_close(sim.solver)));
+    }
+    for (const WorkPiece& body : end.bodies) {
+        if (ended == StageEnded::interrupted) break;
+        if (const std::string told = swollen(end, body); !told.empty()) warn(told);
     }
     if (may_lie_in_itself(end) && ended != StageEnded::interrupted) {
         for (WorkPiece& body : end.bodies) {

@@ -17,9 +17,11 @@
 #include "mold/prepare.h"
 #include "pipeline/body_look.h"
 #include "pipeline/probes.h"
+#include "sim/cell_volume.h"
 #include "skin/boundary.h"
 #include "skin/broken_skin.h"
 #include "skin/divided_mesh.h"
+#include "skin/skin_volume.h"
 
 namespace swage {
 
@@ -136,6 +138,12 @@ void lay_boundary(WorkPiece& piece) {
 // A boundary that a blade could only cut where the next break would have it another way.
 bool is_made_anew(const WorkPiece& piece) {
     return piece.look != nullptr && (piece.is_torn || is_broken(piece.matter));
+}
+
+// Springs that flow have no law of their volume.
+bool keeps_volume(const WorkPiece& piece) {
+    return !piece.is_parted && piece.matter.has_flowed() &&
+           piece.matter.material.mechanics == Mechanics::cells;
 }
 
 // Where matter broke by load. Returns in how many places the skin could not be closed.
@@ -301,6 +309,7 @@ std::uint64_t state_hash(const std::vector<WorkPiece>& bodies) {
 }
 
 void hold_skin(WorkPiece& piece) {
+    piece.is_parted = true;
     std::swap(piece.matter.particle_position, piece.followed);
     if (piece.whole_skin) {
         hold_places(piece.whole_mount, piece.matter, piece.whole_position);
@@ -314,6 +323,7 @@ CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sw
     if (is_made_anew(piece)) return {};
     CutResult shown = cut_skin(piece.skin, piece.position, piece.mount, piece.matter, sweep);
     piece.is_torn = piece.is_torn || shown.has_curved;
+    piece.is_parted = piece.is_parted || shown.planes > 0;
     if (piece.look) {
         // What it cannot be cut along, or not so that it closes, is made anew once it is severed.
         piece.is_torn = piece.is_torn || shown.open_parts > 0;
@@ -328,12 +338,18 @@ CutResult cut_skins(WorkPiece& piece, const std::vector<std::array<Vec3, 3>>& sw
 
 void follow_matter(WorkPiece& piece) {
     skin_positions(piece.mount, piece.matter, piece.position);
+    if (keeps_volume(piece)) {
+        const double share = present_volume(piece.matter) / piece.matter.volume();
+        enclose_volume(piece.skin, piece.mount, piece.matter, share * signed_volume(piece.skin),
+                       piece.position);
+    }
     piece.followed = piece.matter.particle_position;
     if (piece.whole_skin) skin_positions(piece.whole_mount, piece.matter, piece.whole_position);
 }
 
 int show_matter(WorkPiece& piece, bool has_parted) {
     int open = 0;
+    if (has_parted && !piece.is_parted && is_broken(piece.matter)) hold_skin(piece);
     if (has_parted && is_made_anew(piece)) lay_boundary(piece);
     if (has_parted && !piece.look) open = part_skin(piece);
     follow_matter(piece);

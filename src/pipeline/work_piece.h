@@ -62,6 +62,9 @@ struct WorkPiece {
     // Once a blade's path was curved: the skin is not cut along it, so triangles may be torn there,
     // now and in every later stage. A boundary is made anew instead.
     bool is_torn = false;
+    // Once a blade or a load has parted it: its skin goes on from where it was held, and is not
+    // brought to its matter's volume any more.
+    bool is_parted = false;
     double roughness = 0;  // of faces where matter breaks by load (SkinSettings)
     // Once matter broke by load: what a mounted skin was made from since.
     std::optional<TriMesh> whole_skin;
@@ -86,7 +89,8 @@ WorkPiece mold_anew(const WorkPiece& piece, const BodySpec& body, const SkinSett
 // Of one body its own; of several, of all.
 std::uint64_t state_hash(const std::vector<WorkPiece>& bodies);
 
-// Brings the skin to where the matter is.
+// Brings the skin to where the matter is; that of a whole body whose cells have flowed encloses
+// what these take up (skin/skin_volume.h).
 void follow_matter(WorkPiece& piece);
 
 // Lets a skin go on from where it was: to be called when matter has been severed since it

@@ -99,11 +99,11 @@ void visit(Io& io, Mount& mount) {
 template <typename Io>
 void visit(Io& io, WorkPiece& piece) {
     auto& [name, label, matter, skin, mount, look, position, followed, finding, probe, is_torn,
-           roughness, whole_skin, whole_mount, whole_position] = piece;
+           is_parted, roughness, whole_skin, whole_mount, whole_position] = piece;
     io(name, label, matter, skin, mount, probe);
     std::optional<TriMesh> like;
     if (look) like = look->mesh();
-    io(like, position, followed, finding, is_torn, roughness, whole_skin, whole_mount,
+    io(like, position, followed, finding, is_torn, is_parted, roughness, whole_skin, whole_mount,
        whole_position);
     if constexpr (Io::kReads) {
         if (like) look = std::make_shared<const NewLook>(*like);

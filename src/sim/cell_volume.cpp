@@ -13,6 +13,7 @@ namespace swage {
 
 namespace {
 
+constexpr std::size_t kRunsPerChunk = 64;
 constexpr std::size_t kCellsPerChunk = 4096;  // about; fewer take less than handing over
 
 CornerRows<const double> rows_of(const Aggregate& matter, const CellRun& run, int at) {
@@ -193,6 +194,26 @@ Mat3 material_gradient(const Aggregate& matter, const CellRun& run, int n) {
 CellId first_inside_out(const Aggregate& matter) {
     const std::vector<SmallCell> found = cells_below(matter, 0);
     return found.empty() ? -1 : found[0].id();
+}
+
+double present_volume(const Aggregate& matter) {
+    const std::vector<CellRun>& runs = matter.lattice.cell_run;
+    const double a = matter.lattice.spacing;
+    const auto sum = [&](std::size_t begin, std::size_t end) {
+        double whole = 0;
+        for (std::size_t r = begin; r < end; ++r) {
+            for (int n = 0; n < runs[r].count; ++n) {
+                const CellId cell = runs[r].first + n;
+                const bool sound = cell_is_sound(matter, cell, runs[r].row_at(n));
+                whole += matter.cell_fill[cell] *
+                         (sound ? material_gradient(matter, runs[r], n).determinant() : 1.0);
+            }
+        }
+        return whole;
+    };
+    double whole = 0;
+    for (double part : parallel_parts(runs.size(), kRunsPerChunk, sum)) whole += part;
+    return a * a * a * whole;
 }
 
 double smallest_cell_volume(const Aggregate& matter) {

@@ -44,6 +44,10 @@ std::vector<SmallCell> cells_below(const Aggregate& matter, double limit);
 // The first cell that is inside out, or -1.
 CellId first_inside_out(const Aggregate& matter);
 
+// What the matter takes up now [m3], as the laws of its cells see it. What is severed or has broken
+// has no volume of its own and counts as at molding.
+double present_volume(const Aggregate& matter);
+
 // The volume ratio of the most compressed cell that is at least a quarter full; below 0 it is
 // turned inside out.
 double smallest_cell_volume(const Aggregate& matter);

@@ -76,6 +76,7 @@ WorkPiece piece_that_went_through_all(SkinKind skin) {
     }
     show_matter(piece, true);
     piece.is_torn = true;
+    piece.is_parted = true;
     piece.finding = {"a hole is lost"};
     if (skin == SkinKind::mount) {
         REQUIRE(piece.whole_skin);
@@ -136,6 +137,7 @@ TEST_CASE("what was kept of work-pieces comes back as it was, and goes on as the
         CHECK(after.name == before.name);
         CHECK(after.finding == before.finding);
         CHECK(after.is_torn);
+        CHECK(after.is_parted);
         CHECK(after.position == before.position);
         CHECK(after.followed.y == before.followed.y);
         CHECK(after.whole_skin.has_value() == before.whole_skin.has_value());

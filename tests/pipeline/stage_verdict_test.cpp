@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/stage_verdict.h"
 
+#include "geometry/box_mesh.h"
 #include "pipeline/stage_machine.h"
 #include "sim/static_forces.h"
 #include "tests/catch.h"
@@ -43,6 +44,7 @@ struct CutBar {
         totals.residual = residual;
         FrameReport first;
         first.body.resize(last.body.size());
+        const std::vector<BodyVolume> volumes_before = body_volumes(bodies);
         const StageEnd end{.stage = stage,
                            .machine = machine,
                            .bodies = bodies,
@@ -54,6 +56,7 @@ struct CutBar {
                            .legs = 8,
                            .duration = 1,
                            .connections_before = 0,
+                           .volumes_before = volumes_before,
                            .probes = {}};
         std::string text;
         for (const std::string& line : judge_stage(end, 1, StageEnded::wholly).warning) {
@@ -155,4 +158,28 @@ TEST_CASE("what is thrown off as a stage begins is told from what, with what can
     CHECK(says(told(5, 9), "bar starts pressed into itself, or its pieces in each other"));
     CHECK(says(told(5, 9), "without self_contact = true"));
     for (const double among : {0.0, 5.0}) CHECK_FALSE(says(told(among, 9), "with `at`"));
+}
+
+TEST_CASE("a skin that swells though its matter flows is told of") {
+    const SkinKind kind = GENERATE(SkinKind::mount, SkinKind::frame4);
+    CutBar bar("copper");
+    WorkPiece& piece = bar.bodies[0];
+    const auto told = [&] {
+        FrameReport last;
+        last.pieces = 2;
+        const std::string text = bar.told_of(bar.reading.scene->stage[0], last, 1);
+        return text.find("encloses") != std::string::npos;
+    };
+    piece.skin = box_mesh({-.1, -.025, -.025}, {.1, .025, .025});
+    piece.mount = mount_mesh(piece.skin.position, piece.matter, kind);
+    piece.position = piece.skin.position;
+    for (Vec3& p : piece.position) p.y() *= 1.02;
+    CHECK_FALSE(told());  // nothing has flowed
+    piece.matter.cell_history.assign(piece.matter.cell_fill.size());
+    CHECK(told());
+    for (Vec3& p : piece.position) p.y() *= 1.009 / 1.02;
+    CHECK_FALSE(told());
+    for (Vec3& p : piece.position) p.y() *= 1.02 / 1.009;
+    piece.is_parted = true;
+    CHECK_FALSE(told());
 }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/body_volumes.h"
+
+#include "sim/cell_volume.h"
+#include "skin/skin_volume.h"
+
+namespace swage {
+
+std::vector<BodyVolume> body_volumes(const std::vector<WorkPiece>& bodies) {
+    std::vector<BodyVolume> volumes;
+    for (const WorkPiece& body : bodies) {
+        volumes.push_back({present_volume(body.matter), enclosed_volume(body.skin, body.position)});
+    }
+    return volumes;
+}
+
+Json volumes_json(const std::vector<WorkPiece>& bodies, const std::vector<BodyVolume>& at_start) {
+    const std::vector<BodyVolume> now = body_volumes(bodies);
+    Json json = Json::object();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        Json& own = json[bodies[b].name];
+        own["matter_at_start"] = at_start[b].matter;
+        own["matter"] = now[b].matter;
+        if (at_start[b].skin) own["skin_at_start"] = *at_start[b].skin;
+        if (now[b].skin) own["skin"] = *now[b].skin;
+    }
+    return json;
+}
+
+std::optional<double> swollen_by(const WorkPiece& body) {
+    const bool has_cells = body.matter.material.mechanics == Mechanics::cells;
+    if (!has_cells || body.is_parted || !body.matter.has_flowed()) return {};
+    const std::optional<double> was = enclosed_volume(body.skin, body.skin.position),
+                                is = enclosed_volume(body.skin, body.position);
+    if (!was || !is || !(*was > 0)) return {};
+    return *is / *was - present_volume(body.matter) / body.matter.volume();
+}
+
+}  // namespace swage

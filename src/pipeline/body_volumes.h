@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What bodies take up, by their matter and by their skins.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/json.h"
+#include "pipeline/work_piece.h"
+
+namespace swage {
+
+struct BodyVolume {
+    double matter;               // present_volume() [m3]
+    std::optional<double> skin;  // what it encloses, where it is closed [m3]
+};
+std::vector<BodyVolume> body_volumes(const std::vector<WorkPiece>& bodies);
+
+// By body, as a stage began and now.
+Json volumes_json(const std::vector<WorkPiece>& bodies, const std::vector<BodyVolume>& at_start);
+
+// Flow keeps the volume of matter. Of a whole body of cells that have flowed, by what share of its
+// volume its skin has grown more than its matter (below 0: less), where that is known.
+std::optional<double> swollen_by(const WorkPiece& body);
+
+}  // namespace swage
