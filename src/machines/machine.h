@@ -31,9 +31,12 @@ std::vector<Vec3> surface_positions(const Aggregate& matter);
 // its y. Left open `axis` is the longest side, and `up` the world's y, or z where the axis lies
 // along y. For a machine that is upright, gravity has settled what is up before the body is known:
 // there `up` left open is y, and `axis` the longest side across it. Throws Error(scene) where both
-// lie on one line, Error(mesh) for a body without a surface.
+// lie on one line, Error(mesh) for a body without a surface. `shown`: the box of its skin, if there
+// is one, which tells the longest side: what is sampled of a surface misses tips, more or less of
+// them as cells are chosen.
 WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis = WorldAxis::automatic,
-                           WorldAxis up = WorldAxis::automatic, bool upright = false);
+                           WorldAxis up = WorldAxis::automatic, bool upright = false,
+                           const Box& shown = {});
 
 // Which of the world's axes its x, y and z are.
 std::array<WorldAxis, 3> world_axes(const WorkFrame& frame);

@@ -16,14 +16,15 @@ std::vector<Vec3> surface_positions(const Aggregate& matter) {
     return points;
 }
 
-WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis, WorldAxis up, bool upright) {
+WorkFrame place_work_frame(const Aggregate& matter, WorldAxis axis, WorldAxis up, bool upright,
+                           const Box& shown) {
     const Box box = box_of(surface_positions(matter));
     if (box.empty()) fail(ExitCode::mesh, "the work-piece has no surface to place a machine at");
 
     Vec3 y = up == WorldAxis::automatic ? Vec3::UnitY() : direction_of(up);
     Vec3 x;
     if (axis == WorldAxis::automatic) {
-        Vec3 side = box.size();
+        Vec3 side = shown.empty() ? box.size() : shown.size();
         if (upright) side -= side.cwiseProduct(y.cwiseAbs());  // what stands on it may be tall
         // Of sides that are as long the first: what rounding makes of them, and where surface is
         // sampled, does not turn a machine.

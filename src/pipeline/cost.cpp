@@ -94,10 +94,12 @@ double cells_across(const TriMesh& mesh, MoldKind kind, const MoldEstimate& mold
     return kind == MoldKind::block || across > layers - kRounding ? layers : across;
 }
 
-std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<Aggregate>& matter) {
+std::vector<NamedMatter> named(const SceneSpec& scene, const std::vector<InputMesh>& input,
+                               const std::vector<Aggregate>& matter) {
     std::vector<NamedMatter> named;
     for (std::size_t b = 0; b < matter.size(); ++b) {
-        named.push_back({scene.body[b].name, &matter[b]});
+        const BodySpec& body = scene.body[b];
+        named.push_back({body.name, &matter[b], box_at_start(body.start, input[b].to_mold())});
     }
     return named;
 }
@@ -271,15 +273,16 @@ RunCost count_cost(const SceneSpec& scene, const std::vector<InputMesh>& input,
         cost.mold.connections += static_cast<double>(matter[b].connection_count());
         cost.mold.bytes += static_cast<double>(matter[b].bytes());
     }
-    const std::vector<NamedMatter> bodies = named(scene, matter);
+    const std::vector<NamedMatter> bodies = named(scene, input, matter);
     cost.warning.bodies = warnings_of_bodies(scene, bodies);
     const std::string steps = step_note(scene, matter);
     if (!steps.empty()) cost.note.push_back(steps);
     const StageSpec& first = scene.stage.front();
     std::vector<Material> beside;
     for (std::size_t b = 1; b < matter.size(); ++b) beside.push_back(matter[b].material);
-    const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first));
-    cost.place = machine_places(scene, machine, matter[0], beside);
+    const Box skin = bodies.front().skin;
+    const Machine machine = stage_machine(first, matter[0], beside, scene.duration_of(first), skin);
+    cost.place = machine_places(scene, machine, matter[0], beside, skin);
     cost.note.insert(cost.note.end(), machine.notes.begin(), machine.notes.end());
     for (std::string& amiss : tool_overlaps(machine, bodies, moves(first))) {
         cost.warning.bodies.push_back(std::move(amiss));

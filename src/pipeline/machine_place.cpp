@@ -100,16 +100,16 @@ Json loads_json(const Machine& machine) {
 
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
-                                         const std::vector<Material>& beside) {
+                                         const std::vector<Material>& beside, const Box& skin) {
     std::vector<MachinePlace> places;
     for (const StageSpec& stage : scene.stage) {
         try {
             const bool is_first = places.empty();
             Machine later;
             if (!is_first && stage.machine.load.empty()) {
-                later.frame = stage_frame(stage, work_piece);
+                later.frame = stage_frame(stage, work_piece, skin);
             } else if (!is_first) {
-                later = stage_machine(stage, work_piece, beside, scene.duration_of(stage));
+                later = stage_machine(stage, work_piece, beside, scene.duration_of(stage), skin);
             }
             const Machine& machine = is_first ? first : later;
             places.push_back({stage.name,

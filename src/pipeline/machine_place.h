@@ -35,7 +35,7 @@ struct MachinePlace {
 // Of all stages. `first`: the machine of the first.
 std::vector<MachinePlace> machine_places(const SceneSpec& scene, const Machine& first,
                                          const Aggregate& work_piece,
-                                         const std::vector<Material>& beside);
+                                         const std::vector<Material>& beside, const Box& skin = {});
 Json places_json(const std::vector<MachinePlace>& places);
 
 }  // namespace swage

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "geometry/box.h"
 #include "matter/aggregate.h"
 
 namespace swage {
@@ -10,6 +11,7 @@ namespace swage {
 struct NamedMatter {
     std::string name;
     const Aggregate* matter;
+    Box skin{};  // of its skin, as place_work_frame() has it
 };
 
 }  // namespace swage

@@ -49,31 +49,35 @@ auto at_stage(const StageSpec& stage, const Act& act) {
 
 }  // namespace
 
-WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece) {
-    return place_work_frame(work_piece, stage.axis, stage.up, stage.machine.upright);
+WorkFrame stage_frame(const StageSpec& stage, const Aggregate& work_piece, const Box& skin) {
+    return place_work_frame(work_piece, stage.axis, stage.up, stage.machine.upright, skin);
 }
 
 Machine stage_machine(const StageSpec& stage, const Aggregate& work_piece,
-                      const std::vector<Material>& beside, double duration) {
+                      const std::vector<Material>& beside, double duration, const Box& skin) {
     return at_stage(stage, [&] {
-        return build_machine(stage.machine, stage.parameter, stage_frame(stage, work_piece),
+        return build_machine(stage.machine, stage.parameter, stage_frame(stage, work_piece, skin),
                              work_piece, beside, duration);
     });
 }
 
-std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece) {
+std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggregate& work_piece,
+                                           const Box& skin) {
     std::vector<std::string> mistakes;
+    const auto add = [&](const Mistake& mistake) {
+        mistakes.push_back(mistake_text(mistake) + " (by the work-piece as it is at first)");
+    };
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
         const StageSpec& stage = scene.stage[n];
         try {
-            const WorkFrame frame = stage_frame(stage, work_piece);
+            const WorkFrame frame =
+                at_stage(stage, [&] { return stage_frame(stage, work_piece, skin); });
             resolve_parameters(stage.machine, stage.parameter,
                                work_piece_variables(work_piece, frame));
         } catch (const ParameterError& error) {
-            for (const Mistake& mistake : placed(stage, error)) {
-                mistakes.push_back(mistake_text(mistake) +
-                                   " (by the work-piece as it is at first)");
-            }
+            for (const Mistake& mistake : placed(stage, error)) add(mistake);
+        } catch (const SceneError& error) {
+            for (const Mistake& mistake : error.mistakes()) add(mistake);
         } catch (const Error&) {
             // An expression without a value here may have one at the work-piece of then.
         }

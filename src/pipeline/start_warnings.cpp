@@ -28,14 +28,16 @@ std::vector<std::string> warnings_of_mold(const std::string& body, bool is_one_o
 
 std::vector<NamedMatter> named(const std::vector<WorkPiece>& bodies) {
     std::vector<NamedMatter> named;
-    for (const WorkPiece& body : bodies) named.push_back({body.name, &body.matter});
+    for (const WorkPiece& body : bodies)
+        named.push_back({body.name, &body.matter, box_of(body.position)});
     return named;
 }
 
 std::vector<std::string> warnings_of_bodies(const SceneSpec& scene,
                                             const std::vector<NamedMatter>& bodies) {
     std::vector<std::string> told = start_overlaps(bodies);
-    const std::vector<std::string> mistakes = foreseen_mistakes(scene, *bodies.front().matter);
+    const std::vector<std::string> mistakes =
+        foreseen_mistakes(scene, *bodies.front().matter, bodies.front().skin);
     told.insert(told.end(), mistakes.begin(), mistakes.end());
     return told;
 }

@@ -224,14 +224,35 @@ Aggregate mold_body(const InputMesh& input, const BodySpec& body,
     }
 }
 
+namespace {
+
+// Where a body's points are at its start, of those of its mesh.
+struct StartPlace {
+    Vec3 middle, at;
+    Mat3 turn;
+
+    StartPlace(const StartSpec& start, const TriMesh& mesh)
+        : middle(box_of(mesh.position).center()),
+          at(start.at.value_or(middle)),
+          turn(turn_by(start.turn).toRotationMatrix()) {}
+    Vec3 operator()(const Vec3& point) const { return turn * (point - middle) + at; }
+};
+
+}  // namespace
+
+Box box_at_start(const StartSpec& start, const TriMesh& mesh) {
+    const StartPlace place(start, mesh);
+    Box box;
+    for (const Vec3& point : mesh.position) box.grow(place(point));
+    return box;
+}
+
 void place_at_start(const StartSpec& start, const TriMesh& mesh, Aggregate& matter) {
-    const Vec3 middle = box_of(mesh.position).center();
-    const Mat3 turn = turn_by(start.turn).toRotationMatrix();
-    const Vec3 at = start.at.value_or(middle);
+    const StartPlace place(start, mesh);
     Vec3 moment = Vec3::Zero();
     double mass = 0;
     for (std::size_t p = 0; p < matter.particle_count(); ++p) {
-        const Vec3 x = turn * (matter.particle_position.at(p) - middle) + at;
+        const Vec3 x = place(matter.particle_position.at(p));
         matter.particle_position.set(p, x);
         moment += matter.particle_mass[p] * x;
         mass += matter.particle_mass[p];

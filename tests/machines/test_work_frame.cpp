@@ -69,6 +69,17 @@ TEST_CASE("the work frame is placed by the surface as it is now, not as it was m
     CHECK(frame.world_from_work.translation.x() == Approx(4));
 }
 
+TEST_CASE("the longest side is that of the skin, whatever samples of the surface miss of it") {
+    const Aggregate body = body_of(box_points({0, 0, 0}, {1, 2, 1.9}, {4, 8, 8}), 0.25);
+    const auto along = [&](const Box& skin) {
+        return place_work_frame(body, WorldAxis::automatic, WorldAxis::automatic, false, skin)
+            .world_from_work.turn(Vec3::UnitX());
+    };
+    CHECK(along({}).y() == 1);
+    CHECK(along({{0, 0, 0}, {1, 2, 2.1}}).z() == 1);
+    CHECK(along({{0, 0, 0}, {1, 2.1, 2}}).y() == 1);
+}
+
 TEST_CASE("a body without a surface has no place for a machine") {
     CHECK_THROWS_AS(place_work_frame(Aggregate{}), Error);
 }

@@ -140,3 +140,22 @@ TEST_CASE("a blade that never moves is warned of by name, one that goes or falls
     CHECK(told("[blade.motion]\nmove = [0, \"-t\", 0]\n", "").empty());
     CHECK(told("", "gravity = 9.81\n").find("never moves") == std::string::npos);
 }
+
+TEST_CASE(
+    "a later machine that cannot stand at the work-piece as it is at first is told of before") {
+    const test::Scratch scratch;
+    const SceneReading reading =
+        read_scene(scratch.write("s.toml",
+                                 "[mesh]\nfile = \"bar.obj\"\n[material]\nname = \"rubber\"\n"
+                                 "[[stage]]\nmachine = \"press\"\n"
+                                 "[[stage]]\nmachine = \"press\"\nup = \"x\"\n"),
+                   {}, test::shipped());
+    REQUIRE(reading.scene);
+    const Material& rubber = reading.scene->work_piece().material;
+    const std::vector<std::string> told =
+        foreseen_mistakes(*reading.scene, test::make_block(16, 4, 4, 0.1, rubber));
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].find("s.toml:") != std::string::npos);
+    CHECK(told[0].find("up = \"x\"") != std::string::npos);
+    CHECK(foreseen_mistakes(*reading.scene, test::make_block(4, 4, 16, 0.1, rubber)).empty());
+}
