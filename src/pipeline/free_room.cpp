@@ -28,7 +28,9 @@ double free_disk(fs::path folder) {
         folder = folder.parent_path();
     }
     const fs::space_info space = fs::space(folder.empty() ? "." : folder, error);
-    return error ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
+    // What is no disk (/proc, /sys) has no room that could be told: writing says why it cannot.
+    return error || space.capacity == 0 ? std::numeric_limits<double>::infinity()
+                                        : static_cast<double>(space.available);
 }
 
 void refuse_threads(int count) {
