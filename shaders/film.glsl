@@ -39,12 +39,21 @@ vec3 shown(vec3 light) {
     return mix(c, c * c * (3.0 - 2.0 * c), 0.18);
 }
 
+#ifdef LINEAR
+// The light itself, of which `shown` makes the picture's.
+vec4 developed(vec3 light, vec2 pixel) { return vec4(light, 1.0); }
+#else
 vec4 developed(vec3 light, vec2 pixel) { return vec4(shown(light) + dither(pixel) / 255.0, 1.0); }
+#endif
 
 // A floor of which only the shadow is wanted, where it is `lit` and where it is `dimmed`: black,
 // and so dense that bytes laid over each other show the same as if it were there. Premultiplied, as
-// all of a picture is until it is read back.
+// all of a picture is until it is read back. Of light, light does.
 vec4 caught(vec3 lit, vec3 dimmed) {
+#ifdef LINEAR
+    float kept = dot(dimmed, vec3(1.0)) / max(dot(lit, vec3(1.0)), 1e-6);
+#else
     float kept = dot(shown(dimmed), vec3(1.0)) / max(dot(shown(lit), vec3(1.0)), 1e-6);
+#endif
     return vec4(0.0, 0.0, 0.0, 1.0 - min(kept, 1.0));
 }

@@ -16,5 +16,9 @@ void main() {
     float depth = above / down;
     vec4 clip = clip_from_stage * vec4(eye.xyz + depth * ahead, 1.0);
     gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
+#ifdef TRIANGLES
+    layer = vec4(number.x, -1.0, 0.0, 0.0);
+#else
     layer = layer_of(plane.xyz, depth, number.x);
+#endif
 }

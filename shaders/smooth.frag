@@ -4,10 +4,17 @@
 // After T. Lottes, "FXAA", NVIDIA white paper 2009 (the short variant: the edge's direction from
 // four diagonal neighbours, then means along it).
 #include "frame.glsl"
+#ifdef LINEAR
+#include "film.glsl"
+#endif
 uniform sampler2D picture;
 layout(location = 0) out vec4 pixel_color;
 
+#ifdef LINEAR
+float brightness(vec3 c) { return dot(shown(c), vec3(0.299, 0.587, 0.114)); }
+#else
 float brightness(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
+#endif
 
 void main() {
     vec2 at = gl_FragCoord.xy * size.zw;

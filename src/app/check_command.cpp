@@ -87,7 +87,7 @@ std::string range_text(const CostRange& range, std::string (*text)(double)) {
 
 // How fast the film plays a stage that takes the time that it says.
 std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
-    const double played = double(stage.frames) / scene.render.frames_per_second,
+    const double played = double(stage.frames) / scene.render.frame_rate.value(),
                  slower = played / scene.duration_of(stage);
     const auto times = [](double ratio) {
         return (ratio < 100 ? fmt::format("{:.3g}", ratio) : count_text(ratio)) + " times";
@@ -97,7 +97,7 @@ std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
                                            : times(1 / slower) + " faster than it goes";
     return fmt::format("{} at {} a second play its {} {}",
                        counted(std::size_t(stage.frames), "frame", "frames"),
-                       scene.render.frames_per_second,
+                       frame_rate_text(scene.render.frame_rate),
                        quantity_text(scene.duration_of(stage), Quantity::time), speed);
 }
 

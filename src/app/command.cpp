@@ -72,14 +72,16 @@ void put_out(std::string_view text) { write_out(printable(text)); }
 
 void put_json(const Json& json) { write_out(json_text(json)); }
 
-FrameRange parse_frame_range(const std::string& text, int frame_count) {
+FrameRange parse_frame_range(const std::string& text, int frame_count, int first_frame) {
     const std::size_t dash = text.find('-');
     const std::string first = text.substr(0, dash), last = text.substr(std::min(dash, text.size()));
+    const long last_frame = long(frame_count) + first_frame - 1;
     FrameRange range;
     try {
         range.first = parse_whole(first);
         range.last = last.empty()  ? range.first
-                     : last == "-" ? std::max(range.first, frame_count)
+                     : last == "-" ? static_cast<int>(std::clamp<long>(
+                                         last_frame, range.first, std::numeric_limits<int>::max()))
                                    : parse_whole(last.substr(1));
     } catch (const CLI::ValidationError&) {
         throw CLI::ValidationError(
@@ -88,7 +90,15 @@ FrameRange parse_frame_range(const std::string& text, int frame_count) {
     if (range.last < range.first) {
         throw CLI::ValidationError(fmt::format("\"{}\" ends before it begins", text));
     }
-    return range;
+    const int later = first_frame - 1;
+    return {range.first - later, range.last - later};
+}
+
+FrameRate parse_frame_rate(const std::string& text) {
+    const std::optional<FrameRate> rate = frame_rate_named(text);
+    if (rate) return *rate;
+    throw CLI::ValidationError(
+        fmt::format("\"{}\" is no rate of films: it has to be a {}", text, kFrameRateForm));
 }
 
 std::pair<int, int> parse_size(const std::string& text) {

@@ -10,6 +10,7 @@
 
 #include "pipeline/json.h"
 #include "pipeline/run_options.h"
+#include "render/frame_rate.h"
 
 namespace swage {
 
@@ -49,10 +50,14 @@ extern const CLI::Validator kSomewhere;
 void put_out(std::string_view text);
 void put_json(const Json& json);
 
-// Reads "7", "3-9", or "3-", which ends at the last of the run's frames. Throws
-// CLI::ValidationError without the name of its option.
+// Reads "7", "3-9", or "3-", which ends at the last of the run's frames. `first_frame`: what the
+// first is called there; those that are returned count from 1. Throws CLI::ValidationError without
+// the name of its option.
 FrameRange parse_frame_range(const std::string& text,
-                             int frame_count = std::numeric_limits<int>::max());
+                             int frame_count = std::numeric_limits<int>::max(),
+                             int first_frame = 1);
+// Reads "24", "23.976" or "24000/1001". Likewise.
+FrameRate parse_frame_rate(const std::string& text);
 // Reads "1280x720". Throws CLI::ValidationError.
 std::pair<int, int> parse_size(const std::string& text);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <optional>
 
-#include "app/command.h"
+#include "app/view_arguments.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/stopwatch.h"
@@ -18,14 +18,18 @@ namespace {
 
 struct ExportArguments {
     std::string run, out, frames;
-    std::optional<int> frames_per_second;
+    ViewArguments view;
+    std::string frame_rate;
+    std::optional<int> first_frame;
     bool no_tools = false, json = false;
 };
 
-UsdScene usd_scene_of(const Json& record, const std::optional<int>& frames_per_second) {
+UsdScene usd_scene_of(const Json& record, const ExportArguments& given) {
     UsdScene scene;
     scene.render = render_settings_of(record);
-    if (frames_per_second) scene.render.frames_per_second = *frames_per_second;
+    set_view(given.view, scene.render);
+    if (!given.frame_rate.empty()) scene.render.frame_rate = parse_frame_rate(given.frame_rate);
+    if (given.first_frame) scene.render.first_frame = *given.first_frame;
     RunNames names = run_names_of(record);
     scene.name = fs::path(names.scene).stem().string();
     scene.body = std::move(names.body);
@@ -35,7 +39,7 @@ UsdScene usd_scene_of(const Json& record, const std::optional<int>& frames_per_s
 
 int export_run(const ExportArguments& given) {
     const fs::path run = given.run;
-    UsdScene scene = usd_scene_of(record_of_run(run), given.frames_per_second);
+    UsdScene scene = usd_scene_of(record_of_run(run), given);
     scene.tools = !given.no_tools;
     const fs::path file = given.out.empty() ? RunDirectory::exported(run) / (scene.name + ".usda")
                                             : fs::path(given.out);
@@ -44,7 +48,10 @@ int export_run(const ExportArguments& given) {
     }
     const FrameStore store(RunDirectory::store_in(run));
     FrameRange frames{1, store.frame_count()};
-    if (!given.frames.empty()) frames = parse_frame_range(given.frames, store.frame_count());
+    const int first_frame = scene.render.first_frame;
+    if (!given.frames.empty()) {
+        frames = parse_frame_range(given.frames, store.frame_count(), first_frame);
+    }
     Stopwatch watch;
     const UsdOutcome outcome = [&] {
         const auto lap = watch.lap("export");
@@ -55,13 +62,15 @@ int export_run(const ExportArguments& given) {
              counted(std::size_t(frames.last - frames.first + 1), "frame", "frames"),
              bytes_text(double(outcome.bytes)));
     if (given.json) {
-        put_json({{"out", file.string()},
-                  {"images", outcome.image},
-                  {"bodies", outcome.bodies},
-                  {"tools", outcome.tools},
-                  {"frames", {frames.first, frames.last}},
-                  {"bytes", outcome.bytes},
-                  {"seconds", seconds_json(watch)}});
+        Json json = {{"out", file.string()},
+                     {"images", outcome.image},
+                     {"bodies", outcome.bodies},
+                     {"tools", outcome.tools},
+                     {"frames", {frames.first, frames.last}},
+                     {"bytes", outcome.bytes},
+                     {"seconds", seconds_json(watch)}};
+        if (first_frame != 1) json["first_frame"] = first_frame;
+        put_json(json);
     }
     return 0;
 }
@@ -75,7 +84,8 @@ void add_export_command(CLI::App& app, Action& chosen) {
         "Write the moving skins and tools of a finished run, and the camera of its stills, as one "
         "file, for Blender, Houdini, Maya, ...",
         "  swage export renders/calf-line\n"
-        "  swage export renders/calf-line --frames 1-40 --out /tmp/bend.usda\n",
+        "  swage export renders/calf-line --frames 1-40 --out /tmp/bend.usda\n"
+        "  swage export renders/calf-line --camera-azimuth 90 --size 1920x1080\n",
         chosen, [] { return export_run(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
     command
@@ -88,14 +98,23 @@ void add_export_command(CLI::App& app, Action& chosen) {
         ->type_name("FILE");
     command
         ->add_option("--frames", given.frames,
-                     "only the frames A to B, A, or A- to the end; 1 is the start. They keep their "
+                     "only the frames A to B, A, or A- to the end; 1, or --first-frame, is the "
+                     "start. They keep their "
                      "numbers")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command
-        ->add_option("--fps", given.frames_per_second,
-                     "frames a second (default: as the scene's film)")
-        ->check(CLI::Range(1, 240));
+        ->add_option("--fps", given.frame_rate,
+                     "frames a second (default: as the scene's film); 23.976 is exactly "
+                     "24000/1001, and so 29.97, 47.952, 59.94 and 119.88")
+        ->type_name("RATE")
+        ->each([](const std::string& text) { parse_frame_rate(text); });
+    command
+        ->add_option("--first-frame", given.first_frame,
+                     "time code of the first frame, the start, also in --frames (default: as the "
+                     "scene says, else 1)")
+        ->check(CLI::Range(1, kLargestFirstFrame));
+    add_view_arguments(*command, given.view);
     command->add_flag("--no-tools", given.no_tools,
                       "no tools, grips and blades, which are there where the stills have them");
     command->add_flag("--json", given.json, "print one JSON object");

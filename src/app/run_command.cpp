@@ -18,7 +18,10 @@ struct RunArguments {
 
 RunOptions options_of(const RunArguments& given, const SceneSpec& scene) {
     RunOptions options;
-    if (!given.frames.empty()) options.frames = parse_frame_range(given.frames, frame_count(scene));
+    if (!given.frames.empty()) {
+        options.frames =
+            parse_frame_range(given.frames, frame_count(scene), scene.render.first_frame);
+    }
     options.out = given.out.empty() ? std::filesystem::path("renders") / scene.name
                                     : std::filesystem::path(given.out);
     options.overrides = given.scene.overrides;
@@ -72,7 +75,8 @@ void add_run_command(CLI::App& app, Action& chosen) {
         ->type_name("DIR");
     command
         ->add_option("--frames", given.frames,
-                     "draw only the stills A to B, A, or A- to the end; 1 is the start")
+                     "draw only the stills A to B, A, or A- to the end; 1, or what "
+                     "first_frame says, is the start")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command->add_flag("--no-render", given.no_render, "no pictures; needs no OpenGL");

@@ -27,7 +27,9 @@ std::string usd_prim(std::string_view kind, const std::string& name, const std::
 
 class UsdText {
   public:
-    explicit UsdText(const std::filesystem::path& file) : file_(file) {}
+    // `later`: by which the time codes of all values are beyond the times that they are given at.
+    explicit UsdText(const std::filesystem::path& file, int later = 0)
+        : file_(file), later_(later) {}
 
     void line(std::string_view text);  // one or more, each put in
     void open(std::string_view head);  // of a prim; what follows is in it until
@@ -59,7 +61,7 @@ class UsdText {
         ++depth_;
         for (const int t : time) {
             indent();
-            number(t);
+            number(t + later_);
             put(": ");
             write(t);
             put(",\n");
@@ -101,6 +103,7 @@ class UsdText {
 
     static constexpr std::size_t kHeld = 1 << 20;
     WholeFile file_;
+    const int later_;
     std::string bytes_;
     int depth_ = 0;
 };

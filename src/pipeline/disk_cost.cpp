@@ -12,8 +12,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // What files take at the most, in ordinary runs; half of that is common.
-constexpr double kStillBytes = 2000, kStillBytesPerPixel = 1.05;  // with its share of the film
-constexpr double kPassBytesPerPixel[] = {2.5, 0.02, 7};           // in the order of PicturePass
+constexpr double kStillBytes = 2000, kStillBytesPerPixel = 1.05;     // with its share of the film
+constexpr double kPassBytesPerPixel[] = {2.5, 0.02, 7, 9, 3, 0.02};  // in order of PicturePass
 constexpr double kMeshBytesPerVertex = 400;             // as OBJ and PLY, with its two triangles
 constexpr double kSkinBytesPerVertex = 140;             // in the motion file, likewise
 constexpr double kPartBytes = 170e3;                    // there: of a machine's tool, grip or blade

@@ -11,7 +11,9 @@
 #include "base/progress.h"
 #include "pipeline/field_look.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/motion_vectors.h"
 #include "pipeline/shot.h"
+#include "pipeline/surface_match.h"
 #include "render/canvas_trial.h"
 #include "render/contact_sheet.h"
 #include "render/film.h"
@@ -29,6 +31,7 @@ class FrameSource {
         : store_(store),
           look_(look),
           settings_(shot.settings),
+          camera_(shot.camera()),
           drawn_from_world_{shot.drawn_from_world, Vec3::Zero()} {}
 
     Picture picture(int frame) {
@@ -39,12 +42,14 @@ class FrameSource {
             machine_id_ = stored.machine;
         }
         part_.clear();
+        pose_ = stored.pose;
         Picture picture;
         for (std::size_t b = 0; b < body_.size(); ++b) {
             Body& body = body_[b];
             if (stored.body[b].skin != body.skin_id) {
                 body.skin = store_.skin(stored.body[b].skin);
                 body.skin_id = stored.body[b].skin;
+                body.piece.clear();
             }
             if (look_) look_->dress(stored.body[b], body.skin);
             body.position = std::move(stored.body[b].position);
@@ -63,20 +68,62 @@ class FrameSource {
     }
     // Of the last picture.
     int machine() const { return machine_id_; }
-    std::vector<int> mattes(const PassWriter& passes) const {
-        std::vector<int> number;
-        for (std::size_t b = 0; b < body_.size(); ++b) number.push_back(passes.number_of_body(b));
-        for (const std::size_t p : part_) number.push_back(passes.number_of_part(machine_id_, p));
-        return number;
+    PassPicture passes(int frame, const Picture& picture, Layers layers, const PassWriter& writer) {
+        PassPicture all;
+        for (std::size_t b = 0; b < body_.size(); ++b) {
+            all.number.push_back(writer.number_of_body(b));
+            if (!settings_.has(PicturePass::piece)) continue;
+            Body& body = body_[b];
+            if (body.piece.empty()) body.piece = writer.pieces_of(b, body.skin_id, body.skin);
+            all.piece.push_back(body.piece);
+        }
+        for (const std::size_t p : part_) {
+            all.number.push_back(writer.number_of_part(machine_id_, p));
+        }
+        if (settings_.has(PicturePass::motion)) {
+            const std::optional<MovedPicture> after = moved(frame + 1), before = moved(frame - 1);
+            all.motion = motion_of(layers, picture, view(frame), lens_of(settings_),
+                                   after ? &*after : nullptr, before ? &*before : nullptr);
+        }
+        all.layers = std::move(layers);
+        return all;
     }
 
   private:
+    View view(int frame) const {
+        return camera_.at(still_share(settings_.camera, frame - 1, store_.frame_count()));
+    }
+    // What the last picture shows, in another frame; of a machine that is not there then, where it
+    // stands.
+    std::optional<MovedPicture> moved(int frame) const {
+        if (frame < 1 || frame > store_.frame_count()) return std::nullopt;
+        StoredFrame stored = store_.frame(frame - 1);
+        MovedPicture then{view(frame), {}};
+        for (std::size_t b = 0; b < body_.size(); ++b) {
+            const Body& body = body_[b];
+            StoredBody& there = stored.body.at(b);
+            then.item.push_back(
+                {drawn_from_world_, there.skin == body.skin_id
+                                        ? std::move(there.position)
+                                        : carried_places(body.skin, body.position,
+                                                         store_.skin(there.skin), there.position)});
+        }
+        const bool is_there = stored.machine == machine_id_;
+        for (const std::size_t p : part_) {
+            then.item.push_back(
+                {drawn_from_world_ * (is_there ? stored.pose.at(p) : pose_.at(p)), {}});
+        }
+        return then;
+    }
+
     const FrameStore& store_;
     const FieldLook* look_;  // null: bodies as they look
     const RenderSettings& settings_;
+    CameraPath camera_;
     Pose drawn_from_world_;
     struct Body {
         int skin_id = -1;
+        std::vector<int> piece;  // of its triangles, once asked for
         TriMesh skin;
         std::vector<Vec3> position;
     };
@@ -84,6 +131,7 @@ class FrameSource {
     int machine_id_ = -1;
     std::vector<DrawnPart> machine_;
     std::vector<std::size_t> part_;  // of it, that is to be seen
+    std::vector<Pose> pose_;
 };
 
 // Frames of the sheet: evenly spread, first and last among them.
@@ -122,7 +170,7 @@ void check_drawing(const RenderSettings& settings) { try_canvas(settings.gl, thr
 DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
                      const FrameRange& frames, const DrawnFiles& files, Stopwatch& watch,
                      const RunNames& names) {
-    refuse_frames_beyond(store.frame_count(), frames);
+    refuse_frames_beyond(store.frame_count(), frames, wanted.first_frame);
     std::optional<FieldLook> look;
     if (wanted.color) look.emplace(store, wanted);
     make_folder(files.folder());
@@ -138,6 +186,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     outcome.width = settings.width;
     outcome.height = settings.height;
     outcome.frames = frames;
+    outcome.first_frame = settings.first_frame;
     outcome.color = settings.color;
     outcome.view = shot.chosen;
     outcome.passes = settings.passes;
@@ -145,7 +194,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     std::unique_ptr<Film> film;
     if (settings.has_film()) {
         film = std::make_unique<Film>(files.film(), settings.width, settings.height,
-                                      settings.frames_per_second);
+                                      settings.frame_rate);
     }
     const std::vector<int> on_sheet = sheet_frames(frames);
     std::vector<Image> thumbnails;
@@ -156,14 +205,16 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
     for (int frame = frames.first; frame <= frames.last; ++frame) {
         throw_if_interrupted();
         Image image;
-        Layers layers;
-        std::vector<int> mattes;
+        PassPicture beside;
         {
             const auto lap = watch.lap("draw");
             Picture picture = source.picture(frame);
             picture.film_share = still_share(settings.camera, frame - 1, store.frame_count());
+            Layers layers;
             image = renderer.draw(picture, settings.passes.empty() ? nullptr : &layers);
-            mattes = source.mattes(passes);
+            if (layers.width > 0) {
+                beside = source.passes(frame, picture, std::move(layers), passes);
+            }
             if (has_legend && !look->add_legend(image) && frame == frames.first) {
                 outcome.warning.push_back(fmt::format(
                     "the colour scale has no room in pictures of {} x {} pixels and is left out",
@@ -173,11 +224,11 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
         }
         const auto lap = watch.lap("wait for files");
         if (writing.valid()) writing.get();
-        writing = std::async(
-            std::launch::async, [&, frame, machine = source.machine(), mattes = std::move(mattes),
-                                 layers = std::move(layers), image = std::move(image)] {
+        writing =
+            std::async(std::launch::async, [&, frame, machine = source.machine(),
+                                            beside = std::move(beside), image = std::move(image)] {
                 write_png(files.still(frame), image);
-                if (layers.width > 0) passes.write(frame, machine, layers, mattes);
+                if (beside.layers.width > 0) passes.write(frame, machine, beside);
                 if (film) film->add(image);
                 if (std::binary_search(on_sheet.begin(), on_sheet.end(), frame)) {
                     thumbnails.push_back(

@@ -23,6 +23,7 @@ struct DrawOutcome {
     std::string renderer;  // what OpenGL calls itself
     int width = 0, height = 0;
     FrameRange frames;
+    int first_frame = 1;             // what the first of the run is called
     bool film = false;               // one was written
     std::optional<ChosenView> view;  // where angles of the camera were open
     std::vector<PicturePass> passes;

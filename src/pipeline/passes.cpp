@@ -29,6 +29,17 @@ MatteColor color_of(double hue, int strength) {
     return color;
 }
 
+// Of four numbers a pixel.
+std::vector<ExrChannel> channels_of(const std::array<const char*, 4>& names, bool half,
+                                    const float* values, std::size_t pixels) {
+    std::vector<ExrChannel> channels;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        channels.push_back({names[c], {}, half});
+        for (std::size_t i = 0; i < pixels; ++i) channels[c].value.push_back(values[4 * i + c]);
+    }
+    return channels;
+}
+
 }  // namespace
 
 std::vector<MatteColor> matte_colors(std::size_t count) {
@@ -57,15 +68,44 @@ PassWriter::PassWriter(const FrameStore& store, const RenderSettings& settings,
         first_part_.push_back(next);
         next += static_cast<int>(store.machine(machine).size());
     }
+    if (settings_.has(PicturePass::piece)) {
+        pieces_.emplace(store_);
+        for (std::size_t b = 0; b < bodies_; ++b) {
+            first_piece_.push_back(next);
+            next += pieces_->count(b) - 1;
+        }
+    }
     color_ = matte_colors(static_cast<std::size_t>(next));
+}
+
+int PassWriter::number_of_piece(std::size_t body, int piece) const {
+    return piece == 0 ? number_of_body(body) : first_piece_.at(body) + piece - 1;
+}
+
+std::vector<int> PassWriter::pieces_of(std::size_t body, int skin, const TriMesh& mesh) const {
+    return pieces_ ? pieces_->of_triangles(body, skin, mesh) : std::vector<int>();
+}
+
+template <typename NumberOf>
+void PassWriter::write_colors(int frame, PicturePass pass, const Layers& layers,
+                              const NumberOf& number_of) const {
+    Image flat{layers.width, layers.height, {}};
+    flat.rgb.reserve(3 * layers.item.size());
+    for (std::size_t i = 0; i < layers.item.size(); ++i) {
+        const int item = layers.item[i];
+        const int whose = item == kNothingThere ? 0 : item == kGroundThere ? 1 : number_of(i, item);
+        const MatteColor& color = color_.at(std::size_t(whose));
+        flat.rgb.insert(flat.rgb.end(), color.begin(), color.end());
+    }
+    write_png(files_.pass(frame, pass), flat);
 }
 
 int PassWriter::number_of_part(int machine, std::size_t part) const {
     return first_part_.at(std::size_t(machine)) + static_cast<int>(part);
 }
 
-void PassWriter::write(int frame, int machine, const Layers& layers,
-                       const std::vector<int>& number) {
+void PassWriter::write(int frame, int machine, const PassPicture& picture) {
+    const Layers& layers = picture.layers;
     first_frame_.try_emplace(machine, frame);
     const auto write_floats = [&](PicturePass pass, const std::vector<ExrChannel>& channels) {
         write_file_whole(files_.pass(frame, pass),
@@ -83,21 +123,39 @@ void PassWriter::write(int frame, int machine, const Layers& layers,
         }
         write_floats(PicturePass::normal, channels);
     }
-    if (!settings_.has(PicturePass::matte)) return;
-    Image matte{layers.width, layers.height, {}};
-    matte.rgb.reserve(3 * layers.item.size());
-    for (const int item : layers.item) {
-        const int whose = item == kNothingThere  ? 0
-                          : item == kGroundThere ? 1
-                                                 : number.at(std::size_t(item));
-        const MatteColor& color = color_.at(std::size_t(whose));
-        matte.rgb.insert(matte.rgb.end(), color.begin(), color.end());
+    // Channels are called as Nuke calls those of its layer "motion".
+    if (settings_.has(PicturePass::motion)) {
+        write_floats(PicturePass::motion,
+                     channels_of({"forward.u", "forward.v", "backward.u", "backward.v"}, false,
+                                 picture.motion.front().data(), picture.motion.size()));
     }
-    write_png(files_.pass(frame, PicturePass::matte), matte);
+    if (settings_.has(PicturePass::beauty)) {
+        write_floats(PicturePass::beauty,
+                     channels_of({"R", "G", "B", "A"}, true, layers.beauty.data(),
+                                 layers.beauty.size() / 4));
+    }
+    const auto number_of = [&](int item) { return picture.number.at(std::size_t(item)); };
+    if (settings_.has(PicturePass::matte)) {
+        write_colors(frame, PicturePass::matte, layers,
+                     [&](std::size_t, int item) { return number_of(item); });
+    }
+    if (settings_.has(PicturePass::piece)) {
+        write_colors(frame, PicturePass::piece, layers, [&](std::size_t pixel, int item) {
+            const auto body = static_cast<std::size_t>(item);
+            const int triangle = layers.triangle.at(pixel);
+            if (body >= bodies_ || triangle < 0) return number_of(item);
+            return number_of_piece(body, picture.piece.at(body).at(std::size_t(triangle)));
+        });
+    }
 }
 
 void PassWriter::finish() const {
-    if (!settings_.has(PicturePass::matte)) return;
+    for (const PicturePass pass : settings_.passes) {
+        if (is_colored(pass)) write_table(pass);
+    }
+}
+
+void PassWriter::write_table(PicturePass pass) const {
     Json all = Json::array();
     const auto add = [&](int number, const char* kind, const std::string& name) -> Json& {
         all.push_back({{"number", number},
@@ -109,8 +167,14 @@ void PassWriter::finish() const {
     add(0, "nothing", "nothing");
     if (settings_.ground) add(1, "ground", "ground");
     for (std::size_t b = 0; b < bodies_; ++b) {
-        add(number_of_body(b), "body",
-            b < names_.body.size() ? names_.body[b] : fmt::format("body-{}", b + 1));
+        const std::string name =
+            b < names_.body.size() ? names_.body[b] : fmt::format("body-{}", b + 1);
+        if (pass == PicturePass::matte) add(number_of_body(b), "body", name);
+        for (int p = 0; pass == PicturePass::piece && p < pieces_->count(b); ++p) {
+            Json& piece = add(number_of_piece(b, p), "piece", name);
+            piece["piece"] = p + 1;
+            piece["from_frame"] = pieces_->first_frame(b, p);
+        }
     }
     for (const auto& [machine, frame] : first_frame_) {
         if (!settings_.tools || machine < 0 || machine >= store_.machine_count()) continue;
@@ -121,7 +185,8 @@ void PassWriter::finish() const {
                 stage_of_machine(names_.stage, machine, frame);
         }
     }
-    write_file_whole(files_.mattes(), json_text({{"mattes", all}}));
+    const std::string list = std::string(kPassName[std::size_t(pass)]) + "s";
+    write_file_whole(files_.table(pass), json_text({{list, all}}));
 }
 
 }  // namespace swage

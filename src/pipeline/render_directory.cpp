@@ -19,18 +19,23 @@ namespace {
 // A still or a pass beside one, or what goes with these.
 bool is_drawn_here(const DrawnFiles& files, const fs::path& file) {
     int number = 0;
-    if (file == files.mattes()) return true;
+    if (file == files.table(PicturePass::matte) || file == files.table(PicturePass::piece)) {
+        return true;
+    }
     if (std::sscanf(file.filename().c_str(), "frame_%9d.", &number) != 1 || number <= 0) {
         return false;
     }
-    return file == files.still(number) || file == files.pass(number, PicturePass::depth) ||
-           file == files.pass(number, PicturePass::matte) ||
-           file == files.pass(number, PicturePass::normal);
+    if (file == files.still(number)) return true;
+    for (std::size_t n = 0; n < kPassName.size(); ++n) {
+        if (file == files.pass(number, static_cast<PicturePass>(n))) return true;
+    }
+    return false;
 }
 
 }  // namespace
 
-RenderDirectory::RenderDirectory(const fs::path& root, bool in_run) : root_(root), folder_(root) {
+RenderDirectory::RenderDirectory(const fs::path& root, bool in_run, int first_frame)
+    : root_(root), first_frame_(first_frame), folder_(root) {
     std::error_code error;
     if (holds_run(root_)) {
         fail(ExitCode::foreign,
@@ -67,14 +72,14 @@ int RenderDirectory::remove_others(const FrameRange& drawn, bool film,
         of_now.insert(files().still(f));
         for (const PicturePass pass : passes) of_now.insert(files().pass(f, pass));
     }
-    if (std::find(passes.begin(), passes.end(), PicturePass::matte) != passes.end()) {
-        of_now.insert(files().mattes());
+    for (const PicturePass pass : passes) {
+        if (is_colored(pass)) of_now.insert(files().table(pass));
     }
     std::vector<fs::path> others;
     std::error_code error;
     for (fs::directory_iterator it(files().folder(), error), end; !error && it != end;
          it.increment(error)) {
-        if (is_drawn_here(files(), it->path()) && !of_now.contains(it->path()))
+        if (is_drawn_here({root_}, it->path()) && !of_now.contains(it->path()))
             others.push_back(it->path());
     }
     if (!film) others.push_back(files().film());

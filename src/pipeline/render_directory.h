@@ -19,12 +19,13 @@ class RenderDirectory {
     // drawing that was killed left unfinished there. `in_run`: it is the run's own for this, which
     // may hold anything. Throws Error(foreign) where it is a run, holds what no drawing left or
     // another process draws there, Error(output) where it cannot be written.
-    RenderDirectory(const std::filesystem::path& root, bool in_run);
+    // `first_frame`: what the first is called now.
+    RenderDirectory(const std::filesystem::path& root, bool in_run, int first_frame = 1);
     ~RenderDirectory();  // where nothing was drawn, nothing is left of it
     RenderDirectory(const RenderDirectory&) = delete;
     RenderDirectory& operator=(const RenderDirectory&) = delete;
 
-    DrawnFiles files() const { return {root_}; }
+    DrawnFiles files() const { return {root_, first_frame_}; }
     // Of earlier drawings, and maybe of another camera: stills and passes beside these, and the
     // film where there is none now. Returns how many files they were.
     int remove_others(const FrameRange& drawn, bool film,
@@ -34,6 +35,7 @@ class RenderDirectory {
     std::filesystem::path mark() const { return root_ / ".swage-render"; }
 
     std::filesystem::path root_;
+    int first_frame_;
     MadeFolder folder_;
     std::optional<FolderLock> lock_;
 };

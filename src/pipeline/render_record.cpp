@@ -30,11 +30,12 @@ Json render_json(const RenderSettings& settings) {
         if (key.target) one["target"] = {(*key.target)[0], (*key.target)[1], (*key.target)[2]};
         camera.push_back(one);
     }
+    const FrameRate& rate = settings.frame_rate;
     Json json = {
         {"size", {settings.width, settings.height}},
         {"field_of_view", settings.field_of_view},
         {"camera", camera},
-        {"frames_per_second", settings.frames_per_second},
+        {"frames_per_second", rate.is_whole() ? Json(rate.frames) : Json(rate.value())},
         {"film", settings.film},
         {"tools", settings.tools},
         {"ground", settings.ground},
@@ -43,6 +44,8 @@ Json render_json(const RenderSettings& settings) {
         {"light", {{"azimuth", settings.light.azimuth}, {"elevation", settings.light.elevation}}},
         {"gl", kGlName[static_cast<std::size_t>(settings.gl)]},
         {"up", kUpName[static_cast<std::size_t>(settings.up)]}};
+    if (!rate.is_whole()) json["frame_rate"] = {rate.frames, rate.seconds};
+    if (settings.first_frame != 1) json["first_frame"] = settings.first_frame;
     if (settings.open.any()) {
         Json& open = json["camera_auto"] = Json::array();
         if (settings.open.azimuth) open.push_back("azimuth");
@@ -76,7 +79,10 @@ RenderSettings render_settings_of(const Json& record) {
         settings.width = json.at("size").at(0).get<int>();
         settings.height = json.at("size").at(1).get<int>();
         settings.field_of_view = json.at("field_of_view").get<double>();
-        settings.frames_per_second = json.at("frames_per_second").get<int>();
+        const auto rate = frame_rate_of(json.at("frames_per_second").get<double>());
+        if (!rate) fail(ExitCode::output, "run.json: frames_per_second is no rate of films");
+        settings.frame_rate = *rate;
+        settings.first_frame = json.value("first_frame", 1);
         settings.film = json.at("film").get<bool>();
         settings.tools = json.at("tools").get<bool>();
         settings.ground = json.at("ground").get<bool>();

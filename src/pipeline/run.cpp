@@ -20,7 +20,7 @@ namespace {
 FrameRange wanted_frames(const SceneSpec& scene, const RunOptions& options) {
     const int last = frame_count(scene);
     const FrameRange wanted = options.frames.value_or(FrameRange{1, last});
-    refuse_frames_beyond(last, wanted);
+    refuse_frames_beyond(last, wanted, scene.render.first_frame);
     return wanted;
 }
 
@@ -79,7 +79,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         !options.fresh && std::filesystem::exists(RunDirectory::record_in(options.out), unknown);
     if (!may_be_done) refuse_early();
     RunDirectory directory(options.out, identity, options.fresh, options.go_on);
-    const DrawnFiles files{directory.root()};
+    const DrawnFiles files{directory.root(), scene.render.first_frame};
 
     Json record;
     const std::optional<Json> earlier =

@@ -279,13 +279,21 @@ void RunDirectory::remove_unbegun() {
     if (!error) fs::remove(root_ / kIdentityName, error);
 }
 
+std::string frame_name(int frame, int first_frame) {
+    return fmt::format("frame_{:04d}", frame + (first_frame - 1));
+}
+
 fs::path DrawnFiles::still(int frame) const {
-    return folder() / fmt::format("frame_{:04d}.png", frame);
+    return folder() / (frame_name(frame, first_frame) + ".png");
 }
 
 fs::path DrawnFiles::pass(int frame, PicturePass pass) const {
-    return folder() / fmt::format("frame_{:04d}.{}.{}", frame, kPassName[std::size_t(pass)],
-                                  pass == PicturePass::matte ? "png" : "exr");
+    return folder() / fmt::format("{}.{}.{}", frame_name(frame, first_frame),
+                                  kPassName[std::size_t(pass)], is_colored(pass) ? "png" : "exr");
+}
+
+fs::path DrawnFiles::table(PicturePass pass) const {
+    return folder() / (std::string(kPassName[std::size_t(pass)]) + "s.json");
 }
 
 }  // namespace swage

@@ -96,14 +96,19 @@ class RunDirectory {
     std::optional<FolderLock> lock_;
 };
 
+// What files of a frame are called where the first is called that.
+std::string frame_name(int frame, int first_frame);
+
 // Where the drawn files of a run stand; `root` may also be another folder.
 struct DrawnFiles {
     std::filesystem::path root;
+    int first_frame = 1;  // what the first is called
 
     std::filesystem::path folder() const { return root / "frames"; }
     std::filesystem::path still(int frame) const;                   // frames/frame_0001.png
     std::filesystem::path pass(int frame, PicturePass pass) const;  // frames/frame_0001.depth.exr
-    std::filesystem::path mattes() const { return folder() / "mattes.json"; }
+    // Of a pass that is_colored: frames/mattes.json.
+    std::filesystem::path table(PicturePass pass) const;
     std::filesystem::path film() const { return root / "film.mp4"; }
     std::filesystem::path contact_sheet() const { return root / "contact.png"; }
 };

@@ -17,11 +17,13 @@ struct FrameRange {
     int last = 1;
 };
 
-// Throws Error(command_line) where a run of so many frames has not all of these.
-inline void refuse_frames_beyond(int count, const FrameRange& wanted) {
+// Throws Error(command_line) where a run of so many frames has not all of these. `first_frame`:
+// what the first is called.
+inline void refuse_frames_beyond(int count, const FrameRange& wanted, int first_frame = 1) {
     if (wanted.first >= 1 && wanted.last <= count) return;
-    fail(ExitCode::command_line, "--frames {}-{}: the run has the frames 1 to {}", wanted.first,
-         wanted.last, count);
+    const int later = first_frame - 1;
+    fail(ExitCode::command_line, "--frames {}-{}: the run has the frames {} to {}",
+         wanted.first + later, wanted.last + later, 1 + later, count + later);
 }
 
 struct RunOptions {

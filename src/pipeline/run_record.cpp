@@ -185,6 +185,7 @@ Json drawing_json(const DrawOutcome& drawing) {
                  {"film", drawing.film},
                  {"ffmpeg", program_exists("ffmpeg")},
                  {"warnings", drawing.warning}};
+    if (drawing.first_frame != 1) json["first_frame"] = drawing.first_frame;
     if (drawing.view) {
         json["view"] = {{"azimuth", drawing.view->camera.front().azimuth},
                         {"elevation", drawing.view->camera.front().elevation},
@@ -285,7 +286,9 @@ bool is_drawn(const Json& record, const DrawnFiles& files, const FrameRange& fra
                 if (!fs::exists(files.pass(f, pass), error)) return false;
             }
         }
-        if (settings.has(PicturePass::matte) && !fs::exists(files.mattes(), error)) return false;
+        for (const PicturePass pass : settings.passes) {
+            if (is_colored(pass) && !fs::exists(files.table(pass), error)) return false;
+        }
         // What ffmpeg failed to make once is not tried again.
         const bool may_come = drawing.at("film").get<bool>() ||
                               (!drawing.at("ffmpeg").get<bool>() && program_exists("ffmpeg"));

@@ -184,7 +184,7 @@ class StageRun {
     void write_meshes_of(int frame, const std::vector<SkinFieldValues>& values) const {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             write_meshes(bodies_[b], fields(), values[b],
-                         meshes_[b] / fmt::format("frame_{:04d}", frame));
+                         meshes_[b] / frame_name(frame, context_.scene.render.first_frame));
         }
     }
     // What cannot be written, as on a full disk or for want of memory, ends the stage where it is,

@@ -83,7 +83,7 @@ class Exporter {
         }
         FilesBeside beside;
         const std::vector<std::string> image = copy_textures(file, looks_.materials(), beside);
-        UsdText out(file);
+        UsdText out(file, later());
         write_head(out);
         out.open(fmt::format("def Xform \"{}\"", root_));
         write_turn(out);
@@ -212,19 +212,23 @@ class Exporter {
         return bytes;
     }
 
+    // What frames are called beyond their numbers from 1 on.
+    int later() const { return scene_.render.first_frame - 1; }
+
     void write_head(UsdText& out) const {
-        out.line(fmt::format(
-            "{}, {}\"\n"
-            "    defaultPrim = \"{}\"\n"
-            "    endTimeCode = {}\n"
-            "    framesPerSecond = {}\n"
-            "    metersPerUnit = 1\n"
-            "    startTimeCode = {}\n"
-            "    timeCodesPerSecond = {}\n"
-            "    upAxis = \"{}\"\n"
-            ")\n",
-            kBegin, kVersion, root_, frames_.last, scene_.render.frames_per_second, frames_.first,
-            scene_.render.frames_per_second, scene_.render.up == Up::z ? "Z" : "Y"));
+        const std::string rate = fmt::format("{}", scene_.render.frame_rate.value());
+        out.line(
+            fmt::format("{}, {}\"\n"
+                        "    defaultPrim = \"{}\"\n"
+                        "    endTimeCode = {}\n"
+                        "    framesPerSecond = {}\n"
+                        "    metersPerUnit = 1\n"
+                        "    startTimeCode = {}\n"
+                        "    timeCodesPerSecond = {}\n"
+                        "    upAxis = \"{}\"\n"
+                        ")\n",
+                        kBegin, kVersion, root_, frames_.last + later(), rate,
+                        frames_.first + later(), rate, scene_.render.up == Up::z ? "Z" : "Y"));
     }
 
     // USD knows no x that is upward: there the scene is turned, as pictures of it are.
@@ -420,7 +424,7 @@ void refuse_foreign(const fs::path& file) {
 
 UsdOutcome export_usd(const FrameStore& store, const UsdScene& scene, const FrameRange& frames,
                       const fs::path& file) {
-    refuse_frames_beyond(store.frame_count(), frames);
+    refuse_frames_beyond(store.frame_count(), frames, scene.render.first_frame);
     refuse_foreign(file);
     const MadeFolder folder(fs::absolute(file).parent_path());
     return Exporter(store, scene, frames).write(file);

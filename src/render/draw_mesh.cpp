@@ -56,6 +56,7 @@ DrawMesh split_corners(const TriMesh& mesh) {
             out.index.push_back(static_cast<std::uint32_t>(vertex));
         }
     }
+    out.triangle = std::move(order);
     return out;
 }
 

@@ -17,10 +17,11 @@ struct DrawMesh {
         std::uint32_t first, count;  // of index
     };
     // One a vertex.
-    std::vector<int> vertex_position;  // into TriMesh::position
-    std::vector<int> vertex_smooth;    // smooth group
-    std::vector<int> vertex_uv;        // into TriMesh::uv, -1 for none
-    std::vector<std::uint32_t> index;  // three a triangle
+    std::vector<int> vertex_position;     // into TriMesh::position
+    std::vector<int> vertex_smooth;       // smooth group
+    std::vector<int> vertex_uv;           // into TriMesh::uv, -1 for none
+    std::vector<std::uint32_t> index;     // three a triangle
+    std::vector<std::uint32_t> triangle;  // one a triangle: which of the mesh's
     std::vector<Range> range;
 };
 

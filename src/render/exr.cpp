@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <half.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -45,10 +46,16 @@ std::string encode_exr(int width, int height, const std::vector<ExrChannel>& cha
     try {
         Imf::Header header(width, height);
         Imf::FrameBuffer pixels;
+        std::vector<std::vector<Imath::half>> halves;
         for (const ExrChannel& channel : channels) {
-            header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
-            pixels.insert(channel.name,
-                          Imf::Slice::Make(Imf::FLOAT, channel.value.data(), header.dataWindow()));
+            const Imf::PixelType type = channel.half ? Imf::HALF : Imf::FLOAT;
+            const void* value = channel.value.data();
+            if (channel.half) {
+                halves.emplace_back(channel.value.begin(), channel.value.end());
+                value = halves.back().data();
+            }
+            header.channels().insert(channel.name, Imf::Channel(type));
+            pixels.insert(channel.name, Imf::Slice::Make(type, value, header.dataWindow()));
         }
         Imf::OutputFile file(stream, header, 0);  // no threads
         file.setFrameBuffer(pixels);

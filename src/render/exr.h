@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenEXR files of 32-bit floats, which compositors take.
+// OpenEXR files of 32-bit or 16-bit floats, which compositors take.
 #pragma once
 
 #include <string>
@@ -10,6 +10,7 @@ namespace swage {
 struct ExrChannel {
     std::string name;          // "layer.channel", up to 31 letters
     std::vector<float> value;  // width * height, rows from the top
+    bool half = false;         // 16 bits
 };
 
 // One picture of these channels, none of which has another's name. Throws Error(output).

@@ -17,11 +17,11 @@ int even(int side) { return side + side % 2; }
 // Picture and colour as players expect them; the number of threads is fixed and the bit-exact
 // ways are taken, so that the same frames give the same bytes on any machine.
 std::vector<std::string> encoder_command(const std::filesystem::path& out, int width, int height,
-                                         int frames_per_second) {
+                                         const FrameRate& rate) {
     return {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y",
             // what comes in
             "-f", "rawvideo", "-pix_fmt", "rgb24", "-s:v", fmt::format("{}x{}", width, height),
-            "-r", std::to_string(frames_per_second), "-i", "pipe:0",
+            "-r", frame_rate_ratio(rate), "-i", "pipe:0",
             // from full-range RGB to video-range BT.709
             "-vf",
             "scale=out_color_matrix=bt709:out_range=tv:"
@@ -46,7 +46,7 @@ std::vector<std::uint8_t> padded(const Image& frame) {
 
 }  // namespace
 
-Film::Film(std::filesystem::path file, int width, int height, int frames_per_second)
+Film::Film(std::filesystem::path file, int width, int height, const FrameRate& rate)
     : file_(std::move(file)), temporary_(temporary_for(file_)), width_(width), height_(height) {
     if (!program_exists("ffmpeg")) {
         give_up(
@@ -56,7 +56,7 @@ Film::Film(std::filesystem::path file, int width, int height, int frames_per_sec
     }
     try {
         encoder_ = std::make_unique<PipedProgram>(
-            encoder_command(temporary_, even(width), even(height), frames_per_second));
+            encoder_command(temporary_, even(width), even(height), rate));
     } catch (const Error& error) {
         give_up(error.what());
     }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/process.h"
+#include "render/frame_rate.h"
 #include "render/image.h"
 
 namespace swage {
@@ -15,7 +16,7 @@ class Film {
   public:
     // Frames will all have this size [pixel]. Odd sides are made even by repeating the last
     // row or column, which the common video format asks for.
-    Film(std::filesystem::path file, int width, int height, int frames_per_second);
+    Film(std::filesystem::path file, int width, int height, const FrameRate& rate);
     ~Film();  // without finish() nothing is left behind
     Film(const Film&) = delete;
     Film& operator=(const Film&) = delete;

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "render/mesh_cache.h"
-#include "render/shaders.h"
+#include "render/picture_shaders.h"
 #include "render/studio.h"
 #include "render/targets.h"
 #include "render/texture_cache.h"
@@ -106,12 +106,7 @@ struct Renderer::Parts {
           visibility_shader(gl, "screen.vert", "visibility.frag",
                             {"normal_and_depth", "shadow_depth"}),
           blur_shader(gl, "screen.vert", "blur.frag", {"visibility"}),
-          surface_shader(gl, "surface.vert", "surface.frag", {"visibility"}),
-          textured_shader(gl, "surface.vert", "surface.frag", {"visibility", "surface_texture"},
-                          "TEXTURED"),
-          ground_shader(gl, "ground.vert", "ground.frag", {"visibility"}),
-          backdrop_shader(gl, "screen.vert", "backdrop.frag"),
-          smooth_shader(gl, "screen.vert", "smooth.frag", {"picture"}),
+          surface_shaders(gl, ""),
           nothing(make_vertex_array(gl)),
           frame_buffer(make_buffer(gl)),
           shadow(make_target(gl, kShadowMapSide, kShadowMapSide, {.depth_texture = true})),
@@ -119,8 +114,6 @@ struct Renderer::Parts {
                            {.color = GL_RGBA32F, .depth_buffer = true})) {
         visibility = make_target(gl, half.width, half.height, {.color = GL_RGBA16});
         blurred = make_target(gl, half.width, half.height, {.color = GL_RGBA16});
-        plain = make_target(gl, settings.width, settings.height,
-                            {.color = GL_RGBA8, .depth_buffer = true});
         front = front_of(camera.at(0));
     }
 
@@ -134,12 +127,14 @@ struct Renderer::Parts {
     const Gl& gl;
     MeshCache meshes;
     TextureCache textures;
-    Shader shadow_shader, depth_shader, ground_depth_shader, visibility_shader, blur_shader,
-        surface_shader, textured_shader, ground_shader, backdrop_shader, smooth_shader;
+    Shader shadow_shader, depth_shader, ground_depth_shader, visibility_shader, blur_shader;
+    SurfaceShaders surface_shaders;
+    std::optional<SurfaceShaders> light_shaders;  // these and the next two when first needed
     GlHandle nothing, frame_buffer;
     Target shadow, half, visibility, blurred;
-    Target plain, sampled, smoothed, layered;  // the latter three are made when first needed
-    std::optional<Shader> layer_shader, horizon_shader;  // with the last
+    PictureTargets bytes{GL_RGBA8}, light{GL_RGBA16F};
+    Target layered;
+    std::optional<LayerShaders> layer_shaders, triangle_shaders;
     bool eye_is_outside = true;       // of the box of all that is drawn, in this picture
     Stopwatch* watch = nullptr;
 
@@ -173,10 +168,17 @@ struct Renderer::Parts {
     void draw_shadow(const std::vector<Drawable>& drawables) const;
     void draw_depth(const std::vector<Drawable>& drawables, bool ground) const;
     void draw_visibility() const;
-    void draw_surfaces(const std::vector<Drawable>& drawables, bool ground, const Target& target);
-    const Target& whole_picture(bool multisampled);
+    void draw_surfaces(const std::vector<Drawable>& drawables, bool ground, const Target& target,
+                       const SurfaceShaders& by);
+    const Target& target_of(PictureTargets& picture, bool multisampled);
+    const Target& whole_picture(PictureTargets& picture, bool multisampled, const Shader& smooth);
     Image read_back(const Target& target) const;
+    std::vector<float> read_floats(const Target& target) const;
+    std::vector<float> draw_flat(const Picture& picture, const std::vector<Drawable>& drawables,
+                                 bool ground, const LayerShaders& by);
     Layers draw_layers(const Picture& picture, const std::vector<Drawable>& drawables, bool ground);
+    std::vector<float> draw_light(const std::vector<Drawable>& drawables, bool ground,
+                                  bool multisampled);
     Image draw(const Picture& picture, Layers* layers);
 };
 
@@ -239,7 +241,7 @@ void Renderer::Parts::draw_visibility() const {
 }
 
 void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool ground,
-                                    const Target& target) {
+                                    const Target& target, const SurfaceShaders& by) {
     target.bind(gl);
     gl.Clear(GL_DEPTH_BUFFER_BIT);  // the backdrop covers every pixel
     set_unit(gl, 0, blurred.color.id());
@@ -260,7 +262,7 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
             const glm::vec4 finish(material.roughness, material.metallic,
                                    material.takes_colors ? 1 : 0, material.clear);
             const GLuint texture = range.textured ? textures.texture(material) : 0;
-            const Shader& shader = texture != 0 ? textured_shader : surface_shader;
+            const Shader& shader = texture != 0 ? by.textured : by.surface;
             shader.use();
             shader.set_matrix("stage_from_mesh", glm::value_ptr(d.stage_from_mesh));
             shader.set4("material_color", glm::value_ptr(color));
@@ -271,33 +273,48 @@ void Renderer::Parts::draw_surfaces(const std::vector<Drawable>& drawables, bool
         }
     }
     if (ground) {
-        ground_shader.use();
+        by.ground.use();
         draw_ground();
     }
     gl.DepthFunc(GL_LEQUAL);
-    backdrop_shader.use();
+    by.backdrop.use();
     cover_screen();
     gl.DepthFunc(GL_LESS);
 }
 
-const Target& Renderer::Parts::whole_picture(bool multisampled) {
+const Target& Renderer::Parts::target_of(PictureTargets& picture, bool multisampled) {
+    TargetFormat format{.color = picture.format, .depth_buffer = true};
+    if (picture.plain.width == 0) {
+        picture.plain = make_target(gl, settings.width, settings.height, format);
+    }
+    if (!multisampled) return picture.plain;
+    format.samples = kSamples;
+    if (picture.sampled.width == 0) {
+        picture.sampled = make_target(gl, settings.width, settings.height, format);
+    }
+    return picture.sampled;
+}
+
+const Target& Renderer::Parts::whole_picture(PictureTargets& picture, bool multisampled,
+                                             const Shader& smooth) {
+    const Target& plain = picture.plain;
     if (multisampled) {
-        gl.BindFramebuffer(GL_READ_FRAMEBUFFER, sampled.framebuffer.id());
+        gl.BindFramebuffer(GL_READ_FRAMEBUFFER, picture.sampled.framebuffer.id());
         gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, plain.framebuffer.id());
         gl.BlitFramebuffer(0, 0, plain.width, plain.height, 0, 0, plain.width, plain.height,
                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
         return plain;
     }
-    if (smoothed.width == 0) {
-        smoothed = make_target(gl, plain.width, plain.height, {.color = GL_RGBA8});
+    if (picture.smoothed.width == 0) {
+        picture.smoothed = make_target(gl, plain.width, plain.height, {.color = picture.format});
     }
     gl.Disable(GL_DEPTH_TEST);
-    smoothed.bind(gl);
-    smooth_shader.use();
+    picture.smoothed.bind(gl);
+    smooth.use();
     set_unit(gl, 0, plain.color.id());
     cover_screen();
     gl.Enable(GL_DEPTH_TEST);
-    return smoothed;
+    return picture.smoothed;
 }
 
 Image Renderer::Parts::read_back(const Target& target) const {
@@ -328,11 +345,20 @@ Image Renderer::Parts::read_back(const Target& target) const {
     return image;
 }
 
-Layers Renderer::Parts::draw_layers(const Picture& picture, const std::vector<Drawable>& drawables,
-                                    bool ground) {
+// Rows from below.
+std::vector<float> Renderer::Parts::read_floats(const Target& target) const {
+    std::vector<float> rgba(4 * static_cast<std::size_t>(target.width) *
+                            static_cast<std::size_t>(target.height));
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.id());
+    gl.ReadPixels(0, 0, target.width, target.height, GL_RGBA, GL_FLOAT, rgba.data());
+    if (gl.GetError() != GL_NO_ERROR) fail(ExitCode::output, "OpenGL failed to draw a picture");
+    return rgba;
+}
+
+std::vector<float> Renderer::Parts::draw_flat(const Picture& picture,
+                                              const std::vector<Drawable>& drawables, bool ground,
+                                              const LayerShaders& by) {
     if (layered.width == 0) {
-        layer_shader.emplace(gl, "surface.vert", "layers.frag");
-        horizon_shader.emplace(gl, "screen.vert", "horizon.frag");
         layered = make_target(gl, settings.width, settings.height,
                               {.color = GL_RGBA32F, .depth_buffer = true});
     }
@@ -345,13 +371,13 @@ Layers Renderer::Parts::draw_layers(const Picture& picture, const std::vector<Dr
         shader.set4("number", number);
     };
     for (const Drawable& d : drawables) {
-        set_number(*layer_shader, static_cast<int>(d.item - picture.item.data()));
-        draw_shapes(*layer_shader, {d});
+        set_number(by.layer, static_cast<int>(d.item - picture.item.data()));
+        draw_shapes(by.layer, {d});
     }
     // The ground and what stands for it go on to the horizon.
     const auto draw_plane = [&](const glm::vec4& plane, int item) {
-        set_number(*horizon_shader, item);
-        horizon_shader->set4("plane", glm::value_ptr(plane));
+        set_number(by.horizon, item);
+        by.horizon.set4("plane", glm::value_ptr(plane));
         cover_screen();
     };
     gl.DepthFunc(GL_LEQUAL);
@@ -365,11 +391,35 @@ Layers Renderer::Parts::draw_layers(const Picture& picture, const std::vector<Dr
         draw_plane(glm::vec4(0, 1, 0, height), kGroundThere);
     }
     gl.DepthFunc(GL_LESS);
-    std::vector<float> rgba(4 * static_cast<std::size_t>(layered.width) *
-                            static_cast<std::size_t>(layered.height));
-    gl.ReadPixels(0, 0, layered.width, layered.height, GL_RGBA, GL_FLOAT, rgba.data());
-    if (gl.GetError() != GL_NO_ERROR) fail(ExitCode::output, "OpenGL failed to draw a picture");
-    return layers_of(layered.width, layered.height, rgba, stage.radius);
+    return read_floats(layered);
+}
+
+Layers Renderer::Parts::draw_layers(const Picture& picture, const std::vector<Drawable>& drawables,
+                                    bool ground) {
+    if (!layer_shaders) layer_shaders.emplace(gl, "");
+    Layers layers =
+        layers_of(settings.width, settings.height,
+                  draw_flat(picture, drawables, ground, *layer_shaders), stage.radius);
+    if (!settings.has(PicturePass::motion) && !settings.has(PicturePass::piece)) return layers;
+    if (!triangle_shaders) triangle_shaders.emplace(gl, "TRIANGLES");
+    set_triangles(draw_flat(picture, drawables, ground, *triangle_shaders), layers);
+    std::vector<const DrawMesh*> drawn(picture.item.size(), nullptr);
+    for (const Drawable& d : drawables) drawn[d.item - picture.item.data()] = &d.mesh->split;
+    for (std::size_t i = 0; i < layers.triangle.size(); ++i) {
+        int& triangle = layers.triangle[i];
+        if (triangle < 0) continue;
+        const DrawMesh& split = *drawn.at(static_cast<std::size_t>(layers.item[i]));
+        triangle = static_cast<int>(split.triangle.at(static_cast<std::size_t>(triangle)));
+    }
+    return layers;
+}
+
+std::vector<float> Renderer::Parts::draw_light(const std::vector<Drawable>& drawables, bool ground,
+                                               bool multisampled) {
+    if (!light_shaders) light_shaders.emplace(gl, "LINEAR");
+    draw_surfaces(drawables, ground, target_of(light, multisampled), *light_shaders);
+    return from_above(settings.width, settings.height,
+                      read_floats(whole_picture(light, multisampled, light_shaders->smooth)));
 }
 
 Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
@@ -382,10 +432,6 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
     const bool multisampled =
         triangles <= kMostMultisampledTriangles &&
         static_cast<long>(settings.width) * settings.height <= kMostMultisampledPixels;
-    if (multisampled && sampled.width == 0) {
-        sampled = make_target(gl, settings.width, settings.height,
-                              {.color = GL_RGBA8, .depth_buffer = true, .samples = kSamples});
-    }
 
     const View view = camera.at(picture.film_share);
     eye_is_outside = (view.eye.array() < shown.low.array()).any() ||
@@ -405,13 +451,16 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
     timed("shadow", [&] { draw_shadow(drawables); });
     timed("depth", [&] { draw_depth(drawables, ground); });
     timed("visibility", [&] { draw_visibility(); });
-    timed("surfaces", [&] { draw_surfaces(drawables, ground, multisampled ? sampled : plain); });
+    timed("surfaces", [&] { draw_surfaces(drawables, ground, target_of(bytes, multisampled), surface_shaders); });
     const Target* whole = nullptr;
-    timed("resolve", [&] { whole = &whole_picture(multisampled); });
+    timed("resolve", [&] { whole = &whole_picture(bytes, multisampled, surface_shaders.smooth); });
     Image image;
     timed("read back", [&] { image = read_back(*whole); });
     if (layers != nullptr) {
         timed("layers", [&] { *layers = draw_layers(picture, drawables, ground); });
+        if (settings.has(PicturePass::beauty)) {
+            timed("light", [&] { layers->beauty = draw_light(drawables, ground, multisampled); });
+        }
     }
     return image;
 }

@@ -9,6 +9,7 @@
 
 #include "base/math.h"
 #include "matter/skin_field.h"
+#include "render/frame_rate.h"
 
 namespace swage {
 
@@ -23,9 +24,14 @@ inline constexpr std::array<const char*, 3> kGlName = {"auto", "osmesa", "egl"};
 enum class Background { studio, transparent };
 inline constexpr std::array<const char*, 2> kBackgroundName = {"studio", "transparent"};
 
-// Beside each still, without blending: how far away what is seen is, whose it is, its normal.
-enum class PicturePass { depth, matte, normal };
-inline constexpr std::array<const char*, 3> kPassName = {"depth", "matte", "normal"};  // so ordered
+// Beside each still. Without blending: how far away what is seen is, whose it is, its normal, where
+// it goes and whose piece it is; and blended as the still is, its light.
+enum class PicturePass { depth, matte, normal, motion, beauty, piece };
+inline constexpr std::array<const char*, 6> kPassName = {"depth",  "matte",  "normal",
+                                                         "motion", "beauty", "piece"};
+inline bool is_colored(PicturePass pass) {  // a PNG, with a table of its colours
+    return pass == PicturePass::matte || pass == PicturePass::piece;
+}
 
 // Where the lamp stands that throws the shadows; the others turn with it about up.
 struct LightPlace {
@@ -56,7 +62,8 @@ struct RenderSettings {
     double field_of_view = 0.6;                     // vertical, 0 to pi exclusive
     std::vector<CameraKey> camera = {CameraKey{}};  // sorted by `at`
     OpenAngles open;                                // of that
-    int frames_per_second = 30;                     // of the film, 1 to 240
+    FrameRate frame_rate;                           // of the film
+    int first_frame = 1;                            // what the first is called, from 1 on
     bool film = true;                               // also write film.mp4, of what is not clear
     bool tools = true;                              // draw tools, grips and blades
     bool ground = true;

@@ -12,7 +12,7 @@ GlHandle texture_of(const Gl& gl, int width, int height, GLenum format, GLenum l
     gl.BindTexture(GL_TEXTURE_2D, texture.id());
     gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, layout, GL_FLOAT,
                   nullptr);
-    const GLint filter = format == GL_RGBA8 ? GL_LINEAR : GL_NEAREST;
+    const GLint filter = format == GL_RGBA8 || format == GL_RGBA16F ? GL_LINEAR : GL_NEAREST;
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);

@@ -25,6 +25,13 @@ struct TargetFormat {
     int samples = 0;  // above 0: buffers for multisampling instead of textures
 };
 
+// What a picture is drawn into: samples and their mean, or what is smoothed afterwards; each is
+// made when first needed.
+struct PictureTargets {
+    GLenum format;
+    Target plain = {}, sampled = {}, smoothed = {};
+};
+
 // Throws Error(output) when the driver cannot make it.
 Target make_target(const Gl& gl, int width, int height, const TargetFormat& format);
 

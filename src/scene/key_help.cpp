@@ -201,18 +201,27 @@ const std::vector<KeyHelp>& scene_key_help() {
 
         {"[render]", "size", "of the stills", "[width, height], whole numbers up to 16384",
          "[1280, 720]"},
-        {"[render]", "fps", "frames a second of the film"},
+        {"[render]", "fps",
+         "frames a second of the film; 23.976 is exactly 24000/1001, and so the others"},
+        {"[render]", "first_frame",
+         "number of the first still, the start, in the names of stills, passes and meshes of every "
+         "frame, as a time code of USD and in --frames; curves, run.json and what is told count "
+         "from 1"},
         {"[render]", "film", "write film.mp4 too"},
         {"[render]", "tools", "draw tools, grips and blades"},
         {"[render]", "ground", "draw a ground under it all; false hides an endless floor too"},
         {"[render]", "legend", "put a scale of what color shows on the stills"},
         {"[render]", "background",
-         "transparent: stills have alpha (straight, to be laid over sRGB bytes), of the ground only "
+         "transparent: stills have alpha (straight, to be laid over sRGB bytes), of the ground "
+         "only "
          "its shadows, and there is no film"},
         {"[render]", "passes",
          "files beside each still, for compositing, without blending at edges: depth (EXR, metres "
          "along the view), matte (PNG, a colour for each body, tool and the ground, which "
-         "mattes.json names), normal (EXR, by the world's axes)"},
+         "mattes.json names), normal (EXR, by the world's axes), motion (EXR, pixels to the next "
+         "still, forward, and the one before, backward; y up), piece (PNG, as matte, a colour for "
+         "each piece of a body, which pieces.json names); and blended as the still is, beauty "
+         "(EXR, its light before the tone curve, premultiplied)"},
         {"[render]", "gl", "who draws"},
         {"[render]",
          "color",

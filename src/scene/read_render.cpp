@@ -38,6 +38,31 @@ void read_size(TableReader& table, RenderSettings& settings) {
     }
 }
 
+void read_frame_rate(TableReader& table, FrameRate& rate) {
+    table.describe("fps", kFrameRateForm, frame_rate_text(rate));
+    const Node* node = table.find("fps");
+    if (node == nullptr) return;
+    std::optional<FrameRate> known;
+    std::string said;
+    if (node->kind == Node::Kind::text && node->text.find('/') != std::string::npos) {
+        known = frame_rate_named(node->text);
+        said = '"' + node->text + '"';
+    } else {
+        double value = 0;
+        if (!table.value("fps", *node, Quantity::number, between(1, kMostFramesPerSecond), value)) {
+            return;
+        }
+        known = frame_rate_of(value);
+        said = fmt::format("{}", value);
+    }
+    if (known) {
+        rate = *known;
+    } else {
+        table.mistake("fps", fmt::format("fps = {} is no rate of films: it has to be a {}", said,
+                                         kFrameRateForm));
+    }
+}
+
 // Whether the table says it; with `open`, "auto" says nothing.
 bool read_angle(TableReader& table, const std::string& key, const Range& range, double& into,
                 bool* open) {
@@ -138,7 +163,8 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera, OpenAngles&
 
 void read_render(TableReader& table, RenderSettings& settings) {
     read_size(table, settings);
-    table.whole("fps", 1, 240, settings.frames_per_second);
+    read_frame_rate(table, settings.frame_rate);
+    table.whole("first_frame", 1, kLargestFirstFrame, settings.first_frame);
     const bool says_film = table.truth("film", settings.film);
     table.truth("tools", settings.tools);
     table.truth("ground", settings.ground);

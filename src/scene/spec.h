@@ -85,7 +85,7 @@ struct StageSpec {
     // The work frame's x, forward or automatic (longest side of the box), and y.
     WorldAxis axis = WorldAxis::automatic, up = WorldAxis::automatic;
     int frames = 60;      // >= 1
-    double duration = 0;  // [s] of machine time; 0: frames / frames_per_second
+    double duration = 0;  // [s] of machine time; 0: frames / frame_rate
     bool remold = false;  // mold the deformed mesh anew before this stage
     SimSettings sim;
     std::string said;  // what the scene says of it (told() in scene/document.h)
@@ -118,7 +118,7 @@ struct SceneSpec {
     }
     double duration_of(const StageSpec& of) const {  // [s]
         return of.duration > 0 ? of.duration
-                               : static_cast<double>(of.frames) / render.frames_per_second;
+                               : static_cast<double>(of.frames) / render.frame_rate.value();
     }
     RenderSettings render;
     OutputSpec output;

@@ -41,6 +41,7 @@ const std::map<std::string, std::string> kOtherNames = {
     {"cells", "across"},
     {"fov", "field_of_view"},
     {"frame_rate", "fps"},
+    {"start_frame", "first_frame"},
     {"path", "file"},
     {"type", "kind"},
     {"width", "size"},

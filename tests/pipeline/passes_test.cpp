@@ -5,6 +5,7 @@
 #include <set>
 
 #include "geometry/box_mesh.h"
+#include "geometry/mesh_edit.h"
 #include "pipeline/draw.h"
 #include "pipeline/json.h"
 #include "pipeline/render_directory.h"
@@ -73,7 +74,8 @@ TEST_CASE("every pixel of a matte is of one of those that its table names") {
     if (!can_draw()) return;
     const TwoStages run;
     run.draw();
-    const Json table = Json::parse(test::bytes_of(run.files().mattes())).at("mattes");
+    const Json table =
+        Json::parse(test::bytes_of(run.files().table(PicturePass::matte))).at("mattes");
     std::map<Color, std::string> name;
     for (const Json& one : table) {
         const std::string of_stage =
@@ -125,5 +127,80 @@ TEST_CASE("passes change no still, and go when others are drawn in their place")
     run.settings.passes.clear();
     CHECK(draw({2, 2}) == 6);  // a still, four passes and their table
     CHECK(test::bytes_of(run.files().still(2)) == still);
-    CHECK_FALSE(fs::exists(run.files().mattes()));
+    CHECK_FALSE(fs::exists(run.files().table(PicturePass::matte)));
+}
+
+TEST_CASE(
+    "a piece that comes off has a colour of its own from then on, and its body's until then") {
+    if (!can_draw()) return;
+    TwoStages run;
+    run.settings.passes = {PicturePass::piece, PicturePass::matte};
+    const auto halves = [](double apart) {
+        TriMesh mesh = box_mesh(Vec3(-0.5 - apart, 0, -0.5), Vec3(-apart, 1, 0.5));
+        const TriMesh right = box_mesh(Vec3(apart, 0, -0.5), Vec3(0.4 + apart, 1, 0.5));
+        append_mesh(mesh, right);
+        return mesh;
+    };
+    {
+        FrameStoreWriter writer(run.store());
+        const TriMesh whole = box_mesh(Vec3(-0.5, 0, -0.5), Vec3(0.4, 1, 0.5));
+        writer.add_skin(whole);
+        writer.add_skin(halves(0));
+        writer.add_machine({});
+        for (int f = 1; f <= kFrames; ++f) {
+            StoredFrame now;
+            now.body = {{f < kSecond ? 0 : 1,
+                         f < kSecond ? whole.position : halves(0.2 * (f - 2)).position}};
+            writer.add_frame(now);
+        }
+        writer.finish();
+    }
+    run.draw();
+    const Json pieces =
+        Json::parse(test::bytes_of(run.files().table(PicturePass::piece))).at("pieces");
+    std::vector<Color> color;
+    for (const Json& one : pieces) {
+        if (one.at("is") != "piece") continue;
+        CHECK(one.at("name") == "left");
+        CHECK(one.at("piece") == color.size() + 1);
+        CHECK(one.at("from_frame") == (color.empty() ? 1 : kSecond));
+        color.push_back(one.at("color").get<Color>());
+    }
+    REQUIRE(color.size() == 2);
+    for (int f = 1; f <= kFrames; ++f) {
+        const Image piece = read_image(run.files().pass(f, PicturePass::piece));
+        const Image matte = read_image(run.files().pass(f, PicturePass::matte));
+        std::array<int, 2> seen{};
+        int is_body = 0;
+        for (std::size_t i = 0; i < piece.rgb.size(); i += 3) {
+            const Color here = {piece.rgb[i], piece.rgb[i + 1], piece.rgb[i + 2]};
+            const Color whose = {matte.rgb[i], matte.rgb[i + 1], matte.rgb[i + 2]};
+            for (std::size_t p = 0; p < 2; ++p) seen[p] += here == color[p];
+            is_body += whose == color[0];
+        }
+        INFO(f);
+        CHECK(seen[0] > 300);
+        CHECK((seen[1] > 300) == (f >= kSecond));
+        CHECK(seen[0] + seen[1] == is_body);
+        if (f < kSecond) CHECK(piece.rgb == matte.rgb);
+    }
+}
+
+TEST_CASE("frames are called from the first one's number on, and so are their passes") {
+    if (!can_draw()) return;
+    TwoStages run;
+    run.settings.first_frame = 998;
+    const DrawnFiles files{run.out(), 998};
+    Stopwatch watch;
+    draw_run(FrameStore(run.store()), run.settings, {2, kFrames}, files, watch, run.names);
+    CHECK(files.still(2).filename() == "frame_0999.png");
+    CHECK(files.pass(4, PicturePass::depth).filename() == "frame_1001.depth.exr");
+    for (int f = 2; f <= kFrames; ++f) CHECK(fs::exists(files.still(f)));
+    // What is drawn under other numbers next takes their place.
+    const RenderDirectory directory(run.out(), true, 1);
+    run.settings.first_frame = 1;
+    run.draw({1, 1});
+    CHECK(directory.remove_others({1, 1}, false, run.settings.passes) == 9);
+    CHECK_FALSE(fs::exists(files.still(2)));
+    CHECK(fs::exists(run.files().still(1)));
 }

@@ -73,7 +73,7 @@ struct Motion {
     UsdScene scene{"two-falls", {"a body", "a-body", "3rd"}};
 
     Motion() {
-        scene.render.frames_per_second = 24;
+        scene.render.frame_rate = {24, 1};
         const fs::path texture = scratch.path() / "spots of it.png";
         std::ofstream(texture) << "\x89PNG of spots";
         skin = {pyramid(texture), cut_pyramid(texture), colored()};

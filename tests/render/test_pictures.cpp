@@ -177,7 +177,7 @@ TEST_CASE("a film appears under its name when whole, with the same bytes each ti
     }
     const Folder folder;
     const auto make = [&](const fs::path& file, int width, int height) {
-        Film film(file, width, height, 30);
+        Film film(file, width, height, FrameRate{});
         for (unsigned i = 0; i < 12; ++i) film.add(pattern(width, height, i));
         CHECK_FALSE(fs::exists(file));
         return film.finish();
@@ -194,27 +194,27 @@ TEST_CASE("a film appears under its name when whole, with the same bytes each ti
 TEST_CASE("a film that cannot be made is a warning and leaves nothing behind", "[film]") {
     const Folder folder;
     {
-        Film film(folder.path / "no_such_folder/a.mp4", 64, 48, 30);
+        Film film(folder.path / "no_such_folder/a.mp4", 64, 48, FrameRate{});
         for (unsigned i = 0; i < 200; ++i) film.add(pattern(64, 48, i));
         CHECK_FALSE(film.finish());
     }
     {
-        Film unfinished(folder.path / "b.mp4", 64, 48, 30);
+        Film unfinished(folder.path / "b.mp4", 64, 48, FrameRate{});
         unfinished.add(pattern(64, 48));
     }
     {
-        Film empty(folder.path / "c.mp4", 64, 48, 30);
+        Film empty(folder.path / "c.mp4", 64, 48, FrameRate{});
         CHECK_FALSE(empty.finish());
     }
     const std::string path = std::getenv("PATH");
     ::setenv("PATH", folder.path.c_str(), 1);
     {
-        Film film(folder.path / "d.mp4", 64, 48, 30);
+        Film film(folder.path / "d.mp4", 64, 48, FrameRate{});
         film.add(pattern(64, 48));
         CHECK_FALSE(film.finish());
     }
     ::setenv("PATH", path.c_str(), 1);
     CHECK(fs::is_empty(folder.path));
-    Film film(folder.path / "e.mp4", 64, 48, 30);
+    Film film(folder.path / "e.mp4", 64, 48, FrameRate{});
     CHECK_THROWS_AS(film.add(pattern(48, 64)), Error);
 }

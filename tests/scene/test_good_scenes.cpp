@@ -214,7 +214,7 @@ meshes_per_frame = true
     CHECK(scene.stage.at(1).sim.gravity == Vec3(0, -2, -1));
     CHECK(scene.render.width == 1);
     CHECK(scene.render.height == 16384);
-    CHECK(scene.render.frames_per_second == 24);
+    CHECK(scene.render.frame_rate == FrameRate{24, 1});
     CHECK_FALSE(scene.render.film);
     CHECK_FALSE(scene.render.tools);
     CHECK_FALSE(scene.render.ground);

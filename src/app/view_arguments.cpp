@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/view_arguments.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <tuple>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "pipeline/render_record.h"
+#include "render/camera_change.h"
+
+namespace swage {
+
+namespace {
+
+constexpr const char* kAuto = "auto";
+
+// An angle of the camera, or "auto".
+CLI::Validator angle_or_auto(double low, double high) {
+    return CLI::Validator(
+        [low, high](const std::string& text) {
+            if (text == kAuto) return std::string();
+            char* end = nullptr;
+            const double angle = std::strtod(text.c_str(), &end);
+            if (text.empty() || *end != '\0' || !std::isfinite(angle)) {
+                return "\"" + text + "\" is no angle: give degrees, or auto";
+            }
+            return angle < low || angle > high
+                       ? fmt::format("{} is out of range: {:g} to {:g}, or auto", text, low, high)
+                       : std::string();
+        },
+        "");
+}
+
+}  // namespace
+
+const CLI::Validator kFinite(
+    [](const std::string& text) {
+        char* end = nullptr;
+        return std::isfinite(std::strtod(text.c_str(), &end)) ? std::string()
+                                                              : text + " is no finite number";
+    },
+    "");
+
+void set_view(const ViewArguments& given, RenderSettings& settings) {
+    constexpr double kDegree = kPi / 180;
+    if (!given.size.empty()) std::tie(settings.width, settings.height) = parse_size(given.size);
+    if (given.field_of_view) settings.field_of_view = *given.field_of_view * kDegree;
+    const auto radians = [&](const std::optional<double>& degrees) {
+        return degrees ? std::optional(*degrees * kDegree) : std::nullopt;
+    };
+    // As where nobody says: the usual one, which gives way to where more is seen.
+    const auto angle = [&](const std::string& text, double usual, bool& open) {
+        if (text.empty()) return std::optional<double>();
+        open = text == kAuto;
+        return std::optional(open ? usual : std::strtod(text.c_str(), nullptr) * kDegree);
+    };
+    const CameraKey usual;
+    const auto place = [](const std::vector<double>& p) { return Vec3(p[0], p[1], p[2]); };
+    CameraChange change{angle(given.azimuth, usual.azimuth, settings.open.azimuth),
+                        angle(given.elevation, usual.elevation, settings.open.elevation),
+                        given.zoom, radians(given.turn)};
+    if (given.eye.empty() && !given.target.empty()) change.target = place(given.target);
+    if (change.any() && stands_at_eye(settings.camera)) {
+        log_info("the scene's eye and target give way to the camera that is asked for");
+    }
+    settings.camera = changed_camera(std::move(settings.camera), change);
+    if (!given.eye.empty()) {
+        settings.open = {};
+        CameraKey key;
+        key.eye = place(given.eye);
+        key.target = place(given.target);
+        if (key.eye == key.target) {
+            fail(ExitCode::command_line, "--camera-eye and --camera-target are the same point");
+        }
+        settings.camera.assign(1, key);
+    }
+    if (!given.up.empty()) settings.up = up_named(given.up);
+    if (given.light_azimuth) settings.light.azimuth = *given.light_azimuth * kDegree;
+    if (given.light_elevation) settings.light.elevation = *given.light_elevation * kDegree;
+}
+
+void add_view_arguments(CLI::App& command, ViewArguments& given) {
+    command
+        .add_option(
+            "--camera-azimuth", given.azimuth,
+            "where the camera stands about the upward axis, at the film's start: 0 is +z "
+            "and 90 +x, or with z up +x and +y. What the scene has it do from there on "
+            "(orbit, keys) it does; an eye and target of the scene give way to this and "
+            "the next three, and to a target alone. auto: chosen, as swage keys render.camera "
+            "tells")
+        ->check(angle_or_auto(-1e9, 1e9))
+        ->type_name("DEG|auto");
+    command
+        .add_option("--camera-elevation", given.elevation,
+                    "how high it stands, all through the film. Of these two, what neither the "
+                    "scene nor this gives is chosen as if auto stood here")
+        ->check(angle_or_auto(-90, 90))
+        ->type_name("DEG|auto");
+    command.add_option("--camera-zoom", given.zoom, "2 is twice as near, all through the film")
+        ->check(kFinite & CLI::Range(0.01, 1000.0));
+    command
+        .add_option("--camera-turn", given.turn,
+                    "how far it goes round during the film; whole turns (360) go at one pace, and "
+                    "their last still is a step short of the first, so that the film can be shown "
+                    "round and round")
+        ->check(kFinite)
+        ->type_name("DEG");
+    CLI::Option* eye = command.add_option(
+        "--camera-eye", given.eye,
+        "where the camera stands [m], all through the film, instead of all these and of what the "
+        "scene says of it; needs a target");
+    CLI::Option* target =
+        command.add_option("--camera-target", given.target,
+                           "what it looks at [m], from the eye, or without one from where the "
+                           "others say, as far away as what shows the whole action");
+    for (CLI::Option* place : {eye, target}) place->expected(3)->check(kFinite)->type_name("X Y Z");
+    eye->needs(target);
+    for (const char* other :
+         {"--camera-azimuth", "--camera-elevation", "--camera-zoom", "--camera-turn"}) {
+        eye->excludes(command.get_option(other));
+    }
+    command.add_option("--camera-up", given.up, "what the pictures have upward")
+        ->check(CLI::IsMember({"x", "y", "z"}));
+    command
+        .add_option("--light-azimuth", given.light_azimuth,
+                    "where the lamp stands that throws the shadows, from the film's first view "
+                    "toward its right; -45.8 where the scene says nothing")
+        ->check(kFinite)
+        ->type_name("DEG");
+    command
+        .add_option("--light-elevation", given.light_elevation,
+                    "how high it stands; 51.6 where the scene says nothing")
+        ->check(kFinite & CLI::Range(5.0, 90.0))
+        ->type_name("DEG");
+    command.add_option("--field-of-view", given.field_of_view, "vertical")
+        ->check(kFinite & CLI::Range(1.0, 170.0))
+        ->type_name("DEG");
+    command.add_option("--size", given.size, "of a still in pixels (default: as the scene says)")
+        ->type_name("WxH")
+        ->each([](const std::string& text) { parse_size(text); });
+}
+
+}  // namespace swage

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/piece_track.h"
+
+#include <set>
+
+#include "geometry/box_mesh.h"
+#include "tests/catch.h"
+#include "tests/pipeline/scratch.h"
+
+using namespace swage;
+
+namespace {
+
+// Boxes beside each other along x, from each end to the next.
+TriMesh boxes(const std::vector<std::pair<double, double>>& ends) {
+    TriMesh all;
+    for (const auto& [from, to] : ends) {
+        const TriMesh one = box_mesh(Vec3(from, 0, 0), Vec3(to, 1, 1));
+        const int first = static_cast<int>(all.position.size());
+        all.position.insert(all.position.end(), one.position.begin(), one.position.end());
+        for (const Corners& c : one.triangle) {
+            all.triangle.push_back({c[0] + first, c[1] + first, c[2] + first});
+        }
+    }
+    return all;
+}
+
+constexpr int kTrianglesOfBox = 12;
+
+// The piece of each box of such a mesh.
+std::vector<int> of_boxes(const PieceTrack& track, int skin, const TriMesh& mesh) {
+    const std::vector<int> of_triangle = track.of_triangles(0, skin, mesh);
+    std::vector<int> piece;
+    for (std::size_t t = 0; t < of_triangle.size(); ++t) {
+        if (t % kTrianglesOfBox == 0) piece.push_back(of_triangle[t]);
+        CHECK(of_triangle[t] == piece.back());
+    }
+    return piece;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a piece keeps its number, in whatever order a skin has it, and parts of it get new ones") {
+    const Scratch scratch;
+    const std::vector<TriMesh> skins = {
+        boxes({{0, 10}}), boxes({{0, 4}, {4, 10}}), boxes({{0, 4}, {9, 10}, {4, 9}}),
+        boxes({{9, 10}, {4, 9}, {0, 1}, {1, 4}}), boxes({{0, 1}, {1, 9}, {9, 10}})};
+    {
+        FrameStoreWriter writer(scratch.path() / "motion.bin");
+        writer.add_machine({});
+        for (const TriMesh& skin : skins) {
+            const int id = writer.add_skin(skin);
+            for (int n = 0; n < 2; ++n) {  // fallen a long way meanwhile
+                StoredFrame frame;
+                frame.body = {{id, skin.position}};
+                for (Vec3& p : frame.body[0].position) p.y() -= 7 * id + n;
+                writer.add_frame(frame);
+            }
+        }
+        writer.finish();
+    }
+    const FrameStore store(scratch.path() / "motion.bin");
+    const PieceTrack track(store);
+    CHECK(of_boxes(track, 0, skins[0]) == std::vector<int>{0});
+    CHECK(of_boxes(track, 1, skins[1]) == std::vector<int>{1, 0});
+    CHECK(of_boxes(track, 2, skins[2]) == std::vector<int>{1, 2, 0});
+    CHECK(of_boxes(track, 3, skins[3]) == std::vector<int>{2, 0, 3, 1});
+    // Joined again: that of the larger part.
+    CHECK(of_boxes(track, 4, skins[4]) == std::vector<int>{3, 0, 2});
+    CHECK(track.count(0) == 4);
+    CHECK(track.first_frame(0, 0) == 1);
+    CHECK(track.first_frame(0, 1) == 3);
+    CHECK(track.first_frame(0, 3) == 7);
+}
+
+TEST_CASE("a body of several shells is one piece as it starts") {
+    const Scratch scratch;
+    const TriMesh two = boxes({{0, 1}, {2, 5}}), three = boxes({{0, 1}, {2, 3}, {3, 5}});
+    {
+        FrameStoreWriter writer(scratch.path() / "motion.bin");
+        writer.add_machine({});
+        for (const TriMesh* skin : {&two, &three}) {
+            StoredFrame frame;
+            frame.body = {{writer.add_skin(*skin), skin->position}};
+            writer.add_frame(frame);
+        }
+        writer.finish();
+    }
+    const PieceTrack track{FrameStore(scratch.path() / "motion.bin")};
+    CHECK(of_boxes(track, 0, two) == std::vector<int>{0, 0});
+    CHECK(of_boxes(track, 1, three) == std::vector<int>{0, 1, 0});
+}
