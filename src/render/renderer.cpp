@@ -451,7 +451,9 @@ Image Renderer::Parts::draw(const Picture& picture, Layers* layers) {
     timed("shadow", [&] { draw_shadow(drawables); });
     timed("depth", [&] { draw_depth(drawables, ground); });
     timed("visibility", [&] { draw_visibility(); });
-    timed("surfaces", [&] { draw_surfaces(drawables, ground, target_of(bytes, multisampled), surface_shaders); });
+    timed("surfaces", [&] {
+        draw_surfaces(drawables, ground, target_of(bytes, multisampled), surface_shaders);
+    });
     const Target* whole = nullptr;
     timed("resolve", [&] { whole = &whole_picture(bytes, multisampled, surface_shaders.smooth); });
     Image image;
