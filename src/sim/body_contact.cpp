@@ -9,29 +9,14 @@
 #include "base/parallel.h"
 #include "geometry/box.h"
 #include "geometry/disjoint_sets.h"
+#include "sim/contact_shares.h"
 
 namespace swage {
 
 namespace {
 
 constexpr double kWay = 0.45;              // spacings that anything may go between searches
-constexpr double kLeastShare = 1e-3;       // of a way, so that its points keep a stiffness
 constexpr std::size_t kThreadShare = 128;  // contacts that a thread is worth waking for
-
-// What of its own springs' doing a way has in that of both, from what either would hold alone.
-double share_of(double one, double other) {
-    const double most = std::max(one, other);
-    if (!(most > 0)) return 0.5;
-    const auto square = [](double x) { return x * x; };
-    const double part = one / most;
-    const double mean =
-        std::sqrt(std::sqrt(0.5 * (square(square(part)) + square(square(other / most)))));
-    return (0.5 * part * square(part / mean) / mean + kLeastShare) / (1 + 2 * kLeastShare);
-}
-
-double held_by_both(double one, double other) {
-    return share_of(one, other) * one + share_of(other, one) * other;
-}
 
 double box_gap(const Box& a, const Box& b) {
     return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
@@ -188,7 +173,7 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     for (std::size_t w : awake) {
         const ContactWay::Held& own = held[w];
         if (pair_[w].back == w) {
-            way_[w].push(0.5, 0.5 * own.gone, 0.5 * own.turned);
+            way_[w].push_own();
             continue;
         }
         const ContactWay::Held& other = held[pair_[w].back];
@@ -213,7 +198,10 @@ void BodyContact::add_forces(const std::vector<Vec3Array*>& force, const Vec3& g
     // is kept, and more that friction took; the next step found energy that came from nowhere.
     for (std::size_t w : awake) {
         const std::size_t back = pair_[w].back;
-        if (back == w) continue;
+        if (back == w) {
+            way_[w].keep_own();
+            continue;
+        }
         const double own = way_[w].kept(), other = way_[back].kept();
         const double counted = share_of(held[w].now, held[back].now) * own +
                                share_of(held[back].now, held[w].now) * other;

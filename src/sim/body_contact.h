@@ -16,7 +16,7 @@
 // so no round trip gains. NOTE: p = 1, half each always, leaves the corner half of its stiffness;
 // the larger of both, p = infinity, would swing between them: where the two go against each other
 // the springs are 2p - 1 times as stiff. A thousandth of (E_1 + E_2) / 2 is added, so that all
-// points keep a stiffness. A body with itself has one way, and half.
+// points keep a stiffness. A body with itself has one way, which sim/own_shares.h parts in pairs.
 //
 // Of two materials friction, static friction and stickiness are the means (S2.8), restitution is
 // shared by laws/impact.h.

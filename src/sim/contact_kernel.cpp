@@ -128,7 +128,7 @@ struct ContactWay::Kernel {
     // All that does not depend on forces.
     SWAGE_INLINE void prepare(const Contact& contact, const ContactMemory& last,
                               const CellCorners& corner, const CellGradient& gradient, double step,
-                              Meeting& at, Chunk& sums) const {
+                              Meeting& at, Chunk& sums, Held& sum) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
         at.now = Vec4{};
         for (int c = 0; c < contact.carriers; ++c) {
@@ -156,7 +156,7 @@ struct ContactWay::Kernel {
                 held *= std::sqrt(2 * last.held / (k * left));
             } else {
                 held = Vec4{};
-                sums.held.turned += last.held;
+                sum.turned += last.held;
             }
             at.reach = turned(back) + held;
             const Vec4 along = k * (at.reach - dot3(at.normal, at.reach) * at.normal);
@@ -168,8 +168,8 @@ struct ContactWay::Kernel {
             at.spring += size > limit ? limit / size * along : along;
         }
         at.spring[3] = k;
-        sums.held.now += 0.5 / k * dot3(at.spring, at.spring);
-        if (push > k * at.depth()) sums.held.now += push * (at.depth() - push / k);
+        sum.now += 0.5 / k * dot3(at.spring, at.spring);
+        if (push > k * at.depth()) sum.now += push * (at.depth() - push / k);
     }
 
     // Whether an earlier contact of its point has come into the same cell by another way: of one
@@ -198,18 +198,39 @@ struct ContactWay::Kernel {
             const CellId was = contact.cell;
             CellCorners corner(b, contact);
             CellGradient gradient;
+            Held& held = kOwn ? way.own_held_[n] : result.held;
+            if (kOwn) held = {};
             find<kOwn>(contact, last, way.plane_.empty() ? nullptr : &way.plane_[n], corner,
                        gradient, at);
             if (contact.cell != was) result.moved.push_back(static_cast<int>(n));
             if (at.meets() && is_twice(begin, n)) at.forget();
             result.is_met = result.is_met || (at.meets() && !last.history.touches);
-            if (!at.is_known()) result.held.gone += last.stored;
-            if (!at.meets() && !last.history.touches && contact.dashed.isZero(0)) continue;
-            prepare(contact, last, corner, gradient, step, at, result);
-            if (at.is_known() && !at.meets()) result.held.gone += last.bound;
+            if (!at.is_known()) held.gone += last.stored;
+            if (at.meets() || last.history.touches || !contact.dashed.isZero(0)) {
+                prepare(contact, last, corner, gradient, step, at, result, held);
+                if (at.is_known() && !at.meets()) held.gone += last.bound;
+            }
+            if (kOwn) {
+                const bool does = at.meets() || held.gone != 0 || held.turned != 0;
+                way.own_spot_[n] = does ? way.own_.spot_of(way.own_way(contact)) : OwnSpot{};
+            }
         }
     }
 
+    // What its springs do; of one body its share of it, and by the slope of that.
+    template <bool kOwn>
+    SWAGE_INLINE Vec4 push_of(std::size_t n) const {
+        const Meeting& at = way.meeting_[n];
+        if (!kOwn) return at.spring;
+        const Vec4 f = way.own_.share(n) * at.spring;
+        if (!way.own_.slopes(n)) return f;
+        const Vec3 slope = way.own_held_[n].now * way.own_.slope(n);
+        Vec4 by = slope[0] * at.inverse[0] + slope[1] * at.inverse[1] + slope[2] * at.inverse[2];
+        by[3] = 0;
+        return f - by;
+    }
+
+    template <bool kOwn>
     SWAGE_INLINE void push_chunk(std::size_t chunk) const {
         Pushed &point = way.point_push_, &cell = way.cell_push_;
         const std::size_t end = way.begin_of(chunk + 1);
@@ -217,7 +238,7 @@ struct ContactWay::Kernel {
             const Contact& contact = way.list_.contact[n];
             if (!way.meeting_[n].meets()) continue;
             const std::array<double, 8> weight = trilinear_weights(contact.place);
-            const Vec4 f = way.meeting_[n].spring;
+            const Vec4 f = push_of<kOwn>(n);
             for (int c = 0; c < contact.carriers; ++c) {
                 point.force[contact.carrier[c] - point.low].value +=
                     share_lanes(contact.share[c]) * f;
@@ -229,7 +250,7 @@ struct ContactWay::Kernel {
     }
 
     SWAGE_INLINE ImpactForce impact(const Contact& contact, const ContactMemory& last,
-                                    const Meeting& at, double step) const {
+                                    const Meeting& at, double share, double step) const {
         const std::array<double, 8> weight = trilinear_weights(contact.place);
         Vec4 push{};  // of all but dashpots, over the mass
         for (int c = 0; c < contact.carriers; ++c) {
@@ -242,11 +263,11 @@ struct ContactWay::Kernel {
                 std::max(beside, way.met_[std::size_t(contact.carrier[c] - way.point_push_.low)]);
         }
         ImpactLaw law = way.law_;
-        law.stiffness = way.share_ * at.stiffness();
-        law.hold = way.share_ * way.hold_[contact.point];
+        law.stiffness = share * at.stiffness();
+        law.hold = share * way.hold_[contact.point];
         const double give = push[3] / law.stiffness;
         // The law takes its own spring off again.
-        push -= give * way.share_ * at.spring;
+        push -= give * share * at.spring;
         return impact_force(law,
                             {.depth = at.depth(),
                              .normal = vec3(at.normal),
@@ -261,14 +282,15 @@ struct ContactWay::Kernel {
 
     // Of what has touched when last committed, and is still where it was then.
     SWAGE_INLINE ImpactForce same_as(const Contact& contact, const ContactMemory& last,
-                                     const Meeting& at) const {
-        ImpactForce f = impact_as_found(way.share_ * at.stiffness(), at.depth(),
-                                        way.share_ * way.hold_[contact.point], vec3(at.normal),
-                                        vec3(at.reach), contact.dashed, last.bond);
+                                     const Meeting& at, double share) const {
+        ImpactForce f =
+            impact_as_found(share * at.stiffness(), at.depth(), share * way.hold_[contact.point],
+                            vec3(at.normal), vec3(at.reach), contact.dashed, last.bond);
         f.history = last.history;
         return f;  // `bound` is found with what is kept
     }
 
+    template <bool kOwn>
     SWAGE_INLINE void respond_chunk(std::size_t chunk, double step, bool again) const {
         ContactSums& sums = way.chunk_[chunk].sums = {};
         double& kept = way.chunk_[chunk].kept = 0;
@@ -278,20 +300,22 @@ struct ContactWay::Kernel {
             const ContactMemory& last = way.list_.memory[n];
             Meeting& at = way.meeting_[n];
             ContactMemory& next = way.next_[n];
+            const double share = kOwn ? way.own_.share(n) : way.share_;
             ImpactForce f;
             if (at.meets()) {
-                f = again && last.history.touches ? same_as(contact, last, at)
-                                                  : impact(contact, last, at, step);
-                at.spring = vec4(f.force) - way.share_ * at.spring;
+                f = again && last.history.touches ? same_as(contact, last, at, share)
+                                                  : impact(contact, last, at, share, step);
+                at.spring = vec4(f.force) - share * at.spring;
             }
             next.history = f.history;
             next.bond = f.bond;
-            next.stiffness = way.share_ * at.stiffness();
+            next.stiffness = share * at.stiffness();
             next.sunk = at.sunk();
             next.pressed = at.stretch() * at.depth();
             next.soft = at.soft();
-            next.stored = f.stored / way.share_;
+            next.stored = f.stored / share;
             kept += next.stored;
+            if (kOwn) way.own_held_[n].now = next.stored;
             next.is_new = !at.is_known() && (last.is_new || !way.is_static());
             contact.dashed = f.force - f.elastic;
             next.bound = 0;
@@ -313,7 +337,7 @@ struct ContactWay::Kernel {
                     const double was = k * last.soft / next.soft;
                     const double hold = way.hold_[contact.point], depth = at.depth();
                     sums.damped +=
-                        0.5 * way.share_ *
+                        0.5 * share *
                         (0.5 * (was - k) * dot3(reach, reach) + spring_energy(was, depth, hold) -
                          spring_energy(k, depth, hold));
                 }
@@ -342,18 +366,21 @@ struct ContactWay::Kernel {
 
 void ContactWay::find_chunk(std::size_t chunk, double step) {
     by_fours([&]() __attribute__((always_inline)) {
-        from_ == onto_ ? Kernel{*this}.find_chunk<true>(chunk, step)
-                       : Kernel{*this}.find_chunk<false>(chunk, step);
+        is_own() ? Kernel{*this}.find_chunk<true>(chunk, step)
+                 : Kernel{*this}.find_chunk<false>(chunk, step);
     });
 }
 
 void ContactWay::push_chunk(std::size_t chunk) {
-    by_fours([&]() __attribute__((always_inline)) { Kernel{*this}.push_chunk(chunk); });
+    by_fours([&]() __attribute__((always_inline)) {
+        is_own() ? Kernel{*this}.push_chunk<true>(chunk) : Kernel{*this}.push_chunk<false>(chunk);
+    });
 }
 
 void ContactWay::respond_chunk(std::size_t chunk, double step, bool again) {
     by_fours([&]() __attribute__((always_inline)) {
-        Kernel{*this}.respond_chunk(chunk, step, again);
+        is_own() ? Kernel{*this}.respond_chunk<true>(chunk, step, again)
+                 : Kernel{*this}.respond_chunk<false>(chunk, step, again);
     });
 }
 

@@ -28,6 +28,9 @@ class ContactSide {
     // The body's own; those of new surface come after them.
     std::size_t own_points() const { return touch_.own(); }
     bool meets(int point) const { return touch_.meets(point); }
+    // Of matter/touch_points.h.
+    const Vec3i& home(int point) const { return touch_.home()[std::size_t(point)]; }
+    bool is_loose(int point) const { return touch_.is_loose(point); }
     Vec3 position(int point) const {
         return points().position(std::size_t(point), matter_->particle_position);
     }
@@ -64,7 +67,8 @@ class ContactSide {
     OwnShare own_share(int point, const Vec3i& site, const Vec3& place) const;
     // Whether a point meets next to nothing in this cell and around it.
     bool is_own_place(int point, const Vec3i& site) const;
-    // Whether the point is within four cells of this one on each axis, and connected to it within these.
+    // Whether the point is within four cells of this one on each axis, and connected to it within
+    // these.
     bool is_neighbour(int point, const Vec3i& site) const;
 
     template <typename Io>

@@ -44,7 +44,8 @@ ContactWay::ContactWay(ContactSide& from, ContactSide& onto, const SimSettings& 
     : from_(&from),
       onto_(&onto),
       solver_(settings.solver),
-      scale_(settings.stiffness_of_contacts()) {
+      scale_(settings.stiffness_of_contacts()),
+      own_(from.matter().lattice.cell_count) {
     const Material &m = from.matter().material, &n = onto.matter().material;
     const double soft = surface_modulus(from.matter(), settings.solver) /
                         from.matter().lattice.spacing,
@@ -74,6 +75,7 @@ void ContactWay::part() {
     stiffness_ = stiffest_ = hold_ = {};
     point_push_ = cell_push_ = {};
     sums_ = {};
+    own_gone_ = {};
     gone_ = broken_ = turned_ = kept_ = 0;
     is_found_ = false;
 }
@@ -82,7 +84,13 @@ void ContactWay::keep_contacts(const std::function<bool(int point)>& meets) {
     std::size_t kept = 0;
     for (std::size_t n = 0; n < list_.size(); ++n) {
         if (!meets(list_.contact[n].point)) {
-            gone_ += list_.memory[n].stored;
+            const Contact& contact = list_.contact[n];
+            const double stored = list_.memory[n].stored;
+            if (!is_own()) {
+                gone_ += stored;
+            } else if (stored != 0) {
+                own_gone_.push_back({own_way(contact), stored});
+            }
             continue;
         }
         list_.contact[kept] = list_.contact[n];
@@ -102,6 +110,7 @@ void ContactWay::restore(const State& state) {
     list_ = state.contacts;
     leave_out_let_be();
     gone_ = state.gone;
+    own_gone_ = state.own_gone;
     has_changed_ = state.has_changed;
     begins_ = state.begins;
     is_found_ = false;
@@ -181,6 +190,10 @@ void ContactWay::Pushed::add_to(ContactPatch& patch, double share) const {
 
 void ContactWay::begin_meeting() {
     meeting_.resize(list_.size());
+    if (is_own()) {
+        own_spot_.resize(list_.size());
+        own_held_.resize(list_.size());
+    }
     chunk_.resize(chunks_of(list_.size(), kChunk));
     for (Pushed* pushed : {&point_push_, &cell_push_}) {
         pushed->force.assign(std::size_t(pushed->high - pushed->low + 1), {});
@@ -214,6 +227,7 @@ void ContactWay::press_chunk(std::size_t chunk, Held& held) {
             cell_push_.take(slot);
         }
     }
+    if (is_own()) return;
     push_chunk(chunk);
     held.now += chunk_[chunk].held.now;
     held.gone += chunk_[chunk].held.gone;
@@ -247,6 +261,35 @@ void ContactWay::push(double share, double gone, double turned) {
     turned_ = turned;
     point_push_.add_to(from_->patch(), share);
     cell_push_.add_to(onto_->patch(), share);
+}
+
+void ContactWay::share_own() {
+    own_.begin(list_.size());
+    for (std::size_t n = 0; n < list_.size(); ++n) {
+        if (own_spot_[n].box == OwnSpot::kMixed) {
+            own_.add_mixed(own_way(list_.contact[n]), own_held_[n]);
+        } else {
+            own_.add(own_spot_[n], own_held_[n]);
+        }
+    }
+    for (const OwnGone& gone : own_gone_) own_.add_mixed(gone.way, {.gone = gone.held});
+    own_gone_.clear();
+    const Held all = own_.find();
+    broken_ = all.gone;
+    turned_ = all.turned;
+}
+
+void ContactWay::push_own() {
+    share_own();
+    for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) push_chunk(chunk);
+    point_push_.add_to(from_->patch(), 1);
+    cell_push_.add_to(onto_->patch(), 1);
+}
+
+void ContactWay::keep_own() {
+    if (!(law_.holding > 0)) return;
+    for (std::size_t n = 0; n < list_.size(); ++n) own_.keep(n, own_held_[n].now);
+    keep_more(own_.kept_more());
 }
 
 void ContactWay::begin_response(bool again) {

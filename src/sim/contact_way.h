@@ -27,6 +27,7 @@
 
 #include "sim/contact_list.h"
 #include "sim/held_point.h"
+#include "sim/own_shares.h"
 #include "sim/settings.h"
 
 namespace swage {
@@ -47,9 +48,10 @@ class ContactWay {
     struct State {
         ContactList contacts;
         double gone = 0;  // held by what is gone and not yet booked [J]
+        std::vector<OwnGone> own_gone;
         bool has_changed = false, begins = true;
     };
-    State save() const { return {list_, gone_, has_changed_, begins_}; }
+    State save() const { return {list_, gone_, own_gone_, has_changed_, begins_}; }
     void restore(const State& state);
     // Finds what is nearer than `margin` [m]; what touches stays.
     void search(double margin);
@@ -62,18 +64,17 @@ class ContactWay {
 
     // How each point lies and moves now, for a step of this length [s]: of all ways at once.
     void find(double step);
-    // What springs would do if this way were alone. What they would hold then, what those held that
-    // have ended since, and what those let go where the surface turned away from where points
-    // stick [J].
-    struct Held {
-        double now = 0, gone = 0, turned = 0;
-    };
+    // What springs would do, and hold, if this way were alone. Of a body with itself push_own()
+    // asks.
+    using Held = ContactHeld;
     Held press();
     // Both, for one thread: what it has just found is pressed while it is near.
     Held find_and_press(double step);
     // Adds this share of it. Half of what both ways hold less for what is gone, and for what the
     // surface turned away from [J].
     void push(double share, double gone, double turned);
+    // Of a body with itself: the share of each (sim/own_shares.h).
+    void push_own();
     // Dashpots and friction, given what all springs do. `again`: as they were when last committed.
     void respond(double step, bool again);
     // Adds what they do.
@@ -84,6 +85,7 @@ class ContactWay {
     double kept() const { return kept_; }
     // What friction has let go of is less by this [J].
     void keep_more(double energy);
+    void keep_own();  // of a body with itself
     // Adds what its contacts can add to the stiffness of its one body's particles [N/m], about.
     void add_stiffness(std::vector<double>& stiffness) const;
     // Of its one body, what pressed when forces were last found, and still stands in the list.
@@ -106,11 +108,12 @@ class ContactWay {
     template <typename Io>
     void visit(Io& io) {  // what steps change
         io(has_changed_, begins_, stiffness_, stiffest_, hold_, is_let_be_, share_, gone_, broken_,
-           turned_, kept_, list_, meeting_, next_, plane_, is_found_, point_push_, cell_push_, met_,
-           sums_);
+           turned_, kept_, own_gone_, list_, meeting_, next_, plane_, is_found_, point_push_,
+           cell_push_, met_, sums_);
     }
 
   private:
+    bool is_own() const { return from_ == onto_; }
     // Nothing has a speed.
     bool is_static() const { return solver_ == Solver::quasistatic; }
     bool is_near() const { return !stiffness_.empty(); }
@@ -193,6 +196,11 @@ class ContactWay {
     // Where a chunk of contacts begins: a point's own stay together where several may end in one
     // cell.
     std::size_t begin_of(std::size_t chunk) const;
+    OwnWay own_way(const Contact& contact) const {
+        return {from_->home(contact.point), from_->is_loose(contact.point),
+                contact.site.cast<double>() + contact.place};
+    }
+    void share_own();
     void begin_meeting();
     void press_chunk(std::size_t chunk, Held& held);
     void find_chunk(std::size_t chunk, double step);
@@ -215,6 +223,10 @@ class ContactWay {
     double gone_ = 0;                                        // Held::gone, of points, so far [J]
     double broken_ = 0, turned_ = 0;                         // push()
     double kept_ = 0;                                        // kept()
+    OwnShares own_;                                          // of a body with itself, as are
+    std::vector<OwnSpot> own_spot_{};
+    std::vector<Held> own_held_{};       // of each contact
+    std::vector<OwnGone> own_gone_{};    // and in gone_'s place
     ContactList list_, spare_{};         // the spare one keeps its room for the next search
     std::vector<Meeting> meeting_{};     // of each contact
     std::vector<ContactMemory> next_{};  // to commit
