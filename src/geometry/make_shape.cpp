@@ -28,7 +28,7 @@ ShapeParameter length_of(std::string name, double value, std::string help) {
 
 ShapeParameter division_of(double value, double low, double high,
                            std::string along = "the length") {
-    return {"division", ParameterKind::count, value, low, high, "edges along " + along};
+    return {"division", ParameterKind::count, value, low, high, "number of edges along " + along};
 }
 
 SurfaceMaterial finish(std::string name, const Vec3& color, double roughness, double metallic) {
@@ -45,10 +45,10 @@ constexpr double kSharp = 35 * kPi / 180;
 std::vector<Entry> make_entries() {
     std::vector<Entry> all;
     all.push_back({{"bar",
-                    "a bar with round edges",
-                    {length_of("length", 0.2, "along x"),
-                     length_of("height", 0.02, "along y"),
-                     length_of("width", 0.02, "along z"),
+                    "a bar with rounded edges",
+                    {length_of("length", 0.2, "length along x"),
+                     length_of("height", 0.02, "size along y"),
+                     length_of("width", 0.02, "size along z"),
                      {"rounding", ParameterKind::length, 0.0015, 0, 1e3, "radius of the edges"},
                      division_of(60, 1, 2000)}},
                    make_bar,
@@ -57,28 +57,30 @@ std::vector<Entry> make_entries() {
                    kSharp});
     all.push_back({{"rod",
                     "a round rod",
-                    {length_of("length", 0.2, "along x"), length_of("diameter", 0.02, "across"),
-                     division_of(64, 1, 2000)}},
+                    {length_of("length", 0.2, "length along x"),
+                     length_of("diameter", 0.02, "across"), division_of(64, 1, 2000)}},
                    make_rod,
                    {},
                    finish("brass", {0.84, 0.63, 0.25}, 0.30, 1.0),
                    kSharp});
-    all.push_back({{"tube",
-                    "a hollow rod",
-                    {length_of("length", 0.2, "along x"), length_of("diameter", 0.03, "outer"),
-                     length_of("wall", 0.0035, "thickness of the wall"), division_of(56, 1, 2000)}},
-                   make_tube,
-                   {},
-                   finish("copper", {0.86, 0.47, 0.33}, 0.32, 1.0),
-                   kSharp});
-    all.push_back({{"sheet",
-                    "a flat sheet",
-                    {length_of("length", 0.2, "along x"), length_of("width", 0.1, "along z"),
-                     length_of("thickness", 0.004, "along y"), division_of(52, 1, 1000)}},
-                   make_sheet,
-                   {},
-                   finish("aluminium", {0.80, 0.81, 0.83}, 0.38, 1.0),
-                   kSharp});
+    all.push_back(
+        {{"tube",
+          "a hollow rod",
+          {length_of("length", 0.2, "length along x"), length_of("diameter", 0.03, "outer"),
+           length_of("wall", 0.0035, "thickness of the wall"), division_of(56, 1, 2000)}},
+         make_tube,
+         {},
+         finish("copper", {0.86, 0.47, 0.33}, 0.32, 1.0),
+         kSharp});
+    all.push_back(
+        {{"sheet",
+          "a flat sheet",
+          {length_of("length", 0.2, "length along x"), length_of("width", 0.1, "size along z"),
+           length_of("thickness", 0.004, "size along y"), division_of(52, 1, 1000)}},
+         make_sheet,
+         {},
+         finish("aluminium", {0.80, 0.81, 0.83}, 0.38, 1.0),
+         kSharp});
     all.push_back(
         {{"sphere",
           "a ball of even quads",
@@ -89,16 +91,16 @@ std::vector<Entry> make_entries() {
          kPi});
     all.push_back({{"wrench",
                     "a wrench with a ring and an open jaw",
-                    {length_of("length", 0.18, "along x"), division_of(100, 40, 400)}},
+                    {length_of("length", 0.18, "length along x"), division_of(100, 40, 400)}},
                    make_wrench,
                    {},
                    finish("chrome steel", {0.66, 0.67, 0.69}, 0.24, 1.0),
                    kPi});
     all.push_back({{"gear",
                     "a spur gear with involute teeth, hub, web and bore, its axis along y",
-                    {length_of("diameter", 0.1, "over the teeth"),
+                    {length_of("diameter", 0.1, "outer diameter, over the teeth"),
                      length_of("bore", 0.02, "diameter of the hole"),
-                     length_of("width", 0.016, "along y"),
+                     length_of("width", 0.016, "size along y"),
                      {"teeth", ParameterKind::count, 18, 8, 200, "number of teeth"},
                      division_of(30, 8, 1000, "the diameter")}},
                    make_gear,
@@ -107,16 +109,17 @@ std::vector<Entry> make_entries() {
                    kSharp});
     all.push_back({{"plate-with-handles",
                     "a shallow tray with a loop at either end",
-                    {length_of("length", 0.25, "along x"), division_of(58, 24, 400)}},
+                    {length_of("length", 0.25, "length along x"), division_of(58, 24, 400)}},
                    make_plate_with_handles,
                    {},
                    finish("enamel", {0.05, 0.20, 0.42}, 0.28, 0.0),
                    kPi});
     all.push_back({{"calf",
-                    "a young cow with its coat painted on",
-                    {length_of("length", 1.0, "along x"),
+                    "a young cow with a painted coat",
+                    {length_of("length", 1.0, "length along x"),
                      division_of(38, 20, 200, "its length, on the trunk"),
-                     {"texture", ParameterKind::count, 1024, 64, 4096, "texels a side"}}},
+                     {"texture", ParameterKind::count, 1024, 64, 4096,
+                      "texels along each side of the texture"}}},
                    {},
                    make_calf,
                    {},
@@ -216,7 +219,7 @@ MadeShape make_shape(const std::string& name, const std::map<std::string, double
         tidy(made.mesh);
         return made;
     }
-    fail(ExitCode::command_line, "there is no shape \"{}\"; there are {}", name,
+    fail(ExitCode::command_line, "there is no shape \"{}\"; choose from {}", name,
          names_of(shape_catalogue()));
 }
 

@@ -114,8 +114,8 @@ class Settler {
         if (dropped == 0) return;
         if (dropped == shells_.size())
             fail(ExitCode::mesh,
-                 "the surface is closed and encloses no volume: a sheet given from "
-                 "both sides; give it thickness first (in Blender: the Solidify modifier)");
+                 "the surface is closed but encloses no volume: a sheet with two sides; give it "
+                 "thickness first (in Blender: the Solidify modifier)");
         std::erase_if(shells_, [](const Shell& s) { return s.mesh.triangle.empty(); });
         changed_ = true;
         account_.push_back(fmt::format("left out {} of {} that enclose nothing",
@@ -140,14 +140,15 @@ class Settler {
                     close.emplace_back(std::min(by_x[i], by_x[j]), std::max(by_x[i], by_x[j]));
                 if (close.size() > kMostClose)
                     return fmt::format(
-                        "more than {} pairs of its parts lie so close that one may be in the other",
+                        "more than {} pairs of its parts are so close that one may be inside the "
+                        "other",
                         kMostClose);
             }
         std::sort(close.begin(), close.end());
         std::vector<int> of;
         const TriMesh near = triangles_near_others(close, of);
         const auto meeting = parts_that_meet(near, of, kMostLooked);
-        if (!meeting) return "its parts run too closely among each other to tell where they meet";
+        if (!meeting) return "its parts are too closely interleaved to tell where they meet";
         if (meeting->size() > kMostMeeting)
             return fmt::format("more than {} pairs of its parts cross or touch each other",
                                kMostMeeting);
@@ -259,10 +260,9 @@ class Settler {
         }
         if (dropped == 0) return;
         changed_ = true;
-        account_.push_back(
-            fmt::format("left out {} inside others of the same sense: that volume ({}) was "
-                        "counted twice",
-                        counted(dropped, "surface", "surfaces"), volume_text(volume)));
+        account_.push_back(fmt::format(
+            "left out {} inside others of the same orientation: that volume ({}) was counted twice",
+            counted(dropped, "surface", "surfaces"), volume_text(volume)));
     }
 
     // The body that an inward shell is a cavity of; an outward one is its own.

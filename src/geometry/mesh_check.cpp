@@ -110,7 +110,8 @@ void add_findings(MeshReport& report) {
     };
     say(report.boundary_edges, "edge", "edges", " at the border of a hole or an open sheet");
     say(report.crowded_edges, "edge", "edges", " shared by more than two triangles");
-    say(report.disagreeing_edges, "edge", "edges", " whose triangles disagree on the outside");
+    say(report.disagreeing_edges, "edge", "edges",
+        " whose triangles disagree on which side is outside");
     if (report.crowded_edges == 0)
         say(report.crowded_vertices, "vertex", "vertices", " where separate surfaces touch");
     say(report.degenerate_triangles, "triangle", "triangles", " without area");
@@ -204,7 +205,7 @@ std::string summary_line(const MeshReport& report) {
                                   counted(report.boundary_edges, "border edge", "border edges"))
                     : "not closed";
     } else if (!report.oriented) {
-        state = "closed, its faces disagree on the outside";
+        state = "closed, but its faces disagree on which side is outside";
     } else if (report.volume < 0) {
         state = "closed, inside out";
     }

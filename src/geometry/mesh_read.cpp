@@ -182,7 +182,7 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
     const FileHandle opened = open_checked(file, limits);
     MeshSource source;
     if (!format_of(file, source.format))
-        fail(ExitCode::mesh, "{}: '{}' is no kind of mesh that can be read ({})", name,
+        fail(ExitCode::mesh, "{}: '{}' is not a mesh format that can be read ({})", name,
              file.extension().string(), kMeshKinds);
     source.file = fs::absolute(file).lexically_normal();
     source.file_bytes = limits.file_bytes;
@@ -190,7 +190,8 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
 
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0)
-        fail(ExitCode::resources, "{}: no pipe to read it through: {}", name, std::strerror(errno));
+        fail(ExitCode::resources, "{}: cannot open a pipe to read it: {}", name,
+             std::strerror(errno));
     const FileHandle from_child(ends[0]);
     FileHandle to_parent(ends[1]);
     const std::uint64_t memory_limit = address_space_in_use() + limits.memory_bytes;
@@ -198,7 +199,8 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
     expect_children();
     const pid_t child = ::fork();
     if (child < 0)
-        fail(ExitCode::resources, "{}: no process to read it in: {}", name, std::strerror(errno));
+        fail(ExitCode::resources, "{}: cannot start a process to read it: {}", name,
+             std::strerror(errno));
     if (child == 0) run_child(source, to_parent.id(), opened.id(), limits, memory_limit, parent);
     to_parent.close();
     std::string bytes;
@@ -211,7 +213,7 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
     if (!in_time) ::kill(child, SIGKILL);
     const std::optional<int> ended = wait_for(child);
     if (!ended)
-        fail(ExitCode::resources, "{}: nobody knows how its reader ended: {}", name,
+        fail(ExitCode::resources, "{}: cannot tell how its reader ended: {}", name,
              std::strerror(errno));
     throw_if_interrupted();  // which a terminal tells the reader too
     const int outcome = *ended;
@@ -232,7 +234,7 @@ TriMesh read_with(const fs::path& file, const ReadLimits& limits, const Make& ma
              ::strsignal(signal));
     }
     if (bytes.empty() || (bytes[0] != kMeshFollows && bytes[0] != kReasonFollows))
-        fail(ExitCode::mesh, "{}: the file is damaged: its reader gave up without a word", name);
+        fail(ExitCode::mesh, "{}: the file is damaged: its reader ended without a message", name);
     const std::string_view body = std::string_view(bytes).substr(1);
     if (bytes[0] == kReasonFollows) fail(ExitCode::mesh, "{}: {}", name, body);
     try {

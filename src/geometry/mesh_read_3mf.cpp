@@ -65,7 +65,7 @@ double unit_of(const xml_node& model) {
         {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1}};
     const std::string_view name = attribute_of(model, "unit").as_string("millimeter");
     const auto found = units.find(name);
-    if (found == units.end()) fail(ExitCode::mesh, "'{}' is no unit of 3MF", name);
+    if (found == units.end()) fail(ExitCode::mesh, "'{}' is not a unit of 3MF", name);
     return found->second;
 }
 
@@ -81,16 +81,14 @@ void check_extensions(const xml_node& model) {
             is_known = is_known || name.find(known) != std::string_view::npos;
         if (!is_known)
             fail(ExitCode::mesh,
-                 "to be read rightly it asks for the extension {}, which is not known here; save "
-                 "it without",
-                 name);
+                 "it requires the extension {}, which is not supported; save it without", name);
     }
 }
 
 long long id_of(std::string_view text) {
     long long id = 0;
     if (!to_integer(trimmed(text), id) || id < 0 || id > 0x7fffffff)
-        fail(ExitCode::mesh, "'{}' is no number of a resource", text.substr(0, 40));
+        fail(ExitCode::mesh, "'{}' is not a resource number", text.substr(0, 40));
     return id;
 }
 
@@ -216,15 +214,15 @@ class ModelMerge {
         const xml_node model = document_.last_child();
         check_extensions(model);
         if (unit_of(model) != unit_)
-            fail(ExitCode::mesh, "its part '{}' has another unit than the model", name);
+            fail(ExitCode::mesh, "its part '{}' has a different unit from the model", name);
         visit_elements(model, [&](const xml_node& element) {
             has_beams_ = has_beams_ || name_of(element) == "beamlattice";
             if (name_of(element) == "component" && attribute_of(element, "path"))
-                fail(ExitCode::mesh, "its part '{}' names a further part", name);
+                fail(ExitCode::mesh, "its part '{}' refers to another part", name);
         });
         const xml_node resources = child_of(model, "resources");
         if (!resources.first_child())
-            fail(ExitCode::mesh, "its part '{}' holds no resources", name);
+            fail(ExitCode::mesh, "its part '{}' contains no resources", name);
         visit_elements(resources, [&](const xml_node& element) {
             for (xml_attribute one : element.attributes()) shift_ids(one, shift);
         });

@@ -137,9 +137,9 @@ class SceneReader {
     SceneReader(MeshSource& source, const aiScene& scene) : source_(source), scene_(scene) {}
 
     RawMesh read() {
-        if (scene_.mRootNode == nullptr) fail(ExitCode::mesh, "the file holds no scene");
+        if (scene_.mRootNode == nullptr) fail(ExitCode::mesh, "the file contains no scene");
         visit(*scene_.mRootNode, aiMatrix4x4());
-        if (polygons_.size() == 0) fail(ExitCode::mesh, "the file holds no faces");
+        if (polygons_.size() == 0) fail(ExitCode::mesh, "the file contains no faces");
         read_materials();
         mesh_.at_vertices = 1;
         if (mesh_.part_name.size() == 1 && !is_named_) {
@@ -153,11 +153,11 @@ class SceneReader {
         };
         say(lines_and_points_ > 0, "lines and points were left out");
         say(has_bones_ || scene_.mNumAnimations > 0,
-            "bones and animations are not followed: the mesh stands as it was modelled");
+            "bones and animations are ignored: the mesh has its modelled pose");
         say(has_shapes_, "morph targets were left out");
         say(more_uv_,
-            "of several sets of texture coordinates only the one that the colour's image lies by "
-            "was read");
+            "of several sets of texture coordinates only the one used by the colour image was "
+            "read");
         say(more_color_, "only the first set of vertex colours was read");
         add_polygons(polygons_, mesh_);
         return std::move(mesh_);
@@ -370,7 +370,7 @@ class SceneReader {
         float value = 0;
         if (has_surface_map) {  // the factors mean little without the image they multiply
             source_.finding.push_back(fmt::format(
-                "material '{}': its image of metal and roughness was left out", to.name));
+                "material '{}': its image of metalness and roughness was left out", to.name));
         } else {
             if (from.Get(AI_MATKEY_METALLIC_FACTOR, value) == AI_SUCCESS) to.metallic = value;
             if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, value) == AI_SUCCESS) to.roughness = value;
@@ -386,7 +386,7 @@ class SceneReader {
                 (transform.mScaling != aiVector2D(1, 1) ||
                  transform.mTranslation != aiVector2D(0, 0) || transform.mRotation != 0))
                 source_.finding.push_back(fmt::format(
-                    "material '{}': the shift and scale of its texture were left out", to.name));
+                    "material '{}': the offset and scale of its texture were left out", to.name));
             // An image stands in the place of a colour there, and assimp makes one up.
             if (source_.format == MeshFormat::dae) to.color = Vec3::Ones();
             take_texture(to);

@@ -100,7 +100,7 @@ void tell_of_picture(const RawMaterial& material, MeshSource& source) {
             ? ""
             : fmt::format(" '{}'", fs::path(material.texture).filename().string());
     source.finding.push_back(fmt::format(
-        "material '{}': its image{} is of the kind {}, and drawn are PNG, JPEG, BMP and TGA",
+        "material '{}': its image{} is of type {}; only PNG, JPEG, BMP and TGA are drawn",
         material.name, name, kind->name));
 }
 
@@ -129,9 +129,9 @@ RawMesh read_raw(MeshSource& source) {
             mesh.material.push_back({.name = "material", .color = Vec3::Ones()});
             mesh.material[0].texture = image.string();
             mesh.triangle_material.assign(mesh.triangle.size(), 0);
-            source.finding.push_back(fmt::format(
-                "it names no material; the image beside it, {}, is taken for its texture",
-                image.filename().string()));
+            source.finding.push_back(
+                fmt::format("it names no material; the image beside it, {}, is used as its texture",
+                            image.filename().string()));
         }
     }
     mesh.finding.insert(mesh.finding.begin(), source.finding.begin(), source.finding.end());
@@ -175,10 +175,9 @@ std::string unlike_sentence(Unlike how, std::size_t count, const std::string& na
     struct Words {
         const char *one, *many, *drawn;
     };
-    const Words words = how == Unlike::clear
-                            ? Words{"lets light through", "let light through", "opaque"}
+    const Words words = how == Unlike::clear ? Words{"transmits light", "transmit light", "opaque"}
                         : how == Unlike::bright
-                            ? Words{"shines by itself", "shine by themselves", "without that light"}
+                            ? Words{"emits light", "emit light", "without that light"}
                             : Words{"does not repeat its image beyond the borders",
                                     "do not repeat their images beyond the borders", "repeated"};
     const std::string shown = name.substr(0, 40);

@@ -95,12 +95,11 @@ class GltfPatch {
             add_to(is_of_looks ? unlike : unknown, name);
         }
         if (!unknown.empty())
-            fail(ExitCode::mesh,
-                 "to be read rightly it asks for {}, which is not known here; save it without",
+            fail(ExitCode::mesh, "it requires {}, which is not supported; save it without",
                  unknown);
         if (!unlike.empty())
-            source_.finding.push_back(fmt::format(
-                "it asks for {}, which is not followed: it may look otherwise", unlike));
+            source_.finding.push_back(
+                fmt::format("it uses {}, which is not supported: it may look different", unlike));
     }
 
     template <typename Test>
@@ -189,7 +188,7 @@ class GltfPatch {
         if (accessor.value("componentType", 0) == kFloat) return;
         if (packed)
             fail(ExitCode::mesh,
-                 "{} is of whole numbers within {}, which cannot be read; save it without", name,
+                 "{} is stored as integers within {}, which cannot be read; save it without", name,
                  kDraco);
         const std::vector<float> value = values_of(accessor);
         const std::size_t bytes = value.size() * sizeof(float);
@@ -379,13 +378,14 @@ class GltfPatch {
         const auto length = view.at("byteLength").get<std::size_t>();
         const auto offset = from.value("byteOffset", std::size_t{0});
         const std::size_t item = size_of(type) * width;
-        if (item == 0) fail(ExitCode::mesh, "components of type {} mean nothing", type);
+        if (item == 0) fail(ExitCode::mesh, "components of type {} are invalid", type);
         const std::size_t stride = view.value("byteStride", item);
         const bool fits = start <= buffer.size() && length <= buffer.size() - start &&
                           stride >= item && stride <= 255 &&
                           (count == 0 || (item <= length && offset <= length - item &&
                                           count - 1 <= (length - item - offset) / stride));
-        if (!fits) fail(ExitCode::mesh, "buffer view {} holds less than is read from it", view_id);
+        if (!fits)
+            fail(ExitCode::mesh, "buffer view {} is shorter than what is read from it", view_id);
         return {buffer.data() + start + offset, stride};
     }
 
@@ -398,7 +398,7 @@ class GltfPatch {
             at->second = first_chunk(rest_);
         } else if (uri.starts_with("data:")) {
             const std::size_t comma = uri.find(',');
-            if (comma == std::string::npos) fail(ExitCode::mesh, "buffer {} holds nothing", id);
+            if (comma == std::string::npos) fail(ExitCode::mesh, "buffer {} is empty", id);
             at->second = from_base64(std::string_view(uri).substr(comma + 1));
         } else {
             auto bytes = file_contents(source_.file.parent_path() / uri, source_.file_bytes);

@@ -38,8 +38,8 @@ class ObjReader {
     RawMesh read() {
         std::string_view text = source_.bytes;
         if (const std::size_t at = text.find('\0'); at != std::string_view::npos)
-            fail(ExitCode::mesh, "byte {} is zero, so this is no text: not an OBJ file, or damaged",
-                 at);
+            fail(ExitCode::mesh,
+                 "byte {} is zero, so this is not text: not an OBJ file, or damaged", at);
         if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
         std::string_view line;
         std::string joined;

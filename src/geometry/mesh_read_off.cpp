@@ -34,9 +34,9 @@ class OffReader {
         };
         if (more > 0)
             source_.finding.push_back(counted(more, "line", "lines") +
-                                      " beyond what its header counts left out");
+                                      " beyond the count in its header left out");
         say(has_more_, "further values of its vertices were left out");
-        say(has_color_numbers_, "colours given as numbers of a colour map were left out");
+        say(has_color_numbers_, "colours given as indices into a colour map were left out");
         say(has_two_colors_, "its faces' colours were left out: its vertices have their own");
         add_polygons(polygons_, mesh_);
         return std::move(mesh_);
@@ -69,7 +69,7 @@ class OffReader {
             has_normal_ = announces("N");
             is_weighted_ = announces("4");
             if (announces("n"))
-                fail(ExitCode::mesh, "vertices of any number of dimensions (nOFF) are not read");
+                fail(ExitCode::mesh, "vertices of arbitrary dimension (nOFF) cannot be read");
             if (!head.empty()) fail(ExitCode::mesh, "'{}OFF' is not known", head.substr(0, 40));
             if (trimmed(words).empty()) {
                 if (!next()) fail(ExitCode::mesh, kNoCounts);
@@ -77,11 +77,11 @@ class OffReader {
             }
             head = next_word(words);
         }
-        if (head == "BINARY") fail(ExitCode::mesh, "binary OFF is not read");
+        if (head == "BINARY") fail(ExitCode::mesh, "binary OFF cannot be read");
         if (!to_integer(head, vertices_) || !to_integer(next_word(words), faces_))
             fail(ExitCode::mesh, kNoCounts);
         if (vertices_ < 0 || faces_ < 0)
-            fail(ExitCode::mesh, "its header counts {} vertices and {} faces", vertices_, faces_);
+            fail(ExitCode::mesh, "its header gives {} vertices and {} faces", vertices_, faces_);
     }
 
     // Of vertex or face `id`, the numbers that are left on its line.
@@ -128,11 +128,11 @@ class OffReader {
         if (!next()) fail(ExitCode::mesh, "the file ends early, at face {} of {}", f, faces_);
         long long corners = 0, index = 0;
         if (!to_integer(next_word(line_), corners) || corners < 0)
-            fail(ExitCode::mesh, "face {}: no number of corners", f);
+            fail(ExitCode::mesh, "face {}: the number of corners is missing", f);
         for (; corners > 0; --corners) {
             const std::string_view word = next_word(line_);
             if (!to_integer(word, index) || index < 0 || index >= vertices_)
-                fail(ExitCode::mesh, "face {}: '{}' is no vertex (there are {})", f,
+                fail(ExitCode::mesh, "face {}: '{}' is not a vertex (there are {})", f,
                      word.substr(0, 40), vertices_);
             const int v = static_cast<int>(index);
             polygons_.add_corner(v, has_uv_ ? v : -1, has_normal_ ? v : -1);

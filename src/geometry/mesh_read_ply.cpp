@@ -49,7 +49,7 @@ Number number_type(std::string_view word) {
         {"float64", Number::float64}};
     for (const auto& [name, type] : kNames)
         if (word == name) return type;
-    fail(ExitCode::mesh, "the header has a number type '{}' that PLY does not know",
+    fail(ExitCode::mesh, "the header has a number type '{}' that PLY does not define",
          word.substr(0, 40));
 }
 
@@ -63,7 +63,7 @@ class PlyReader {
             const std::uint64_t least = least_bytes(element);
             if (least > 0 && element.count > rest_.size() / least + 1)
                 fail(ExitCode::mesh,
-                     "the header promises {} of '{}', the file is too short for them",
+                     "the header gives {} of '{}', but the file is too short for them",
                      element.count, element.name);
             if (element.name == "vertex") {
                 read_vertices(element);
@@ -96,7 +96,7 @@ class PlyReader {
             lines += !trimmed(line).empty();
         source_.finding.push_back(
             (ascii_ ? counted(lines, "line", "lines") : counted(rest_.size(), "byte", "bytes")) +
-            " beyond what its header counts left out");
+            " beyond the count in its header left out");
     }
 
     void read_header() {
@@ -126,7 +126,7 @@ class PlyReader {
                 element.name = next_word(words);
                 long long count = -1;
                 if (!to_integer(next_word(words), count) || count < 0 || count > 0x7fffffff)
-                    fail(ExitCode::mesh, "the header's line '{}' has no sane count",
+                    fail(ExitCode::mesh, "the header's line '{}' has no valid count",
                          line.substr(0, 80));
                 element.count = static_cast<std::uint64_t>(count);
                 element_.push_back(std::move(element));
@@ -216,8 +216,7 @@ class PlyReader {
     // Text may give a number with a fraction where only a whole one means something.
     static void check_whole(const Element& element, std::uint64_t item, double value) {
         if (std::isfinite(value) && value != std::floor(value))
-            fail(ExitCode::mesh, "{} {}: {} stands where a whole number is wanted", element.name,
-                 item, value);
+            fail(ExitCode::mesh, "{} {}: {} is not a whole number", element.name, item, value);
     }
 
     // Calls f(item, scalars, lists) for each item; scalars and lists by property.
@@ -306,10 +305,9 @@ class PlyReader {
             fail(ExitCode::mesh, "the faces have no list 'vertex_indices'");
         const int uv = element.find({"texcoord"}), texture = element.find({"texnumber"});
         if (texture_.size() > 1 && texture < 0)
-            source_.finding.emplace_back(
-                fmt::format("{} textures are named, and no face says which is its own: the first "
-                            "was taken",
-                            texture_.size()));
+            source_.finding.emplace_back(fmt::format(
+                "{} textures are named, but no face says which it uses: the first was taken",
+                texture_.size()));
         if (element.find({"red", "r", "diffuse_red"}) >= 0)
             source_.finding.emplace_back(
                 "colours of faces were left out (those of vertices are read)");

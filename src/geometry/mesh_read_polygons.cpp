@@ -14,7 +14,7 @@ void add_polygons(const PolygonList& polygons, RawMesh& mesh) {
     };
     const auto check = [&](std::size_t p, int index, std::size_t count, const char* what) {
         if (index >= static_cast<long long>(count))
-            fail(ExitCode::mesh, "{}: {} {} is used, there are only {}", where(p), what,
+            fail(ExitCode::mesh, "{}: {} {} is used, but there are only {}", where(p), what,
                  static_cast<long long>(index) + 1, count);
     };
     const auto any = [](const std::vector<int>& ids) {
@@ -66,8 +66,7 @@ void add_polygons(const PolygonList& polygons, RawMesh& mesh) {
             fmt::format("{} faces of fewer than three different corners were left out", thin));
     if (crossed > 0)
         mesh.finding.push_back(fmt::format(
-            "{} polygons cross themselves; they were cut into triangles as well as may be",
-            crossed));
+            "{} polygons cross themselves; they were triangulated as well as possible", crossed));
 }
 
 }  // namespace swage

@@ -100,9 +100,9 @@ void check_raw(const RawMesh& mesh) {
         }
     const double largest = std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff());
     if (largest > kLargest)
-        fail(ExitCode::mesh, "a coordinate of {:g} m is beyond all sense", largest);
+        fail(ExitCode::mesh, "a coordinate of {:g} m is unreasonably large", largest);
     if (box.size().norm() < kSmallest)
-        fail(ExitCode::mesh, "the whole mesh is only {:g} m large", box.size().norm());
+        fail(ExitCode::mesh, "the whole mesh is only {:g} m in size", box.size().norm());
     // Of normals only those that are numbers count.
     for (const Vec2& t : mesh.uv)
         if (!t.allFinite()) fail(ExitCode::mesh, "a texture coordinate is not finite");

@@ -67,10 +67,9 @@ class StlText {
 
     [[noreturn]] void refuse(std::string_view word, const char* what) const {
         if (word.empty())
-            fail(ExitCode::mesh, "it breaks off after facet {}, where {} should stand", facets_,
-                 what);
+            fail(ExitCode::mesh, "it ends after facet {}, where {} was expected", facets_, what);
         const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(at_);
-        fail(ExitCode::mesh, "line {}: '{}' where {} should stand",
+        fail(ExitCode::mesh, "line {}: '{}' where {} was expected",
              1 + std::count(bytes_.begin(), end, '\n'), word.substr(0, 40), what);
     }
 
@@ -122,8 +121,8 @@ void settle_binary_stl(MeshSource& source, std::uint64_t size) {
     std::string& bytes = source.bytes;
     if (size > bytes.size())
         fail(ExitCode::mesh,
-             "no text that begins with 'solid', and as a binary file it breaks off: its {} facets "
-             "take {} bytes, it has {}",
+             "it is not text beginning with 'solid', and as a binary file it is cut short: its {} "
+             "facets take {} bytes, it has {}",
              (size - kStlHead) / kStlFacet, size, bytes.size());
     if (const std::uint64_t more = bytes.size() - size; more > 0)
         source.finding.push_back(

@@ -294,7 +294,7 @@ TriMesh weld(RawMesh& raw, double crease_angle) {
         if (painted) takes.clear();
         if (places > 0 && !painted)
             raw.finding.push_back(fmt::format(
-                "at {} of {} vertices its colours jump from face to face: one of them was taken",
+                "at {} of {} vertices the colours of adjacent faces differ: one of them was taken",
                 places, count));
         if (!painted)
             for (const int i : first) mesh.position_color.push_back(raw.color[i]);

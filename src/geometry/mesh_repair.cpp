@@ -84,7 +84,7 @@ class Repairer {
         }
         if (mesh_.triangle.empty())
             fail(ExitCode::mesh,
-                 "no volume can be made of this mesh: all of it is as thin as a gap");
+                 "this mesh cannot be given a volume: all of it is as thin as a gap");
         if (count_edges(mesh_).unbalanced > 0) {
             wrap("its surface cannot be oriented, or more than two triangles meet at an edge");
         } else if (const auto reason = settle_bodies(mesh_, crease_angle_, account_)) {
@@ -93,7 +93,7 @@ class Repairer {
         if (!account_.empty()) drop_unused_positions(mesh_);
         const MeshReport report = check_mesh(mesh_);
         if (!report.bounds_a_volume())
-            fail(ExitCode::mesh, "no volume can be made of this mesh ({})", summary_line(report));
+            fail(ExitCode::mesh, "this mesh cannot be given a volume ({})", summary_line(report));
         return {std::move(mesh_), std::move(account_)};
     }
 
@@ -107,7 +107,7 @@ class Repairer {
         const double volume = signed_volume(input);
         drop_repeated_corners();
         if (const auto reason = settle_bodies(mesh_, crease_angle_, account_)) {
-            log_warning("repair: the mesh is left as it is, for {}", *reason);
+            log_warning("repair: the mesh is left as it is: {}", *reason);
             return {std::move(input), std::move(told)};
         }
         if (std::abs(signed_volume(mesh_) - volume) <= 1e-9 * volume) {
@@ -358,10 +358,11 @@ class Repairer {
             worst = std::max(worst, share);
         }
         if (sheet_area > kMostLeftOut * all_area)
-            fail(ExitCode::mesh,
-                 "an open sheet encloses no volume: closing it would make {:.0f} % of its surface "
-                 "up; give it thickness first (in Blender: the Solidify modifier), or close it",
-                 100 * worst);
+            fail(
+                ExitCode::mesh,
+                "an open sheet encloses no volume: closing it would invent {:.0f} % of its "
+                "surface; give it thickness first (in Blender: the Solidify modifier), or close it",
+                100 * worst);
         std::size_t holes = 0, hole_edges = 0, hole_triangles = 0, failed = 0;
         double hole_area = 0;
         for (const Filling& f : fillings) {
@@ -384,7 +385,7 @@ class Repairer {
         for (int s = 0; s < shell_count; ++s)
             if (!is_sheet[s]) hole_area += filled[s];
         if (holes > 0)
-            say(fmt::format("closed {} of {} edges in all with {}, {:.2g} % of the surface",
+            say(fmt::format("closed {}, {} edges in total, with {}, {:.2g} % of the surface",
                             counted(holes, "hole", "holes"), hole_edges,
                             counted(hole_triangles, "triangle", "triangles"),
                             100 * hole_area / (all_area + hole_area)));
@@ -420,8 +421,8 @@ class Repairer {
             }
             smooth_by_crease_angle(wrapped, crease_angle_);
             say(fmt::format(
-                "wrapped the whole mesh anew, {} outside of it and over openings below {}, because "
-                "{}: {} became {}, the volume enclosed {} (before, with its faults: {}); texture "
+                "wrapped the whole mesh anew, {} outside it and over openings below {}, because "
+                "{}: {} became {}, the enclosed volume {} (before, with its faults: {}); texture "
                 "coordinates, {}parts and vertex colours are lost",
                 length_text(offset), length_text(alpha), reason,
                 counted(mesh_.triangle.size(), "triangle", "triangles"), wrapped.triangle.size(),
@@ -431,7 +432,7 @@ class Repairer {
             return;
         }
         fail(ExitCode::mesh,
-             "no volume can be made of this mesh: {}, and a wrap around it encloses only its thin "
+             "this mesh cannot be given a volume: {}, and a wrap around it encloses only its thin "
              "sheets; close its openings or give it thickness first",
              reason);
     }

@@ -10,10 +10,11 @@ void check_indices(const std::filesystem::path& file, const TriMesh& mesh) {
         for (const Corners& c : ids)
             for (const int i : c)
                 if (i < least || i >= static_cast<long long>(count))
-                    fail(ExitCode::output, "{}: the mesh to be written has bad indices",
+                    fail(ExitCode::output, "{}: the mesh to write has invalid indices",
                          file.string());
         if (!ids.empty() && ids.size() != mesh.triangle.size())
-            fail(ExitCode::output, "{}: the mesh to be written has uneven arrays", file.string());
+            fail(ExitCode::output, "{}: the mesh to write has arrays of different lengths",
+                 file.string());
     };
     check(mesh.triangle, mesh.position.size(), 0);
     check(mesh.triangle_uv, mesh.uv.size(), -1);

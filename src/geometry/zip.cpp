@@ -34,7 +34,7 @@ class Archive {
         zip_error_t error;
         zip_error_init(&error);
         zip_.reset(zip_open_from_source(source_.get(), 0, &error));
-        if (!zip_) fail_by(&error, "it is no ZIP file, or is damaged");
+        if (!zip_) fail_by(&error, "it is not a ZIP file, or is damaged");
         zip_source_keep(source_.get());  // the other hold on it is the archive's
     }
 
@@ -52,15 +52,15 @@ class Archive {
 
     // What the bytes become by the changes that were asked for.
     std::string written() {
-        if (zip_close(get()) != 0) fail_with("it cannot be put together");
+        if (zip_close(get()) != 0) fail_with("it cannot be assembled");
         static_cast<void>(zip_.release());
         zip_stat_t whole;
         if (zip_source_open(source_.get()) != 0 || zip_source_stat(source_.get(), &whole) != 0)
-            fail_by(zip_source_error(source_.get()), "it cannot be put together");
+            fail_by(zip_source_error(source_.get()), "it cannot be assembled");
         std::string bytes(whole.size, '\0');
         if (zip_source_read(source_.get(), bytes.data(), bytes.size()) !=
             static_cast<zip_int64_t>(bytes.size()))
-            fail_by(zip_source_error(source_.get()), "it cannot be put together");
+            fail_by(zip_source_error(source_.get()), "it cannot be assembled");
         return bytes;
     }
 
@@ -79,7 +79,7 @@ std::string zip_contents(const std::string& zip, const std::string& name, std::u
         archive.fail_with(fmt::format("its part '{}' is damaged", name));
     if (part.size > limit) fail(ExitCode::mesh, "its part '{}' is larger than a file may be", name);
     if (part.comp_method != ZIP_CM_STORE && part.comp_method != ZIP_CM_DEFLATE)
-        fail(ExitCode::mesh, "its part '{}' is packed in a way that cannot be read ({})", name,
+        fail(ExitCode::mesh, "its part '{}' uses a compression that cannot be read ({})", name,
              part.comp_method);
     const std::unique_ptr<zip_file_t, Free> file(zip_fopen_index(archive.get(), index, 0));
     if (!file) archive.fail_with(fmt::format("its part '{}' cannot be unpacked", name));
@@ -98,10 +98,10 @@ void replace_in_zip(std::string& zip, const std::string& name, const std::string
     std::unique_ptr<zip_source_t, Free> part(
         zip_source_buffer(archive.get(), contents.data(), contents.size(), 0));
     if (!part || zip_file_replace(archive.get(), index, part.get(), 0) != 0)
-        archive.fail_with("it cannot be put together");
+        archive.fail_with("it cannot be assembled");
     static_cast<void>(part.release());  // it is the archive's
     if (zip_set_file_compression(archive.get(), index, ZIP_CM_STORE, 0) != 0)
-        archive.fail_with("it cannot be put together");
+        archive.fail_with("it cannot be assembled");
     zip = archive.written();
 }
 

@@ -64,8 +64,8 @@ void try_canvas(GlProviderKind kind, int threads) {
     }
     if (ended && *ended != 0) {
         fail(ExitCode::output,
-             "OpenGL {} as it was opened: does GALLIUM_DRIVER, or another variable that drivers "
-             "read, name one that is not there? --no-render does without it",
+             "OpenGL {} when it was opened: does GALLIUM_DRIVER, or another variable that drivers "
+             "read, name a missing driver? --no-render works without it",
              WIFSIGNALED(*ended) ? fmt::format("crashed ({})", ::strsignal(WTERMSIG(*ended)))
                                  : fmt::format("ended its process ({})", WEXITSTATUS(*ended)));
     }

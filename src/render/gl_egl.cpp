@@ -55,13 +55,13 @@ class EglProvider final : public GlProvider {
 
     bool create(std::string& why_not) {
         if (!open_library()) {
-            why_not = "libEGL is not there";
+            why_not = "libEGL is missing";
             return false;
         }
         for (const EGLDisplay display : displays()) {
             if (display != EGL_NO_DISPLAY && create_on(display)) return true;
         }
-        why_not = "libEGL gives no OpenGL 3.3 core context without a display";
+        why_not = "libEGL provides no OpenGL 3.3 core context without a display";
         return false;
     }
 

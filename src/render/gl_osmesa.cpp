@@ -47,7 +47,7 @@ class OsMesaProvider final : public GlProvider {
         if (library == nullptr) {
             const char* reason = dlerror();
             why_not = fmt::format("libOSMesa cannot be loaded ({})",
-                                  reason != nullptr ? reason : "it is not there");
+                                  reason != nullptr ? reason : "it is missing");
             return false;
         }
         const auto create =
@@ -65,7 +65,7 @@ class OsMesaProvider final : public GlProvider {
             kProfile, kCoreProfile, kMajor,     3, kMinor,       3, 0,          0};
         context_ = create(attributes.data(), nullptr);
         if (context_ == nullptr || !make_current()) {
-            why_not = "libOSMesa gives no OpenGL 3.3 core context";
+            why_not = "libOSMesa provides no OpenGL 3.3 core context";
             return false;
         }
         return true;

@@ -94,7 +94,7 @@ Image unpacked(const std::string& name, int largest_side, const Info& info, cons
              stbi_failure_reason());
     }
     if (width > largest_side || height > largest_side) {
-        fail(ExitCode::output, "{}: {} x {} pixels are more than {} a side", name, width, height,
+        fail(ExitCode::output, "{}: {} x {} pixels is more than {} on a side", name, width, height,
              largest_side);
     }
     largest_block = kLeastRoom + kRoom * kLargestPixel * (static_cast<std::size_t>(width) + 1) *
@@ -102,7 +102,8 @@ Image unpacked(const std::string& name, int largest_side, const Info& info, cons
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(load(&width, &height, &channels),
                                                            stbi_image_free);
     if (!pixels && largest_block == 0) {
-        fail(ExitCode::output, "{}: holds far more than its {} x {} pixels", name, width, height);
+        fail(ExitCode::output, "{}: contains far more than its {} x {} pixels", name, width,
+             height);
     }
     if (!pixels) fail(ExitCode::output, "{}: {}", name, stbi_failure_reason());
     Image image{width, height, {}};
@@ -117,7 +118,7 @@ Image read_image(const std::filesystem::path& path, int largest_side) {
     const std::string name = path.string();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) {
-        fail(ExitCode::output, "{}: no such picture", name);
+        fail(ExitCode::output, "{}: there is no such picture", name);
     }
     const std::optional<std::string> bytes = file_contents(path, kLargestFile);
     if (!bytes) fail(ExitCode::output, "{}: cannot be read, or is more than 2 GiB", name);
@@ -126,7 +127,7 @@ Image read_image(const std::filesystem::path& path, int largest_side) {
 
 Image decode_image(const std::string& bytes, const std::string& name, int largest_side) {
     if (bytes.size() > kLargestFile) fail(ExitCode::output, "{}: more than 2 GiB", name);
-    if (!has_sound_tables(bytes)) fail(ExitCode::output, "{}: not a sound JPEG picture", name);
+    if (!has_sound_tables(bytes)) fail(ExitCode::output, "{}: not a valid JPEG picture", name);
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());
     return unpacked(
@@ -141,7 +142,7 @@ const stbtt_fontinfo& font() {
     static const stbtt_fontinfo info = [] {
         stbtt_fontinfo made;
         if (stbtt_InitFont(&made, embedded_font().data(), 0) == 0) {
-            fail(ExitCode::output, "the letters that are built in cannot be read");
+            fail(ExitCode::output, "the built-in font cannot be read");
         }
         return made;
     }();

@@ -156,7 +156,7 @@ TEST_CASE("an image lies where an OBJ file's material scales and shifts it to") 
     CHECK(moved ==
           std::set<std::pair<double, double>>{{0.5, 0.25}, {2.5, 0.25}, {2.5, 3.25}, {0.5, 3.25}});
     REQUIRE(finding.size() == 1);
-    CHECK(finding[0] == "the material 'moved' lets light through (d, Tr): drawn opaque");
+    CHECK(finding[0] == "the material 'moved' transmits light (d, Tr): drawn opaque");
 }
 
 TEST_CASE("what of an OBJ's materials is not drawn is told, where it would show") {
@@ -235,7 +235,7 @@ TEST_CASE("colours that jump at an edge stay with their faces") {
     CHECK(smeared.position_color.size() == 8);
     REQUIRE(finding.size() == 1);
     CHECK(finding[0] ==
-          "at 8 of 8 vertices its colours jump from face to face: one of them was taken");
+          "at 8 of 8 vertices the colours of adjacent faces differ: one of them was taken");
 }
 
 TEST_CASE("materials keep their names where they have no colours, or one alone") {
@@ -294,9 +294,9 @@ TEST_CASE("an OFF's values stand in the order that Geomview gives them") {
     read("OFF\n3 1 0\n0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2 7\n");
     CHECK(finding ==
           std::vector<std::string>{"further values of its vertices were left out",
-                                   "colours given as numbers of a colour map were left out"});
+                                   "colours given as indices into a colour map were left out"});
     CHECK_THROWS_WITH(read("nOFF\n4\n3 1 0\n"), Catch::Contains("nOFF"));
-    CHECK_THROWS_WITH(read("OFF BINARY\n"), Catch::Contains("binary OFF is not read"));
+    CHECK_THROWS_WITH(read("OFF BINARY\n"), Catch::Contains("binary OFF cannot be read"));
     CHECK_THROWS_WITH(read("NOFF\n3 1 0\n0 0 0 1\n"), Catch::Contains("vertex 0 has 4 values"));
 }
 

@@ -181,19 +181,19 @@ TEST_CASE("whole numbers in a glTF that reach beyond their data are refused") {
     const std::size_t at = document.json.find(R"("count":4)");
     document.json.replace(at, 9, R"("count":5)");
     CHECK_THROWS_WITH(test::read_quietly(folder.write("a.gltf", document.json)),
-                      Catch::Contains("buffer view 0 holds less than is read from it"));
+                      Catch::Contains("buffer view 0 is shorter than what is read from it"));
 }
 
 TEST_CASE("a glTF extension that nobody follows is told of, and refused where the mesh needs it") {
     const Folder folder;
     CHECK_THROWS_WITH(
         read(folder, {kSquare}, R"("extensionsRequired":["EXT_meshopt_compression","X_y"],)"),
-        Catch::Contains("asks for 'EXT_meshopt_compression', 'X_y', which is not known here"));
+        Catch::Contains("requires 'EXT_meshopt_compression', 'X_y', which is not supported"));
     const Reading looks =
         read(folder, {kSquare}, R"("extensionsRequired":["KHR_materials_transmission"],)");
     REQUIRE(looks.finding.size() == 1);
     CHECK(looks.finding[0] ==
-          "it asks for 'KHR_materials_transmission', which is not followed: it may look otherwise");
+          "it uses 'KHR_materials_transmission', which is not supported: it may look different");
 }
 
 TEST_CASE("of a glTF's opacity the reader tells") {
@@ -203,7 +203,7 @@ TEST_CASE("of a glTF's opacity the reader tells") {
     const Reading pane = read(
         folder, {kSquare}, R"("materials":[{"name":"wall"},{"name":"pane","alphaMode":"BLEND"}],)");
     REQUIRE(pane.finding.size() == 1);
-    CHECK(pane.finding[0] == "the material 'pane' lets light through (alphaMode): drawn opaque");
+    CHECK(pane.finding[0] == "the material 'pane' transmits light (alphaMode): drawn opaque");
 }
 
 TEST_CASE("of a glTF's own light, and of images that do not repeat, the reader tells") {
@@ -221,7 +221,7 @@ TEST_CASE("of a glTF's own light, and of images that do not repeat, the reader t
               .empty());
     CHECK(findings(R"("emissiveFactor":[0,0.5,0])", "") ==
           std::vector<std::string>{
-              "the material 'lamp' shines by itself (emissiveFactor): drawn without that light"});
+              "the material 'lamp' emits light (emissiveFactor): drawn without that light"});
     CHECK(findings(image, R"("wrapT":33071)") ==
           std::vector<std::string>{"the material 'lamp' does not repeat its image beyond the "
                                    "borders (wrapS, wrapT): drawn repeated"});

@@ -57,7 +57,7 @@ TEST_CASE("what is no mesh file is refused at once") {
     says(refusal(folder / "zero.obj"), "a device");
     says(refusal(folder.write("empty.obj", "")), "empty");
     says(refusal(folder.write("cube.fbx", "x")), ".fbx");
-    says(refusal(folder.write("cube", test::cube_obj())), "no kind of mesh");
+    says(refusal(folder.write("cube", test::cube_obj())), "not a mesh format");
     ReadLimits small;
     small.file_bytes = 10;
     says(refusal(folder.write("large.obj", test::cube_obj()), small), "limit");
@@ -79,8 +79,8 @@ TEST_CASE("a broken OBJ is refused with its line") {
     says(refusal(folder.write("i.obj", v + std::string(1, '\0') + "f 1 2 3\n")), "zero");
     says(refusal(folder.write("j.obj", v)), "no faces");
     says(refusal(folder.write("k.obj", v + "f 1 2\n")), "no triangles");
-    says(refusal(folder.write("l.obj", "v 1e30 0 0\n" + v + "f 1 2 3\n")), "beyond all sense");
-    says(refusal(folder.write("m.obj", "v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n")), "large");
+    says(refusal(folder.write("l.obj", "v 1e30 0 0\n" + v + "f 1 2 3\n")), "unreasonably large");
+    says(refusal(folder.write("m.obj", "v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n")), "in size");
     says(refusal(folder.write("n.obj", v + "f 1 2 99999999999999999999\n")), "not an index");
     // A good mesh whose material library is a folder is still a good mesh.
     std::filesystem::create_directory(folder / "dir.mtl");
@@ -118,8 +118,8 @@ TEST_CASE("a broken PLY is refused with the reason") {
         return file(name, start + "element vertex 3\n" + vertex + "element face 1\n" + face +
                               "end_header\n0 0 0\n1 0 0\n0 1 0\n" + corners + "\n");
     };
-    says(triangle("h.ply", "3 0 1.2 2"), "face 0: 1.2 stands where a whole number is wanted");
-    says(triangle("i.ply", "3.9 0 1 2"), "face 0: 3.9 stands where a whole number is wanted");
+    says(triangle("h.ply", "3 0 1.2 2"), "face 0: 1.2 is not a whole number");
+    says(triangle("i.ply", "3.9 0 1 2"), "face 0: 3.9 is not a whole number");
     CHECK(triangle("j.ply", "3 0 1.0 2").empty());
 }
 
@@ -127,9 +127,9 @@ TEST_CASE("an OFF that counts below nothing is refused for that") {
     const Folder folder;
     const std::string rest = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     says(refusal(folder.write("a.off", "OFF\n-1 1 0\n" + rest)),
-         "its header counts -1 vertices and 1 faces");
+         "its header gives -1 vertices and 1 faces");
     says(refusal(folder.write("b.off", "OFF\n3 -6 0\n" + rest)),
-         "its header counts 3 vertices and -6 faces");
+         "its header gives 3 vertices and -6 faces");
 }
 
 TEST_CASE("faces that the header of an OFF or PLY does not count are told of") {
@@ -150,9 +150,9 @@ TEST_CASE("faces that the header of an OFF or PLY does not count are told of") {
     read_mesh(folder.write("a.ply", "ply\nformat ascii 1.0\n" + header + vertices + faces), {},
               &finding);
     read_mesh(folder.write("b.ply", binary + "extra"), {}, &finding);
-    CHECK(finding == std::vector<std::string>{"2 lines beyond what its header counts left out",
-                                              "2 lines beyond what its header counts left out",
-                                              "5 bytes beyond what its header counts left out"});
+    CHECK(finding == std::vector<std::string>{"2 lines beyond the count in its header left out",
+                                              "2 lines beyond the count in its header left out",
+                                              "5 bytes beyond the count in its header left out"});
     finding.clear();
     read_mesh(folder.write("b.ply", binary + "\r\n"), {}, &finding);
     CHECK(finding.empty());

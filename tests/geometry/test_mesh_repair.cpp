@@ -87,7 +87,7 @@ TEST_CASE("an open box is closed to its true volume; two holes are two fillings"
     TriMesh box = box_mesh({0, 0, 0}, {1, 2, 3});
     drop(box, {0, 1, 2, 3});  // bottom and top
     const Repair repair = repair_mesh(box);
-    CHECK(told(repair, "closed 2 holes of 8 edges in all with 4 triangles"));
+    CHECK(told(repair, "closed 2 holes, 8 edges in total, with 4 triangles"));
     CHECK(signed_volume(repair.mesh) == Approx(6));
 }
 
@@ -375,7 +375,7 @@ TEST_CASE("an open sheet is refused with what to do; beside a body it is left ou
     TriMesh needle;  // its ends are within the widest gap
     needle.position = {{0, 0, 0}, {1, 0, 0}, {1, 1e-5, 0}};
     needle.triangle = {{0, 1, 2}};
-    CHECK(refusal(needle).find("no volume") != std::string::npos);
+    CHECK(refusal(needle).find("cannot be given a volume") != std::string::npos);
 }
 
 TEST_CASE("what cannot be oriented is wrapped as a last resort, and its losses named") {

@@ -19,8 +19,8 @@ TEST_CASE("an image of a kind that is not drawn is told where its mesh is read")
         return finding;
     };
     CHECK(findings("a.webp", "RIFF0000WEBPVP8 ") ==
-          std::vector<std::string>{"material 'skin': its image 'a.webp' is of the kind WebP, and "
-                                   "drawn are PNG, JPEG, BMP and TGA"});
+          std::vector<std::string>{"material 'skin': its image 'a.webp' is of type WebP; only PNG, "
+                                   "JPEG, BMP and TGA are drawn"});
     CHECK(findings("a.tif", std::string("II*\0aaaa", 8)).size() == 1);
     CHECK(findings("a.png", "\x89PNG\r\n\x1a\n").empty());
     CHECK(findings("a.tga", "no mark").empty());

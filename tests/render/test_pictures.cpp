@@ -92,7 +92,7 @@ TEST_CASE("a JPEG with more codes than bytes is refused before it is decoded") {
             decode_image(jpeg, "codes.jpg");
             FAIL("it was decoded");
         } catch (const Error& error) {
-            CHECK(std::string(error.what()) == "codes.jpg: not a sound JPEG picture");
+            CHECK(std::string(error.what()) == "codes.jpg: not a valid JPEG picture");
         }
     }
 }
@@ -105,7 +105,7 @@ TEST_CASE("a picture that unpacks to far more than its size asks for is refused"
         decode_image(bomb, "bomb.png");
         FAIL("it was unpacked");
     } catch (const Error& error) {
-        CHECK(std::string(error.what()) == "bomb.png: holds far more than its 16 x 16 pixels");
+        CHECK(std::string(error.what()) == "bomb.png: contains far more than its 16 x 16 pixels");
     }
     CHECK(decode_image(encode_png(pattern(64, 64)), "whole.png").width == 64);
 }
