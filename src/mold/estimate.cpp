@@ -25,7 +25,7 @@ double spacing_for(const TriMesh& mesh, const MoldSettings& settings) {
     const Vec3 size = surface_box(mesh).size();
     const double thinnest = size.minCoeff();
     if (settings.across.has_value() == settings.spacing.has_value()) {
-        fail(ExitCode::scene, "[mold] needs one of `across` and `spacing`, for example across = 6");
+        fail(ExitCode::scene, "[mold] needs either `across` or `spacing`, for example across = 6");
     }
     if (settings.spacing) {
         const double spacing = *settings.spacing;
@@ -34,14 +34,14 @@ double spacing_for(const TriMesh& mesh, const MoldSettings& settings) {
         }
         if (settings.kind == MoldKind::shape && spacing > thinnest * (1 + 1e-6)) {
             fail(ExitCode::mesh,
-                 "cannot mold: the mesh is {:.4g} m through at its thinnest side, less than the "
+                 "cannot mold: the mesh is {:.4g} m across at its thinnest side, less than the "
                  "spacing of {:.4g} m; use spacing = \"{:.4g} m\" or less, or across = 1 or more",
                  thinnest, spacing, thinnest);
         }
         return spacing;
     }
     if (*settings.across < 1) {
-        fail(ExitCode::scene, "[mold] across is {}; it must be 1 or more", *settings.across);
+        fail(ExitCode::scene, "[mold] across is {}; it must be at least 1", *settings.across);
     }
     if (!(thinnest > 1e-9 * size.maxCoeff())) {
         fail(ExitCode::mesh,
@@ -139,8 +139,8 @@ void refuse_too_many_cells(const TriMesh& mesh, const MoldSettings& settings) {
     const double memory = whole_memory();
     if (e.bytes > memory) {
         fail(ExitCode::resources,
-             "refused to mold: about {:.4g} cells of {:.4g} m want {:.3g} GiB, more than the "
-             "{:.3g} GiB that there are; use a larger spacing",
+             "refused to mold: about {:.4g} cells of {:.4g} m need {:.3g} GiB, more than the "
+             "{:.3g} GiB available; use a larger spacing",
              e.active_cells, e.spacing, e.bytes / gib, memory / gib);
     }
 }

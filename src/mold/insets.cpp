@@ -86,7 +86,7 @@ void place_insets(const std::vector<Inset>& insets, const std::vector<CellLayer>
         }
         if (inside < (1 - kOutside) * all) {
             findings.push_back(
-                fmt::format("{:.3g} % of inset {} lie outside the work-piece and are left out",
+                fmt::format("{:.3g} % of inset {} lies outside the work-piece and is left out",
                             100 * (1 - inside / all), material));
         }
     }

@@ -120,23 +120,23 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     const double cell = frame.cell_volume();
     const double filled = filled_cells(layers) * cell;
     if (surplus * cell > 1e-6 * volume || deficit * cell > 1e-6 * volume) {
-        findings.push_back(fmt::format(
-            "parts of the surface overlap or are turned inside out: {:.4g} m3 filled more "
-            "than once and {:.4g} m3 less than not at all are left out; the matter has {:.6g} m3, "
-            "the surface encloses {:.6g} m3",
-            surplus * cell, deficit * cell, filled, volume));
+        findings.push_back(
+            fmt::format("parts of the surface overlap or are inside out: {:.4g} m3 filled more "
+                        "than once and {:.4g} m3 filled negatively are left out; the matter has "
+                        "{:.6g} m3, the surface encloses {:.6g} m3",
+                        surplus * cell, deficit * cell, filled, volume));
     }
     if (lost * cell > 1e-6 * volume) {
         findings.push_back(
-            fmt::format("{:.4g} m3 lie in pieces too small for cells of {:.4g} m and are lost",
-                        lost * cell, frame.spacing));
+            fmt::format("{:.4g} m3 is lost in pieces too small for cells of {:.4g} m", lost * cell,
+                        frame.spacing));
     }
     const double thickness = 2 * volume / surface_area(mesh);
     if (thickness < kThin * frame.spacing) {
-        findings.push_back(fmt::format(
-            "the mesh is about {:.3g} m thick, thinner than its cells of {:.3g} m; sheets "
-            "that share a cell become one (spacing = \"{:.2g} m\" keeps them apart)",
-            thickness, frame.spacing, 0.5 * thickness));
+        findings.push_back(
+            fmt::format("the mesh is about {:.3g} m thick, thinner than its cells of {:.3g} m; "
+                        "sheets that share a cell merge (spacing = \"{:.2g} m\" keeps them apart)",
+                        thickness, frame.spacing, 0.5 * thickness));
     }
     // Separate bodies and handles tell of parts that melted together for want of room.
     const int bodies = count_bodies(mesh);
@@ -144,21 +144,20 @@ void tell_findings(const TriMesh& mesh, const MoldFrame& frame, double volume,
     const std::optional<int> wanted = euler_inside(mesh);
     if (pieces < bodies) {
         findings.push_back(
-            fmt::format("{} separate bodies became {}: they share cells of {:.3g} m, or are too "
-                        "small for them; "
-                        "a smaller spacing keeps them apart",
+            fmt::format("{} separate bodies became {}: they share cells of {:.3g} m or are too "
+                        "small for these; a smaller spacing keeps them apart",
                         bodies, pieces, frame.spacing));
     } else if (wanted && surplus * cell <= 1e-6 * volume && euler_of(matter) != *wanted) {
         findings.push_back(fmt::format(
-            "in cells of {:.3g} m the matter has other holes or handles than the mesh: parts "
-            "closer than a cell are joined, or thin ones parted; a smaller spacing keeps them",
+            "with cells of {:.3g} m the matter has other holes or handles than the mesh: parts "
+            "closer than a cell merge, or thin ones separate; a smaller spacing avoids this",
             frame.spacing));
     }
 }
 
 [[noreturn]] void refuse_thin(double thickness, double spacing) {
     fail(ExitCode::mesh,
-         "cannot mold: the mesh is about {:.3g} m thick and all but vanishes in cells of {:.3g} m; "
+         "cannot mold: the mesh is about {:.3g} m thick and nearly vanishes in cells of {:.3g} m; "
          "use spacing = \"{:.2g} m\" or less",
          thickness, spacing, thickness);
 }
@@ -174,8 +173,8 @@ Aggregate mold_surface(const TriMesh& mesh, const Material& material, double spa
     }
     if (volume < 0) {
         fail(ExitCode::mesh,
-             "cannot mold: the surface is turned inside out (it encloses {:.4g} m3); its triangles "
-             "must run counter-clockwise seen from outside",
+             "cannot mold: the surface is inside out (it encloses {:.4g} m3); its triangles must "
+             "be counter-clockwise as seen from outside",
              volume);
     }
     if (2 * volume / area < kThinnest * spacing) refuse_thin(2 * volume / area, spacing);

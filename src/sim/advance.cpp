@@ -31,11 +31,12 @@ AnySolver choose_solver(const std::vector<Aggregate*>& bodies, const Apparatus& 
                         const SimSettings& settings) {
     const bool quasistatic = settings.solver == Solver::quasistatic;
     if (bodies.size() > 1 && (quasistatic || settings.solver == Solver::implicit_steps)) {
-        fail(ExitCode::stopped, "{}: solver = \"{}\" moves one body: use solver = \"explicit\"",
-             apparatus.name, name_of(settings.solver));
+        fail(ExitCode::stopped,
+             "{}: solver = \"{}\" moves only one body: use solver = \"explicit\"", apparatus.name,
+             name_of(settings.solver));
     }
     if (!apparatus.limit.empty() && !quasistatic) {
-        fail(ExitCode::stopped, "{}: solver = \"{}\" stops at no limit: use \"quasistatic\"",
+        fail(ExitCode::stopped, "{}: solver = \"{}\" cannot stop at a limit: use \"quasistatic\"",
              apparatus.name, name_of(settings.solver));
     }
     if (quasistatic) return QuasistaticSolver(*bodies[0], apparatus, settings);

@@ -64,20 +64,20 @@ Strained most_strained(const Aggregate& matter, std::ptrdiff_t particle = -1) {
 
 std::string text_of(const Strained& connection) {
     if (connection.lower < 0) return "no connection";
-    return fmt::format("the connection of particles {} and {} is {:.3g} times as long as at rest",
+    return fmt::format("the connection of particles {} and {} is {:.3g} times its rest length",
                        connection.lower, connection.upper, connection.stretch);
 }
 
 std::string advice(Solver solver) {
     const std::string rest =
-        "move the tools slower (a longer duration), raise [mold] across where matter is crushed or "
-        "contact_stiffness where bodies are pressed deep into each other";
+        "move the tools more slowly (a longer duration), raise [mold] across where matter is "
+        "crushed, or contact_stiffness where bodies are pressed deep into each other";
     if (solver == Solver::energy_stepped) {
         return "use solver = \"explicit\", whose steps may gain more, " + rest;
     }
     const std::string shorter =
-        solver == Solver::implicit_steps ? "ask for more frames, " : "lower step_safety, ";
-    return shorter + rest + ", or, where one body is machined, use solver = \"quasistatic\"";
+        solver == Solver::implicit_steps ? "use more frames, " : "lower step_safety, ";
+    return shorter + rest + ", or use solver = \"quasistatic\" if one body is machined";
 }
 
 std::string place(const Vec3& x) {
@@ -112,13 +112,13 @@ std::string sentence_of(const Finding& finding, const MovingBody& body, const st
         case Fault::none:
             break;
         case Fault::lost:
-            what = fmt::format("{} is lost (its place or speed is no number)", where);
+            what = fmt::format("{} is lost (its position or speed is not a number)", where);
             break;
         case Fault::unsolved:
             what = fmt::format("an implicit step has no solution; {} is the fastest", where);
             break;
         case Fault::too_far:
-            what = fmt::format("{} goes {:.3g} spacings in one step", where,
+            what = fmt::format("{} moves {:.3g} spacings in one step", where,
                                finding.way / matter.lattice.spacing);
             break;
         case Fault::inside_out: {

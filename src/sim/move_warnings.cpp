@@ -18,56 +18,57 @@ std::vector<std::string> move_warnings(const MoveOutcome& outcome) {
             names += outcome.lost[n];
         }
         warning.emplace_back(fmt::format(
-            "the work-piece slipped away from {}, or drew in, although no tool drew back", names));
+            "the work-piece slipped away from {}, or contracted, although no tool drew back",
+            names));
     }
     if (outcome.afloat > 0) {
         const bool one = outcome.afloat == 1;
         warning.emplace_back(fmt::format(
-            "{} would fall, for nothing holds {} against gravity and loads: equilibria have no "
-            "fall (solver = \"explicit\" has), so from here on these leave {} alone",
+            "{} would fall, as nothing holds {} against gravity and loads: equilibria cannot fall "
+            "(solver = \"explicit\" can), so from here on they leave {} alone",
             one ? "a piece" : fmt::format("{} pieces", outcome.afloat), one ? "it" : "them",
             one ? "it" : "them"));
     }
     if (outcome.hanging > 0) {
         const bool one = outcome.hanging == 1;
-        warning.emplace_back(fmt::format(
-            "{} by less than a whole cell, which cannot bear {} against gravity and loads: from "
-            "here on these leave {} alone",
-            one ? "a piece hangs" : fmt::format("{} pieces hang", outcome.hanging),
-            one ? "it" : "them", one ? "it" : "them"));
+        warning.emplace_back(
+            fmt::format("{} by less than a whole cell, which cannot hold {} against gravity and "
+                        "loads: from here on equilibria leave {} alone",
+                        one ? "a piece hangs" : fmt::format("{} pieces hang", outcome.hanging),
+                        one ? "it" : "them", one ? "it" : "them"));
     }
     if (outcome.let_be > 0) {
-        warning.emplace_back(fmt::format(
-            "no equilibrium is found with {} of the work-piece's surface that lie deeper than a "
-            "fifth of a cell in it: from here on these go through it",
-            counted(static_cast<std::size_t>(outcome.let_be), "point", "points")));
+        warning.emplace_back(
+            fmt::format("found no equilibrium with {} of the work-piece's surface more than a "
+                        "fifth of a cell deep in itself: from here on these pass through it",
+                        counted(static_cast<std::size_t>(outcome.let_be), "point", "points")));
     }
     if (outcome.left_over > 0) {
         warning.emplace_back(
-            fmt::format("what was out of balance as the stage began, or was cut, broken or let go "
-                        "of since, does not come to rest as exactly as the loads ask: from here on "
-                        "{:.2g} N of forces may be out of balance",
+            fmt::format("what was out of balance when the stage began, or was cut, broken or "
+                        "released since, does not come to rest as exactly as the loads require: "
+                        "from here on {:.2g} N may be out of balance",
                         outcome.left_over));
     }
     if (std::any_of(outcome.body.begin(), outcome.body.end(),
                     [](const BodyOutcome& body) { return body.drag_bounded; })) {
         warning.emplace_back(
-            "the drag is so strong that it stops some of the surface within a few steps; there it "
-            "is held to what a step can follow");
+            "the drag is so strong that it stops parts of the surface within a few steps; there it "
+            "is limited to what a step can follow");
     }
     if (outcome.rescued > 0) {
         warning.emplace_back(fmt::format(
-            "explicit steps went wrong however short they were: {} implicit ones stand in for them",
+            "explicit steps failed however short they were: {} implicit ones replace them",
             outcome.rescued));
     }
     if (outcome.inside_out > 0) {
-        warning.emplace_back(fmt::format(
-            "{} turned inside out, which shorter steps did not keep from it: the matter is crushed "
-            "harder than its stiffness can hold",
-            counted(static_cast<std::size_t>(outcome.inside_out), "cell", "cells")));
+        warning.emplace_back(
+            fmt::format("{} turned inside out, which shorter steps did not prevent: the matter is "
+                        "crushed harder than its stiffness can hold",
+                        counted(static_cast<std::size_t>(outcome.inside_out), "cell", "cells")));
     }
     if (outcome.buckled) {
-        warning.emplace_back("the work-piece buckled: it left its shape for one that bears less");
+        warning.emplace_back("the work-piece buckled: it changed to a shape that bears less");
     }
     return warning;
 }

@@ -49,8 +49,8 @@ std::string QuasistaticSolver::met(const StaticMove& move) {
     }
     const double way = farthest_move(matter_.particle_position, move.start);
     if (forces_.pushes.count() > 0 && way > kFarAway * a) {
-        text += fmt::format("; the work-piece was on its way, {:.2g} spacings from where it lay",
-                            way / a);
+        text +=
+            fmt::format("; the work-piece was moving, {:.2g} spacings from where it lay", way / a);
     }
     return text;
 }
@@ -59,9 +59,9 @@ void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
                              const std::string& met) const {
     if (tried.falls) {
         fail(ExitCode::stopped,
-             "{}: the work-piece{} falls at {:.4g} s, for nothing holds it against gravity and "
-             "loads, and equilibria have no fall: hold it, have it lie on something, or let it "
-             "fall by solver = \"explicit\"",
+             "{}: the work-piece{} falls at {:.4g} s, as nothing holds it against gravity and "
+             "loads, and equilibria cannot fall: hold it, support it, or let it fall with solver = "
+             "\"explicit\"",
              apparatus_.name, has_broken(matter_) ? ", which has broken," : "", move.to.time);
     }
     const char* advice = "raise frames or tolerance of the stage";
@@ -69,12 +69,12 @@ void QuasistaticSolver::stop(const Relaxation& tried, const StaticMove& move,
         advice = "a cell is crushed flat: raise [mold] across, or bend and twist less";
     } else if (forces_.pushes.count() > 0 && matter_.yields()) {
         advice =
-            "if the matter flows under loads that it cannot bear, lower them; else raise frames or "
-            "tolerance of the stage";
+            "if the matter flows under loads that it cannot bear, lower these; otherwise raise "
+            "frames or tolerance of the stage";
     }
     fail(ExitCode::stopped,
          "{}: no equilibrium found at {:.4g} s after {} iterations and {} halvings (residual "
-         "{:.2g} of the largest push, wanted {:.2g}; {}); {}; {}",
+         "{:.2g} of the largest push, required {:.2g}; {}); {}; {}",
          apparatus_.name, move.to.time, tried.iterations, move.depth, tried.residual,
          settings_.tolerance, met, borne_last(apparatus_, move.from), advice);
 }

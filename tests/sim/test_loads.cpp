@@ -372,7 +372,7 @@ TEST_CASE("what is let go of rests as exactly as it can, and says where loads as
         const FrameReport report = put_on(block, apparatus, SimSettings{}, 1);
         REQUIRE(report.warning.size() == 1);
         CHECK(report.warning[0].find("does not come to rest as exactly") != std::string::npos);
-        CHECK(report.warning[0].find("out of balance as the stage began") != std::string::npos);
+        CHECK(report.warning[0].find("out of balance when the stage began") != std::string::npos);
         const auto& x = block.particle_position.x;
         const auto [low, high] = std::minmax_element(x.begin(), x.end());
         CHECK(*high - *low == Approx(0.3).epsilon(1e-6));
