@@ -32,40 +32,39 @@ int across_for_percent(const BodyCost& body, double cells) {
 
 std::string stiffness_text(const BodyCost& body, double cells) {
     const std::string enough = fmt::format("1 % at across = {}", across_for_percent(body, cells));
-    if (cells < kLeastCells) return "too few; " + enough;
+    if (cells < kLeastCells) return "too few cells; " + enough;
     const Accuracy accuracy = accuracy_at(cells);
-    return fmt::format("bending about {:.2g} %, torsion {:.2g} %; {}", 100 * accuracy.bending,
-                       100 * accuracy.torsion, enough);
+    return fmt::format("within about {:.2g} % in bending, {:.2g} % in torsion; {}",
+                       100 * accuracy.bending, 100 * accuracy.torsion, enough);
 }
 
 std::vector<std::string> accuracy_texts(const BodySpec& spec, const BodyCost& body) {
     if (spec.material.mechanics != Mechanics::cells) {
-        return {"springs: stretch alone is right; bending and torsion are too stiff"};
+        return {"springs are right in stretching only; they are too stiff in bending and torsion"};
     }
     std::vector<std::string> texts;
     if (body.has_thin_parts()) {
-        texts = {
-            fmt::format("elastic stiffness of the whole, {:.3g} cells across, where thin parts "
-                        "stretch and shear (a tube bent, twisted): {}",
-                        body.across, stiffness_text(body, body.across)),
-            fmt::format("elastic stiffness where thin parts, about {:.2g} cells thick, bend "
-                        "by themselves (a ring squeezed flat, a bracket): {}",
-                        body.thickness, stiffness_text(body, body.thickness))};
+        texts = {fmt::format("elastic stiffness of the whole, {:.3g} cells across, where thin "
+                             "parts stretch and shear (a tube that is bent or twisted): {}",
+                             body.across, stiffness_text(body, body.across)),
+                 fmt::format("elastic stiffness where thin parts, about {:.2g} cells thick, bend "
+                             "by themselves (a ring squeezed flat, a bracket): {}",
+                             body.thickness, stiffness_text(body, body.thickness))};
     } else {
         texts = {fmt::format("elastic stiffness of a part {:.3g} cells thick: {}", body.thickness,
                              stiffness_text(body, body.thickness))};
     }
     if (const int layers = body.whole_layers(); layers > 0) {
-        texts.push_back(fmt::format(
-            "the thinnest side is {:.3g} cells, so its outermost layers are filled to {:.2g}: "
-            "across = {}, or spacing = \"{}\", has whole ones",
-            body.across, body.outermost_fill(), layers,
-            length_text(body.spacing * body.across / layers)));
+        texts.push_back(
+            fmt::format("the thinnest side is {:.3g} cells, so its outermost layers are filled to "
+                        "{:.2g}: across = {} or spacing = \"{}\" gives whole layers",
+                        body.across, body.outermost_fill(), layers,
+                        length_text(body.spacing * body.across / layers)));
     }
     for (const Material* material : spec.materials()) {
         if (!std::isfinite(material->yield_stress)) continue;
         texts.push_back(
-            "what stays after yield is less exact than that, near a limit load far less");
+            "permanent deformation is less accurate than that, and far less near a limit load");
         break;
     }
     return texts;
@@ -92,10 +91,10 @@ std::string film_text(const SceneSpec& scene, const StageSpec& stage) {
     const auto times = [](double ratio) {
         return (ratio < 100 ? fmt::format("{:.3g}", ratio) : count_text(ratio)) + " times";
     };
-    const std::string speed = std::abs(slower - 1) < 0.01 ? "as fast as it goes"
-                              : slower > 1                ? times(slower) + " slower than it goes"
-                                           : times(1 / slower) + " faster than it goes";
-    return fmt::format("{} at {} a second play its {} {}",
+    const std::string speed = std::abs(slower - 1) < 0.01 ? "in real time"
+                              : slower > 1                ? times(slower) + " slower than real time"
+                                           : times(1 / slower) + " faster than real time";
+    return fmt::format("{} at {} fps show its {} {}",
                        counted(std::size_t(stage.frames), "frame", "frames"),
                        frame_rate_text(scene.render.frame_rate),
                        quantity_text(scene.duration_of(stage), Quantity::time), speed);
@@ -128,17 +127,16 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
     }
     if (cost.tool_give > 0) {
         const double thickness = cost.work_piece().thickness;
-        line("tools",
-             fmt::format("each gives way as up to {:.2g} cells would: as {:.2g} % of a part "
-                         "{:.3g} cells thick",
-                         cost.tool_give, 100 * cost.tool_give / thickness, thickness));
+        line("tools", fmt::format("each tool's surface gives way like up to {:.2g} cells of the "
+                                  "work-piece, {:.2g} % of a part {:.3g} cells thick",
+                                  cost.tool_give, 100 * cost.tool_give / thickness, thickness));
     }
     for (const std::string& strength : cost.warning.strength) line("strength", strength);
     line("stages", std::to_string(scene.stage.size()));
     for (const MachinePlace& place : cost.place) {
         const bool is_later = &place != &cost.place.front();
         const std::string whose = cost.place.size() == 1 ? "" : place.stage + ": ";
-        const std::string when = is_later ? " (as the work-piece is at first)" : "";
+        const std::string when = is_later ? " (for the work-piece before the first stage)" : "";
         if (!place.axes.empty()) line("axes", whose + place.axes + when);
         for (const std::string& load : place.load) line("load", whose + load + when);
         for (const std::string& limit : place.limit) line("limit", whose + limit);
@@ -150,11 +148,11 @@ std::string cost_text(const SceneSpec& scene, const std::vector<InputMesh>& inpu
         line("film", whose + film_text(scene, stage));
     }
     line("steps", range_text(cost.steps, count_text));
-    line("memory", fmt::format("about {}, the matter itself {}", bytes_text(cost.memory_bytes),
-                               bytes_text(cost.mold.bytes)));
+    line("memory", fmt::format("about {}, of which the matter takes {}",
+                               bytes_text(cost.memory_bytes), bytes_text(cost.mold.bytes)));
     line("disk", "about " + bytes_text(cost.disk_bytes));
     line("time", range_text(cost.seconds, seconds_text) +
-                     (cost.hangs_on.empty() ? "" : ", by " + cost.hangs_on));
+                     (cost.hangs_on.empty() ? "" : ", depending on " + cost.hangs_on));
     for (const std::string& note : cost.note) line("note", note);
     return text;
 }
@@ -228,7 +226,7 @@ int check(const CheckArguments& given) {
 void add_check_command(CLI::App& app, Action& chosen) {
     static CheckArguments given;
     CLI::App* command =
-        add_command(app, "check", "Tell every mistake in a scene, and what its run will cost",
+        add_command(app, "check", "Report every mistake in a scene and what running it will cost",
                     "  swage check assets/scenes/calf-line.toml\n"
                     "  swage check assets/scenes/calf-line.toml --set mold.across=12 --json\n",
                     chosen, [] { return check(given); });

@@ -24,7 +24,7 @@ int parse_whole(const std::string& text) {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value < 1) {
-        throw CLI::ValidationError(fmt::format("\"{}\" is no whole number of 1 or more", text));
+        throw CLI::ValidationError(fmt::format("\"{}\" is not a whole number of at least 1", text));
     }
     return value;
 }
@@ -43,13 +43,14 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
     CLI::App* command = app.add_subcommand(name, description);
     command
         ->add_option("--threads", common.threads,
-                     "threads to use (default, and beyond 16 at most: one a core)")
+                     "number of threads (default: one per core; more than 16 only if there are as "
+                     "many cores)")
         ->check(CLI::Range(1, 4096))
         ->type_name("N")
         ->group(kCommonOptions);
-    auto* quiet = command->add_flag("-q,--quiet", common.quiet, "say only what is wrong")
+    auto* quiet = command->add_flag("-q,--quiet", common.quiet, "report only what is wrong")
                       ->group(kCommonOptions);
-    command->add_flag("-v,--verbose", common.verbose, "say more")
+    command->add_flag("-v,--verbose", common.verbose, "report more")
         ->excludes(quiet)
         ->group(kCommonOptions);
     command->footer("\nExamples:\n" + examples);
@@ -58,7 +59,8 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 }
 
 const CLI::Validator kSomewhere(
-    [](const std::string& text) { return text.empty() ? "\"\" is no name" : std::string(); }, "");
+    [](const std::string& text) { return text.empty() ? "\"\" is not a name" : std::string(); },
+    "");
 
 void apply_common_options() {
     set_log_level(common.quiet     ? LogLevel::quiet
@@ -85,7 +87,7 @@ FrameRange parse_frame_range(const std::string& text, int frame_count, int first
                                    : parse_whole(last.substr(1));
     } catch (const CLI::ValidationError&) {
         throw CLI::ValidationError(
-            fmt::format("\"{}\" is no frame or range of frames such as 7, 3-9 or 3-", text));
+            fmt::format("\"{}\" is not a frame or a range of frames such as 7, 3-9 or 3-", text));
     }
     if (range.last < range.first) {
         throw CLI::ValidationError(fmt::format("\"{}\" ends before it begins", text));
@@ -104,11 +106,11 @@ FrameRate parse_frame_rate(const std::string& text) {
 std::pair<int, int> parse_size(const std::string& text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos) {
-        throw CLI::ValidationError(fmt::format("\"{}\" is no size such as 1280x720", text));
+        throw CLI::ValidationError(fmt::format("\"{}\" is not a size such as 1280x720", text));
     }
     const std::pair size{parse_whole(text.substr(0, cross)), parse_whole(text.substr(cross + 1))};
     if (size.first > 16384 || size.second > 16384) {
-        throw CLI::ValidationError(fmt::format("\"{}\" is more than 16384x16384", text));
+        throw CLI::ValidationError(fmt::format("\"{}\" is larger than 16384x16384", text));
     }
     return size;
 }

@@ -44,7 +44,7 @@ int export_run(const ExportArguments& given) {
     const fs::path file = given.out.empty() ? RunDirectory::exported(run) / (scene.name + ".usda")
                                             : fs::path(given.out);
     if (file.extension() != ".usda") {
-        fail(ExitCode::command_line, "{}: can be written as .usda", file.string());
+        fail(ExitCode::command_line, "{}: only .usda can be written", file.string());
     }
     const FrameStore store(RunDirectory::store_in(run));
     FrameRange frames{1, store.frame_count()};
@@ -81,19 +81,19 @@ void add_export_command(CLI::App& app, Action& chosen) {
     static ExportArguments given;
     CLI::App* command = add_command(
         app, "export",
-        "Write the moving skins and tools of a finished run, and the camera of its stills, as one "
-        "file, for Blender, Houdini, Maya, ...",
+        "Write a finished run's animated skins and tools, and the camera of its stills, into one "
+        "file for Blender, Houdini, Maya, ...",
         "  swage export renders/calf-line\n"
         "  swage export renders/calf-line --frames 1-40 --out /tmp/bend.usda\n"
         "  swage export renders/calf-line --camera-azimuth 90 --size 1920x1080\n",
         chosen, [] { return export_run(given); });
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
     command
-        ->add_option("-o,--out", given.out,
-                     "USD as text (default: RUN/usd/SCENE.usda): every body with its materials and "
-                     "where it is in every frame, in metres, tools below machine/STAGE, the "
-                     "stills' camera and key_lamp; images go beside it. A file that was so written "
-                     "before gives way")
+        ->add_option(
+            "-o,--out", given.out,
+            "USD text file to write (default: RUN/usd/SCENE.usda), in metres: every body with its "
+            "materials and its place in every frame, tools under machine/STAGE, the stills' camera "
+            "and key_lamp. Images go beside it. An earlier export of that name is replaced")
         ->check(kSomewhere)
         ->type_name("FILE");
     command
@@ -116,7 +116,8 @@ void add_export_command(CLI::App& app, Action& chosen) {
         ->check(CLI::Range(1, kLargestFirstFrame));
     add_view_arguments(*command, given.view);
     command->add_flag("--no-tools", given.no_tools,
-                      "no tools, grips and blades, which are there where the stills have them");
+                      "leave out tools, grips and blades, which are otherwise included where the "
+                      "stills show them");
     command->add_flag("--json", given.json, "print one JSON object");
 }
 

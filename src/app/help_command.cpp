@@ -32,11 +32,11 @@ int help(const CLI::App& app, const std::string& of) {
 
 void add_help_command(CLI::App& app, Action& chosen) {
     static std::string of;
-    CLI::App* command = add_command(app, "help", "Tell what there is, or all of one command",
+    CLI::App* command = add_command(app, "help", "List the commands, or explain one of them",
                                     "  swage help\n"
                                     "  swage help run\n",
                                     chosen, [&app] { return help(app, of); });
-    command->add_option("command", of, "one of the others")->type_name("COMMAND");
+    command->add_option("command", of, "the command to explain")->type_name("COMMAND");
 }
 
 }  // namespace swage

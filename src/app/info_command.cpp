@@ -28,7 +28,7 @@ std::vector<std::string> repairs_of(const InputMesh& input) {
         repair.account.push_back("then: " + summary_line(check_mesh(repair.mesh)));
         return repair.account;
     } catch (const Error& error) {
-        return {fmt::format("refuses it: {}", error.what())};
+        return {fmt::format("refuses this mesh: {}", error.what())};
     }
 }
 
@@ -52,10 +52,10 @@ std::string text_of(const std::string& file, const InputMesh& input, bool is_man
     line("components", std::to_string(report.components));
     line("watertight", yes_no(report.watertight));
     const bool differs = is_manifold != report.manifold;
-    line("manifold", yes_no(is_manifold) + (differs ? ", by its vertex numbers" : ""));
+    line("manifold", yes_no(is_manifold) + (differs ? ", going by its vertex numbers" : ""));
     if (differs) line("by place", "not manifold");
     line("oriented", yes_no(report.oriented));
-    line("volume", report.bounds_a_volume() ? volume_text(report.volume) : "encloses none");
+    line("volume", report.bounds_a_volume() ? volume_text(report.volume) : "none enclosed");
     line("area", area_text(report.area));
     line("box", fmt::format("{} x {} x {}", length_text(size[0]), length_text(size[1]),
                             length_text(size[2])));
@@ -97,7 +97,7 @@ int info(const InfoArguments& given) {
         const std::filesystem::path file = RunDirectory::record_in(given.file);
         const std::optional<Json> record = read_record(file);
         if (!record) {
-            fail(ExitCode::command_line, "{} is a folder without a whole run.json: no run's",
+            fail(ExitCode::command_line, "{} is not a run directory: it has no complete run.json",
                  given.file);
         }
         if (given.json) {
@@ -131,13 +131,13 @@ int info(const InfoArguments& given) {
 void add_info_command(CLI::App& app, Action& chosen) {
     static InfoArguments given;
     CLI::App* command = add_command(
-        app, "info", "Say what a mesh file holds, and what is wrong with it; or how far a run came",
+        app, "info", "Describe a mesh file and what is wrong with it, or report how far a run got",
         "  swage info assets/meshes/calf.obj\n"
         "  swage info assets/meshes/calf.obj --json\n",
         chosen, [] { return info(given); });
     command
         ->add_option("mesh", given.file,
-                     "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS or 3MF file; or the folder of a run")
+                     "OBJ, PLY, STL, OFF, glTF, GLB, DAE, 3DS or 3MF file, or a run directory")
         ->required()
         ->type_name("MESH");
     command->add_flag("--json", given.json, "print one JSON object");

@@ -47,7 +47,7 @@ std::vector<SectionReference> chosen(const std::vector<SectionReference>& all,
         if (!part.key.empty()) found.push_back(part);
     }
     if (found.empty()) {
-        fail(ExitCode::command_line, "there is no section and no key \"{}\"{}", word,
+        fail(ExitCode::command_line, "there is no section or key \"{}\"{}", word,
              did_you_mean(name, known));
     }
     return found;
@@ -102,16 +102,16 @@ int keys(const KeysArguments& given) {
 
 void add_keys_command(CLI::App& app, Action& chosen) {
     static KeysArguments given;
-    CLI::App* command = add_command(app, "keys", "Tell every key that a scene may have",
+    CLI::App* command = add_command(app, "keys", "List every key that a scene can have",
                                     "  swage keys\n"
                                     "  swage keys stage\n"
                                     "  swage keys young_modulus\n"
                                     "  swage keys --machine\n"
                                     "  swage keys --machine expressions\n",
                                     chosen, [] { return keys(given); });
-    command->add_option("word", given.word, "a section or a key")->type_name("WORD");
+    command->add_option("word", given.word, "A section or a key")->type_name("WORD");
     command->add_flag("--machine", given.machine,
-                      "the keys of machine files and what their expressions may say instead");
+                      "list the keys of machine files instead, and what their expressions can use");
     command->add_flag("--json", given.json, "print JSON");
 }
 

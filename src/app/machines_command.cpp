@@ -23,7 +23,7 @@ struct MachinesArguments {
 std::string range_text(const ParameterSpec& parameter) {
     if (parameter.low.empty() && parameter.high.empty()) return "";
     if (parameter.low.empty()) return ", up to " + parameter.high.text;
-    if (parameter.high.empty()) return ", at least " + parameter.low.text;
+    if (parameter.high.empty()) return ", " + parameter.low.text + " or more";
     return ", " + parameter.low.text + " to " + parameter.high.text;
 }
 
@@ -53,10 +53,10 @@ std::string machine_text(const MachineSpec& machine) {
     text += "\n  ";
     for (const std::string& part : parts) text += (&part == &parts.front() ? "" : ", ") + part;
     text += machine.stops ? "\n  can stop at a force or torque ([[stage.limit]])"
-                          : "\n  goes all its way: no motion of it can stop at a force";
+                          : "\n  cannot stop at a force or torque";
     return text +
-           "\n  a number without a unit is in that in brackets; length, height and width are those "
-           "of\n  the work-piece's box, spacing is that of its lattice\n";
+           "\n  numbers without a unit are in the unit in brackets; length, height and width are "
+           "those of\n  the work-piece's box, spacing is that of its lattice\n";
 }
 
 Json machine_json(const MachineSpec& machine) {
@@ -102,11 +102,11 @@ int machines(const MachinesArguments& given) {
     const std::string name = is_file(given) ? fs::path(given.name).stem().string() : given.name;
     for (const MachineFile& bad : catalogue.unusable) {
         if (bad.name != name && (!name.empty() || !catalogue.machine.empty())) continue;
-        fail(ExitCode::scene, "{}: no machine can be made of it", bad.file.string());
+        fail(ExitCode::scene, "{} does not make a usable machine", bad.file.string());
     }
     if (catalogue.machine.empty()) {
         fail(ExitCode::command_line,
-             "no machine was found in {}; --assets names a folder that holds machines/{}",
+             "found no machine in {}; use --assets to name the folder that contains machines/{}",
              names_text(machine_folders(assets, folder)), wrong_root_text(assets.root));
     }
     if (given.name.empty()) {
@@ -119,7 +119,7 @@ int machines(const MachinesArguments& given) {
         if (given.json) {
             put_json(list);
         } else {
-            put_out(table_text(rows) + "\nswage machines NAME tells a machine's parameters\n");
+            put_out(table_text(rows) + "\nswage machines NAME shows a machine's parameters\n");
         }
         return 0;
     }
@@ -142,13 +142,14 @@ int machines(const MachinesArguments& given) {
 
 void add_machines_command(CLI::App& app, Action& chosen) {
     static MachinesArguments given;
-    CLI::App* command = add_command(app, "machines", "List the machines, or tell one's parameters",
-                                    "  swage machines\n"
-                                    "  swage machines bend\n"
-                                    "  swage machines twist --json\n"
-                                    "  swage machines machines/press.toml\n",
-                                    chosen, [] { return machines(given); });
-    command->add_option("name", given.name, "a machine, or its file")->type_name("NAME");
+    CLI::App* command =
+        add_command(app, "machines", "List the machines, or show the parameters of one",
+                    "  swage machines\n"
+                    "  swage machines bend\n"
+                    "  swage machines twist --json\n"
+                    "  swage machines machines/press.toml\n",
+                    chosen, [] { return machines(given); });
+    command->add_option("name", given.name, "A machine, or the file of one")->type_name("NAME");
     add_assets_option(*command, given.assets);
     command->add_flag("--json", given.json, "print JSON");
 }

@@ -36,8 +36,8 @@ std::string commands_left_out(const CLI::App& app) {
 
 int run_command_line(int argc, char** argv) {
     CLI::App app(
-        "swage: a machine shop for meshes. A mesh goes in, is molded into matter, bent,\n"
-        "twisted and cut by machines, and comes out as meshes, stills and force curves.");
+        "swage: a machine shop for meshes. A mesh goes in, is molded into matter, is "
+        "bent,\ntwisted and cut by machines, and comes out as meshes, stills and force curves.");
     app.name("swage");
     app.set_version_flag("-V,--version", fmt::format("swage {} (build {})", kVersion, kBuildName));
     app.formatter(std::make_shared<HelpFormat>());
@@ -79,7 +79,7 @@ int run_command_line(int argc, char** argv) {
             }
         }
         log_error_text(parse_error_text(app, error, {argv + 1, argv + argc}));
-        log_text("swage --help, or swage COMMAND --help, tells what there is");
+        log_text("see swage --help or swage COMMAND --help");
         return exit_code(ExitCode::command_line);
     }
     apply_common_options();
@@ -102,7 +102,7 @@ int tell_failure() {
     try {
         throw;
     } catch (const Interrupted& interrupted) {
-        log_text("stopped; whole files are kept");
+        log_text("interrupted; complete files are kept");
         return 128 + interrupted.signal();
     } catch (const std::exception& error) {
         if (const std::optional<Error> failure = failure_of(error)) {
@@ -110,7 +110,7 @@ int tell_failure() {
             for (const std::string& line : lines_of(failure->what())) log_error_text(line);
             return exit_code(failure->code());
         }
-        log_error_text(std::string("unexpected, please report it: ") + error.what());
+        log_error_text(std::string("unexpected error, please report it: ") + error.what());
         return kUnexpected;
     }
 }

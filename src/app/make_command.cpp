@@ -48,7 +48,7 @@ std::string shown(double value, ParameterKind kind) {
 void write_shape(const fs::path& file, MadeShape shape) {
     const std::string ending = file.extension().string();
     if (ending != ".obj" && ending != ".ply") {
-        fail(ExitCode::command_line, "{}: can be written as .obj or .ply", file.string());
+        fail(ExitCode::command_line, "{}: only .obj and .ply can be written", file.string());
     }
     FilesBeside picture;
     if (shape.texture && !shape.mesh.material.empty()) {
@@ -85,7 +85,7 @@ int make(const ShapeInfo& info, const MakeArguments& given) {
 
 void add_make_command(CLI::App& app, Action& chosen) {
     static MakeArguments given;
-    CLI::App* command = app.add_subcommand("make", "Make one of the project's own meshes");
+    CLI::App* command = app.add_subcommand("make", "Make one of swage's own meshes");
     command->require_subcommand(1);
     const auto format = std::make_shared<HelpFormat>();
     format->label("COMMAND", "SHAPE");
@@ -102,7 +102,7 @@ void add_make_command(CLI::App& app, Action& chosen) {
                                                   "  swage make {0} --out /tmp/{0}.ply\n",
                                                   info.name),
                                       chosen, [&info] { return make(info, given); });
-        shape->add_option("-o,--out", given.out, "OBJ or PLY file (default: SHAPE.obj)")
+        shape->add_option("-o,--out", given.out, "OBJ or PLY file to write (default: SHAPE.obj)")
             ->check(kSomewhere)
             ->type_name("FILE");
         for (const ShapeParameter& parameter : info.parameters) {

@@ -37,7 +37,7 @@ std::string list_text(const std::vector<Material>& materials) {
                         limit_text(m.strength)});
     }
     return table_text(rows) +
-           "\nswage materials NAME tells all numbers of one, as a scene may give them\n";
+           "\nswage materials NAME shows all numbers of one, as a scene would give them\n";
 }
 
 Vec3 on_screen(const Vec3& color) {
@@ -79,7 +79,7 @@ std::string material_text(const Material& m, const std::optional<SurfaceMaterial
         text += fmt::format("elasticity = \"{}\"\n", name_in(kElasticityNames, m.elasticity));
     }
     if (!m.flow_curve.empty()) {
-        text += fmt::format("# flows along a curve of its own, from {} on, which its name brings\n",
+        text += fmt::format("# yields at {}, then follows a flow curve that comes with the name\n",
                             quantity_text(m.yield_stress, Quantity::stress));
     } else if (m.yields()) {
         quantity("yield_stress", m.yield_stress, Quantity::stress);
@@ -95,11 +95,11 @@ std::string material_text(const Material& m, const std::optional<SurfaceMaterial
     }
     number("friction", m.friction);
     if (m.static_friction > m.friction) number("static_friction", m.static_friction);
-    text += "# in motion alone:\n";
+    text += "# only in motion:\n";
     number("damping_ratio", m.damping_ratio);
     number("restitution", m.restitution);
     if (m.stickiness > 0) quantity("stickiness", m.stickiness, Quantity::stress);
-    if (look) text += "# in pictures alone:\n" + look_text(*look);
+    if (look) text += "# only in pictures:\n" + look_text(*look);
     return text;
 }
 
@@ -108,11 +108,10 @@ int materials(const MaterialsArguments& given) {
     const MaterialCatalogue catalogue = material_catalogue(assets, fs::current_path());
     log_mistakes(catalogue.mistakes);
     if (exit_code(catalogue.mistakes) != ExitCode::done) {
-        fail(ExitCode::scene, "a file of materials has mistakes");
+        fail(ExitCode::scene, "a materials file has mistakes");
     }
     if (catalogue.material.empty()) {
-        fail(ExitCode::command_line, "no file of materials was found{}",
-             wrong_root_text(assets.root));
+        fail(ExitCode::command_line, "found no materials file{}", wrong_root_text(assets.root));
     }
     if (given.name.empty()) {
         Json list = Json::array();
@@ -138,20 +137,21 @@ int materials(const MaterialsArguments& given) {
         }
         return 0;
     }
-    fail(ExitCode::command_line, "no material \"{}\"{}; swage materials lists them", given.name,
-         did_you_mean(given.name, known));
+    fail(ExitCode::command_line, "there is no material \"{}\"{}; swage materials lists them",
+         given.name, did_you_mean(given.name, known));
 }
 
 }  // namespace
 
 void add_materials_command(CLI::App& app, Action& chosen) {
     static MaterialsArguments given;
-    CLI::App* command = add_command(app, "materials", "List the materials, or tell one's numbers",
-                                    "  swage materials\n"
-                                    "  swage materials rubber\n"
-                                    "  swage materials aluminium --json\n",
-                                    chosen, [] { return materials(given); });
-    command->add_option("name", given.name, "a material")->type_name("NAME");
+    CLI::App* command =
+        add_command(app, "materials", "List the materials, or show the numbers of one",
+                    "  swage materials\n"
+                    "  swage materials rubber\n"
+                    "  swage materials aluminium --json\n",
+                    chosen, [] { return materials(given); });
+    command->add_option("name", given.name, "A material")->type_name("NAME");
     add_assets_option(*command, given.assets);
     command->add_flag("--json", given.json, "print JSON");
 }

@@ -41,7 +41,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (!given.background.empty()) settings.background = background_named(given.background);
     if (settings.background == Background::transparent && given.film) {
         fail(ExitCode::command_line,
-             "--film: a film cannot be transparent; --background studio makes one that is not");
+             "--film: a film cannot be transparent; use --background studio for an opaque one");
     }
     if (given.film) settings.film = true;
     if (given.no_film) settings.film = false;
@@ -56,7 +56,7 @@ RenderSettings settings_of(const RenderArguments& given, const Json& record) {
     if (!given.color_range.empty()) {
         if (!settings.color) fail(ExitCode::command_line, "--color-range needs --color");
         if (!(given.color_range[0] < given.color_range[1])) {
-            fail(ExitCode::command_line, "--color-range: the first has to be less than the second");
+            fail(ExitCode::command_line, "--color-range: the first must be less than the second");
         }
         settings.color_range = {given.color_range[0], given.color_range[1]};
     }
@@ -88,7 +88,7 @@ int render(const RenderArguments& given) {
                  record.contains("bodies") ? run_names_of(record) : RunNames());
     const int removed = directory.remove_others(frames, drawn.film, drawn.passes);
     if (removed > 0) {
-        log_info("{}: {} of an earlier drawing removed", out.string(),
+        log_info("{}: removed {} of an earlier drawing", out.string(),
                  counted(std::size_t(removed), "picture", "pictures"));
     }
     log_info("{}: done", out.string());
@@ -106,7 +106,7 @@ int render(const RenderArguments& given) {
 void add_render_command(CLI::App& app, Action& chosen) {
     static RenderArguments given;
     CLI::App* command = add_command(
-        app, "render", "Draw a finished run again, without simulating",
+        app, "render", "Draw a finished run again without simulating it",
         "  swage render renders/calf-line --camera-azimuth 90 --size 1920x1080 --out /tmp/side\n"
         "  swage render renders/calf-line --frames 1 --no-film --no-tools\n"
         "  swage render renders/calf-line --camera-turn 360 --out /tmp/round\n"
@@ -119,49 +119,48 @@ void add_render_command(CLI::App& app, Action& chosen) {
     command->add_option("run", given.run, "run directory")->required()->type_name("RUN");
     command
         ->add_option("--out", given.out,
-                     "where to draw (default: RUN/again): a new or empty folder, or one that was "
-                     "drawn into before, whose earlier pictures go")
+                     "folder to draw into (default: RUN/again): a new or empty one, or one that "
+                     "was drawn into before, whose earlier pictures are removed")
         ->check(kSomewhere)
         ->type_name("DIR");
     add_view_arguments(*command, given.view);
     command
         ->add_option("--background", given.background,
-                     "transparent: stills with alpha, for compositing, of the ground only its "
-                     "shadows; no film")
+                     "transparent: stills with alpha for compositing, with only the shadows of the "
+                     "ground; no film")
         ->check(CLI::IsMember(
             std::vector<std::string>(kBackgroundName.begin(), kBackgroundName.end())));
     command
         ->add_option(
             "--frames", given.frames,
-            "draw only the stills A to B, A, or A- to the end; 1, or --first-frame, is the "
-            "start. The pictures "
-            "frame the whole run all the same")
+            "draw only the stills A to B, A, or A- to the end; 1, or --first-frame, is the start. "
+            "The view still frames the whole run")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
     command
         ->add_option("--fps", given.frame_rate,
-                     "frames a second of the film (default: as the scene says); 23.976 is exactly "
+                     "frames a second of the film (default: as in the scene); 23.976 is exactly "
                      "24000/1001, and so 29.97, 47.952, 59.94 and 119.88")
         ->type_name("RATE")
         ->each([](const std::string& text) { parse_frame_rate(text); });
     command
         ->add_option("--first-frame", given.first_frame,
                      "number of the first still, the start, in names and in --frames (default: as "
-                     "the scene says, else 1)")
+                     "in the scene, else 1)")
         ->check(CLI::Range(1, kLargestFirstFrame));
-    command->add_option("--gl", given.gl, "library that draws")
+    command->add_option("--gl", given.gl, "graphics library")
         ->check(CLI::IsMember(std::vector<std::string>(kGlName.begin(), kGlName.end())));
     std::vector<std::string> colors = {"none"};
     for (const SkinFieldWords& words : kSkinFieldWords) colors.emplace_back(words.name);
     command
         ->add_option("--color", given.color,
-                     "bodies by a field that the run holds ([output] fields in its scene), with a "
-                     "scale; none: as they look (default: as the scene says)")
+                     "colour bodies by a field that the run contains ([output] fields in its "
+                     "scene), with a scale; none: their own look (default: as in the scene)")
         ->check(CLI::IsMember(colors));
     command
         ->add_option("--color-range", given.color_range,
-                     "the ends of that scale, stresses in Pa (default: of all frames, from 0 what "
-                     "has no sign); one beyond which anything lies is an arrow")
+                     "ends of that scale, stresses in Pa (default: the range over all frames, from "
+                     "0 for unsigned fields); an arrow marks an end beyond which values lie")
         ->expected(2)
         ->check(kFinite)
         ->type_name("LOW HIGH");
@@ -181,11 +180,12 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(CLI::IsMember(passes))
         ->type_name("LIST");
     CLI::Option* film =
-        command->add_flag("--film", given.film, "a film too, although the scene has film = false");
-    command->add_flag("--no-film", given.no_film, "stills only")->excludes(film);
-    command->add_flag("--no-tools", given.no_tools, "the work-piece alone");
-    command->add_flag("--no-ground", given.no_ground, "no ground, and no floor that stands for it");
-    command->add_flag("--no-legend", given.no_legend, "no scale of what --color shows");
+        command->add_flag("--film", given.film, "make a film even if the scene has film = false");
+    command->add_flag("--no-film", given.no_film, "make stills only")->excludes(film);
+    command->add_flag("--no-tools", given.no_tools, "draw only the work-piece");
+    command->add_flag("--no-ground", given.no_ground,
+                      "draw no ground, nor a floor that serves as the ground");
+    command->add_flag("--no-legend", given.no_legend, "draw no scale for --color");
     command->add_flag("--json", given.json, "print one JSON object");
 }
 

@@ -64,7 +64,8 @@ int run(const RunArguments& given) {
 void add_run_command(CLI::App& app, Action& chosen) {
     static RunArguments given;
     CLI::App* command = add_command(
-        app, "run", "Run a scene: mesh, matter, machines, skin, stills and film",
+        app, "run",
+        "Run a scene: from the mesh through matter and machines to skin, stills and film",
         "  swage run assets/scenes/calf-line.toml\n"
         "  swage run assets/scenes/bar-springback.toml --out /tmp/soft --set material.name=copper\n"
         "  swage run assets/scenes/rod-cut.toml --no-render --json --quiet\n",
@@ -79,7 +80,8 @@ void add_run_command(CLI::App& app, Action& chosen) {
                      "first_frame says, is the start")
         ->type_name("A-B")
         ->each([](const std::string& text) { parse_frame_range(text); });
-    command->add_flag("--no-render", given.no_render, "no pictures; needs no OpenGL");
+    command->add_flag("--no-render", given.no_render,
+                      "draw no pictures; OpenGL is then not needed");
     CLI::Option* fresh = command->add_flag(
         "--fresh", given.fresh,
         "throw away what an earlier run left in the directory, once this one is set up");
@@ -102,12 +104,12 @@ void add_run_command(CLI::App& app, Action& chosen) {
             }
         })
         ->type_name("TIME");
-    command->add_flag("--force", given.force,
-                      "run even if it seems to need more memory, disk or time than there is");
     command->add_flag(
-        "--json", given.json,
-        "print the run's record on stdout, that of one that stopped too, or what kept it from "
-        "running as `swage check` does");
+        "--force", given.force,
+        "run even if the scene seems to need more memory, disk or time than there is");
+    command->add_flag("--json", given.json,
+                      "print the run's record to stdout, even if the run stopped; if it could not "
+                      "start, print why as `swage check` does");
 }
 
 }  // namespace swage

@@ -10,7 +10,7 @@
 namespace swage {
 
 void add_assets_option(CLI::App& command, std::string& assets) {
-    command.add_option("--assets", assets, "folder that holds machines/ and assets/")
+    command.add_option("--assets", assets, "folder that contains machines/ and assets/")
         ->type_name("DIR");
 }
 
@@ -25,7 +25,7 @@ void add_scene_argument(CLI::App& command, SceneArgument& argument) {
         ->type_name("SCENE");
     command
         .add_option("--set", argument.overrides,
-                    "put a value in place of the scene's, such as \"stage.1.angle=45 deg\"")
+                    "override a value of the scene, such as \"stage.1.angle=45 deg\"")
         ->type_name("KEY=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -44,8 +44,8 @@ SceneSpec scene_of(SceneReading reading, const SceneArgument& argument) {
     const auto count = std::count_if(reading.mistakes.begin(), reading.mistakes.end(),
                                      [](const Mistake& mistake) { return !mistake.warning; });
     if (count > 0 || !reading.scene) {
-        fail(exit_code(reading.mistakes), "{}: {} mistake{}; nothing was done", argument.file,
-             count, count == 1 ? "" : "s");
+        fail(exit_code(reading.mistakes), "{}: {} mistake{}; nothing was run", argument.file, count,
+             count == 1 ? "" : "s");
     }
     return std::move(*reading.scene);
 }

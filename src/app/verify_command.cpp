@@ -109,23 +109,23 @@ void add_verify_command(CLI::App& app, Action& chosen) {
     static VerifyArguments given;
     std::string names;
     for (const Case& c : verification_cases()) names += (names.empty() ? "" : ", ") + c.name;
-    CLI::App* command = add_command(
-        app, "verify",
-        "Run cases of mechanics whose answers are known; exit code 6 when one misses its bound",
-        "  swage verify\n"
-        "  swage verify --short\n"
-        "  swage verify cantilever torsion --out verified\n"
-        "  swage verify stretch --json\n",
-        chosen, [] { return verify(given); });
+    CLI::App* command =
+        add_command(app, "verify",
+                    "Run mechanics cases with known answers; exit code 6 if any misses its bound",
+                    "  swage verify\n"
+                    "  swage verify --short\n"
+                    "  swage verify cantilever torsion --out verified\n"
+                    "  swage verify stretch --json\n",
+                    chosen, [] { return verify(given); });
     command->add_option("cases", given.cases, "cases to run (default: all): " + names)
         ->type_name("CASE");
     command->add_option("--out", given.out, "write verify.json and verify.html there")
         ->check(kSomewhere)
         ->type_name("DIR");
     CLI::Option* json = command->add_flag("--json", given.json, "print JSON");
-    command->add_flag("--markdown", given.markdown, "print the table of the README")
-        ->excludes(json);
-    command->add_flag("--short", given.brief, "the quick cases, without their finest bodies");
+    command->add_flag("--markdown", given.markdown, "print the README's table")->excludes(json);
+    command->add_flag("--short", given.brief,
+                      "run only the quick cases, without their finest bodies");
 }
 
 }  // namespace swage

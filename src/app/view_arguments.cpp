@@ -24,10 +24,11 @@ CLI::Validator angle_or_auto(double low, double high) {
             char* end = nullptr;
             const double angle = std::strtod(text.c_str(), &end);
             if (text.empty() || *end != '\0' || !std::isfinite(angle)) {
-                return "\"" + text + "\" is no angle: give degrees, or auto";
+                return "\"" + text + "\" is not an angle: give degrees, or auto";
             }
             return angle < low || angle > high
-                       ? fmt::format("{} is out of range: {:g} to {:g}, or auto", text, low, high)
+                       ? fmt::format("{} is out of range: give {:g} to {:g}, or auto", text, low,
+                                     high)
                        : std::string();
         },
         "");
@@ -39,7 +40,7 @@ const CLI::Validator kFinite(
     [](const std::string& text) {
         char* end = nullptr;
         return std::isfinite(std::strtod(text.c_str(), &end)) ? std::string()
-                                                              : text + " is no finite number";
+                                                              : text + " is not a finite number";
     },
     "");
 
@@ -63,7 +64,7 @@ void set_view(const ViewArguments& given, RenderSettings& settings) {
                         given.zoom, radians(given.turn)};
     if (given.eye.empty() && !given.target.empty()) change.target = place(given.target);
     if (change.any() && stands_at_eye(settings.camera)) {
-        log_info("the scene's eye and target give way to the camera that is asked for");
+        log_info("the camera options replace the scene's eye and target");
     }
     settings.camera = changed_camera(std::move(settings.camera), change);
     if (!given.eye.empty()) {
@@ -85,59 +86,60 @@ void add_view_arguments(CLI::App& command, ViewArguments& given) {
     command
         .add_option(
             "--camera-azimuth", given.azimuth,
-            "where the camera stands about the upward axis, at the film's start: 0 is +z "
-            "and 90 +x, or with z up +x and +y. What the scene has it do from there on "
-            "(orbit, keys) it does; an eye and target of the scene give way to this and "
-            "the next three, and to a target alone. auto: chosen, as swage keys render.camera "
-            "tells")
+            "direction of the camera about the upward axis at the start of the film: 0 is +z and "
+            "90 is +x, or with z up +x and +y. Motion from the scene (orbit, keys) starts from "
+            "there. This and the next three options, or a target alone, replace an eye and target "
+            "of the scene. auto: chosen as described by swage keys render.camera")
         ->check(angle_or_auto(-1e9, 1e9))
         ->type_name("DEG|auto");
     command
-        .add_option("--camera-elevation", given.elevation,
-                    "how high it stands, all through the film. Of these two, what neither the "
-                    "scene nor this gives is chosen as if auto stood here")
+        .add_option(
+            "--camera-elevation", given.elevation,
+            "elevation of the camera throughout the film. Of azimuth and elevation, whatever "
+            "neither the scene nor the command line gives is chosen as with auto")
         ->check(angle_or_auto(-90, 90))
         ->type_name("DEG|auto");
-    command.add_option("--camera-zoom", given.zoom, "2 is twice as near, all through the film")
+    command.add_option("--camera-zoom", given.zoom, "zoom throughout the film; 2 is twice as near")
         ->check(kFinite & CLI::Range(0.01, 1000.0));
     command
         .add_option("--camera-turn", given.turn,
-                    "how far it goes round during the film; whole turns (360) go at one pace, and "
-                    "their last still is a step short of the first, so that the film can be shown "
-                    "round and round")
+                    "how far the camera turns during the film. Whole turns (360) keep a constant "
+                    "pace and end one step short of the first still, so that the film loops")
         ->check(kFinite)
         ->type_name("DEG");
     CLI::Option* eye = command.add_option(
         "--camera-eye", given.eye,
-        "where the camera stands [m], all through the film, instead of all these and of what the "
-        "scene says of it; needs a target");
+        "position of the camera [m] throughout the film, in place of all options above and of the "
+        "scene's camera; needs a target");
     CLI::Option* target =
         command.add_option("--camera-target", given.target,
-                           "what it looks at [m], from the eye, or without one from where the "
-                           "others say, as far away as what shows the whole action");
+                           "point that the camera looks at [m]: from the eye or, without one, from "
+                           "the direction that the other options give and far enough away to show "
+                           "the whole action");
     for (CLI::Option* place : {eye, target}) place->expected(3)->check(kFinite)->type_name("X Y Z");
     eye->needs(target);
     for (const char* other :
          {"--camera-azimuth", "--camera-elevation", "--camera-zoom", "--camera-turn"}) {
         eye->excludes(command.get_option(other));
     }
-    command.add_option("--camera-up", given.up, "what the pictures have upward")
+    command.add_option("--camera-up", given.up, "axis that points upward in the pictures")
         ->check(CLI::IsMember({"x", "y", "z"}));
     command
         .add_option("--light-azimuth", given.light_azimuth,
-                    "where the lamp stands that throws the shadows, from the film's first view "
-                    "toward its right; -45.8 where the scene says nothing")
+                    "direction of the lamp that casts the shadows, from the film's first view "
+                    "toward its right (default: as in the scene, or -45.8)")
         ->check(kFinite)
         ->type_name("DEG");
     command
         .add_option("--light-elevation", given.light_elevation,
-                    "how high it stands; 51.6 where the scene says nothing")
+                    "elevation of the lamp (default: as in the scene, or 51.6)")
         ->check(kFinite & CLI::Range(5.0, 90.0))
         ->type_name("DEG");
-    command.add_option("--field-of-view", given.field_of_view, "vertical")
+    command.add_option("--field-of-view", given.field_of_view, "vertical field of view")
         ->check(kFinite & CLI::Range(1.0, 170.0))
         ->type_name("DEG");
-    command.add_option("--size", given.size, "of a still in pixels (default: as the scene says)")
+    command
+        .add_option("--size", given.size, "size of a still in pixels (default: as in the scene)")
         ->type_name("WxH")
         ->each([](const std::string& text) { parse_size(text); });
 }

@@ -55,51 +55,51 @@ const Function kFunctions[] = {
     {.name = "ramp",
      .three = ramp,
      .arguments = "ramp(t, a, b)",
-     .help = "0 before a, 1 after b, smooth between"},
+     .help = "0 before a, 1 after b, smooth in between"},
     {.name = "line",
      .three = line,
      .arguments = "line(t, a, b)",
-     .help = "0 before a, 1 after b, straight between"},
+     .help = "0 before a, 1 after b, linear in between"},
     {.name = "step", .two = step, .arguments = "step(t, a)", .help = "0 before a, 1 from a on"},
     {.name = "clamp",
      .three = clamp,
      .arguments = "clamp(x, a, b)",
-     .help = "x, but not below a and not above b"},
+     .help = "x, limited to the range a to b"},
     {.name = "min",
      .many = smallest,
      .arguments = "min(a, b, ...)",
-     .help = "the least of any number of values"},
+     .help = "the smallest of any number of values"},
     {.name = "max",
      .many = largest,
      .arguments = "max(a, b, ...)",
-     .help = "the greatest of any number of values"},
-    {.name = "abs", .one = std::fabs, .arguments = "abs(x)", .help = "without its sign"},
+     .help = "the largest of any number of values"},
+    {.name = "abs", .one = std::fabs, .arguments = "abs(x)", .help = "absolute value"},
     {.name = "sign", .one = sign, .arguments = "sign(x)", .help = "-1, 0 or 1"},
-    {.name = "floor", .one = std::floor, .arguments = "floor(x)", .help = "whole number below"},
-    {.name = "ceil", .one = std::ceil, .arguments = "ceil(x)", .help = "whole number above"},
+    {.name = "floor", .one = std::floor, .arguments = "floor(x)", .help = "rounded down"},
+    {.name = "ceil", .one = std::ceil, .arguments = "ceil(x)", .help = "rounded up"},
     {.name = "round", .one = std::round, .arguments = "round(x)", .help = "nearest whole number"},
     {.name = "mod",
      .two = std::fmod,
      .arguments = "mod(x, y)",
-     .help = "what is left of x divided by y"},
+     .help = "remainder of x divided by y"},
     {.name = "sqrt", .one = std::sqrt, .arguments = "sqrt(x)", .help = "square root"},
     {.name = "exp", .one = portable::exp, .arguments = "exp(x)", .help = "e to the power x"},
     {.name = "log", .one = portable::log, .arguments = "log(x)", .help = "natural logarithm"},
-    {.name = "pow", .two = portable::pow, .arguments = "pow(x, y)", .help = "as x ^ y"},
+    {.name = "pow", .two = portable::pow, .arguments = "pow(x, y)", .help = "the same as x ^ y"},
     {.name = "hypot",
      .two = portable::hypot,
      .arguments = "hypot(x, y)",
      .help = "square root of x^2 + y^2"},
-    {.name = "sin", .one = portable::sin, .arguments = "sin(x)", .help = "of an angle"},
-    {.name = "cos", .one = portable::cos, .arguments = "cos(x)", .help = "of an angle"},
-    {.name = "tan", .one = portable::tan, .arguments = "tan(x)", .help = "of an angle"},
-    {.name = "asin", .one = portable::asin, .arguments = "asin(x)", .help = "an angle"},
-    {.name = "acos", .one = portable::acos, .arguments = "acos(x)", .help = "an angle"},
-    {.name = "atan", .one = portable::atan, .arguments = "atan(x)", .help = "an angle"},
+    {.name = "sin", .one = portable::sin, .arguments = "sin(x)", .help = "sine of an angle"},
+    {.name = "cos", .one = portable::cos, .arguments = "cos(x)", .help = "cosine of an angle"},
+    {.name = "tan", .one = portable::tan, .arguments = "tan(x)", .help = "tangent of an angle"},
+    {.name = "asin", .one = portable::asin, .arguments = "asin(x)", .help = "arc sine"},
+    {.name = "acos", .one = portable::acos, .arguments = "acos(x)", .help = "arc cosine"},
+    {.name = "atan", .one = portable::atan, .arguments = "atan(x)", .help = "arc tangent"},
     {.name = "atan2",
      .two = portable::atan2,
      .arguments = "atan2(y, x)",
-     .help = "the angle towards (x, y)"},
+     .help = "angle of the direction (x, y)"},
 };
 
 const Function* function_named(std::string_view name) {
@@ -214,8 +214,9 @@ class Reader {
             at_ = next + unit->size;
             refuse_power_of_unit(text_.substr(from, number.size), text_.substr(next, unit->size));
         } else if (is_variable(word) || function_named(word) != nullptr || word == "pi") {
-            refuse(next, fmt::format("a sign is missing before \"{0}\"; to multiply write {1}*{0}",
-                                     word, text_.substr(from, number.size)));
+            refuse(next,
+                   fmt::format("an operator is missing before \"{0}\"; to multiply write {1}*{0}",
+                               word, text_.substr(from, number.size)));
         } else if (has_word) {
             refuse(next, fmt::format("unknown unit \"{}\"", word));
         }
@@ -227,9 +228,11 @@ class Reader {
         std::size_t next = at_;
         while (next < text_.size() && is_blank(text_[next])) ++next;
         if (next == text_.size() || text_[next] != '^') return;
-        refuse(next, fmt::format("this may raise {0} {1} or the unit alone: write ({0} {1})^... or "
-                                 "{0}*(1 {1})^...",
-                                 number, unit));
+        refuse(
+            next,
+            fmt::format(
+                "this could raise {0} {1} or only the unit: write ({0} {1})^... or {0}*(1 {1})^...",
+                number, unit));
     }
 
     void read_word() {
@@ -247,7 +250,8 @@ class Reader {
             open_bracket(next, true);
             at_ = next + 1;
         } else if (is_called && (variable != variables_.end() || word == "pi")) {
-            refuse(from, fmt::format("\"{0}\" is no function; to multiply write {0}*(...)", word));
+            refuse(from,
+                   fmt::format("\"{0}\" is not a function; to multiply write {0}*(...)", word));
         } else if (is_called) {
             refuse(from, fmt::format("unknown function \"{}\"{}", word,
                                      did_you_mean(word, function_names())));
@@ -284,11 +288,11 @@ class Reader {
         } else if (sign == ',') {
             if (bracket_.empty() || !bracket_.back().of_function) {
                 refuse(at_,
-                       "a comma may only part the arguments of a function; the decimal sign "
-                       "is a point");
+                       "a comma can only separate the arguments of a function; the decimal sign is "
+                       "a point");
             }
         } else if (sign == '=') {
-            refuse(at_, "a single = means nothing here; to compare write ==");
+            refuse(at_, "a single = has no meaning here; to compare write ==");
         } else if (std::string_view("+-*/^<>?:").find(sign) == std::string_view::npos) {
             refuse(at_, fmt::format("\"{}\" does not belong in an expression", sign));
         }
@@ -299,7 +303,7 @@ class Reader {
 
     void open_bracket(std::size_t at, bool of_function) {
         bracket_.push_back({at, of_function});
-        if (bracket_.size() > kDeepest) refuse(at, "too many brackets in brackets");
+        if (bracket_.size() > kDeepest) refuse(at, "brackets are nested too deeply");
     }
 
     // muparser knows no words for it where the sign is that of a number.
@@ -308,7 +312,7 @@ class Reader {
         while (next < text_.size() && is_blank(text_[next])) ++next;
         if (next == text_.size()) refuse(next, "the expression ends too early");
         if (std::string_view(",?:").find(text_[next]) == std::string_view::npos) return;
-        refuse(at_ - 1, fmt::format("the sign \"{}\" has nothing to work on", sign));
+        refuse(at_ - 1, fmt::format("the operator \"{}\" lacks an operand", sign));
     }
 
     static std::vector<std::string> function_names() {
@@ -334,14 +338,15 @@ std::string sentence_for(const mu::ParserError& error, char at) {
         case mu::ecUNEXPECTED_EOF:
             return "the expression ends too early";
         case mu::ecUNEXPECTED_OPERATOR:
-            return fmt::format("the sign \"{}\" has nothing to work on", token);
+            return fmt::format("the operator \"{}\" lacks an operand", token);
         case mu::ecUNEXPECTED_VAL:
         case mu::ecUNEXPECTED_VAR:
         case mu::ecUNEXPECTED_FUN:
-            return "a sign is missing before this";
+            return "an operator is missing before this";
         case mu::ecUNEXPECTED_PARENS:
             // Numbers are written in brackets: an opening one is often none of the user's.
-            return at == ')' ? "a bracket does not belong here" : "a sign is missing before this";
+            return at == ')' ? "a bracket does not belong here"
+                             : "an operator is missing before this";
         case mu::ecUNEXPECTED_ARG_SEP:
             return "a comma does not belong here";
         case mu::ecMISPLACED_COLON:
@@ -356,7 +361,7 @@ std::string sentence_for(const mu::ParserError& error, char at) {
                                error.GetCode() == mu::ecTOO_FEW_PARAMS ? "few" : "many",
                                function == nullptr ? "" : std::string(": ") + function->arguments);
         default:
-            return "this cannot be read: " + error.GetMsg();
+            return "cannot be parsed: " + error.GetMsg();
     }
 }
 
@@ -404,7 +409,7 @@ double Formula::evaluate(std::span<const double> values) const {
     std::copy(values.begin(), values.end(), compiled_->value.begin());
     const double result = compiled_->parser.Eval();
     if (!std::isfinite(result)) {
-        throw TextError(0, "the expression gives no finite number");
+        throw TextError(0, "the expression does not give a finite number");
     }
     return result + 0.0;
 }

@@ -22,8 +22,7 @@ bool is_want_of_threads(const std::exception& error) {
 std::optional<Error> failure_of(const std::exception& error) {
     if (const auto* known = dynamic_cast<const Error*>(&error)) return *known;
     if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
-        return Error(ExitCode::resources,
-                     "there is not enough memory for this; a larger [mold] spacing needs less");
+        return Error(ExitCode::resources, "not enough memory; a larger [mold] spacing needs less");
     }
     if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
         return Error(ExitCode::output,
@@ -31,8 +30,8 @@ std::optional<Error> failure_of(const std::exception& error) {
     }
     if (is_want_of_threads(error)) {
         return Error(ExitCode::resources,
-                     "there is no memory, or no leave, for so many threads; --threads 1 needs the "
-                     "least");
+                     "not enough memory, or no permission, for so many threads; --threads 1 needs "
+                     "the least");
     }
     return std::nullopt;
 }

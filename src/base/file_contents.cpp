@@ -26,7 +26,7 @@ std::optional<std::string> why_unreadable(const std::filesystem::path& file) {
         return errno == ENOENT || errno == ENOTDIR ? "does not exist" : cannot_be_read(errno);
     }
     if (S_ISDIR(about.st_mode)) return "is a folder, not a file";
-    if (!S_ISREG(about.st_mode)) return "is not a plain file";
+    if (!S_ISREG(about.st_mode)) return "is not a regular file";
     if (::access(file.c_str(), R_OK) != 0) return cannot_be_read(errno);
     return std::nullopt;
 }

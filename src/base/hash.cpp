@@ -34,7 +34,7 @@ std::uint64_t hash_of_file(const std::filesystem::path& file) {
     std::array<char, 1 << 16> block;
     for (std::size_t got = block.size(); got == block.size();) {
         const std::optional<std::size_t> next = read_up_to(in.id(), block.data(), block.size());
-        if (!next) fail(ExitCode::mesh, "{}: cannot be read to its end", file.string());
+        if (!next) fail(ExitCode::mesh, "{}: cannot be read to the end", file.string());
         got = *next;
         hasher.add_bytes(block.data(), got);
     }

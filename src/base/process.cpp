@@ -124,7 +124,7 @@ void become_child(pid_t parent) {
 }
 
 PipedProgram::PipedProgram(const std::vector<std::string>& argument) {
-    if (argument.empty()) fail(ExitCode::output, "no program to start");
+    if (argument.empty()) fail(ExitCode::output, "there is no program to start");
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) {
         fail(ExitCode::output, "cannot make a pipe to {}: {}", argument[0], std::strerror(errno));

@@ -38,7 +38,7 @@ std::string time_left_text(int done, int left, double taken, double waited) {
         text = duration_text(each * std::max(left - 1, 0) + next) + " left";
     }
     if (waited < kLong) return text.empty() ? "begun" : text;
-    return fmt::format("{}{}the next takes {} so far", text, text.empty() ? "" : ", ",
+    return fmt::format("{}{}the next has taken {} so far", text, text.empty() ? "" : ", ",
                        duration_text(waited));
 }
 

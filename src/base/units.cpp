@@ -173,13 +173,13 @@ std::size_t spelled(std::string_view text, std::string_view unit) {
 
 // "m (also cm, mm, um, nm, ...)"
 std::string wanted_text(Quantity wanted) {
-    if (wanted == Quantity::number) return "a plain number is wanted";
+    if (wanted == Quantity::number) return "expected a plain number";
     std::vector<std::string> names = unit_names(wanted);
     if (names.size() > 4) {
         names.resize(4);
         names.push_back("...");
     }
-    return std::string(about(wanted).with_article) + " is wanted (" + joined(names, ", ") + ")";
+    return fmt::format("expected {} ({})", about(wanted).with_article, joined(names, ", "));
 }
 
 [[noreturn]] void refuse(std::size_t at, const std::string& sentence) {
@@ -216,7 +216,7 @@ std::vector<std::string> quantity_names() {
 std::string why_not_meant(double value, Quantity quantity, bool is_positive) {
     const double high = about(quantity).most, low = is_positive ? about(quantity).least : -high;
     if (value >= low && value <= high) return {};
-    return fmt::format("{} is out of range: it has to be {} to {}", quantity_text(value, quantity),
+    return fmt::format("{} is out of range: it must be {} to {}", quantity_text(value, quantity),
                        quantity_text(low, quantity), quantity_text(high, quantity));
 }
 
@@ -287,7 +287,8 @@ double parse_quantity(std::string_view text, Quantity wanted) {
     const std::string_view inner = text.substr(begin, end - begin);
 
     const std::optional<LeadingNumber> number = leading_number(inner);
-    if (!number) refuse(begin, fmt::format("\"{}\" is no number; {}", inner, wanted_text(wanted)));
+    if (!number)
+        refuse(begin, fmt::format("\"{}\" is not a number; {}", inner, wanted_text(wanted)));
     refuse_decimal_comma(inner, number->size);
     std::size_t at = number->size;
     while (at < inner.size() && is_blank(inner[at])) ++at;
@@ -296,7 +297,7 @@ double parse_quantity(std::string_view text, Quantity wanted) {
 
     if (std::string_view("+-*/^(").find(rest.front()) != std::string_view::npos) {
         refuse(begin + at,
-               fmt::format("\"{}\" is to be reckoned, which machine files alone are; {}", inner,
+               fmt::format("\"{}\" is an expression, which only machine files allow; {}", inner,
                            wanted_text(wanted)));
     }
     const std::optional<LeadingUnit> unit = leading_unit(rest);
@@ -345,7 +346,7 @@ std::string Range::text(Quantity quantity) const {
     const std::string from = quantity_text(low, quantity), to = quantity_text(high, quantity);
     if (std::isinf(high)) return (low_open ? "more than " : "at least ") + from;
     if (std::isinf(low)) return (high_open ? "less than " : "at most ") + to;
-    if (low_open && high_open) return "between " + from + " and " + to + ", both excluded";
+    if (low_open && high_open) return "between " + from + " and " + to + ", exclusive";
     if (low_open) return "more than " + from + ", at most " + to;
     if (high_open) return "at least " + from + ", less than " + to;
     return from + " to " + to;

@@ -52,8 +52,8 @@ double positive(const Setting& setting, const Expression& text, const std::strin
                 const char* quantity) {
     const double value = evaluate(text, setting.known);
     if (!(value > 0)) {
-        refuse(text, fmt::format("the {} of tool {} is {} and has to be more than 0", quantity,
-                                 tool, quantity_text(value, Quantity::length)));
+        refuse(text, fmt::format("the {} of tool {} is {} and must be more than 0", quantity, tool,
+                                 quantity_text(value, Quantity::length)));
     }
     const std::string why = why_not_meant(value, Quantity::length, true);
     if (why.empty()) return value;
@@ -104,9 +104,8 @@ MeshShape scaled_mesh(const Setting& setting, const ToolSpec& tool) {
     auto field = std::make_shared<const DistanceField>(*mesh);
     if (!field->has_inside()) {
         refuse({"", tool.mesh_place},
-               fmt::format("the mesh of tool {} encloses nothing that its samples, {} "
-                           "apart, would find: it has to be a closed surface, and thicker "
-                           "than that",
+               fmt::format("the mesh of tool {} encloses nothing that samples {} apart can find: "
+                           "it must be a closed surface, and thicker than that",
                            tool.name, quantity_text(field->spacing(), Quantity::length)));
     }
     return {mesh, field};
@@ -126,8 +125,8 @@ Shape shape_of(const Setting& setting, const ToolSpec& tool) {
         const double rounding = evaluate(tool.rounding, setting.known, Quantity::length);
         if (!(rounding >= 0 && rounding <= 0.5 * size.minCoeff())) {
             refuse(tool.rounding,
-                   fmt::format("the rounding of tool {} is {} and has to be 0 to half of "
-                               "the box's smallest side",
+                   fmt::format("the rounding of tool {} is {} and must be 0 to half of the box's "
+                               "smallest side",
                                tool.name, quantity_text(rounding, Quantity::length)));
         }
         return BoxShape{size, rounding};
@@ -148,7 +147,7 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
                                  ? known.at(kMaterialFriction)
                                  : evaluate(spec.friction, known, Quantity::number);
         if (value >= 0) return value;
-        refuse(spec.friction, fmt::format("the friction of tool {} is {}; it cannot be negative",
+        refuse(spec.friction, fmt::format("the friction of tool {} is {} and cannot be negative",
                                           spec.name, value));
     };
     tool.friction = friction(setting.known);
@@ -170,10 +169,9 @@ void add_tool(Machine& machine, Setting& setting, const ToolSpec& spec) {
             slide_to_touch(tool.shape, work_from_tool, direction, setting.touch,
                            evaluate(spec.gap, setting.known, Quantity::length));
         if (!shift) {
-            refuse(spec.touch[0],
-                   fmt::format("tool {} can never touch the work-piece: it passes by. "
-                               "Place it nearer to the middle",
-                               spec.name));
+            refuse(spec.touch[0], fmt::format("tool {} can never touch the work-piece: it passes "
+                                              "by. Place it nearer to the middle",
+                                              spec.name));
         }
         work_from_tool.translation += *shift * direction;
     }
@@ -209,10 +207,10 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
             const Box both = {region.low.cwiseMax(regions[g].low),
                               region.high.cwiseMin(regions[g].high)};
             if (both.empty() || share_within(patch, both) <= kOverlap) continue;
-            refuse(spec.from[0],
-                   fmt::format("grips {} and {} would hold the same points; make one of "
-                               "them smaller",
-                               machine.apparatus.grip[g].name, spec.name));
+            refuse(
+                spec.from[0],
+                fmt::format("grips {} and {} would hold the same points; make one of them smaller",
+                            machine.apparatus.grip[g].name, spec.name));
         }
         grip.point.push_back(static_cast<int>(p));
         grip.share.push_back(share);
@@ -238,9 +236,7 @@ void add_grip(Machine& machine, const Setting& setting, const Aggregate& matter,
     if ((start * center - center).norm() > kAtRest * size ||
         rotation_of(start.rotation).norm() > 10 * kAtRest) {
         const Expression& moves = spec.motion.turn == "0" ? spec.motion.move[0] : spec.motion.turn;
-        refuse(moves, fmt::format("the motion of grip {} does not start at rest: at t = 0 it has "
-                                  "to be 0",
-                                  spec.name));
+        refuse(moves, fmt::format("the motion of grip {} must be 0 at t = 0", spec.name));
     }
     regions.push_back(region);
     machine.apparatus.grip.push_back(std::move(grip));
@@ -254,13 +250,13 @@ void add_blade(Machine& machine, const Setting& setting, const BladeSpec& spec) 
     if (edge.size() < 2 || (edge.back() - edge.front()).norm() == 0) {
         refuse(spec.edge.empty() ? Expression() : spec.edge[0][0],
                fmt::format("the edge of blade {} {}", spec.name,
-                           edge.size() < 3 ? "needs two different points or more"
+                           edge.size() < 3 ? "needs at least two different points"
                                            : "begins and ends at one point"));
     }
     const double thickness = evaluate(spec.thickness, setting.known, Quantity::length);
     if (!(thickness > 0)) {
         refuse(spec.thickness,
-               fmt::format("the thickness of blade {} is {} and has to be more than 0", spec.name,
+               fmt::format("the thickness of blade {} is {} and must be more than 0", spec.name,
                            quantity_text(thickness, Quantity::length)));
     }
     const Vec3 centre = box_of(edge).center();
@@ -300,7 +296,7 @@ void add_load(Machine& machine, const Setting& setting, const Aggregate& matter,
                                   : spec.force ? (*spec.force)[0]
                                                : spec.pressure;
         refuse(where, fmt::format("load {} acts on nothing: no part of the work-piece's surface "
-                                  "looks that way and lies in its box",
+                                  "faces that way and lies in its box",
                                   spec.name));
     }
     load.closed = load.share.empty() && is_closed(matter, load.point);

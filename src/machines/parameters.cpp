@@ -20,7 +20,7 @@ Range range_of(const ParameterSpec& parameter, const Variables& known) {
 ParameterMistake out_of_range(const std::string& machine, const ParameterSpec& parameter,
                               double value, const Range& range, bool is_given) {
     return {parameter.name,
-            fmt::format("machine {}: {}{} = {} is out of range: it may be {}", machine,
+            fmt::format("machine {}: {}{} = {} is out of range: it must be {}", machine,
                         is_given ? "" : "the default of ", parameter.name,
                         quantity_text(value, parameter.quantity), range.text(parameter.quantity)),
             is_given ? TextPlace() : parameter.default_value.place};

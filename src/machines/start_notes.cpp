@@ -47,8 +47,8 @@ std::string pivot_note(const Machine& machine, std::size_t n, const Vec3& axis,
     if (!turns) return "";
     const std::string& name = machine.apparatus.tool[n].name;
     return fmt::format(
-        "tool {0} turns about the middle of the work-piece, {1} from its own: where that is meant, "
-        "say pivot = [0, 0, 0] in its motion; pivot = [\"{0}_x\", \"{0}_y\", \"{0}_z\"] turns it "
+        "tool {0} turns about the middle of the work-piece, {1} from its own: if that is intended, "
+        "give pivot = [0, 0, 0] in its motion; pivot = [\"{0}_x\", \"{0}_y\", \"{0}_z\"] turns it "
         "about its own",
         name, length_of(off));
 }
@@ -87,8 +87,8 @@ std::string jump_note(const std::string& whose, const Motion& motion, const std:
         const double jump = apart(from, to, middle, reach);
         if (jump < least) continue;
         return fmt::format(
-            "{} jumps by up to {} at t = {:.3g}, in no time: ramp(t, a, b) or line(t, a, b) "
-            "instead of a step give it a way",
+            "{} jumps by up to {} at t = {:.3g}: use ramp(t, a, b) or line(t, a, b) instead of a "
+            "step",
             whose, length_of(jump), end);
     }
     return "";
@@ -120,8 +120,7 @@ std::string miss_note(const Machine& machine, std::size_t n, const std::vector<P
     }
     if (nearest == 0) return "";
     return fmt::format(
-        "blade {} passes by the work-piece where that is now, by {} at the nearest: it will cut "
-        "nothing",
+        "blade {} misses the work-piece where that is now, by at least {}: it will cut nothing",
         blade.name, length_of(nearest + slack));
 }
 
@@ -143,7 +142,7 @@ std::string depth_note(const Machine& machine, std::size_t n, const std::vector<
     }
     if (deep < 0 && nearest_distance(tool.shape, pose, inner) < 0) {
         return fmt::format(
-            "tool {} starts wholly inside the work-piece, where it meets no surface and pushes "
+            "tool {} starts entirely inside the work-piece, where it meets no surface and pushes "
             "nothing",
             tool.name);
     }

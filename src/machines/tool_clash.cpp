@@ -97,8 +97,8 @@ std::vector<std::string> tool_clashes(const Machine& machine,
             const Clash clash = clash_of(body[a], body[b], work_from_tool[a], work_from_tool[b]);
             if (clash.most - clash.at_start <= slack) continue;
             notes.push_back(fmt::format(
-                "tools {} and {} go {} deep into each other by t = {:.3g}{}: what is caught "
-                "between them has no room, and their forces say nothing",
+                "tools {} and {} overlap by {} at t = {:.3g}{}: matter caught between them has no "
+                "room, and their forces mean nothing",
                 tool[a].name, tool[b].name, quantity_text(clash.most, Quantity::length), clash.t,
                 clash.at_start > slack
                     ? fmt::format(", {} of it from the start",

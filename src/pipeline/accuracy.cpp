@@ -55,9 +55,9 @@ std::string strength_warning(const Material& material, double spacing, double ce
     const Resolved resolved = resolved_strength(material, spacing, cells);
     if (resolved.whole()) return "";
     const std::string finer = resolved.cells_for_whole < kMostAcross
-                                  ? fmt::format("{} across = {} would do, or at this one", section,
-                                                resolved.cells_for_whole)
-                                  : "nothing is fine enough; at this size it takes";
+                                  ? fmt::format("{} across = {} would suffice, or at this one",
+                                                section, resolved.cells_for_whole)
+                                  : "no cell size is fine enough; at this one it takes";
     return fmt::format(
         "cells of {} do not resolve how {} breaks: cracks run at the right load, but a smooth part "
         "breaks at {} instead of {}; {} a toughness of {}",

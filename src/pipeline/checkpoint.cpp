@@ -75,7 +75,7 @@ std::optional<Reached> read_checkpoint(const fs::path& file, const StageKeys& ke
         ByteReader in(*bytes);
         const auto head = in.get<Head>();
         if (!is_of(keys, head)) {
-            why = "is of another run, or of another build of swage";
+            why = "belongs to another run or another build of swage";
             return std::nullopt;
         }
         const auto hash = in.get<std::uint64_t>();

@@ -130,9 +130,10 @@ void note_more_steps(const SceneSpec& scene, RunCost& cost) {
         const auto first = std::find_if(scene.stage.begin(), scene.stage.end(), by);
         if (first == scene.stage.end() || more < kFarMore) continue;
         cost.note.push_back(fmt::format(
-            "{}: solver = \"{}\" takes about {:.0f} times the steps of \"explicit\"{}", first->name,
-            name_of(solver), more,
-            solver == Solver::energy_stepped ? " while anything swings, turns or is driven" : ""));
+            "{}: solver = \"{}\" takes about {:.0f} times as many steps as \"explicit\"{}",
+            first->name, name_of(solver), more,
+            solver == Solver::energy_stepped ? " while anything vibrates, rotates or is driven"
+                                             : ""));
     }
 }
 
@@ -141,12 +142,13 @@ std::string what_time_hangs_on(const SceneSpec& scene) {
         return std::any_of(scene.stage.begin(), scene.stage.end(), test);
     };
     std::vector<std::string> all;
-    if (scene.any_material([](const Material& m) { return m.breaks(); })) all.push_back("breaks");
-    if (scene.any_material([](const Material& m) { return m.yields(); })) all.push_back("flows");
-    if (any_stage(moves)) all.push_back("meets");
+    if (scene.any_material([](const Material& m) { return m.breaks(); })) all.push_back("fracture");
+    if (scene.any_material([](const Material& m) { return m.yields(); }))
+        all.push_back("plastic flow");
+    if (any_stage(moves)) all.push_back("contact");
     if (!any_stage(moves) && any_stage([](const StageSpec& s) { return !s.machine.tool.empty(); }))
-        all.push_back("slips");
-    return all.empty() ? "how soon it comes to rest" : "what " + joined(all, " and ");
+        all.push_back("slip");
+    return all.empty() ? "how soon it comes to rest" : joined(all, " and ");
 }
 
 // `matter`: of each body, or empty. `equilibria`: of the first stage, 0: not known.
@@ -320,8 +322,8 @@ std::string step_note(const SceneSpec& scene, const std::vector<Aggregate>& matt
         }
         if (others.empty()) continue;
         return fmt::format(
-            "all steps are as short as {} needs, those of others could be longer: {}; larger "
-            "cells there, or a young_modulus that is still hard beside theirs, take less time",
+            "all steps are as short as {} needs, others would allow longer ones: {}; larger cells "
+            "there, or a lower young_modulus that is still stiff beside theirs, take less time",
             scene.body[std::size_t(most - steps.begin())].name, others);
     }
     return {};
@@ -364,29 +366,28 @@ void refuse_excess(const RunCost& cost, const RunOptions& options) {
     const double memory = free_memory(), disk = free_disk(fs::absolute(options.out));
     if (cost.memory_bytes > memory) {
         fail(ExitCode::resources,
-             "the run would need about {} of memory, and {} are free: a larger [mold] spacing "
-             "needs less (--force runs all the same)",
+             "the run would need about {} of memory, and {} is free: a larger [mold] spacing needs "
+             "less (--force runs it anyway)",
              bytes_text(cost.memory_bytes), bytes_text(memory));
     }
     const double addresses = cost.memory_bytes + kThreadAddresses * thread_count() +
                              (options.draw ? kDrawingAddresses : 0);
     if (addresses > free_addresses()) {
         fail(ExitCode::resources,
-             "the run would need about {} of addresses, and the limit on them (ulimit -v) leaves "
-             "{}: --no-render and fewer --threads need less (--force runs all the same)",
+             "the run would need about {} of address space, and its limit (ulimit -v) leaves {}: "
+             "--no-render and fewer --threads need less (--force runs it anyway)",
              bytes_text(addresses), bytes_text(free_addresses()));
     }
     if (cost.disk_bytes > disk) {
         fail(ExitCode::resources,
-             "the run would write about {}, and {} of disk are free: fewer frames or a smaller "
-             "[render] size need less (--force runs all the same)",
+             "the run would write about {}, and {} of disk is free: fewer frames or a smaller "
+             "[render] size need less (--force runs it anyway)",
              bytes_text(cost.disk_bytes), bytes_text(disk));
     }
     if (cost.seconds.least > kLongestRun) {
         fail(ExitCode::resources,
-             "the run would take {:.0f} days at the least: fewer frames or a larger [mold] spacing "
-             "take "
-             "less (--force runs all the same)",
+             "the run would take at least {:.0f} days: fewer frames or a larger [mold] spacing "
+             "take less (--force runs it anyway)",
              cost.seconds.least / 86400);
     }
 }

@@ -217,7 +217,7 @@ DrawOutcome draw_run(const FrameStore& store, const RenderSettings& wanted,
             }
             if (has_legend && !look->add_legend(image) && frame == frames.first) {
                 outcome.warning.push_back(fmt::format(
-                    "the colour scale has no room in pictures of {} x {} pixels and is left out",
+                    "the colour scale does not fit in pictures of {} x {} pixels and is left out",
                     settings.width, settings.height));
                 log_warning_text(outcome.warning.back());
             }

@@ -54,8 +54,8 @@ FieldLook::FieldLook(const FrameStore& store, const RenderSettings& settings)
         std::vector<std::string> names;
         for (const SkinField one : held) names.emplace_back(words_of(one).name);
         fail(ExitCode::command_line,
-             "the run holds no {}{}; a run holds what [output] fields = [\"{}\"] in its scene asks",
-             words_of(field_).name, names.empty() ? "" : ", but " + joined(names, ", "),
+             "the run contains no {}{}; it needs [output] fields = [\"{}\"] in its scene",
+             words_of(field_).name, names.empty() ? "" : ", only " + joined(names, ", "),
              words_of(field_).name);
     }
     number_ = static_cast<std::size_t>(at - held.begin());

@@ -79,7 +79,7 @@ std::vector<SkinField> fields_in(const std::string& bytes) {
     ByteReader in(bytes);
     for (const std::string& name : in.get<std::vector<std::string>>()) {
         const std::optional<SkinField> field = skin_field_named(name);
-        if (!field) fail(ExitCode::output, "{} is no field that this build of swage knows", name);
+        if (!field) fail(ExitCode::output, "this build of swage does not know the field {}", name);
         fields.push_back(*field);
     }
     return fields;
@@ -316,7 +316,7 @@ FrameStore::FrameStore(const fs::path& file) : file_(file) {
     if (!handle_.is_open()) give_up(why);
     std::uint64_t magic = 0;
     if (!read_at(handle_.id(), 0, &magic, sizeof magic) || !is_magic(magic)) {
-        give_up("is no motion file of the kind that this build of swage writes");
+        give_up("is not a motion file of this build of swage");
     }
     const auto file_size = static_cast<std::uint64_t>(::lseek(handle_.id(), 0, SEEK_END));
     std::uint64_t at = sizeof magic;

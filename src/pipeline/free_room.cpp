@@ -36,11 +36,10 @@ double free_disk(fs::path folder) {
 void refuse_threads(int count) {
     const double wanted = kThreadAddresses * count, left = free_addresses();
     if (wanted <= left) return;
-    fail(
-        ExitCode::resources,
-        "{} threads need about {} of addresses, and the limit on them (ulimit -v) leaves {}: fewer "
-        "--threads need less",
-        count, bytes_text(wanted), bytes_text(left));
+    fail(ExitCode::resources,
+         "{} threads need about {} of address space, and its limit (ulimit -v) leaves {}: fewer "
+         "--threads need less",
+         count, bytes_text(wanted), bytes_text(left));
 }
 
 }  // namespace swage

@@ -73,7 +73,7 @@ bool wait_for_signal(int timeout_milliseconds) {
 
 void watch() {
     wait_for_signal(-1);
-    log_text("stopping after the work at hand; once more to stop at once");
+    log_text("stopping after the current work; interrupt again to stop at once");
     bool again = wait_for_signal(kPatienceMilliseconds);
     // One body's skin, cut or molding may take long and has no safe point inside.
     while (!again && !is_stopping() && frames_at_stake) {

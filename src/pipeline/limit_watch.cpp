@@ -20,7 +20,7 @@ const char* unit_of(bool of_torque) { return of_torque ? "torque_N_m" : "force_N
 std::vector<std::string> limit_texts(const MachineSpec& machine) {
     std::vector<std::string> texts;
     for (const LimitSpec& limit : machine.limit) {
-        texts.push_back(fmt::format("the machine comes no farther once {} bears {}", limit.part,
+        texts.push_back(fmt::format("the machine stops when {} bears {}", limit.part,
                                     amount_text(limit.most, limit.of_torque)));
     }
     return texts;
@@ -50,7 +50,7 @@ void LimitWatch::look(int frame, const FrameReport& report) {
     frame_ = frame;
     const LimitSpec& limit = spec();
     if (is_met()) {
-        log_info("{}: {} reached {} at {:.3g} % of the stage, in frame {}; it comes no farther",
+        log_info("{}: {} reached {} at {:.3g} % of the stage, in frame {}, and stops there",
                  stage_.name, limit.part, amount_text(limit.most, limit.of_torque),
                  100 * machine_.stop, frame);
     }
@@ -70,13 +70,13 @@ std::vector<std::string> LimitWatch::warnings(bool whole) const {
         const std::string most = amount(limit.most, limit), borne = amount(stop_->borne, limit);
         lines.push_back(
             stop_->beyond > 0
-                ? fmt::format("{}: {} comes no farther than {:.3g} % of the stage, in frame {}: it "
-                              "bears {} there and {} at the least way farther, which is beyond its "
-                              "limit of {}",
-                              stage_.name, limit.part, 100 * machine_.stop, frame_, borne,
-                              amount(stop_->beyond, limit), most)
-                : fmt::format("{}: {} bears {} as it stands, in frame {}, beyond its limit of {}: "
-                              "the machine comes no farther than {:.3g} % of the stage",
+                ? fmt::format(
+                      "{}: {} stops at {:.3g} % of the stage, in frame {}: it bears {} there and "
+                      "{} at the smallest advance, which is beyond its limit of {}",
+                      stage_.name, limit.part, 100 * machine_.stop, frame_, borne,
+                      amount(stop_->beyond, limit), most)
+                : fmt::format("{}: {} bears {} where it is, in frame {}, beyond its limit of {}: "
+                              "the machine stops at {:.3g} % of the stage",
                               stage_.name, limit.part, borne, frame_, most, 100 * machine_.stop));
     }
     for (std::size_t l = 0; whole && !stop_ && l < most_.size(); ++l) {

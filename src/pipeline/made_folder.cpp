@@ -14,7 +14,7 @@ void make_folder(const fs::path& folder) {
         fail(ExitCode::output, "{}: is a file, not a directory", folder.string());
     }
     if (!fs::create_directories(folder, error) && error) {
-        fail(ExitCode::output, "{}: cannot be made: {}", folder.string(), error.message());
+        fail(ExitCode::output, "{}: cannot be created: {}", folder.string(), error.message());
     }
 }
 

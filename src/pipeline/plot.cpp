@@ -98,7 +98,7 @@ std::string draw_plot(const fs::path& program, const fs::path& svg) {
             fs::remove(program, error);
             return {};
         }
-        why = status == 128 + SIGKILL ? fmt::format("it was killed, after {} s at most", kLongest)
+        why = status == 128 + SIGKILL ? fmt::format("it was killed after at most {} s", kLongest)
                                       : gnuplot.last_error_line();
     } catch (const Error& failure) {
         why = failure.what();
@@ -126,14 +126,14 @@ std::string plot_program(const StageCurves& curves, double size) {
         "set grid linecolor '#dddddd'\nset border linecolor '#444444'\n"
         "set key top left\nset yrange [0:*]\nset xlabel {}\n",
         panels == 2 ? 900 : 500, quoted(plot_axis(curves).label));
-    const std::string title = quoted(curves.stage() + ": what the matter felt");
+    const std::string title = quoted(curves.stage() + ": loads on the matter");
     if (panels == 2) {
         program += "set multiplot layout 2,1 title " + title + "\n";
     } else {
         program += "set title " + title + "\n";
     }
     program += force + torque;
-    if (panels == 0) program += "set yrange [0:1]\nplot [0:1] 0 title 'nothing was felt'\n";
+    if (panels == 0) program += "set yrange [0:1]\nplot [0:1] 0 title 'no load'\n";
     if (panels == 2) program += "unset multiplot\n";
     return program + "set output\n";
 }
@@ -166,7 +166,7 @@ void Plots::draw() {
         if (!program_exists("gnuplot")) {
             missed_ = true;
             tell(
-                "no program gnuplot was found, so the curves are not plotted (apt-get install "
+                "gnuplot was not found, so the curves are not plotted (apt-get install "
                 "gnuplot-nox; swage run then draws what is missing)");
             return;
         }

@@ -22,7 +22,7 @@ Mount mount_probes(const BodySpec& body, const TriMesh& mesh, const Aggregate& m
             (place.back() - place.back().cwiseMax(cell.low).cwiseMin(cell.low + cell.size)).norm();
         if (off > kBeside * matter.lattice.spacing) {
             throw SceneError({mistake_at(
-                probe.place, fmt::format("probe \"{}\" lies {} beside the matter", probe.name,
+                probe.place, fmt::format("probe \"{}\" is {} outside the matter", probe.name,
                                          quantity_text(off, Quantity::length)))});
         }
     }

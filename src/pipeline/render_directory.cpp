@@ -39,13 +39,13 @@ RenderDirectory::RenderDirectory(const fs::path& root, bool in_run, int first_fr
     std::error_code error;
     if (holds_run(root_)) {
         fail(ExitCode::foreign,
-             "{}: is a run; its pictures are those of its scene. Choose another --out",
+             "{}: is a run directory, which holds the pictures of its scene; choose another --out",
              root_.string());
     }
     if (FolderLock::may_hold(root_)) lock_.emplace(root_);
     if (!in_run && !FolderLock::is_all_of(root_) && !fs::exists(mark(), error)) {
         fail(ExitCode::foreign,
-             "{}: holds files that swage render did not draw; choose another --out",
+             "{}: contains files that swage render did not draw; choose another --out",
              root_.string());
     }
     if (!lock_) lock_.emplace(root_);

@@ -102,7 +102,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
             log_info("{}: {}", directory.root().string(),
                      record.at("state") == RunState::complete
                          ? "already complete"
-                         : "already simulated; as --no-render says, nothing is drawn");
+                         : "already simulated; nothing is drawn because of --no-render");
             return record;
         }
     }

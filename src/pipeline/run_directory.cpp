@@ -49,8 +49,8 @@ RunIdentity read_identity(const fs::path& file) {
         }
     } catch (const Json::exception&) {
         fail(ExitCode::foreign,
-             "{}: is damaged, so nobody knows whose run this is; remove it with "
-             "its directory, or choose another --out",
+             "{}: is damaged, so its run cannot be identified; remove it with its directory, or "
+             "choose another --out",
              file.string());
     }
     return identity;
@@ -193,7 +193,7 @@ std::string record_text(const fs::path& file, ExitCode code) {
     std::optional<std::string> text = file_contents(file, kLongestRecord);
     if (!text) {
         fail(code, "{}: {}; swage run --fresh throws that run away", file.string(),
-             why_unreadable(file).value_or("is too long to be swage's"));
+             why_unreadable(file).value_or("is too long to be from swage"));
     }
     return std::move(*text);
 }
@@ -213,7 +213,8 @@ RunDirectory::RunDirectory(const fs::path& root, const RunIdentity& identity, bo
     // One that is being made holds files before it is a run.
     if (FolderLock::may_hold(root_)) lock_.emplace(root_);
     if (!FolderLock::is_all_of(root_) && !holds_run(root_)) {
-        fail(ExitCode::foreign, "{}: holds files that are no run of swage; choose another --out",
+        fail(ExitCode::foreign,
+             "{}: contains files that are not from a swage run; choose another --out",
              root_.string());
     }
     if (!lock_) lock_.emplace(root_);

@@ -251,7 +251,7 @@ Json record_of_run(const fs::path& run) {
     std::error_code error;
     if (!fs::exists(run, error)) fail(ExitCode::output, "{}: no such folder", run.string());
     std::optional<Json> record = read_record(RunDirectory::record_in(run));
-    if (!record) fail(ExitCode::output, "{}: is no finished run of swage", run.string());
+    if (!record) fail(ExitCode::output, "{}: is not a finished run of swage", run.string());
     return *std::move(record);
 }
 

@@ -71,10 +71,9 @@ void cut_ahead(const Machine& machine, std::span<const Drive> way, WorkPiece& pi
                                  cut.open_parts, cut.open_parts == 1 ? "" : "s"));
     }
     if (cut.has_curved) {
-        warnings.add(
-            frame,
-            "a blade's path bends or turns within the work-piece, so the skin is torn along "
-            "it and open there (skin.kind = \"boundary\" is made anew, closed)");
+        warnings.add(frame,
+                     "a blade's path bends or turns within the work-piece, so the skin is torn "
+                     "along it and left open (skin.kind = \"boundary\" is made anew and closed)");
     }
 }
 
@@ -378,10 +377,10 @@ class StageRun {
             outcome_.warning.push_back(std::move(line));
         }
         if (way_.lost() > 0) {
-            outcome_.warning.push_back(fmt::format(
-                "{}: in {} of its frames the machine does what 64 steps do not follow; more frames "
-                "do",
-                stage_.name, way_.lost()));
+            outcome_.warning.push_back(
+                fmt::format("{}: in {} of its frames the machine's motion is more than 64 steps "
+                            "can follow; use more frames",
+                            stage_.name, way_.lost()));
         }
         std::move(verdict.warning.begin(), verdict.warning.end(),
                   std::back_inserter(outcome_.warning));

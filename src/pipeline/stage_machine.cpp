@@ -65,7 +65,7 @@ std::vector<std::string> foreseen_mistakes(const SceneSpec& scene, const Aggrega
                                            const Box& skin) {
     std::vector<std::string> mistakes;
     const auto add = [&](const Mistake& mistake) {
-        mistakes.push_back(mistake_text(mistake) + " (by the work-piece as it is at first)");
+        mistakes.push_back(mistake_text(mistake) + " (for the work-piece before the first stage)");
     };
     for (std::size_t n = 1; n < scene.stage.size(); ++n) {
         const StageSpec& stage = scene.stage[n];

@@ -38,7 +38,7 @@ std::optional<StageMark> read_stage_mark(const std::filesystem::path& file, cons
     try {
         ByteReader in(*bytes);
         if (in.get<std::string>() != key_of(keys, stages)) {
-            why = "is of another run, or of another build of swage";
+            why = "belongs to another run or another build of swage";
             return std::nullopt;
         }
         auto mark = in.get<StageMark>();

@@ -100,17 +100,17 @@ std::string how_deep(const Books& last, const StageEnd& end, const std::string& 
     const bool later = end.first_frame > 2;  // the first frame of all is the start
     if (end.bodies.size() == 1 && last.among_at_start > 0.5 * last.contact_at_start) {
         return fmt::format(
-            "starts pressed into itself, or its pieces in each other, which "
-            "throws them apart by {}: {}",
+            "starts pressed into itself, or its pieces into each other, which throws them apart "
+            "with {}: {}",
             thrown,
-            later ? "smaller cells make it less; without self_contact = true they pass through "
-                    "each other"
-                  : "its mesh runs into itself there");
+            later ? "smaller cells reduce this; without self_contact = true they pass through each "
+                    "other"
+                  : "its mesh intersects itself there");
     }
-    return fmt::format("starts pressed into what it touches, which throws it off by {}: {}", thrown,
-                       later ? "leave a gap to the machine's tools, or let the stage before leave "
-                               "it further off"
-                             : "put it further off, with `at`");
+    return fmt::format(
+        "starts pressed into what it touches, which throws it off with {}: {}", thrown,
+        later ? "leave a gap to the machine's tools, or let the stage before leave it further away"
+              : "move it further away with `at`");
 }
 
 // What contacts and grips hold as a stage in motion begins is let go of at once, and no mistake
@@ -135,9 +135,9 @@ std::string pressed_at_start(const StageEnd& end) {
     }
     if (count == 0) return {};
     std::string thrown =
-        fmt::format("{:.3g} J, at most at {}", thrown_by, quantity_text(fastest, Quantity::speed));
+        fmt::format("{:.3g} J, at up to {}", thrown_by, quantity_text(fastest, Quantity::speed));
     if (count > 1) {
-        thrown += fmt::format(", and so {} {}", count == 2 ? "is" : "are",
+        thrown += fmt::format(", as {} {}", count == 2 ? "does" : "do",
                               counted(count - 1, "other body", "other bodies"));
     }
     return fmt::format("{} {}", end.bodies[worst].name,
@@ -161,10 +161,10 @@ std::pair<double, std::string> lies_in_itself(const StageEnd& end, WorkPiece& bo
         overlap,
         fmt::format(
             "{}, by {} at the end: {}",
-            folded ? name + " has gone into itself" : "pieces of " + name + " lie in each other",
+            folded ? name + " has passed into itself" : "pieces of " + name + " overlap each other",
             length_text(overlap),
-            sim.self_contact ? "it is pressed together harder than its contact_stiffness holds"
-                             : "self_contact = true in this stage keeps it from that")};
+            sim.self_contact ? "it is pressed together harder than its contact_stiffness can hold"
+                             : "self_contact = true in this stage prevents that")};
 }
 
 // Flow that keeps the volume, and a skin that does not. Empty: as large as it should be.
@@ -182,17 +182,17 @@ std::string swollen(const StageEnd& end, const WorkPiece& body) {
 
 std::string how_to_close(Solver solver) {
     if (solver == Solver::quasistatic) {
-        return "between frames that lie far apart the work of tools is misjudged: try more frames";
+        return "the work of tools is inaccurate between frames that are far apart: try more frames";
     }
     if (solver == Solver::implicit_steps) {
-        return "implicit steps damp by themselves: try more frames, which shorten them, or solver "
-               "= \"explicit\"";
+        return "implicit steps damp by themselves: try more frames, which shorten the steps, or "
+               "solver = \"explicit\"";
     }
     const std::string shorter = solver == Solver::energy_stepped
                                     ? "solver = \"explicit\" with a low step_safety"
                                     : "a lower step_safety";
     return "try " + shorter +
-           ", more cells, or, where bodies are pressed deep into each other, a larger "
+           ", more cells or, where bodies are pressed deep into each other, a larger "
            "contact_stiffness";
 }
 
@@ -208,35 +208,33 @@ StageVerdict judge_stage(const StageEnd& end, int pieces_before, StageEnded ende
     };
     if (whole && !end.machine.apparatus.tool.empty() && !end.totals.touched) {
         warn(sim.solver == Solver::quasistatic
-                 ? "none of its tools bears on the work-piece at the end of any frame: none "
-                   "reached it, or they parted again within a frame, as they do where nothing "
-                   "holds it"
+                 ? "none of its tools presses on the work-piece at the end of any frame: none "
+                   "reached it, or they separated within a frame, as happens where nothing holds it"
                  : "its tools never touched the work-piece");
     }
     if (whole && !end.machine.apparatus.blade.empty() && end.totals.severed == 0) {
-        warn(
-            "the blade has met no matter: it passed beside the work-piece, or through a gap in it");
+        warn("the blade met no matter: it passed beside the work-piece or through a gap in it");
     }
     if (whole && end.totals.severed > 0 && piece_count(end.bodies) == pieces_before) {
-        warn(fmt::format(
-            "the blade has severed {} connections and parted nothing: it passed through a part of "
-            "the work-piece only, by its place, its width or its way",
-            end.totals.severed));
+        warn(
+            fmt::format("the blade severed {} connections but separated nothing: owing to its "
+                        "place, width or path it passed through only a part of the work-piece",
+                        end.totals.severed));
     }
     if (const std::string pressed = pressed_at_start(end); !pressed.empty()) warn(pressed);
     const double share = unaccounted(end.first, end.last, end.totals.stored, unresolved(end));
     const double taken = end.last.friction + end.last.plastic;
     // At rest, what snaps or slips through is lost, and no mistake.
     if (sim.solver == Solver::quasistatic ? share < -kMostGain : std::abs(share) > kMostGain) {
-        warn(fmt::format("the energy books do not close: {:.3g} % of the energy in play is {}; {}",
+        warn(fmt::format("the energy books do not close: {:.3g} % of the energy involved is {}; {}",
                          100 * std::abs(share), share > 0 ? "lost" : "from nowhere",
                          how_to_close(sim.solver)));
     } else if (sim.solver == Solver::quasistatic && share < -kLittleGain &&
                taken > kLittleGain * (end.last.remainder / share) &&
                -end.last.remainder > kMostOfTaken * taken) {
         warn(
-            fmt::format("of the {:.3g} J that friction and flow took, tools, loads and what was "
-                        "stored gave {:.3g} J less; {}",
+            fmt::format("friction and flow took {:.3g} J, but tools, loads and stored energy gave "
+                        "{:.3g} J less; {}",
                         taken, -end.last.remainder, how_to_close(sim.solver)));
     }
     for (const WorkPiece& body : end.bodies) {

@@ -194,7 +194,7 @@ struct Worst {
     // ", and so do 3 other bodies".
     std::string others(const char* one, const char* many) const {
         if (count < 2) return {};
-        return fmt::format(", and so {} {} other {}", count == 2 ? "does" : "do", count - 1,
+        return fmt::format(", as {} {} other {}", count == 2 ? "does" : "do", count - 1,
                            count == 2 ? one : many);
     }
 };
@@ -218,15 +218,14 @@ std::vector<std::string> start_overlaps(const std::vector<NamedMatter>& bodies) 
     }
     std::vector<std::string> told;
     if (volume.count > 0) {
-        told.push_back(fmt::format(
-            "{} lie in each other at the start, about {} of them{}: they will burst apart; put "
-            "them further apart with `at`",
-            volume.who, volume_text(volume.value), volume.others("pair", "pairs")));
+        told.push_back(
+            fmt::format("{} overlap at the start, by a volume of about {}{}: they will burst "
+                        "apart; move them apart with `at`",
+                        volume.who, volume_text(volume.value), volume.others("pair", "pairs")));
     }
     if (depth.count > 0) {
         told.push_back(fmt::format(
-            "{} start {} deep in each other{}: that throws them apart; put them further apart "
-            "with `at`",
+            "{} start {} deep in each other{}, which throws them apart; move them apart with `at`",
             depth.who, depth_text(depth.value), depth.others("pair", "pairs")));
     }
     return told;
@@ -241,7 +240,7 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
     const std::vector<Pose> world_from_tool = drive_at(machine, 0, 1).world_from_tool;
     const Vec3 work_piece = machine.frame.world_from_work.translation;
     const auto set_up = [&](std::size_t tool) {
-        return fmt::format("the tool {} of the machine {}", machine.apparatus.tool[tool].name,
+        return fmt::format("tool {} of machine {}", machine.apparatus.tool[tool].name,
                            machine.spec.name);
     };
     std::vector<Worst> deep(world_from_tool.size());
@@ -261,11 +260,11 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
                 standing.deep = -nearest_distance(tool.shape, world_from_tool[n], points);
             }
             if (!standing.astray.empty() && b > 0) {
-                told.push_back(fmt::format(
-                    "\"{}\" starts {} {}, which is set up by the work-piece alone and ends "
-                    "somewhere, although it is drawn endless: put the body elsewhere with `at`, or "
-                    "make the tool larger or set it lower",
-                    bodies[b].name, standing.astray, set_up(n)));
+                told.push_back(
+                    fmt::format("\"{}\" starts {} {}, which is placed by the work-piece alone and "
+                                "is finite, although it is drawn endless: move the body with `at`, "
+                                "or make the tool larger or lower",
+                                bodies[b].name, standing.astray, set_up(n)));
             } else if (standing.deep > least) {
                 deep[n].add(bodies[b].name, standing.deep, standing.deep);
             }
@@ -275,13 +274,13 @@ std::vector<std::string> tool_overlaps(const Machine& machine,
         if (deep[n].count == 0) continue;
         // The machine goes where the work-piece does.
         const bool is_work_piece = deep[n].who == bodies.front().name;
-        told.push_back(fmt::format(
-            "\"{}\" starts {} deep in {}{}{}: {}", deep[n].who, depth_text(deep[n].value),
-            set_up(n), is_work_piece ? "" : ", which is set up by the work-piece alone",
-            deep[n].others("body", "bodies"),
-            is_work_piece        ? "set the tool further off"
-            : deep[n].count == 1 ? "put it elsewhere with `at`, or the tool"
-                                 : "put them elsewhere with `at`, or the tool"));
+        told.push_back(fmt::format("\"{}\" starts {} deep in {}{}{}: {}", deep[n].who,
+                                   depth_text(deep[n].value), set_up(n),
+                                   is_work_piece ? "" : ", which is placed by the work-piece alone",
+                                   deep[n].others("body", "bodies"),
+                                   is_work_piece        ? "move the tool further away"
+                                   : deep[n].count == 1 ? "move it with `at`, or move the tool"
+                                                        : "move them with `at`, or move the tool"));
     }
     return told;
 }

@@ -93,12 +93,12 @@ std::string stiffness_note(const StageSpec& stage, const std::vector<NamedMatter
     }
     if (all.empty()) return {};
     const std::string told =
-        fmt::format("steps at step_safety = {:g} are too long for what is asked, {}",
+        fmt::format("steps at step_safety = {:g} are too long for the stiffness given, {}",
                     sim.step_safety, joined(all, ", "));
     if (shorter >= kShortest) return told;  // no step that can be taken gives it
     const double safety = rounded_down(sim.step_safety / shorter), times = sim.step_safety / safety;
-    return fmt::format("{}: step_safety = {:.2g} gives it, in {:.{}f} times the steps", told,
-                       safety, times, times < 10 ? 1 : 0);
+    return fmt::format("{}: step_safety = {:.2g} reaches it, with {:.{}f} times as many steps",
+                       told, safety, times, times < 10 ? 1 : 0);
 }
 
 double stiffness_share_at_tools(const StageSpec& stage, const std::vector<NamedMatter>& bodies) {

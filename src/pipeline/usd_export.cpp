@@ -78,7 +78,7 @@ class Exporter {
         progress_.emplace("export", samples);
         const double expected = expected_bytes(), room = free_disk(fs::absolute(file));
         if (expected > room) {
-            log_warning("{}: would be about {}, and {} of disk are free", file.string(),
+            log_warning("{}: would take about {}, and {} of disk is free", file.string(),
                         bytes_text(expected), bytes_text(room));
         }
         FilesBeside beside;
@@ -415,7 +415,7 @@ void refuse_foreign(const fs::path& file) {
     const FileHandle handle = open_plain_file(file, why);
     if (!handle.is_open()) fail(ExitCode::output, "{}: {}", file.string(), why);
     if (read_up_to(handle.id(), begin.data(), begin.size()) != begin.size() || begin != kBegin) {
-        fail(ExitCode::foreign, "{}: is no file that swage export wrote; choose another --out",
+        fail(ExitCode::foreign, "{}: was not written by swage export; choose another --out",
              file.string());
     }
 }

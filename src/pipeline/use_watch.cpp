@@ -81,9 +81,9 @@ std::vector<std::string> use_texts(const Json& stage) {
             std::string text =
                 fmt::format("{} of its yield stress{}", percent(share), peak_text(of.at("yield")));
             if (flowed > 0) {
-                text += fmt::format(", flowed by {:.3g} at the most", flowed);
+                text += fmt::format(", plastic strain of up to {:.3g}", flowed);
             } else if (share >= 1) {
-                text += ", at its surface, and no cell flows yet";
+                text += ", at its surface; no cell flows yet";
             }
             parts.push_back(std::move(text));
         }

@@ -56,7 +56,7 @@ void make_solid(InputMesh& input, MoldKind kind, double crease_angle = kCreaseAn
     if (looks_the_same(input.mesh, repaired.mesh)) {
         input.mesh = std::move(repaired.mesh);
     } else {
-        log_info("the mesh itself is kept as skin, the repaired one only shapes the matter");
+        log_info("the original mesh is kept as the skin, the repaired one only shapes the matter");
         input.solid = std::move(repaired.mesh);
     }
 }
@@ -91,7 +91,7 @@ TriMesh block_mesh(const TriMesh& mesh) {
 TriMesh divided_skin(const TriMesh& mesh, const Aggregate& matter) {
     TriMesh skin = divide_edges(mesh, kLongestSkinEdge * matter.lattice.spacing);
     if (skin.triangle.size() != mesh.triangle.size()) {
-        log_info("skin: {} triangles divided into {}, with no edge above {} cells",
+        log_info("skin: {} triangles divided into {}, with no edge longer than {} cells",
                  mesh.triangle.size(), skin.triangle.size(), kLongestSkinEdge);
     }
     return skin;
@@ -174,10 +174,10 @@ InputMesh read_mesh_as_it_is(const std::filesystem::path& file, std::optional<do
     }
     const double longest = box_of(input.mesh.position).size().maxCoeff();
     if (!length && longest > kHuge) {
-        input.finding.push_back(fmt::format(
-            "{} is {} long, for a file's numbers are taken as metres: say how long it is with "
-            "`length`",
-            file.filename().string(), quantity_text(longest, Quantity::length)));
+        input.finding.push_back(
+            fmt::format("{} is {} long, as the file's numbers are taken as metres: give its length "
+                        "with `length`",
+                        file.filename().string(), quantity_text(longest, Quantity::length)));
     }
     input.report = check_mesh(input.mesh);
     return input;

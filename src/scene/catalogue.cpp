@@ -36,9 +36,10 @@ MaterialCatalogue material_catalogue(const AssetPaths& assets,
             reading.is_complete = document->is_complete;
             for (const Entry& entry : document->root.entry) {
                 if (entry.value.kind != Node::Kind::table) {
-                    mistakes.add(entry.place, fmt::format("\"{}\" stands outside a material: write "
-                                                          "[NAME] above it",
-                                                          entry.key));
+                    mistakes.add(
+                        entry.place,
+                        fmt::format("\"{}\" is outside any material: write [NAME] above it",
+                                    entry.key));
                     continue;
                 }
                 Material material;

@@ -165,7 +165,7 @@ std::string kind_text(const Node& node) {
         case Node::Kind::array:
             return "an array";
         case Node::Kind::text:
-            return "a text";
+            return "text";
         case Node::Kind::whole:
             return "a whole number";
         case Node::Kind::real:

@@ -9,12 +9,13 @@ namespace swage {
 
 const std::vector<std::pair<std::string, std::string>>& work_piece_names_told() {
     static const std::vector<std::pair<std::string, std::string>> told = {
-        {"length", "of the work-piece's box, along the machine's x"},
-        {"height", "of that box, along the machine's y"},
-        {"width", "of that box, along the machine's z"},
-        {"spacing", "of the work-piece's lattice"},
-        {"lattice_reach", "by which that sticks out of the box"},
-        {"material_friction", "of the work-piece, or of what else touches the tool"}};
+        {"length", "size of the work-piece's box along the machine's x"},
+        {"height", "size of that box along the machine's y"},
+        {"width", "size of that box along the machine's z"},
+        {"spacing", "spacing of the work-piece's lattice"},
+        {"lattice_reach", "distance by which that lattice extends beyond the box"},
+        {"material_friction",
+         "friction of the work-piece, or of another body that touches the tool"}};
     return told;
 }
 
@@ -61,7 +62,7 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
         return;
     }
     if (node.kind != Node::Kind::text) {
-        mistakes.add(node.place, fmt::format("{} is {}; a number or an expression is wanted", key,
+        mistakes.add(node.place, fmt::format("{} is {}; expected a number or an expression", key,
                                              kind_text(node)));
         return;
     }
@@ -77,7 +78,7 @@ void ExpressionReader::read_one(TableReader& table, const std::string& key, cons
         const std::string word = word_at(node.text, error.at());
         if (later_.contains(word) && !is_reserved_name(word)) {
             what =
-                fmt::format("unknown name \"{}\": a parameter may use only those above it", word);
+                fmt::format("unknown name \"{}\": a parameter can use only those above it", word);
         }
         mistakes.add(place_inside(node, error.at()), key + ": " + what);
     }
@@ -102,8 +103,7 @@ void ExpressionReader::read_item(TableReader& table, const std::string& key, con
                                  Expression3& into) {
     if (item.kind != Node::Kind::array || item.item.size() != 3) {
         table.reading().mistakes.add(
-            item.place,
-            key + " has to be three numbers or expressions, such as [0, \"height\", 0]");
+            item.place, key + " must be three numbers or expressions, such as [0, \"height\", 0]");
         return;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) read_one(table, key, item.item[axis], into[axis]);
@@ -186,7 +186,7 @@ void ExpressionReader::expect_positive(TableReader& table, const std::string& ke
         if (!value) return;
         if (*value <= 0) {
             table.reading().mistakes.add(one.place,
-                                         fmt::format("{} = {} has to be more than 0", key, *value));
+                                         fmt::format("{} = {} must be more than 0", key, *value));
         } else if (why_not_meant(*value, Quantity::length).empty()) {
             expect_meant(table, key, one, Quantity::length, true);
         }

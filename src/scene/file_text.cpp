@@ -45,7 +45,7 @@ bool check_letters(const std::string& text, const Place& place, MistakeList& mis
         if (size == 0) {
             const unsigned byte = static_cast<unsigned char>(text[at]);
             mistakes.add({place.source, line, column},
-                         byte == 0 ? fmt::format("byte {} is 0; this is no text file", at)
+                         byte == 0 ? fmt::format("byte {} is 0; this is not a text file", at)
                                    : fmt::format("byte {} (0x{:02X}) is not UTF-8; save the file "
                                                  "in that encoding",
                                                  at, byte));
@@ -73,7 +73,7 @@ std::optional<std::string> checked(std::optional<std::string> text, const std::s
 std::optional<std::string> why_no_mesh(const std::filesystem::path& file) {
     const std::optional<std::string> reason = why_unreadable(file);
     if (reason || is_mesh_file_name(file)) return reason;
-    return fmt::format("is no kind of mesh that can be read: {}", kMeshKinds);
+    return fmt::format("is not a mesh format that can be read: {}", kMeshKinds);
 }
 
 std::optional<std::string> read_text(const std::filesystem::path& file, const Place& place,

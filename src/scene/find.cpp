@@ -39,7 +39,7 @@ AssetPaths find_assets(const std::optional<fs::path>& given) {
     AssetPaths assets;
     if (given) {
         if (!is_folder(*given)) {
-            fail(ExitCode::command_line, "the folder of assets \"{}\" does not exist",
+            fail(ExitCode::command_line, "the assets folder \"{}\" does not exist",
                  given->string());
         }
         add_root(assets.root, *given);
@@ -47,7 +47,7 @@ AssetPaths find_assets(const std::optional<fs::path>& given) {
     if (const char* named = std::getenv("SWAGE_ASSETS"); named != nullptr && *named != '\0') {
         if (!is_folder(named)) {
             fail(ExitCode::command_line,
-                 "the folder of assets \"{}\", which SWAGE_ASSETS names, does not exist", named);
+                 "the assets folder \"{}\" named by SWAGE_ASSETS does not exist", named);
         }
         add_root(assets.root, named);
     }
@@ -102,15 +102,15 @@ std::string no_machine_text(const std::string& wanted, const std::vector<Machine
     const std::string hint = did_you_mean(wanted, names_of(known));
     std::vector<fs::path> roots;
     for (const fs::path& folder : folders) roots.push_back(folder.parent_path());
-    return fmt::format("no machine \"{}\"{}{} are {}; looked in {}{}", wanted, hint,
+    return fmt::format("there is no machine \"{}\"{}{}: {}; looked in {}{}", wanted, hint,
                        hint.empty() ? "; known" : " Known", names_text(known), names_text(folders),
                        wrong_root_text(roots));
 }
 
 std::string wrong_root_text(const std::vector<fs::path>& roots) {
     if (roots.empty()) {
-        return "; none are beside this program: SWAGE_ASSETS (or --assets) has to be the folder "
-               "that holds machines and assets";
+        return "; there are none beside this program: set SWAGE_ASSETS (or --assets) to the folder "
+               "that contains machines and assets";
     }
     for (const fs::path& root : roots) {
         const fs::path above = root.parent_path();
@@ -119,8 +119,7 @@ std::string wrong_root_text(const std::vector<fs::path>& roots) {
             continue;
         }
         return fmt::format(
-            "; SWAGE_ASSETS (or --assets) has to be {}, which holds machines and "
-            "assets, not {}",
+            "; set SWAGE_ASSETS (or --assets) to {}, which contains machines and assets, not to {}",
             above.empty() ? "." : above.string(), root.string());
     }
     return {};

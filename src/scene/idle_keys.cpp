@@ -63,7 +63,7 @@ std::string unless_it_moves_by_steps(const Section& at) {
 }
 
 constexpr const char* kNothingMeets =
-    ": nothing can touch, for no machine has a tool, there is one body, and no stage has "
+    ": nothing can touch, as no machine has a tool, there is only one body, and no stage has "
     "self_contact";
 
 std::string unless_something_meets(const Section& at) {
@@ -102,10 +102,10 @@ std::string unless_something_rubs(const Section& at) {
     };
     return any_stage(at.scene, rubs)
                ? ""
-               : ": every tool has a friction of its own, and nothing else touches";
+               : ": every tool has its own friction, and nothing else can touch";
 }
 constexpr const char* kNothingMoves =
-    " where no stage is of motion (solver = \"explicit\", \"euler\" or \"energy-stepped\")";
+    " unless a stage is in motion (solver = \"explicit\", \"euler\" or \"energy-stepped\")";
 std::string unless_something_moves(const Section& at) {
     return any_stage(at.scene, moves_by_steps) ? "" : kNothingMoves;
 }
@@ -124,7 +124,7 @@ bool yields(const SceneSpec& scene) {
 std::string unless_skin_is_mounted(const Section& at) {
     return at.scene.skin.kind != SkinKind::boundary
                ? ""
-               : " with kind = \"boundary\": such a skin is made anew, of voxels";
+               : " with kind = \"boundary\": such a skin is made anew from voxels";
 }
 
 bool creases_matter(const SceneSpec& scene) {
@@ -159,12 +159,12 @@ const std::vector<IdleKey> kOfMaterials = {
          constexpr double kSlack = 0.005;
          const bool is_other = std::abs(at.material->poisson_ratio - kPoissonOfSprings) > kSlack;
          return at.material->mechanics == Mechanics::springs && is_other
-                    ? fmt::format(": a lattice of springs has {}", kPoissonOfSprings)
+                    ? fmt::format(": a lattice of springs always has {}", kPoissonOfSprings)
                     : "";
      }},
     {"elasticity",
      [](const Section& at) -> std::string {
-         return at.material->mechanics == Mechanics::springs ? " on springs" : "";
+         return at.material->mechanics == Mechanics::springs ? " with springs" : "";
      }},
     {"hardening",
      [](const Section& at) -> std::string {
@@ -192,7 +192,7 @@ const std::vector<IdleKey> kOfSkins = {
      [](const Section& at) -> std::string {
          const std::string voxels = unless_skin_is_mounted(at);
          if (!voxels.empty() || creases_matter(at.scene)) return voxels;
-         return ": the mesh's file says itself which edges are sharp";
+         return ": the mesh file itself says which edges are sharp";
      }},
     {"roughness",
      [](const Section& at) -> std::string {
@@ -214,21 +214,21 @@ const std::vector<IdleKey> kOfStages = {
      [](const Section& at) -> std::string {
          const std::string other = unless_it_makes_steps(at);
          if (!other.empty() || at.stage->sim.gravity != Vec3::Zero()) return other;
-         return " without gravity, which alone holds down what sleeps";
+         return " without gravity: only what gravity holds down can sleep";
      }},
     {"contact_stiffness",
      [](const Section& at) -> std::string {
          return meets_anything(at.scene, *at.stage)
                     ? ""
                     : fmt::format(
-                          ": nothing can touch, for the machine {} has no tool, there is "
-                          "one body, and no self_contact",
+                          ": nothing can touch, as machine {} has no tool, there is only one body, "
+                          "and self_contact is off",
                           at.stage->machine.name);
      }},
     {"grip_stiffness",
      [](const Section& at) -> std::string {
          return at.stage->machine.grip.empty()
-                    ? fmt::format(": the machine {} has no grip", at.stage->machine.name)
+                    ? fmt::format(": machine {} has no grip", at.stage->machine.name)
                     : "";
      }},
     {"medium_density", unless_it_moves_by_steps},
@@ -288,7 +288,7 @@ void judge_fields(const Node& output, const SceneSpec& scene, MistakeList& mista
     for (const Node& item : fields->value.item) {
         const std::string why = tells_nothing(item.text, scene);
         if (why.empty()) continue;
-        mistakes.warn(item.place, fmt::format("fields: {} tells nothing{}", item.text, why));
+        mistakes.warn(item.place, fmt::format("fields: {} shows nothing{}", item.text, why));
     }
 }
 

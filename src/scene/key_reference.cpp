@@ -119,18 +119,18 @@ SectionReference expression_reference() {
     const auto add = [&](const std::string& writing, const std::string& meaning) {
         all.key.push_back({writing, "", "", meaning});
     };
-    add("2.5, 3 mm, 60 deg, pi", "numbers, which may carry a unit");
+    add("2.5, 3 mm, 60 deg, pi", "numbers, with or without a unit");
     add("+ - * / ^ ( )", "as usual");
-    add("< <= > >= == != && ||", "1 where it holds, else 0");
-    add("a ? b : c", "b where a holds, else c");
+    add("< <= > >= == != && ||", "1 if true, else 0");
+    add("a ? b : c", "b if a is true, else c");
     for (const auto& [name, meaning] : work_piece_names_told()) add(name, meaning);
     add("NAME", "a parameter of the machine");
-    add("TOOL_x, TOOL_y, TOOL_z", "in what follows a [[tool]]: its middle");
-    add("t", "in motions and strengths: 0 to 1 over the stage");
+    add("TOOL_x, TOOL_y, TOOL_z", "after a [[tool]]: its middle");
+    add("t", "in motions and strengths: time, 0 to 1 over the stage");
     add("stop",
-        "likewise, but for blades: the t at which a limit ([[stage.limit]]) was reached, 1 until "
-        "then; what goes by min(t, stop) comes no farther");
-    add("duration", "likewise: of the stage, so that t*duration is the time in it");
+        "as t, except for blades: the t at which a limit ([[stage.limit]]) was reached, 1 until "
+        "then; motion written with min(t, stop) ends there");
+    add("duration", "as t: duration of the stage, so that t*duration is the time within it");
     for (const FormulaFunction& f : formula_functions()) add(f.call, f.help);
     return all;
 }

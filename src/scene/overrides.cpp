@@ -67,7 +67,7 @@ std::vector<Node*> descended(Node& table, const std::string& key, const std::str
                              const Place& place, MistakeList& mistakes) {
     Entry* entry = table.find(key);
     if (entry == nullptr && is_choice(next)) {
-        mistakes.add(place, fmt::format("there is no {} to set anything of", key));
+        mistakes.add(place, fmt::format("there is no {} to override", key));
         return {};
     }
     if (entry == nullptr) {
@@ -84,16 +84,16 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
     const Place place{source, 0, 0};
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
-        mistakes.add(place, "an override is KEY=VALUE, such as stage.1.angle=45 deg");
+        mistakes.add(place, "write an override as KEY=VALUE, such as stage.1.angle=45 deg");
         return;
     }
     const std::vector<std::string> parts = parts_of(text.substr(0, equals));
     const bool is_whole = std::none_of(parts.begin(), parts.end(),
                                        [](const std::string& part) { return part.empty(); });
     if (!is_whole || parts.size() < 2) {
-        mistakes.add(place,
-                     "the key of an override is SECTION.KEY, such as material.name or "
-                     "stage.1.angle");
+        mistakes.add(
+            place,
+            "write the key of an override as SECTION.KEY, such as material.name or stage.1.angle");
         return;
     }
     std::vector<Node*> here = {&root};
@@ -110,7 +110,7 @@ void apply(const std::string& text, Node& root, MistakeList& mistakes) {
         for (const Node* node : here) {
             if (node->kind == Node::Kind::table || node->kind == Node::Kind::array) continue;
             mistakes.add(place,
-                         fmt::format("\"{}\" is {}, it has no keys", parts[n], kind_text(*node)));
+                         fmt::format("\"{}\" is {} and has no keys", parts[n], kind_text(*node)));
             return;
         }
     }

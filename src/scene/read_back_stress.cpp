@@ -41,20 +41,20 @@ void read_back_stress(TableReader& table, Material& material) {
     if (!(material.back_strain > 0)) {
         if (table.find("back_strain") != nullptr) return;  // told already
         table.mistake("back_stress",
-                      "back_stress needs back_strain beside it: the plastic strain over which it "
-                      "builds up, such as 0.01");
+                      "back_stress needs back_strain: the plastic strain over which it builds up, "
+                      "such as 0.01");
         return;
     }
     if (material.mechanics == Mechanics::springs) {
         table.mistake(key,
-                      "springs have no back stress: use mechanics = \"cells\", or back_stress = 0");
+                      "springs have no back stress: use mechanics = \"cells\" or back_stress = 0");
         return;
     }
     const double steep = material.back_stress / material.back_strain;
     if (steep > kMostSteep * material.young_modulus) {
         table.mistake(key,
-                      fmt::format("a back_stress of {} over a back_strain of {:g} builds up by "
-                                  "{}: no more than {:g} of young_modulus, {}, is taken",
+                      fmt::format("a back_stress of {} over a back_strain of {:g} builds up by {}: "
+                                  "at most {:g} of young_modulus, {}, is allowed",
                                   text(material.back_stress), material.back_strain, text(steep),
                                   kMostSteep, text(kMostSteep * material.young_modulus)));
         return;
@@ -64,13 +64,12 @@ void read_back_stress(TableReader& table, Material& material) {
                         material.back_stress, material.back_strain);
     if (least.stress >= kLeastLeft * material.yield_stress) return;
     const std::string where = std::isinf(least.strain)
-                                  ? "far on"
+                                  ? "at large strain"
                                   : fmt::format("at a plastic strain of {:.3g}", least.strain);
     table.mistake(key,
-                  fmt::format("a back_stress of {} leaves {} of the stress at which it flows "
-                              "{}, and {} at least is asked: say less, or let hardening or "
-                              "flow_curve rise by as much, as {{s0 = \"{}\", Q = \"{}\", b = "
-                              "{:g}}} does",
+                  fmt::format("a back_stress of {} leaves {} of the flow stress {}, and at least "
+                              "{} is needed: give less, or let hardening or flow_curve rise by as "
+                              "much, as {{s0 = \"{}\", Q = \"{}\", b = {:g}}} does",
                               text(material.back_stress), text(least.stress), where,
                               text(kLeastLeft * material.yield_stress), text(material.yield_stress),
                               text(material.back_stress), 1 / material.back_strain));

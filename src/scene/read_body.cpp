@@ -54,7 +54,7 @@ void read_start(TableReader& table, BodySpec& body) {
     if (table.choice<std::optional<bool>>("finish", {{"matt", false}, {"metal", true}},
                                           body.metal) &&
         !body.color) {
-        table.mistake("finish", "finish is that of a color, and there is none");
+        table.mistake("finish", "finish needs a color beside it");
     }
     table.choice<bool>("look", {{"file", false}, {"material", true}}, body.wears_material);
 }
@@ -69,7 +69,7 @@ void read_fineness(TableReader& table, MoldSettings& mold) {
         const bool sets_across = table.find("across")->place.line == 0;
         const bool sets_spacing = table.find("spacing")->place.line == 0;
         if (sets_across == sets_spacing) {
-            table.mistake("spacing", "across and spacing say the same: give one of them");
+            table.mistake("spacing", "across and spacing set the same thing: give one of them");
         } else {
             (sets_across ? has_spacing : has_across) = false;
         }
@@ -86,17 +86,17 @@ void read_fineness(TableReader& table, MoldSettings& mold) {
 }  // namespace
 
 void read_mesh_section(TableReader& table, const fs::path& scene_folder, BodySpec& body) {
-    read_file(table, scene_folder, "the mesh to be worked on", body.mesh);
+    read_file(table, scene_folder, "the mesh to machine", body.mesh);
     read_start(table, body);
     table.finish();
 }
 
 void refuse_look(TableReader& table, const BodySpec& body) {
     if (!body.wears_material) return;
-    if (body.color) table.mistake("look", "look = \"material\" and a color: give one of them");
+    if (body.color) table.mistake("look", "look = \"material\" excludes a color: give one of them");
     if (!body.look) {
         table.mistake("look",
-                      "look = \"material\", but the material says none: give it one, such as "
+                      "look = \"material\", but the material has no look: give it one, such as "
                       "look = {color = [0.6, 0.4, 0.3], roughness = 0.8} in [material]");
     }
 }
@@ -115,7 +115,7 @@ void BodyReader::read_name(TableReader& table, const SceneSpec& scene, BodySpec&
     body.name = fmt::format("body-{}", scene.body.size() + 1);
     const bool is_named = table.text("name", body.name);
     if (const auto reason = why_no_file_name(body.name); is_named && reason) {
-        table.mistake("name", fmt::format("the name {}; it becomes the name of files", *reason));
+        table.mistake("name", fmt::format("the name {}; it is used in file names", *reason));
     } else if (std::any_of(scene.body.begin(), scene.body.end(),
                            [&](const BodySpec& other) { return other.name == body.name; })) {
         table.mistake("name", fmt::format("two bodies are called \"{}\"", body.name));
@@ -132,9 +132,9 @@ void BodyReader::read_material_key(TableReader& table, SceneSpec& scene, BodySpe
         named.entry.push_back({"name", node->place, *node});
         node = &named;
     } else if (node->kind != Node::Kind::table) {
-        table.mistake("material",
-                      "material is the name of one, such as \"rubber\", or a section "
-                      "[body.material]");
+        table.mistake(
+            "material",
+            "material must be the name of one, such as \"rubber\", or a section [body.material]");
         return;
     }
     body.material = {};

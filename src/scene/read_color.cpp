@@ -11,9 +11,10 @@ void read_color(TableReader& table, std::optional<Vec3>& color) {
     Vec3 seen = Vec3::Zero();
     if (!table.vector("color", Quantity::number, seen)) return;
     if ((seen.array() < 0).any() || (seen.array() > 1).any()) {
-        table.mistake("color", fmt::format("color = [{:g}, {:g}, {:g}]: red, green and blue are "
-                                           "each 0 to 1",
-                                           seen.x(), seen.y(), seen.z()));
+        table.mistake(
+            "color",
+            fmt::format("color = [{:g}, {:g}, {:g}]: red, green and blue must each be 0 to 1",
+                        seen.x(), seen.y(), seen.z()));
     }
     color =
         Vec3(linear_from_srgb(seen.x()), linear_from_srgb(seen.y()), linear_from_srgb(seen.z()));

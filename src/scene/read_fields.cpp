@@ -14,12 +14,12 @@ namespace {
 std::vector<std::size_t> read_list(TableReader& table, const std::string& key,
                                    const std::vector<std::string>& names, const char* example) {
     std::vector<std::size_t> chosen;
-    table.describe(key, "texts [\"" + joined(names, "\", \"") + "\"], or some of these", "none");
+    table.describe(key, "any of [\"" + joined(names, "\", \"") + "\"]", "none");
     const Node* node = table.find(key);
     if (node == nullptr) return chosen;
     if (node->kind != Node::Kind::array) {
         table.mistake(key,
-                      fmt::format("{} has to be a list of texts, such as [\"{}\"]", key, example));
+                      fmt::format("{} must be a list of texts, such as [\"{}\"]", key, example));
         return chosen;
     }
     for (const Node& item : node->item) {
@@ -66,7 +66,7 @@ void read_field_color(TableReader& render, RenderSettings& settings) {
     if (!render.ends("color_range", is_plain ? Quantity::number : Quantity::stress, range)) return;
     if (range[0] < range[1]) settings.color_range = range;
     if (render.find("color") == nullptr) {
-        render.mistake("color_range", "color_range is of a color, which is not there");
+        render.mistake("color_range", "color_range needs a color beside it");
     }
 }
 

@@ -48,8 +48,8 @@ bool lacks_unit(TableReader& table, const std::vector<const Node*>& stress) {
         const double value = *pascals(*one);
         if (!(value > 0 && value < kUnitless * *pascals(*largest))) continue;
         table.reading().mistakes.add(
-            one->place, fmt::format("flow_curve: {0:g} without a unit is {0:g} Pa, beside \"{1}\": "
-                                    "is a unit missing, as in \"{0:g} {2}\"?",
+            one->place, fmt::format("flow_curve: {0:g} without a unit is {0:g} Pa, next to "
+                                    "\"{1}\": is a unit missing, as in \"{0:g} {2}\"?",
                                     value, largest->text, unit_in(largest->text)));
         any = true;
     }
@@ -73,7 +73,7 @@ std::vector<FlowPoint> read_points(TableReader& table, const Node& list) {
     for (const Node& item : list.item) {
         if (item.kind != Node::Kind::array || item.item.size() != 2) {
             return mistake(item,
-                           std::string("each point is a pair [strain, \"stress\"], such as ") +
+                           std::string("each point must be a pair [strain, \"stress\"], such as ") +
                                "[0.1, \"400 MPa\"]");
         }
         FlowPoint next{};
@@ -83,31 +83,32 @@ std::vector<FlowPoint> read_points(TableReader& table, const Node& list) {
             table.value("flow_curve", item.item[1], Quantity::stress, kStress, next.stress);
         if (!right) return {};
         if (point.empty() && next.strain != 0) {
-            return mistake(item.item[0],
-                           "the first point is where matter begins to flow: its "
-                           "plastic strain has to be 0");
+            return mistake(
+                item.item[0],
+                "the first point is where plastic flow begins: its plastic strain must be 0");
         }
         if (!point.empty() && !(next.strain - point.back().strain > kLeastStep)) {
-            return mistake(item.item[0],
-                           fmt::format("a strain of {:g} behind one of {:g}: they have to rise, by "
-                                       "more than {:g}",
-                                       next.strain, point.back().strain, kLeastStep));
+            return mistake(
+                item.item[0],
+                fmt::format(
+                    "a strain of {:g} after one of {:g}: strains must rise, each by more than {:g}",
+                    next.strain, point.back().strain, kLeastStep));
         }
         if (!point.empty() && next.stress < point.back().stress) {
             return mistake(
                 item.item[1],
-                fmt::format("the stress falls from {} to {}: matter that softens would flow in one "
-                            "row of cells alone, however small these are, so that no resolution "
-                            "tells what it bears",
-                            quantity_text(point.back().stress, Quantity::stress),
-                            quantity_text(next.stress, Quantity::stress)));
+                fmt::format(
+                    "the stress falls from {} to {}: matter that softens would flow in a single "
+                    "row of cells, however small these are, so its strength would never converge",
+                    quantity_text(point.back().stress, Quantity::stress),
+                    quantity_text(next.stress, Quantity::stress)));
         }
         point.push_back(next);
     }
     if (point.size() < 2) {
-        return mistake(list,
-                       "it needs two points at least; where matter flows at one stress, say "
-                       "yield_stress instead");
+        return mistake(
+            list,
+            "it needs at least two points; for flow at constant stress use yield_stress instead");
     }
     return point;
 }
@@ -201,12 +202,12 @@ void read_flow(TableReader& table, Material& material) {
         if (!had_curve) return;
         if (has_yield && !has_hardening && material.yields()) {
             table.warn("yield_stress",
-                       fmt::format("yield_stress takes the place of the flow_curve of {}: say "
-                                   "hardening too, or matter flows at one stress",
+                       fmt::format("yield_stress replaces the flow_curve of {}: give hardening "
+                                   "too, or the flow stress stays constant",
                                    material.name));
         } else if (has_hardening && !has_yield) {
             table.mistake("hardening",
-                          fmt::format("{} hardens by its flow_curve: say yield_stress beside "
+                          fmt::format("{} hardens by its flow_curve: give yield_stress beside "
                                       "hardening, or another flow_curve",
                                       material.name));
         }
@@ -214,12 +215,10 @@ void read_flow(TableReader& table, Material& material) {
     }
     if (has_yield) {
         table.mistake("yield_stress",
-                      "yield_stress stands beside flow_curve, whose first point says it: leave it "
-                      "out");
+                      "yield_stress is given by the first point of flow_curve: leave it out");
     }
     if (has_hardening) {
-        table.mistake("hardening",
-                      "hardening stands beside flow_curve, which says it: leave one of them out");
+        table.mistake("hardening", "hardening is given by flow_curve: leave one of them out");
     }
     std::vector<FlowPoint> points;
     if (curve->kind == Node::Kind::array) {
@@ -228,7 +227,7 @@ void read_flow(TableReader& table, Material& material) {
         points = read_form(table, *curve);
     } else {
         table.mistake("flow_curve",
-                      fmt::format("flow_curve is {}; wanted is {}", kind_text(*curve), kWanted));
+                      fmt::format("flow_curve is {}; expected {}", kind_text(*curve), kWanted));
     }
     if (!points.empty()) material.flow_along(std::move(points));
 }

@@ -38,14 +38,14 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
                       "an inset is a mesh (file) or a box (from, to), not both");
     } else if (!has_file && !has_from && !has_to) {
         table.missing("file",
-                      "the mesh of the inset; or a box by from = [0, 0, 0.5] and to = [1, 1, 1], "
-                      "in shares of the work-piece's box");
+                      "the mesh of the inset; or give a box by from = [0, 0, 0.5] and to = [1, 1, "
+                      "1], in fractions of the work-piece's box");
     }
     for (const char* key : {"from", "to"}) {
         const Vec3& at = key[0] == 'f' ? inset.from : inset.to;
         if ((at.array() < 0).any() || (at.array() > 1).any()) {
-            table.mistake(key, fmt::format("{} = [{:g}, {:g}, {:g}]: each is a share of the "
-                                           "work-piece's box, 0 to 1",
+            table.mistake(key, fmt::format("{} = [{:g}, {:g}, {:g}]: each must be a fraction of "
+                                           "the work-piece's box, 0 to 1",
                                            key, at.x(), at.y(), at.z()));
         }
     }
@@ -54,7 +54,7 @@ InsetSpec read_inset(TableReader& table, const AssetPaths& assets, const fs::pat
     }
     for (const std::string& key : keys_of_whole_bodies()) {
         if (table.find(key) == nullptr) continue;
-        table.mistake(key, fmt::format("{} is the whole body's: say it in [material]", key));
+        table.mistake(key, fmt::format("{} applies to the whole body: give it in [material]", key));
     }
     std::optional<SurfaceMaterial> look;  // cut faces show the whole body's
     read_material(table, assets, scene_folder, inset.material, look, inputs);
@@ -65,19 +65,20 @@ void refuse_with_insets(TableReader& root, const SceneSpec& scene) {
     const BodySpec& body = scene.work_piece();
     if (body.inset.empty()) return;
     if (body.material.mechanics == Mechanics::springs) {
-        root.mistake("inset", "springs know one material: use mechanics = \"cells\" in [material]");
+        root.mistake("inset",
+                     "springs allow only one material: use mechanics = \"cells\" in [material]");
     }
     bool shifts = body.material.shifts();
     for (const InsetSpec& inset : body.inset) shifts = shifts || inset.material.shifts();
     if (shifts) {
         root.mistake("inset",
-                     "cells of two materials have no back stress: leave back_stress out of all "
+                     "cells of two materials have no back stress: remove back_stress from all "
                      "materials of the work-piece");
     }
     for (const StageSpec& stage : scene.stage) {
         if (stage.remold) {
-            root.mistake("inset", fmt::format("stage \"{}\" molds the work-piece anew, which "
-                                              "would lose the inset: leave remold out",
+            root.mistake("inset", fmt::format("stage \"{}\" molds the work-piece anew, which would "
+                                              "lose the inset: leave out remold",
                                               stage.name));
         }
     }

@@ -38,9 +38,9 @@ void read_part(TableReader& table, const MachineSpec& machine, LimitSpec& limit)
         return;
     }
     if (contains(parts, limit.part)) return;
-    table.mistake(
-        "part", fmt::format("the machine {} has no tool or grip \"{}\"{}; it has {}", machine.name,
-                            limit.part, did_you_mean(limit.part, parts), known));
+    table.mistake("part",
+                  fmt::format("machine {} has no tool or grip \"{}\"{}; it has {}", machine.name,
+                              limit.part, did_you_mean(limit.part, parts), known));
     limit.part.clear();
 }
 
@@ -50,19 +50,18 @@ void read_most(TableReader& table, const MachineSpec& machine, LimitSpec& limit)
     limit.of_torque = table.quantity("torque", Quantity::torque, above(0), torque);
     limit.most = has_force ? force : torque;
     if (has_force && limit.of_torque) {
-        table.mistake("torque", "a limit is of a force or of a torque: give one of them");
+        table.mistake("torque", "a limit is a force or a torque: give one of them");
     } else if (!has_force && !limit.of_torque) {
         table.missing("force", "such as \"20 kN\"; or torque, such as \"500 N m\"");
     } else if (limit.of_torque && !limit.part.empty()) {
         const std::vector<std::string> turning =
             parts_of(machine, [](const MotionSpec& motion) { return motion.turn != "0"; });
         if (contains(turning, limit.part)) return;
-        table.mistake(
-            "torque",
-            fmt::format("{} turns about no axis that a torque could be about: {}", limit.part,
-                        turning.empty()
-                            ? "no part of this machine does; limit a force"
-                            : "limit its force, or the torque of " + joined(turning, ", ")));
+        table.mistake("torque",
+                      fmt::format("{} does not rotate, so its torque has no axis: {}", limit.part,
+                                  turning.empty() ? "no part of this machine does; limit a force"
+                                                  : "limit its force, or the torque of " +
+                                                        joined(turning, ", ")));
     }
 }
 
@@ -76,15 +75,15 @@ void read_limits(TableReader& stage, Solver solver, MachineSpec& machine) {
         limit.place = text_place(node->place);
         MistakeList& mistakes = stage.reading().mistakes;
         if (solver != Solver::quasistatic && !describes) {
-            mistakes.add(node->place,
-                         fmt::format("a limit is kept where all is at rest: with solver = \"{}\" "
-                                     "forces swing, and no machine can stop at one of them; choose "
-                                     "solver = \"quasistatic\"",
-                                     name_of(solver)));
+            mistakes.add(
+                node->place,
+                fmt::format("a limit needs equilibria: with solver = \"{}\" forces oscillate, and "
+                            "no machine can stop at one; choose solver = \"quasistatic\"",
+                            name_of(solver)));
         } else if (!machine.stops && !describes) {
             mistakes.add(node->place,
-                         fmt::format("no motion of machine {} can stop early: those that can go by "
-                                     "the variable {} (`swage keys --machine`), as min(t, {})",
+                         fmt::format("no motion of machine {} can stop early: one that can uses "
+                                     "the variable {} (`swage keys --machine`), as in min(t, {})",
                                      machine.name, kStop, kStop));
         }
         read_part(table, machine, limit);

@@ -19,11 +19,11 @@ std::string read_part_name(TableReader& table, std::set<std::string>& names) {
     if (!table.text("name", name)) {
         table.missing("name", "letters, digits and _");
     } else if (!is_part_name(name)) {
-        table.mistake("name", fmt::format("\"{}\" has to be letters, digits and _, beginning "
-                                          "with a letter",
-                                          name));
+        table.mistake(
+            "name",
+            fmt::format("\"{}\" must be letters, digits and _, beginning with a letter", name));
     } else if (name == "gravity") {
-        table.mistake("name", "\"gravity\" is what pulls at everything; choose another name");
+        table.mistake("name", "\"gravity\" is reserved; choose another name");
     } else if (!names.insert(name).second) {
         table.mistake("name", fmt::format("two parts are called \"{}\"", name));
     }
@@ -55,7 +55,7 @@ void read_load_keys(TableReader& table, ExpressionReader& expression, LoadSpec& 
     const bool has_to = expression.read(table, "to", Quantity::length, box[1]);
     if (has_from != has_to) {
         table.mistake(has_from ? "from" : "to",
-                      "from and to are opposite corners of one box: give both");
+                      "from and to are opposite corners of a box: give both");
     }
     if (has_from && has_to) load.box = box;
     ExpressionReader timed = expression.timed();

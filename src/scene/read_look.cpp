@@ -11,8 +11,8 @@ void read_look(TableReader& table, std::optional<SurfaceMaterial>& look) {
     if (node == nullptr) return;
     if (node->kind != Node::Kind::table) {
         table.mistake("look",
-                      "look has to be a table, such as look = {color = [0.98, 0.82, 0.76], "
-                      "roughness = 0.3, metalness = 1}");
+                      "look must be a table, such as look = {color = [0.98, 0.82, 0.76], roughness "
+                      "= 0.3, metalness = 1}");
         return;
     }
     TableReader one(*node, "look", table.reading());
@@ -27,7 +27,7 @@ void read_look(TableReader& table, std::optional<SurfaceMaterial>& look) {
     one.quantity("clear", Quantity::number, share, found.clear);
     if (found.metallic + found.clear > 1) {
         one.mistake("clear",
-                    "metal lets no light through: metalness and clear are 1 at most together");
+                    "metal lets no light through: metalness and clear must add up to at most 1");
     }
     one.finish();
     look = found;

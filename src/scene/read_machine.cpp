@@ -40,8 +40,8 @@ class MachineReader {
             machine.up = WorldAxis::y;  // gravity's way does not depend on what lies on the machine
             if (machine.axis == WorldAxis::y) {
                 root.mistake("axis",
-                             "axis = \"y\" points up in an upright machine; choose another, or say "
-                             "up = \"z\" too");
+                             "axis = \"y\" points up in an upright machine; choose another, or "
+                             "also give up = \"z\"");
             }
         }
         read_parameters(root.table("parameter"), machine);
@@ -61,7 +61,7 @@ class MachineReader {
         if (machine.tool.empty() && machine.grip.empty() && machine.blade.empty() &&
             machine.load.empty() && reading_.is_complete) {
             mistakes_.add({document.source, 0, 0},
-                          "this machine has no [[tool]], no [[grip]] and no [[blade]]");
+                          "this machine has no [[tool]], [[grip]] or [[blade]]");
         }
         warn_of_unused(document.root);
         reading_.report_unknown();
@@ -77,9 +77,10 @@ class MachineReader {
             names.erase(entry.key);
             if (!check_parameter_name(entry)) continue;
             if (entry.value.kind != Node::Kind::table) {
-                mistakes_.add(entry.place, fmt::format("write {} and below it quantity, default, "
-                                                       "low, high and help",
-                                                       section));
+                mistakes_.add(
+                    entry.place,
+                    fmt::format("write {} and, below it, quantity, default, low, high and help",
+                                section));
                 continue;
             }
             TableReader table(entry.value, section, reading_);
@@ -100,7 +101,7 @@ class MachineReader {
                                 : expression_.read(table, key, into);
             };
             if (!read("default", parameter.default_value)) {
-                table.missing("default", "the value when the scene gives none");
+                table.missing("default", "the value if the scene gives none");
             }
             read("low", parameter.low);
             read("high", parameter.high);
@@ -117,13 +118,13 @@ class MachineReader {
     bool check_parameter_name(const Entry& entry) {
         std::string reason;
         if (!is_part_name(entry.key)) {
-            reason = "has to be letters, digits and _, beginning with a letter";
+            reason = "must be letters, digits and _, beginning with a letter";
         } else if (entry.key == "t") {
             reason = "is the time";
         } else if (entry.key == kStop) {
             reason = "is the time at which a limit is reached";
         } else if (is_work_piece_name(entry.key)) {
-            reason = "is that of the work-piece";
+            reason = "is a variable of the work-piece";
         } else if (is_reserved_name(entry.key)) {
             reason = "is a function, a constant or a unit";
         } else if (is_stage_key(entry.key)) {
@@ -165,10 +166,9 @@ class MachineReader {
         for (const ParameterSpec& parameter : machine.parameter) {
             for (const char* axis : {"_x", "_y", "_z"}) {
                 if (parameter.name != tool.name + axis) continue;
-                table.mistake("name",
-                              fmt::format("\"{}\" would be the place of the tool \"{}\" and "
-                                          "is a parameter; choose another name",
-                                          parameter.name, tool.name));
+                table.mistake("name", fmt::format("\"{}\" is a parameter, and would also be the "
+                                                  "position of tool \"{}\"; choose another name",
+                                                  parameter.name, tool.name));
             }
         }
         const bool has_shape = table.choice<ToolShape>("shape",
@@ -195,7 +195,7 @@ class MachineReader {
         expression_.expect_direction(table);
         expression_.read(table, "turn", Quantity::angle, tool.turn);
         if (!expression_.read(table, "at", Quantity::length, tool.at)) {
-            table.missing("at", "where its centre is, such as [0, \"-height\", 0]");
+            table.missing("at", "the position of its centre, such as [0, \"-height\", 0]");
         }
         expression_.read(table, "touch", Quantity::number, tool.touch);
         expression_.read(table, "gap", Quantity::length, tool.gap);
@@ -285,7 +285,7 @@ class MachineReader {
         }
         if (axes.empty()) {
             table.mistake("along",
-                          "along has to name axes of the work frame, each once: \"xyz\" clamps, "
+                          "along must name axes of the work frame, each once: \"xyz\" clamps, "
                           "\"y\" is a smooth plane across y");
         }
     }
@@ -306,9 +306,9 @@ class MachineReader {
         table.describe("edge", "points, each [x, y, z] of expressions");
         const Node* edge = table.find("edge");
         if (edge == nullptr) {
-            table.missing("edge", "two points or more, such as [[0, 0, -1], [0, 0, 1]]");
+            table.missing("edge", "at least two points, such as [[0, 0, -1], [0, 0, 1]]");
         } else if (edge->kind != Node::Kind::array || edge->item.size() < 2) {
-            table.mistake("edge", "edge has to be two points or more, each of three numbers");
+            table.mistake("edge", "edge must be at least two points, each of three numbers");
         } else {
             for (const Node& point : edge->item) {
                 blade.edge.emplace_back();
@@ -333,7 +333,7 @@ class MachineReader {
             table.missing("holds", "a condition, such as \"radius < length\"");
         }
         if (!table.text("otherwise", check.otherwise)) {
-            table.missing("otherwise", "what the user is told when it does not hold");
+            table.missing("otherwise", "the message to the user if it does not hold");
         }
         table.finish();
         machine.check.push_back(std::move(check));

@@ -42,24 +42,23 @@ void read_fracture(TableReader& table, Material& material) {
         return;
     }
     if (asks && !has_toughness && std::isinf(material.toughness)) {
-        table.mistake("strength",
-                      "strength needs toughness beside it: the energy of a new crack, such as "
-                      "\"10 J/m2\"");
+        table.mistake(
+            "strength",
+            "strength needs toughness: the energy per area of a new crack, such as \"10 J/m2\"");
         return;
     }
     if (!(material.strength < kMostStrength * material.young_modulus)) {
         table.mistake(
             asks ? "strength" : "young_modulus",
-            fmt::format("a strength of {} is too much for a young_modulus of {}: matter "
-                        "that breaks does so at a strain of less than {:g} here",
+            fmt::format("a strength of {} is too high for a young_modulus of {}: matter must break "
+                        "at a strain of less than {:g}",
                         quantity_text(material.strength, Quantity::stress),
                         quantity_text(material.young_modulus, Quantity::stress), kMostStrength));
     }
     if (material.elasticity != Elasticity::hencky) {
-        table.mistake("strength",
-                      fmt::format("{} matter does not break: leave strength out (or inf), or use "
-                                  "elasticity = \"hencky\"",
-                                  name_in(kElasticityNames, material.elasticity)));
+        table.mistake("strength", fmt::format("{} matter does not break: leave out strength (or "
+                                              "give inf), or use elasticity = \"hencky\"",
+                                              name_in(kElasticityNames, material.elasticity)));
     }
 }
 
@@ -70,10 +69,11 @@ void read_surface(TableReader& table, Material& material) {
     if (table.quantity("static_friction", Quantity::number, at_least(0),
                        material.static_friction) &&
         material.static_friction < material.friction) {
-        table.mistake("static_friction",
-                      fmt::format("static_friction = {:g} is less than friction = {:g}: what "
-                                  "rests holds at least as well as what slides",
-                                  material.static_friction, material.friction));
+        table.mistake(
+            "static_friction",
+            fmt::format(
+                "static_friction = {:g} is less than friction = {:g}: it must be at least as large",
+                material.static_friction, material.friction));
     }
 }
 
@@ -86,11 +86,12 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
     table.choice<Elasticity>("elasticity", kElasticityNames, material.elasticity);
     if (material.mechanics == Mechanics::cells && material.elasticity == Elasticity::neo_hookean &&
         material.poisson_ratio < kRubberPoisson) {
-        table.warn("elasticity",
-                   fmt::format("neo-hookean with poisson_ratio = {:g} is too soft where it is "
-                               "pressed together far, and grows thin: it is for rubber, from {:g} "
-                               "on; \"storakers\" is for foam",
-                               material.poisson_ratio, kRubberPoisson));
+        table.warn(
+            "elasticity",
+            fmt::format(
+                "neo-hookean with poisson_ratio = {:g} is too soft under strong compression, and "
+                "thins out: it is for rubber, from {:g} up; \"storakers\" is for foam",
+                material.poisson_ratio, kRubberPoisson));
     }
     const bool has_density =
         table.quantity("density", Quantity::density, kDensity, material.density);
@@ -101,10 +102,9 @@ void read_material_numbers(TableReader& table, bool needs_all, Material& materia
                    material.damping_ratio);
     if (table.quantity("friction", Quantity::number, at_least(0), material.friction) &&
         material.friction > kMuchFriction) {
-        table.warn("friction",
-                   fmt::format("friction = {:g} is more than any known pair of materials "
-                               "has; 0.1 to 1 is usual",
-                               material.friction));
+        table.warn("friction", fmt::format("friction = {:g} is more than that of any known pair of "
+                                           "materials; 0.1 to 1 is usual",
+                                           material.friction));
     }
     read_surface(table, material);
     if (!needs_all) return;
@@ -140,11 +140,11 @@ void read_material(TableReader& table, const AssetPaths& assets,
         }
         if (!is_known) {
             const std::string hint = did_you_mean(name, known);
-            const std::string all =
-                known.empty()  ? "; no file of materials was found" + wrong_root_text(assets.root)
-                : hint.empty() ? "; known are " + joined(known, ", ")
-                               : " Known are " + joined(known, ", ");
-            table.mistake("name", fmt::format("no material \"{}\"{}{}", name, hint, all));
+            const std::string all = known.empty()
+                                        ? "; found no materials file" + wrong_root_text(assets.root)
+                                    : hint.empty() ? "; known: " + joined(known, ", ")
+                                                   : " Known: " + joined(known, ", ");
+            table.mistake("name", fmt::format("there is no material \"{}\"{}{}", name, hint, all));
         }
     } else if (is_named && node->kind == Node::Kind::text) {
         table.mistake("name", "the material's name is empty");
@@ -167,7 +167,7 @@ void read_material(TableReader& table, const AssetPaths& assets,
         if (asks_elasticity) {
             table.mistake("elasticity",
                           name +
-                              " matter does not yield: leave yield_stress out (or inf), and "
+                              " matter does not yield: leave out yield_stress (or give inf) and "
                               "flow_curve, or use elasticity = \"hencky\"");
         }
     }
@@ -176,7 +176,7 @@ void read_material(TableReader& table, const AssetPaths& assets,
         if (table.find(key) == nullptr || std::isinf(share)) continue;
         if (share > kLeastYield && share < kMostYield) continue;
         table.warn(key, fmt::format("{} makes it flow at {}, {:.1e} of young_modulus: is a unit "
-                                    "missing or a wrong one? What yields does at {:g} to {:g}",
+                                    "missing or wrong? Materials yield at {:g} to {:g} of it",
                                     key, quantity_text(material.yield_stress, Quantity::stress),
                                     share, kLeastYield, kMostYield));
     }

@@ -12,11 +12,12 @@ void read_probe(TableReader& table, std::set<std::string>& names, SceneSpec& sce
     ProbeSpec probe;
     probe.name = read_part_name(table, names);
     if (!table.vector("at", Quantity::number, probe.at)) {
-        table.missing("at", "a place in shares of the body's box, such as [1, 0.5, 0.5]");
+        table.missing("at", "a place in fractions of the body's box, such as [1, 0.5, 0.5]");
     } else if ((probe.at.array() < 0).any() || (probe.at.array() > 1).any()) {
-        table.mistake("at", fmt::format("at = [{:g}, {:g}, {:g}]: each is a share of the body's "
-                                        "box, 0 to 1",
-                                        probe.at.x(), probe.at.y(), probe.at.z()));
+        table.mistake(
+            "at", fmt::format(
+                      "at = [{:g}, {:g}, {:g}]: each must be a fraction of the body's box, 0 to 1",
+                      probe.at.x(), probe.at.y(), probe.at.z()));
     }
     const Node* at = table.find("at");
     probe.place = at != nullptr ? at->place : table.place();
@@ -46,9 +47,11 @@ void refuse_probes_named_as_parts(TableReader& root, const SceneSpec& scene) {
     for (const BodySpec& body : scene.body) {
         for (const ProbeSpec& probe : body.probe) {
             if (!parts.contains(probe.name)) continue;
-            root.mistake("probe", fmt::format("\"{}\" is a part of a machine, whose places stand "
-                                              "in the same table: choose another name",
-                                              probe.name));
+            root.mistake(
+                "probe",
+                fmt::format(
+                    "\"{}\" is a part of a machine, listed in the same table: choose another name",
+                    probe.name));
         }
     }
 }

@@ -18,20 +18,19 @@ void read_size(TableReader& table, RenderSettings& settings) {
                          node->item[0].kind == Node::Kind::whole &&
                          node->item[1].kind == Node::Kind::whole;
     if (!is_pair) {
-        table.mistake("size", "size has to be two whole numbers, such as [1280, 720]");
+        table.mistake("size", "size must be two whole numbers, such as [1280, 720]");
         return;
     }
     const double width = node->item[0].number, height = node->item[1].number;
     if (width < 1 || height < 1) {
-        table.mistake("size",
-                      fmt::format("size = [{}, {}] is out of range: both have to be 1 to {}", width,
-                                  height, kLargestSide));
+        table.mistake("size", fmt::format("size = [{}, {}] is out of range: both must be 1 to {}",
+                                          width, height, kLargestSide));
     } else if (width > kLargestSide || height > kLargestSide) {
-        table.mistake("size",
-                      fmt::format("size = [{}, {}] is more than OpenGL draws: both have to be 1 to "
-                                  "{}",
-                                  width, height, kLargestSide),
-                      ExitCode::resources);
+        table.mistake(
+            "size",
+            fmt::format("size = [{}, {}] is more than OpenGL can draw: both must be 1 to {}", width,
+                        height, kLargestSide),
+            ExitCode::resources);
     } else {
         settings.width = static_cast<int>(width);
         settings.height = static_cast<int>(height);
@@ -94,9 +93,8 @@ void read_view(TableReader& table, CameraKey& key, OpenAngles* open) {
         return;
     }
     if (orbits[0] || orbits[1] || orbits[2]) {
-        table.mistake("eye",
-                      "eye and target stand instead of azimuth, elevation and zoom: give "
-                      "the ones or the others");
+        table.mistake(
+            "eye", "eye and target replace azimuth, elevation and zoom: give one set or the other");
     }
     if (eye == target) table.mistake("eye", "eye and target are the same point");
     key.eye = eye;
@@ -117,12 +115,14 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera, OpenAngles&
     double orbit = 0;
     const bool orbits = table.quantity("orbit", Quantity::angle, {}, orbit);
     if (orbits && fixed.eye) {
-        table.mistake("orbit", "an orbit goes about the azimuth, not from an eye");
+        table.mistake("orbit", "an orbit changes the azimuth and cannot be used with an eye");
     }
     const bool has_keys = table.find("keys") != nullptr;
     const std::vector<const Node*> keys = table.tables("keys", "[[render.camera.keys]]");
     if (has_keys && table.has_other_keys("keys")) {
-        table.mistake("keys", "keys stand alone in [render.camera]: the rest goes into each key");
+        table.mistake(
+            "keys",
+            "keys must stand alone in [render.camera]: put the other settings into each key");
     }
     if (!has_keys) {
         camera = {fixed};
@@ -140,7 +140,7 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera, OpenAngles&
         TableReader one(*node, "a key of [render.camera]", table.reading());
         CameraKey key;
         if (!one.quantity("at", Quantity::number, between(0, 1), key.at)) {
-            one.missing("at", "the share of the film, 0 to 1");
+            one.missing("at", "the fraction of the film, 0 to 1");
         }
         read_view(one, key, nullptr);
         one.finish();
@@ -154,7 +154,7 @@ void read_camera(TableReader& table, std::vector<CameraKey>& camera, OpenAngles&
                      [](const CameraKey& a, const CameraKey& b) { return a.at < b.at; });
     for (std::size_t n = 1; n < camera.size(); ++n) {
         if (camera[n].at != camera[n - 1].at) continue;
-        table.mistake("keys", fmt::format("two keys stand at {}", camera[n].at));
+        table.mistake("keys", fmt::format("two keys are at {}", camera[n].at));
         break;
     }
 }
@@ -173,7 +173,7 @@ void read_render(TableReader& table, RenderSettings& settings) {
         "background", {{"studio", Background::studio}, {"transparent", Background::transparent}},
         settings.background);
     if (settings.background == Background::transparent && says_film && settings.film) {
-        table.mistake("film", "a film cannot be transparent: its stills can, without it");
+        table.mistake("film", "a film cannot be transparent, only stills: leave out film");
     }
     table.choice<GlProviderKind>("gl",
                                  {{"auto", GlProviderKind::automatic},

@@ -58,7 +58,7 @@ void report_unknown_sections(const Document& document, Reading& reading) {
         const Node::Kind kind = entry.value.kind;
         if (kind == Node::Kind::table || kind == Node::Kind::array) {
             const std::string near = nearest_word(entry.key, sections);
-            const std::string hint = near.empty() ? "; known are " + joined(sections, ", ")
+            const std::string hint = near.empty() ? "; known: " + joined(sections, ", ")
                                                   : ", did you mean [" + near + "]?";
             reading.mistakes.add(entry.place,
                                  fmt::format("unknown section [{}]{}", entry.key, hint));
@@ -71,10 +71,10 @@ void report_unknown_sections(const Document& document, Reading& reading) {
 void refuse_remolded_blocks(TableReader& root, const SceneSpec& scene) {
     for (const StageSpec& stage : scene.stage) {
         if (!stage.remold || scene.work_piece().mold.kind != MoldKind::block) continue;
-        root.mistake("mold", fmt::format("kind = \"block\" fills the box of the mesh, and stage "
-                                         "\"{}\" would mold the box of what is bent by then: "
-                                         "leave remold out, or kind",
-                                         stage.name));
+        root.mistake("mold",
+                     fmt::format("kind = \"block\" fills the mesh's box, and stage \"{}\" would "
+                                 "mold the box of the deformed body: leave out remold or kind",
+                                 stage.name));
     }
 }
 
@@ -88,9 +88,9 @@ void refuse_same_files(TableReader& root, const SceneSpec& scene) {
         for (const std::string& file : files) {
             const auto [at, is_new] = of.try_emplace(file, what);
             if (is_new || at->second == what) continue;  // those of one name are told already
-            root.mistake("stage", fmt::format("{} and {} would both be written as {}: give one "
-                                              "another name",
-                                              at->second, what, file));
+            root.mistake("stage",
+                         fmt::format("{} and {} would both be written as {}: rename one of them",
+                                     at->second, what, file));
             break;
         }
     };

@@ -18,11 +18,10 @@ void refuse(TableReader& table, const BodySpec& body, Solver solver) {
         breaks = breaks || m->breaks();
     }
     if (solver == Solver::euler && !is_damped) {
-        table.mistake(
-            "solver",
-            fmt::format("solver = \"euler\" gains energy at any step where nothing damps: "
-                        "give {} a damping_ratio, or use solver = \"explicit\"",
-                        material.damping_ratio > 0 ? "each [[inset]]" : "[material]"));
+        table.mistake("solver",
+                      fmt::format("solver = \"euler\" gains energy at any step size without "
+                                  "damping: give {} a damping_ratio, or use solver = \"explicit\"",
+                                  material.damping_ratio > 0 ? "each [[inset]]" : "[material]"));
     }
     if (solver != Solver::implicit_steps) return;
     if (material.mechanics == Mechanics::springs) {
@@ -31,10 +30,10 @@ void refuse(TableReader& table, const BodySpec& body, Solver solver) {
                       "solver = \"explicit\"");
     }
     if (breaks) {
-        table.mistake("solver",
-                      "solver = \"implicit\" does not follow cracks: leave strength and toughness "
-                      "out (strength = \"inf\" over a named material's), or use solver = "
-                      "\"explicit\"");
+        table.mistake(
+            "solver",
+            "solver = \"implicit\" does not follow cracks: leave out strength and toughness "
+            "(strength = \"inf\" overrides a named material's), or use solver = \"explicit\"");
     }
 }
 
@@ -50,18 +49,16 @@ const StageSpec* cut_in(const SceneSpec& scene) {
 void refuse_cut(TableReader& table, const SceneSpec& scene, const MachineSpec* machine,
                 bool remolds) {
     if (machine != nullptr && !machine->blade.empty()) {
-        table.mistake(
-            "solver",
-            "solver = \"implicit\" does not follow cuts, and the machine has a blade: use "
-            "solver = \"explicit\"");
+        table.mistake("solver",
+                      "solver = \"implicit\" does not follow cuts, and the machine has a blade: "
+                      "use solver = \"explicit\"");
         return;
     }
     const StageSpec* cut = remolds ? nullptr : cut_in(scene);
     if (cut == nullptr) return;
-    table.mistake("solver",
-                  fmt::format("solver = \"implicit\" cannot move matter that is cut, as stage "
-                              "\"{}\" leaves it: use solver = \"explicit\", or remold = true",
-                              cut->name));
+    table.mistake("solver", fmt::format("solver = \"implicit\" cannot move cut matter, which stage "
+                                        "\"{}\" leaves: use solver = \"explicit\" or remold = true",
+                                        cut->name));
 }
 
 }  // namespace
@@ -80,15 +77,15 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     }
     table.choice<Solver>("solver", solvers, sim.solver);
     if (sim.solver == Solver::quasistatic && (several || starts)) {
-        table.mistake("solver",
-                      fmt::format("solver = \"quasistatic\" goes from equilibrium to equilibrium, "
-                                  "which knows {}: leave it out, or use solver = \"explicit\"",
-                                  several ? "one body" : "no velocity and no spin"));
+        table.mistake("solver", fmt::format("solver = \"quasistatic\" computes equilibria and "
+                                            "allows {}: leave it out, or use solver = \"explicit\"",
+                                            several ? "only one body" : "no velocity and no spin"));
     }
     for (const BodySpec& body : scene.body) refuse(table, body, sim.solver);
     if (sim.solver == Solver::implicit_steps) refuse_cut(table, scene, machine, remolds);
     if (sim.solver == Solver::implicit_steps && several) {
-        table.mistake("solver", "solver = \"implicit\" moves one body: use solver = \"explicit\"");
+        table.mistake("solver",
+                      "solver = \"implicit\" moves only one body: use solver = \"explicit\"");
     }
     if (sim.solver == Solver::implicit_steps && scene.work_piece().gives_damping) {
         table.warn("solver",
@@ -98,9 +95,8 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     if (sim.solver == Solver::euler && machine != nullptr && !machine->grip.empty()) {
         table.warn(
             "solver",
-            "solver = \"euler\" gains energy in all that is not damped, and nothing damps "
-            "what swings in a grip: a low grip_stiffness, of 1, may keep it, else use solver "
-            "= \"explicit\"");
+            "solver = \"euler\" gains energy wherever nothing damps, as where matter swings in a "
+            "grip: a low grip_stiffness of 1 may keep it stable, else use solver = \"explicit\"");
     }
     const bool is_implicit = sim.solver == Solver::implicit_steps;
     const bool is_explicit = sim.solver == Solver::explicit_steps || sim.solver == Solver::euler;
@@ -138,10 +134,10 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
         table.vector("gravity", Quantity::acceleration, sim.gravity);
     }
     if (sim.gravity != Vec3::Zero() && !(sim.gravity.dot(above) < 0)) {
-        table.warn("gravity",
-                   fmt::format("gravity does not point down: {} is up, and a single number points "
-                               "down",
-                               name_of(up)));
+        table.warn(
+            "gravity",
+            fmt::format("gravity does not point down: {} is up, and a single number points down",
+                        name_of(up)));
     }
     const bool acts = machine == nullptr || !machine->stands() || !machine->load.empty() ||
                       starts || sim.gravity != Vec3::Zero() || table.find("load") != nullptr;
@@ -149,17 +145,17 @@ void read_solver(TableReader& table, const SceneSpec& scene, const MachineSpec* 
     if (acts || !scene.stage.empty()) return;
     if (machine_moves) {
         table.warn("machine",
-                   "nothing moves: there is no gravity (gravity = \"9.81 m/s2\"), no load, and no "
-                   "body starts with a velocity or a spin");
+                   "nothing moves: there is no gravity (gravity = \"9.81 m/s2\") and no load, and "
+                   "no body starts with a velocity or spin");
     } else if (!machine->blade.empty()) {
-        table.warn("machine",
-                   fmt::format("nothing happens: the blade {} never moves (it has no motion), and "
-                               "there is no gravity (gravity = \"9.81 m/s2\") and no load "
-                               "([[stage.load]])",
-                               machine->blade.front().name));
+        table.warn(
+            "machine",
+            fmt::format("nothing happens: blade {} never moves (it has no motion), and there is no "
+                        "gravity (gravity = \"9.81 m/s2\") or load ([[stage.load]])",
+                        machine->blade.front().name));
     } else if (machine->tool.empty() || machine->upright) {
         table.warn("machine",
-                   "nothing happens: there is no gravity (gravity = \"9.81 m/s2\") and no load "
+                   "nothing happens: there is no gravity (gravity = \"9.81 m/s2\") or load "
                    "([[stage.load]])");
     }
 }

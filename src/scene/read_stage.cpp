@@ -58,10 +58,9 @@ void fall_back(TableReader& table, const MachineSpec& machine, StageSpec& stage)
     if (!lie_along(stage.axis, machine.up)) {
         stage.up = machine.up;
     } else if (machine.upright) {
-        table.mistake(
-            "axis", fmt::format("axis = \"{}\" points up with the machine {}, whose up is \"{}\"; "
-                                "choose another, or say up too",
-                                name_of(stage.axis), machine.name, name_of(machine.up)));
+        table.mistake("axis", fmt::format("axis = \"{}\" points up with machine {}, whose up is "
+                                          "\"{}\"; choose another, or also give up",
+                                          name_of(stage.axis), machine.name, name_of(machine.up)));
     }
 }
 
@@ -75,12 +74,13 @@ std::optional<std::string> why_no_file_name(const std::string& text) {
     constexpr std::size_t kLongest = 100;
     if (text.empty()) return "is empty";
     if (text.size() > kLongest) return fmt::format("is longer than {} bytes", kLongest);
-    if (text[0] == '.') return "begins with a point";
+    if (text[0] == '.') return "begins with a dot";
     if (text.front() == ' ' || text.back() == ' ') return "begins or ends with a blank";
     for (char c : text) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) return "has a control character";
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+            return "contains a control character";
         if (std::string_view("/\\:*?\"<>|").find(c) != std::string_view::npos) {
-            return fmt::format("has a \"{}\"", c);
+            return fmt::format("contains \"{}\"", c);
         }
     }
     return std::nullopt;
@@ -120,7 +120,7 @@ const StageReader::Loaded* StageReader::find_machine(TableReader& table, std::st
     }
     if (wanted.empty()) {
         if (table.find("machine")->kind == Node::Kind::text) {
-            table.mistake("machine", "machine is empty; known are " + names_text(known_));
+            table.mistake("machine", "machine is empty; known: " + names_text(known_));
         }
         return nullptr;
     }
@@ -158,8 +158,8 @@ void StageReader::read_parameters(TableReader& table, const Loaded& loaded, Stag
         if (given == stage.parameter.end()) continue;
         if (ranges[n].nearly_holds(given->second)) continue;
         table.mistake(parameter.name,
-                      fmt::format("{} = {} is out of range: the machine {} takes {}",
-                                  parameter.name, quantity_text(given->second, parameter.quantity),
+                      fmt::format("{} = {} is out of range: machine {} takes {}", parameter.name,
+                                  quantity_text(given->second, parameter.quantity),
                                   loaded.machine->name, ranges[n].text(parameter.quantity)));
     }
 }
@@ -219,13 +219,13 @@ void StageReader::name_stage(TableReader& table, const std::string& machine, Sta
     stage.name = fmt::format("{}-{}", count_, machine);
     const bool is_named = table.text("name", stage.name);
     if (const auto reason = why_no_file_name(stage.name); is_named && reason) {
-        table.mistake("name", fmt::format("the name {}; it becomes the name of files", *reason));
+        table.mistake("name", fmt::format("the name {}; it is used in file names", *reason));
         return;
     }
     const Place& place = table.find("name") != nullptr ? table.find("name")->place : table.place();
     const auto [earlier, is_new] = line_of_name_.try_emplace(stage.name, place.line);
     if (!is_new) {
-        table.mistake("name", fmt::format("two stages are called \"{}\"; the first is in line {}",
+        table.mistake("name", fmt::format("two stages are called \"{}\"; the first is on line {}",
                                           stage.name, earlier->second));
     }
 }

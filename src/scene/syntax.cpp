@@ -86,15 +86,14 @@ std::string number_advice(const KeyLine& line) {
         }
         const auto unit = leading_unit(rest);
         if (unit && unit->size == rest.size()) {
-            return fmt::format("a value with a unit stands in quotes: {} = \"{}\"", line.key,
-                               value);
+            return fmt::format("a value with a unit needs quotes: {} = \"{}\"", line.key, value);
         }
-        if (!rest.empty()) return fmt::format("{} is no number", value);
+        if (!rest.empty()) return fmt::format("{} is not a number", value);
         if (value[sign] == '0' && value.size() > sign + 1 && value[sign + 1] != '.') {
-            return fmt::format("a number does not begin with 0: write {}", number->value);
+            return fmt::format("a number cannot begin with 0: write {}", number->value);
         }
         if (value[sign] == '.') return fmt::format("write {}", number->value);
-        if (value.back() == '.') return fmt::format("a digit is missing after the point");
+        if (value.back() == '.') return fmt::format("a digit is missing after the decimal point");
     } catch (const TextError& error) {
         return error.what();
     }
@@ -110,7 +109,7 @@ std::string value_advice(const KeyLine& line) {
     }
     if (first == '"' || first == '\'') {
         const bool is_open = value.find(first, 1) == std::string::npos;
-        return is_open ? "the text is not closed by a quote" : "";
+        return is_open ? "the closing quote is missing" : "";
     }
     if ((first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z')) {
         for (const char* word : {"true", "yes", "on"}) {
@@ -122,7 +121,7 @@ std::string value_advice(const KeyLine& line) {
         const bool is_plain = std::all_of(value.begin(), value.end(), [](char c) {
             return is_key_letter(c) || c == ' ' || c == '/';
         });
-        if (is_plain) return fmt::format("a text stands in quotes: {} = \"{}\"", line.key, value);
+        if (is_plain) return fmt::format("text needs quotes: {} = \"{}\"", line.key, value);
     }
     return {};
 }
@@ -140,7 +139,7 @@ std::string plain(std::string text) {
             shown += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
         }
     }
-    return "this cannot be read: " + shown;
+    return "cannot be parsed: " + shown;
 }
 
 }  // namespace
@@ -217,7 +216,7 @@ SyntaxAdvice explain_syntax(std::string_view file_text, const SyntaxMistake& mis
         if (key || is_header) {
             const std::string what = is_header ? std::string(bare) : "\"" + key->key + "\"";
             return {key ? key->key_column : mistake.column,
-                    first > 0 ? fmt::format("{} is given twice, first in line {}", what, first)
+                    first > 0 ? fmt::format("{} is given twice, first on line {}", what, first)
                               : fmt::format("{} is given twice, or in two ways", what),
                     key.has_value()};
         }

@@ -77,13 +77,13 @@ void Reading::report_unknown() {
         }
         const auto other = kOtherNames.find(one.key);
         if (!elsewhere.empty()) {
-            text += ", it belongs in " + joined(elsewhere, " or ");
+            text += "; it belongs in " + joined(elsewhere, " or ");
         } else if (other != kOtherNames.end() && contains(one.known, other->second)) {
             text += fmt::format(", did you mean \"{}\"?", other->second);
         } else if (const std::string hint = did_you_mean(one.key, one.known); !hint.empty()) {
             text += hint;
         } else if (!one.known.empty()) {
-            text += "; known are " + joined(one.known, ", ");
+            text += "; known: " + joined(one.known, ", ");
         }
         mistakes.add(one.place, text);
     }
@@ -135,8 +135,8 @@ void TableReader::missing(const std::string& key, const std::string& what) {
 void TableReader::warn_of_turns(const std::string& key, const Node& node, double angle) {
     if (!(std::abs(angle) > 2 * kPi)) return;
     reading_.mistakes.warn(node.place,
-                           fmt::format("{0} = {1:g} without a unit is {1:g} rad: that is {2:.4g} "
-                                       "turns; degrees are written \"{1:g} deg\"",
+                           fmt::format("{0} = {1:g} without a unit is {1:g} rad, which is {2:.4g} "
+                                       "turns; write degrees as \"{1:g} deg\"",
                                        key, angle, angle / (2 * kPi)));
 }
 
@@ -163,7 +163,7 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
         }
     }
     reading_.mistakes.add(node.place,
-                          fmt::format("{} is {}; {} is wanted, such as {}", key, kind_text(node),
+                          fmt::format("{} is {}; expected {}, such as {}", key, kind_text(node),
                                       quantity_with_article(quantity), example_of(quantity)));
     return false;
 }
@@ -198,7 +198,7 @@ bool TableReader::value(const std::string& key, const Node& node, Quantity quant
     if (!number(key, node, quantity, value)) return false;
     if (!range.holds(value)) {
         reading_.mistakes.add(node.place,
-                              fmt::format("{} = {} is out of range: it has to be {}", key,
+                              fmt::format("{} = {} is out of range: it must be {}", key,
                                           quantity_text(value, quantity), range.text(quantity)));
         return false;
     }
@@ -215,10 +215,10 @@ bool TableReader::whole(const std::string& key, int low, int high, int& into) {
     if (!number(key, *node, Quantity::number, value)) return true;
     if (value != std::floor(value)) {
         mistake(key,
-                fmt::format("{} = {} has to be a whole number, {} to {}", key, value, low, high));
+                fmt::format("{} = {} must be a whole number, {} to {}", key, value, low, high));
     } else if (value < low || value > high) {
-        mistake(key, fmt::format("{} = {} is out of range: it has to be {} to {}", key, value, low,
-                                 high));
+        mistake(key,
+                fmt::format("{} = {} is out of range: it must be {} to {}", key, value, low, high));
     } else {
         into = static_cast<int>(value);
     }
@@ -232,7 +232,7 @@ bool TableReader::truth(const std::string& key, bool& into) {
     if (node->kind == Node::Kind::truth) {
         into = node->truth;
     } else {
-        mistake(key, fmt::format("{} has to be true or false, without quotes", key));
+        mistake(key, fmt::format("{} must be true or false, without quotes", key));
     }
     return true;
 }
@@ -244,7 +244,7 @@ bool TableReader::text(const std::string& key, std::string& into) {
     if (node->kind == Node::Kind::text) {
         into = node->text;
     } else {
-        mistake(key, fmt::format("{} is {}; a text in quotes is wanted", key, kind_text(*node)));
+        mistake(key, fmt::format("{} is {}; expected text in quotes", key, kind_text(*node)));
     }
     return true;
 }
@@ -254,7 +254,7 @@ bool TableReader::vector(const std::string& key, Quantity quantity, Vec3& into) 
     const Node* node = find(key);
     if (node == nullptr) return false;
     if (node->kind != Node::Kind::array || node->item.size() != 3) {
-        mistake(key, fmt::format("{} has to be three numbers, such as [0, 0, 1]", key));
+        mistake(key, fmt::format("{} must be three numbers, such as [0, 0, 1]", key));
         return true;
     }
     Vec3 value;
@@ -273,7 +273,7 @@ bool TableReader::ends(const std::string& key, Quantity quantity, std::array<dou
     const Node* node = find(key);
     if (node == nullptr) return false;
     if (node->kind != Node::Kind::array || node->item.size() != 2) {
-        mistake(key, fmt::format("{} has to be two values, the lower first", key));
+        mistake(key, fmt::format("{} must be two values, the lower first", key));
         return true;
     }
     std::array<double, 2> value{};
@@ -287,7 +287,7 @@ bool TableReader::ends(const std::string& key, Quantity quantity, std::array<dou
     if (value[0] < value[1]) {
         into = value;
     } else {
-        mistake(key, fmt::format("{}: the first has to be less than the second", key));
+        mistake(key, fmt::format("{}: the first must be less than the second", key));
     }
     return true;
 }
@@ -305,8 +305,8 @@ int TableReader::chosen_name(const std::string& key, const std::vector<std::stri
         mistake(key, fmt::format("{} = \"{}\" is not one of {}{}", key, node->text,
                                  joined(quoted, ", "), did_you_mean(node->text, names)));
     } else {
-        mistake(key, fmt::format("{} is {}; one of these texts is wanted: {}", key,
-                                 kind_text(*node), joined(names, ", ")));
+        mistake(key, fmt::format("{} is {}; expected one of: {}", key, kind_text(*node),
+                                 joined(names, ", ")));
     }
     return -1;
 }
@@ -317,7 +317,7 @@ const Node& TableReader::table(const std::string& key) {
     const Node* node = find(key);
     if (node == nullptr) return empty;
     if (node->kind == Node::Kind::table) return *node;
-    mistake(key, fmt::format("{} is {}; a section is wanted", key, kind_text(*node)));
+    mistake(key, fmt::format("{} is {}; expected a section", key, kind_text(*node)));
     return empty;
 }
 
@@ -327,14 +327,14 @@ std::vector<const Node*> TableReader::tables(const std::string& key, const std::
     const Node* node = find(key);
     if (node == nullptr) return found;
     if (node->kind != Node::Kind::array) {
-        mistake(key, fmt::format("write {} in double brackets: there may be several", example));
+        mistake(key, fmt::format("write {} in double brackets, as there can be several", example));
         return found;
     }
     for (const Node& item : node->item) {
         if (item.kind == Node::Kind::table) {
             found.push_back(&item);
         } else {
-            reading_.mistakes.add(item.place, fmt::format("{} is {}; a section {} is wanted", key,
+            reading_.mistakes.add(item.place, fmt::format("{} is {}; expected a section {}", key,
                                                           kind_text(item), example));
         }
     }

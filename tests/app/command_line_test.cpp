@@ -274,7 +274,7 @@ TEST_CASE("info tells what a run makes of a mesh that bounds no volume, or a wro
     INFO(mended);
     CHECK(mended.find("a run        stitched") != std::string::npos);
     CHECK(mended.find("a run        then: 4 vertices, 4 triangles") != std::string::npos);
-    CHECK(run_swage({"info", sheet.string()}).out.find("a run        refuses it: ") !=
+    CHECK(run_swage({"info", sheet.string()}).out.find("a run        refuses this mesh: ") !=
           std::string::npos);
     // Two tetrahedra of one volume that is right, and with one of them inside out.
     for (const bool inside_out : {false, true}) {

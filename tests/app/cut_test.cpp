@@ -92,7 +92,7 @@ TEST_CASE("info calls what touches manifold by its numbers, and not by place") {
     put_text(file, corner + "v 1 0 0\nv 0 1 0\n" + corner + "v -1 0 0\nv 0 -1 0\n" +
                        "f 1 4 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 5 8 7\nf 5 7 6\nf 5 6 8\nf 6 7 8\n");
     const std::string told = run_swage({"info", file.string()}).out;
-    CHECK(told.find("manifold     yes, by its vertex numbers\n") != std::string::npos);
+    CHECK(told.find("manifold     yes, going by its vertex numbers\n") != std::string::npos);
     CHECK(told.find("by place     not manifold\n") != std::string::npos);
     const Json json = Json::parse(run_swage({"info", file.string(), "--json"}).out);
     CHECK(json.at("manifold") == false);

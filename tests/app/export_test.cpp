@@ -90,10 +90,11 @@ TEST_CASE("what cannot be exported is told, and leaves what was there as it was"
         CHECK(outcome.code == code);
         CHECK(outcome.err.find(told) != std::string::npos);
     };
-    refused(scratch.path(), "x.usda", 5, "is no finished run of swage");
+    refused(scratch.path(), "x.usda", 5, "is not a finished run of swage");
     refused(scratch.path() / "none", "x.usda", 5, "no such folder");
-    refused(run, "x.abc", 2, "x.abc: can be written as .usda");
-    refused(run, "mine.usda", 8, "mine.usda: is no file that swage export wrote");
+    refused(run, "x.abc", 2, "x.abc: only .usda can be written");
+    refused(run, "mine.usda", 8,
+            "mine.usda: was not written by swage export; choose another --out");
     refused(run, "folder.usda", 5, "is a folder, not a file");
     CHECK(run_swage({"export", run.string(), "--frames", "2-9"}).code == 2);
     rlimit unlimited{};

@@ -107,7 +107,7 @@ TEST_CASE("pictures are coloured by a field, afterwards too, and of what the run
     CHECK(draw({"--color-range", "5", "1"}).code == 2);
     const Outcome refused = draw({"--color", "pressure"});
     CHECK(refused.code == 2);
-    CHECK(refused.err.find("the run holds no pressure, but stress") != std::string::npos);
+    CHECK(refused.err.find("the run contains no pressure, only stress") != std::string::npos);
 }
 
 TEST_CASE("a field that is misspelled, and a range that is none, are told at their places") {
@@ -119,7 +119,7 @@ TEST_CASE("a field that is misspelled, and a range that is none, are told at the
     CHECK(outcome.code == 3);
     for (const char* told :
          {"small.toml:13:9: color = \"plastic_strian\" is not one of",
-          "did you mean \"plastic_strain\"?", "color_range: the first has to be less",
+          "did you mean \"plastic_strain\"?", "color_range: the first must be less",
           "small.toml:16:11: fields: \"stres\" is not one of plastic_strain, stress",
           "did you mean \"stress\"?", "fields: a whole number is not one of"}) {
         INFO(told);

@@ -69,14 +69,14 @@ TEST_CASE("a bar that is bent until a moment springs back from there, and no row
                    scene = put_bar(scratch.path(),
                                    stage("bend", "frames = 12\n", "left", "torque = \"30 N m\""));
     const Outcome check = run_swage({"check", scene.string()});
-    const std::string told = "the machine comes no farther once left bears a torque of 30 N m";
+    const std::string told = "the machine stops when left bears a torque of 30 N m";
     CHECK(check.out.find("  limit        " + told) != std::string::npos);
     const Outcome outcome = run(scene, out);
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     CHECK(outcome.err.find("1-bend: " + told) != std::string::npos);
     CHECK(outcome.err.find("1-bend: left reached a torque of 30 N m at ") != std::string::npos);
-    CHECK(outcome.err.find("; it comes no farther") != std::string::npos);
+    CHECK(outcome.err.find(", and stops there") != std::string::npos);
     const Json record = Json::parse(bytes_of(out / "run.json")).at("stages").at(0);
     const Json stopped = record.at("stopped_at");
     CHECK(record.at("limits").at(0).at("torque_N_m") == 30);

@@ -45,7 +45,7 @@ TEST_CASE("a machine whose file is faulty is told to be that, not to be missing"
     INFO(bad.err);
     CHECK(bad.code == 3);
     CHECK(bad.err.find("unknown name \"heigth\"") != std::string::npos);
-    CHECK(bad.err.find("bad.toml: no machine can be made of it") != std::string::npos);
+    CHECK(bad.err.find("bad.toml does not make a usable machine") != std::string::npos);
     CHECK(bad.err.find("bad2") == std::string::npos);
     CHECK(run_swage({"machines", "bad2"}, scratch.path()).code == 0);
     CHECK(run_swage({"machines"}, scratch.path()).code == 0);  // tells the others
@@ -76,7 +76,7 @@ TEST_CASE(
     CHECK(told({"machines"}).out.find("mine") != std::string::npos);
     const Outcome other = told({"machines", "bend"});
     CHECK(other.code == 2);
-    CHECK(other.err.find("known are mine; looked in " + (scratch.path() / "machines").string()) !=
+    CHECK(other.err.find("known: mine; looked in " + (scratch.path() / "machines").string()) !=
           std::string::npos);
 }
 
@@ -98,8 +98,8 @@ TEST_CASE("who names the folder assets itself is told to name the one above") {
         const Outcome wrong = told(shelf / "assets");
         INFO(wrong.err);
         CHECK(wrong.code != 0);
-        CHECK(wrong.err.find("SWAGE_ASSETS (or --assets) has to be " +
-                             fs::canonical(shelf).string() + ", which") != std::string::npos);
+        CHECK(wrong.err.find("set SWAGE_ASSETS (or --assets) to " + fs::canonical(shelf).string() +
+                             ", which") != std::string::npos);
         CHECK(told(shelf).code == 0);
     }
 }

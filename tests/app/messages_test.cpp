@@ -80,10 +80,10 @@ TEST_CASE("check tells how fast the film plays what takes its time") {
         return told();
     };
     CHECK(with_fall("50 ms").find(
-              "film         fall: 5 frames at 25 a second play its 50 ms 4 times slower than it "
-              "goes\n") != std::string::npos);
-    CHECK(with_fall("200 ms").find("its 200 ms as fast as it goes\n") != std::string::npos);
-    CHECK(with_fall("0.4 s").find("2 times faster than it goes\n") != std::string::npos);
+              "film         fall: 5 frames at 25 fps show its 50 ms 4 times slower than real "
+              "time\n") != std::string::npos);
+    CHECK(with_fall("200 ms").find("its 200 ms in real time\n") != std::string::npos);
+    CHECK(with_fall("0.4 s").find("2 times faster than real time\n") != std::string::npos);
 }
 
 TEST_CASE("a scene is read from standard input, its paths from the working directory") {

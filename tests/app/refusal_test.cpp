@@ -104,10 +104,10 @@ TEST_CASE(
         };
         const Outcome nowhere = to("");
         CHECK(nowhere.code == 2);
-        CHECK(says(nowhere, "--out: \"\" is no name"));
+        CHECK(says(nowhere, "--out: \"\" is not a name"));
         const Outcome refused = to(longer);
         CHECK(refused.code == 5);
-        CHECK(says(refused, longer + ": cannot be made: File name too long"));
+        CHECK(says(refused, longer + ": cannot be created: File name too long"));
     }
     CHECK(run_swage({"make", "bar", "--out", ""}, scratch.path()).code == 2);
     CHECK(run_swage({"verify", "stretch", "--out", ""}, scratch.path()).code == 2);

@@ -48,7 +48,7 @@ TEST_CASE("a run is not drawn over files that are no drawing of swage's") {
     const Outcome outcome = drawable.draw(out);
     INFO(outcome.err);
     CHECK(outcome.code == 8);
-    CHECK(outcome.err.find("holds files that swage render did not draw") != std::string::npos);
+    CHECK(outcome.err.find("contains files that swage render did not draw") != std::string::npos);
     CHECK(files_below(out) == before);
     CHECK(drawable.draw(drawable.run() / "meshes").code == 8);
 }
@@ -80,7 +80,7 @@ TEST_CASE(
         drawable.draw(drawable.out(), {"--frames", "1-2", "--camera-azimuth", "120"});
     INFO(second.err);
     CHECK(second.code == 0);
-    CHECK(second.err.find("4 pictures of an earlier drawing removed") != std::string::npos);
+    CHECK(second.err.find("removed 4 pictures of an earlier drawing") != std::string::npos);
     CHECK(fs::exists(drawable.out() / "frames/frame_0002.png"));
     CHECK(fs::exists(drawable.out() / "frames/notes.png"));
     for (const char* name :

@@ -136,7 +136,7 @@ TEST_CASE("a run that is to be fresh begins anew, and so does one whose checkpoi
     end_in_second_stage(SIGINT, scratch.path() / "softer.toml", other);
     fs::copy_file(other / "resume/checkpoint.bin", checkpoint,
                   fs::copy_options::overwrite_existing);
-    anew("is of another run, or of another build of swage, so the run begins anew");
+    anew("belongs to another run or another build of swage, so the run begins anew");
 }
 
 TEST_CASE("a fresh run that cannot start leaves what another may go on from") {

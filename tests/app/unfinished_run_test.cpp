@@ -63,7 +63,8 @@ TEST_CASE("a run that wants for memory on its way keeps the frames that it has f
     ::setrlimit(RLIMIT_AS, &before);
     INFO(outcome.err);
     CHECK(outcome.code == 7);
-    CHECK(outcome.err.find("there is not enough memory") != std::string::npos);
+    CHECK(outcome.err.find("not enough memory; a larger [mold] spacing needs less") !=
+          std::string::npos);
     REQUIRE(fs::exists(run / "run.json"));
     const Json record = Json::parse(bytes_of(run / "run.json"));
     CHECK(record.at("state") == "stopped");

@@ -57,19 +57,19 @@ TEST_CASE("a number in an expression may carry a unit") {
 TEST_CASE("a variable named as a unit is refused after a number, not read as that unit") {
     const std::vector<std::string> variables = {"t", "min", "in"};
     CHECK(mistake_of("2 t", variables) ==
-          "2: a sign is missing before \"t\"; to multiply write 2*t");
+          "2: an operator is missing before \"t\"; to multiply write 2*t");
     CHECK(mistake_of("1 - 2 t", variables) ==
-          "6: a sign is missing before \"t\"; to multiply write 2*t");
+          "6: an operator is missing before \"t\"; to multiply write 2*t");
     CHECK(mistake_of("7 t/m3", variables) ==
-          "2: a sign is missing before \"t\"; to multiply write 7*t");
+          "2: an operator is missing before \"t\"; to multiply write 7*t");
     CHECK(mistake_of("3in", variables) ==
-          "1: a sign is missing before \"in\"; to multiply write 3*in");
+          "1: an operator is missing before \"in\"; to multiply write 3*in");
     CHECK(value_of("2 t") == 2000);   // where no variable has the name
     CHECK(value_of("5 min") == 300);  // nor is the unit taken for the function
 }
 
 TEST_CASE("a power of a number with a unit is refused, as it may be read in two ways") {
-    const char* either = "this may raise 3 cm or the unit alone: write (3 cm)^... or 3*(1 cm)^...";
+    const char* either = "this could raise 3 cm or only the unit: write (3 cm)^... or 3*(1 cm)^...";
     CHECK(mistake_of("3 cm^2") == fmt::format("4: {}", either));
     CHECK(mistake_of("1 + 3cm ^ 2") == fmt::format("8: {}", either));
     CHECK(value_of("(3 cm)^2") == Approx(9e-4).epsilon(1e-15));
@@ -113,28 +113,31 @@ TEST_CASE("a mistake in an expression is named at its place") {
         {"2*q", "2: unknown name \"q\""},
         {"rmap(t, 0, 1)", "0: unknown function \"rmap\", did you mean \"ramp\"?"},
         {"1 + min", "4: the function min needs brackets: min(a, b, ...)"},
-        {"radius(2)", "0: \"radius\" is no function; to multiply write radius*(...)"},
-        {"2 radius", "2: a sign is missing before \"radius\"; to multiply write 2*radius"},
+        {"radius(2)", "0: \"radius\" is not a function; to multiply write radius*(...)"},
+        {"2 radius", "2: an operator is missing before \"radius\"; to multiply write 2*radius"},
         {"2 parsec", "2: unknown unit \"parsec\""},
-        {"1,5*radius", "1: a comma may only part the arguments of a function"},
-        {"(1,5)", "2: a comma may only part"},
-        {"min(1,(2,3))", "8: a comma may only part"},
-        {"radius = 3", "7: a single = means nothing here"},
+        {"1,5*radius",
+         "1: a comma can only separate the arguments of a function; the decimal sign is a point"},
+        {"(1,5)",
+         "2: a comma can only separate the arguments of a function; the decimal sign is a point"},
+        {"min(1,(2,3))",
+         "8: a comma can only separate the arguments of a function; the decimal sign is a point"},
+        {"radius = 3", "7: a single = has no meaning here; to compare write =="},
         {"(1 + 2", "0: this bracket is not closed"},
         {"1 + 2)", "5: this bracket was never opened"},
         {"1 +", "3: the expression ends too early"},
         {"-", "1: the expression ends too early"},
         {"1 - -", "5: the expression ends too early"},
-        {"max(-, 1)", "4: the sign \"-\" has nothing to work on"},
-        {"t ? + : 2", "4: the sign \"+\" has nothing to work on"},
-        {"1 + * 2", "4: the sign \"*\" has nothing to work on"},
-        {"radius t", "7: a sign is missing before this"},
-        {"1 2", "2: a sign is missing before this"},
-        {"radius 2", "7: a sign is missing before this"},
-        {"3 mm 2 cm", "5: a sign is missing before this"},
-        {"1 cm 5", "5: a sign is missing before this"},
-        {"1 cm (5)", "5: a sign is missing before this"},
-        {"(1)(2)", "3: a sign is missing before this"},
+        {"max(-, 1)", "4: the operator \"-\" lacks an operand"},
+        {"t ? + : 2", "4: the operator \"+\" lacks an operand"},
+        {"1 + * 2", "4: the operator \"*\" lacks an operand"},
+        {"radius t", "7: an operator is missing before this"},
+        {"1 2", "2: an operator is missing before this"},
+        {"radius 2", "7: an operator is missing before this"},
+        {"3 mm 2 cm", "5: an operator is missing before this"},
+        {"1 cm 5", "5: an operator is missing before this"},
+        {"1 cm (5)", "5: an operator is missing before this"},
+        {"(1)(2)", "3: an operator is missing before this"},
         {"2*(t + )", "7: a bracket does not belong here"},
         {"2*() + 1", "3: a bracket does not belong here"},
         {"ramp(t, 1)", "9: too few arguments: ramp(t, a, b)"},
@@ -147,8 +150,8 @@ TEST_CASE("a mistake in an expression is named at its place") {
         {"1e999", "0: \"1e999\" is too large"},
         {"t + 0x1F", "4: \"0x1F\" is hexadecimal"},
         {"nan", "0: unknown name \"nan\""},
-        {"1/t", "0: the expression gives no finite number"},
-        {"sqrt(t - 1)", "0: the expression gives no finite number"},
+        {"1/t", "0: the expression does not give a finite number"},
+        {"sqrt(t - 1)", "0: the expression does not give a finite number"},
         {"l\u00e4nge", "0: unknown name"},
     };
     for (const Bad& one : bad) {
@@ -161,7 +164,7 @@ TEST_CASE("a mistake in an expression is named at its place") {
     for (const std::string open : {"(", "abs("}) {
         std::string deep;
         for (int n = 0; n < 400; ++n) deep += open;
-        CHECK(mistake_of(deep + "1" + std::string(400, ')')).find("brackets in") !=
+        CHECK(mistake_of(deep + "1" + std::string(400, ')')).find("nested too deeply") !=
               std::string::npos);
     }
 }

@@ -39,7 +39,7 @@ TEST_CASE("a file without contents has a reason") {
     };
     CHECK(reason(scratch.path() / "nothing") == "does not exist");
     CHECK(reason(scratch.path()) == "is a folder, not a file");
-    CHECK(reason("/dev/null") == "is not a plain file");
+    CHECK(reason("/dev/null") == "is not a regular file");
     write_text(scratch.path() / "long", std::string(3 << 20, 'x'));
     CHECK(reason(scratch.path() / "long", 2 << 20) == "is larger than 2 MiB");
     CHECK(reason("/proc/self/maps", 0) == "is larger than 0 MiB");

@@ -82,24 +82,25 @@ TEST_CASE("what is no quantity is refused with place and reason") {
         const char* mistake;  // how it begins
     };
     const Bad bad[] = {
-        {"", Quantity::length, "0: the text is empty; a length is wanted (m, cm, mm, um, ...)"},
-        {"long", Quantity::length, "0: \"long\" is no number; a length is wanted"},
+        {"", Quantity::length, "0: the text is empty; expected a length (m, cm, mm, um, ...)"},
+        {"long", Quantity::length, "0: \"long\" is not a number; expected a length"},
         {"1,5 cm", Quantity::length, "1: \"1,5 cm\" has a decimal comma; write \"1.5 cm\""},
-        {"10 apples", Quantity::length, "3: unknown unit \"apples\"; a length is wanted"},
-        {"2*60 deg", Quantity::angle, "1: \"2*60 deg\" is to be reckoned, which machine files"},
-        {"1/5", Quantity::length, "1: \"1/5\" is to be reckoned"},
-        {"1e5x", Quantity::number, "3: unknown unit \"x\"; a plain number is wanted"},
-        {"18 cm long", Quantity::length, "3: unknown unit \"cm long\"; a length is wanted"},
+        {"10 apples", Quantity::length, "3: unknown unit \"apples\"; expected a length"},
+        {"2*60 deg", Quantity::angle,
+         "1: \"2*60 deg\" is an expression, which only machine files allow;"},
+        {"1/5", Quantity::length, "1: \"1/5\" is an expression, which only machine files allow;"},
+        {"1e5x", Quantity::number, "3: unknown unit \"x\"; expected a plain number"},
+        {"18 cm long", Quantity::length, "3: unknown unit \"cm long\"; expected a length"},
         {"1.2.3", Quantity::number, "3: unknown unit \".3\""},
         {"3 mpa", Quantity::stress, "2: unknown unit \"mpa\", did you mean \"MPa\"?"},
-        {"3 kg", Quantity::length, "2: \"3 kg\" is a mass; a length is wanted"},
-        {"3 m", Quantity::number, "2: \"3 m\" is a length; a plain number is wanted"},
+        {"3 kg", Quantity::length, "2: \"3 kg\" is a mass; expected a length"},
+        {"3 m", Quantity::number, "2: \"3 m\" is a length; expected a plain number"},
         {"0x10", Quantity::number, "0: \"0x10\" is hexadecimal"},
         {"nan", Quantity::number, "0: \"nan\" is not a finite number"},
         {"-Inf m", Quantity::length, "0: \"Inf\" is not a finite number"},
         {"1e999", Quantity::number, "0: \"1e999\" is too large"},
         {"1e308 km", Quantity::length, "0: \"1e308 km\" is too large"},
-        {"- 3", Quantity::number, "0: \"- 3\" is no number"},
+        {"- 3", Quantity::number, "0: \"- 3\" is not a number"},
     };
     for (const Bad& one : bad) {
         INFO(one.text);
@@ -170,8 +171,8 @@ TEST_CASE("a mistyped word finds what it was meant to be") {
 
 TEST_CASE("what no scene can mean is told with the range, and what the extremes take is not") {
     CHECK(why_not_meant(1e300, Quantity::length) ==
-          "1e+300 m is out of range: it has to be -1e+07 m to 1e+07 m");
-    CHECK(why_not_meant(1e-320, Quantity::length, true).find("it has to be 1 nm to 1e+07 m") !=
+          "1e+300 m is out of range: it must be -1e+07 m to 1e+07 m");
+    CHECK(why_not_meant(1e-320, Quantity::length, true).find("it must be 1 nm to 1e+07 m") !=
           std::string::npos);
     CHECK(why_not_meant(1e-320, Quantity::length).empty());  // 0 but for rounding
     CHECK(why_not_meant(-1e-6, Quantity::length, true).find("-1 um is out of range") == 0);

@@ -327,10 +327,10 @@ TEST_CASE("grips that hold nothing, hold twice or jump at the start are refused 
     CHECK(says(refusal(spec), {"vice", "hold", "turn", "same points"}));
     spec = vice();
     spec.grip[1].motion.move[1] = "0.01*height*(1 - t)";
-    CHECK(says(refusal(spec), {"vice", "turn", "start at rest"}));
+    CHECK(says(refusal(spec), {"vice", "turn", "must be 0 at t = 0"}));
     spec = vice();
     spec.grip[0].motion.turn = "1 deg";
-    CHECK(says(refusal(spec), {"vice", "hold", "start at rest"}));
+    CHECK(says(refusal(spec), {"vice", "hold", "must be 0 at t = 0"}));
 }
 
 TEST_CASE("a blade's edge goes where its motion says, its plate behind it") {

@@ -81,7 +81,9 @@ TEST_CASE("a tool wholly inside the work-piece is noted, one that only touches i
     core.size = {"0.2*length", "0.5*height", "0.5*width"};
     core.at = {"0", "0", "0"};
     core.touch = {"0", "0", "0"};
-    CHECK(tells(notes_of(with(core)), "tool roll starts wholly inside the work-piece"));
+    CHECK(tells(notes_of(with(core)),
+                "tool roll starts entirely inside the work-piece, where it meets no surface and "
+                "pushes nothing"));
     core.at = {"0", "0.4*height", "0"};
     CHECK(tells(notes_of(with(core)), "deep in the work-piece"));
     core.at = {"0", "0.76*height", "0"};
@@ -134,9 +136,11 @@ TEST_CASE("a blade that passes beside the work-piece all its way is noted, one t
         spec.blade = {blade};
         return notes_of(spec);
     };
-    CHECK(tells(notes({"0", "-1.5*height*t", "0"}), "blade knife passes by the work-piece"));
-    CHECK(tells(notes({"0", "-1.5*height*t", "0"}), "by 20 cm at the nearest"));
-    CHECK(tells(notes({"2*length*t", "0", "0"}), "blade knife passes by"));
+    CHECK(tells(notes({"0", "-1.5*height*t", "0"}),
+                "blade knife misses the work-piece where that is now, by at least"));
+    CHECK(tells(notes({"0", "-1.5*height*t", "0"}), "by at least 20 cm"));
+    CHECK(tells(notes({"2*length*t", "0", "0"}),
+                "blade knife misses the work-piece where that is now, by at least"));
     CHECK(notes({"0", "-4*height*t", "0"}).empty());
     CHECK(notes({"0", "-10*height*sin(pi*t)", "0"}).empty());
     CHECK(notes({"0", "-2.5*height*t", "0"}).empty());
@@ -180,12 +184,12 @@ TEST_CASE("tools that pass into each other are noted with depth and time, those 
     CHECK(notes_of(punch_and(below, "-1.5*height*sin(pi*t)")).empty());
     const char* deeper = "-2.1*height*ramp(t, 0, 0.5) + 3*height*ramp(t, 0.5, 1)";
     const std::vector<std::string> notes = notes_of(punch_and(below, deeper));
-    CHECK(tells(notes, "tools punch and die go 2 cm deep into each other by t = 0.5"));
+    CHECK(tells(notes, "tools punch and die overlap by 2 cm at t = 0.5"));
 
     // Crossed bars have no corner in each other.
     const ToolSpec across =
         box_tool("bar", {"0.2*height", "0.2*height", "9*height"}, {"0", "7*height", "0"});
-    CHECK(tells(notes_of(punch_and(across, "-2.5*height*t")), "tools punch and bar go"));
+    CHECK(tells(notes_of(punch_and(across, "-2.5*height*t")), "tools punch and bar overlap by"));
     const ToolSpec past =
         box_tool("bar", {"0.2*height", "9*height", "9*height"}, {"0.61*height", "7*height", "0"});
     CHECK(notes_of(punch_and(past, "-2.5*height*t")).empty());
@@ -223,6 +227,6 @@ TEST_CASE("a punch that ends below the rim of a ring is noted, one that goes dow
         spec.tool = {ring, punch};
         const std::vector<std::string> notes = notes_of(spec);
         CHECK(notes.empty() != is_caught);
-        if (is_caught) CHECK(tells(notes, "tools ring and punch go 1.2 cm deep"));
+        if (is_caught) CHECK(tells(notes, "tools ring and punch overlap by 1.2 cm at t ="));
     }
 }

@@ -30,7 +30,7 @@ TEST_CASE("what is told to resolve a break does: so many cells, or so much tough
     const double spacing = 2e-3, cells = 10;
     const std::string told = strength_warning(glass, spacing, cells);
     const int across = resolved_strength(glass, spacing, cells).cells_for_whole;
-    CHECK(told.find(fmt::format("across = {} would do", across)) != std::string::npos);
+    CHECK(told.find(fmt::format("across = {} would suffice", across)) != std::string::npos);
     CHECK(strength_warning(glass, spacing * cells / across, across) == "");
     CHECK(strength_warning(glass, spacing * cells / (across - 1), across - 1) != "");
     const std::size_t at = told.find("a toughness of ");
@@ -50,6 +50,6 @@ TEST_CASE("where no mold is fine enough for a break only more toughness is told 
     const std::string told = strength_warning(brittle, 7e-3, 3);
     INFO(told);
     CHECK(told.find("across") == std::string::npos);
-    CHECK(told.find("nothing is fine enough; at this size it takes a toughness of ") !=
+    CHECK(told.find("no cell size is fine enough; at this one it takes a toughness of ") !=
           std::string::npos);
 }

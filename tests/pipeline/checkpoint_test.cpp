@@ -209,7 +209,7 @@ TEST_CASE("a checkpoint that is damaged, cut short or foreign is told from a who
     const std::string whole = bytes_of(file);
     REQUIRE(read_checkpoint(file, kKeys, why));
     CHECK_FALSE(read_checkpoint(file, {"", "", "other"}, why));
-    CHECK(why == "is of another run, or of another build of swage");
+    CHECK(why == "belongs to another run or another build of swage");
     const auto refused = [&](const std::string& bytes) {
         put_bytes(file, bytes);
         return !read_checkpoint(file, kKeys, why) && why == "is damaged";

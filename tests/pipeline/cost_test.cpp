@@ -237,8 +237,8 @@ TEST_CASE("a solver that takes many times the steps of explicit ones is said to"
     for (StageSpec& stage : bar.scene.stage) stage.sim.solver = Solver::energy_stepped;
     const RunCost cost = bar.cost();
     REQUIRE(cost.note.size() == 1);
-    CHECK(cost.note[0].find(fmt::format("solver = \"energy-stepped\" takes about {:.0f} times the "
-                                        "steps of \"explicit\"",
+    CHECK(cost.note[0].find(fmt::format("solver = \"energy-stepped\" takes about {:.0f} times as "
+                                        "many steps as \"explicit\"",
                                         cost.steps.middle() / few)) != std::string::npos);
     for (StageSpec& stage : bar.scene.stage) stage.sim.solver = Solver::euler;
     bar.scene.body[0].material.damping_ratio = 0.05;
@@ -310,8 +310,8 @@ TEST_CASE("a body that makes all steps far shorter than others need is told, wit
         return step_note(scene, matter);
     };
     const std::string note = note_of(900, Solver::explicit_steps);
-    CHECK(note.find("all steps are as short as ball needs, those of others could be longer: "
-                    "foam 30 times; ") == 0);
+    CHECK(note.find("all steps are as short as ball needs, others would allow longer ones: foam 30 "
+                    "times; ") == 0);
     CHECK(note_of(9, Solver::explicit_steps).empty());
     CHECK(note_of(900, Solver::implicit_steps).empty());
 }

@@ -105,8 +105,8 @@ TEST_CASE("a probe beside the matter is refused where the scene asks for it") {
     body.probe = {
         {"corner", Vec3(1, 0, 0.5), {std::make_shared<const Source>(Source{"s.toml", ""}), 7, 6}}};
     CHECK_THROWS_WITH(make_work_piece(input, body, {SkinKind::mount}),
-                      Catch::StartsWith("s.toml:7:6: probe \"corner\" lies ") &&
-                          Catch::EndsWith(" beside the matter"));
+                      Catch::StartsWith("s.toml:7:6: probe \"corner\" is ") &&
+                          Catch::EndsWith(" outside the matter"));
 }
 
 TEST_CASE("probes stand in the table, a place a row, the start's first") {

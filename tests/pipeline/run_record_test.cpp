@@ -61,9 +61,10 @@ TEST_CASE("what is no plain file, or far too long, is no record, and says so at 
         return std::string("none");
     };
     REQUIRE(::mkfifo(file.c_str(), 0600) == 0);
-    CHECK(refusal().find("run.json: is not a plain file; swage run --fresh") != std::string::npos);
+    CHECK(refusal().find("run.json: is not a regular file; swage run --fresh") !=
+          std::string::npos);
     std::filesystem::create_symlink("/dev/zero", file);
-    CHECK(refusal().find("is not a plain file") != std::string::npos);
+    CHECK(refusal().find("is not a regular file") != std::string::npos);
     std::ofstream(file) << "{";
     CHECK_FALSE(read_record(file));
     std::filesystem::resize_file(file, 1 << 30);  // with a hole

@@ -68,7 +68,7 @@ TEST_CASE("an expression that has no value, or none that can be meant, is told a
          "machine = \"shelf\"\n[[stage.load]]\npressure = 1\nname = \"wind\"\n"
          "strength = \"1/(t - 0.5)\"\n",
          "s.toml:10:12: machine shelf: the strength of load wind at t = 0.5: in \"1/(t - 0.5)\": "
-         "the expression gives no finite number (stage \"1-shelf\")\n"},
+         "the expression does not give a finite number (stage \"1-shelf\")\n"},
         {"", "machine = \"shelf\"\ngravity = 9.81\ngravity_strength = \"log(t)\"\n",
          "s.toml:8:20: machine shelf: gravity_strength at t = 0: in "},
         {"move = [\"t < 0.5 ? 0 : log(t - 1)\", 0, 0]", "machine = \"slide\"\n",
@@ -76,10 +76,10 @@ TEST_CASE("an expression that has no value, or none that can be meant, is told a
         {"turn = \"1e300*t\"", "machine = \"slide\"\n",
          "machines/slide.toml:6:8: machine slide: the motion of grip jaw at t = "},
         {"move = [0, \"length/0\", 0]", "machine = \"slide\"\n",
-         "machines/slide.toml:6:12: machine slide: in \"length/0\": the expression gives no finite "
-         "number (stage \"1-slide\")\n"},
+         "machines/slide.toml:6:12: machine slide: in \"length/0\": the expression does not give a "
+         "finite number (stage \"1-slide\")\n"},
         {"move = [1, 0, 0]", "machine = \"slide\"\n",
-         "machines/slide.toml:6:9: machine slide: the motion of grip jaw does not start at rest"},
+         "machines/slide.toml:6:9: machine slide: the motion of grip jaw must be 0 at t = 0"},
     };
     const test::Scratch scratch;
     for (const Case& one : cases) {
@@ -118,7 +118,7 @@ TEST_CASE("a default out of its range is told where it stands, a given value whe
                   "radius = \"size\"\nat = [0, 9, 0]\n");
     CHECK(told_of_stage(scratch, "machine = \"ball\"\n")
               .find("machines/ball.toml:3:11: machine ball: the default of size = 2 m is out of "
-                    "range: it may be 0 m to 40 cm (stage \"1-ball\")") == 0);
+                    "range: it must be 0 m to 40 cm (stage \"1-ball\")") == 0);
     CHECK(told_of_stage(scratch, "machine = \"ball\"\nsize = \"3 m\"\n")
               .find("s.toml:7:8: machine ball: size = 3 m is out of range") == 0);
 }
@@ -136,7 +136,7 @@ TEST_CASE("a blade that never moves is warned of by name, one that goes or falls
                        {}, test::shipped());
         return test::told(reading.mistakes, scratch.folder());
     };
-    CHECK(told("", "").find("nothing happens: the blade tooth never moves") != std::string::npos);
+    CHECK(told("", "").find("nothing happens: blade tooth never moves") != std::string::npos);
     CHECK(told("[blade.motion]\nmove = [0, \"-t\", 0]\n", "").empty());
     CHECK(told("", "gravity = 9.81\n").find("never moves") == std::string::npos);
 }

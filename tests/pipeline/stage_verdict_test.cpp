@@ -155,7 +155,7 @@ TEST_CASE("what is thrown off as a stage begins is told from what, with what can
     CHECK(says(told(0, 1), "bar starts pressed into what it touches"));
     for (const int first : {1, 2}) CHECK(says(told(0, first), "with `at`"));
     CHECK(says(told(0, 9), "leave a gap"));
-    CHECK(says(told(5, 9), "bar starts pressed into itself, or its pieces in each other"));
+    CHECK(says(told(5, 9), "bar starts pressed into itself, or its pieces into each other"));
     CHECK(says(told(5, 9), "without self_contact = true"));
     for (const double among : {0.0, 5.0}) CHECK_FALSE(says(told(among, 9), "with `at`"));
 }

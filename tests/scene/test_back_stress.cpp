@@ -17,7 +17,8 @@ TEST_CASE("a back stress that cannot be is refused at its place, with what would
     check_all({
         {"one without its strain",
          metal("back_stress = \"100 MPa\""),
-         {"5:15: back_stress needs back_strain beside it"}},
+         {"5:15: back_stress needs back_strain: the plastic strain over which it builds up, such "
+          "as 0.01"}},
         {"a strain alone",
          metal("back_strain = 0.01"),
          {"5:15: warning: back_strain has no effect without back_stress"}},
@@ -26,18 +27,18 @@ TEST_CASE("a back stress that cannot be is refused at its place, with what would
          {"5:15: warning: back_stress has no effect without yield_stress"}},
         {"springs",
          metal("mechanics = \"springs\"\nback_stress = \"100 MPa\"\nback_strain = 0.01"),
-         {"6:15: springs have no back stress: use mechanics = \"cells\", or back_stress = 0"}},
+         {"6:15: springs have no back stress: use mechanics = \"cells\" or back_stress = 0"}},
         {"as steep as the matter is stiff",
          metal("back_stress = \"100 MPa\"\nback_strain = 0.001"),
-         {"5:15: a back_stress of 100 MPa over a back_strain of 0.001 builds up by 100 GPa: no "
-          "more "
-          "than 0.5 of young_modulus"}},
+         {"5:15: a back_stress of 100 MPa over a back_strain of 0.001 builds up by 100 GPa: at "
+          "most 0.5 of young_modulus"}},
         {"more than there is, in the end",
          metal("yield_stress = \"200 MPa\"\nhardening = 0\nback_stress = \"210 MPa\"\n"
                "back_strain = 0.01"),
-         {"7:15: a back_stress of 210 MPa leaves -10 MPa of the stress at which it flows far on, "
-          "and 10 MPa at least is asked: say less, or let hardening or flow_curve rise by as much, "
-          "as {s0 = \"200 MPa\", Q = \"210 MPa\", b = 100} does"}},
+         {"7:15: a back_stress of 210 MPa leaves -10 MPa of the flow stress at large strain, and "
+          "at least "
+          "10 MPa is needed: give less, or let hardening or flow_curve rise by as much, as {s0 = "
+          "\"200 MPa\", Q = \"210 MPa\", b = 100} does"}},
         {"more than there is, for a while",
          metal("yield_stress = \"200 MPa\"\nhardening = \"1 GPa\"\nback_stress = \"300 MPa\"\n"
                "back_strain = 0.02"),
@@ -48,7 +49,7 @@ TEST_CASE("a back stress that cannot be is refused at its place, with what would
          {"5:15: a back_stress of 100 MPa leaves"}},
         {"out of range",
          metal("back_stress = \"100 MPa\"\nback_strain = 40"),
-         {"6:15: back_strain = 40 is out of range: it has to be 1e-06 to 10"}},
+         {"6:15: back_strain = 40 is out of range: it must be 1e-06 to 10"}},
     });
     Parts two = metal("back_stress = \"100 MPa\"\nback_strain = 0.01");
     two.rest += "[[inset]]\nname = \"rubber\"\nfrom = [0, 0, 0.5]\nto = [1, 1, 1]\n";

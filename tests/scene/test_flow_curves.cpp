@@ -11,44 +11,46 @@ TEST_CASE("a flow curve that is none is refused at its place, with what is wante
     check_all({
         {"a curve beside what it says",
          material("yield_stress = 3\nhardening = 1\nflow_curve = [[0, 3], [1, 4]]"),
-         {"5:16: yield_stress stands beside flow_curve", "6:13: hardening stands beside"}},
+         {"5:16: yield_stress is given by the first point of flow_curve: leave it out",
+          "6:13: hardening is given by flow_curve: leave one of them out"}},
         {"a curve that is none",
          material("flow_curve = \"250 MPa\""),
-         {"5:14: flow_curve is a text; wanted is a list of points [strain, \"stress\"], such as"}},
+         {"5:14: flow_curve is text; expected a list of points [strain, \"stress\"], such as"}},
         {"a curve of one point",
          material("flow_curve = [[0, \"250 MPa\"]]"),
-         {"5:14: flow_curve: it needs two points at least"}},
+         {"5:14: flow_curve: it needs at least two points; for flow at constant stress use "
+          "yield_stress instead"}},
         {"a point that is no pair",
          material("flow_curve = [[0, \"250 MPa\"], [0.1]]"),
-         {"5:31: flow_curve: each point is a pair"}},
+         {"5:31: flow_curve: each point must be a pair [strain, \"stress\"]"}},
         {"a curve that begins late",
          material("flow_curve = [[0.002, \"250 MPa\"], [0.1, \"300 MPa\"]]"),
-         {"5:16: flow_curve: the first point is where matter begins to flow"}},
+         {"5:16: flow_curve: the first point is where plastic flow begins: its plastic strain must "
+          "be 0"}},
         {"a curve that goes back",
          material("flow_curve = [[0, \"250 MPa\"], [0.1, \"300 MPa\"], [0.1, \"310 MPa\"]]"),
-         {"5:50: flow_curve: a strain of 0.1 behind one of 0.1: they have to rise, by "
-          "more than 1e-09"}},
+         {"5:50: flow_curve: a strain of 0.1 after one of 0.1: strains must rise, each by more "
+          "than 1e-09"}},
         {"a curve that falls",
          material("flow_curve = [[0, \"250 MPa\"], [0.1, \"240 MPa\"]]"),
          {"5:37: flow_curve: the stress falls from 250 MPa to 240 MPa: matter that softens"}},
         {"a unit forgotten of one",
          material("flow_curve = [[0, \"250 MPa\"], [0.1, 300], [0.2, \"400 MPa\"]]"),
-         {"5:37: flow_curve: 300 without a unit is 300 Pa, beside \"400 MPa\": is a unit missing, "
+         {"5:37: flow_curve: 300 without a unit is 300 Pa, next to \"400 MPa\": is a unit missing, "
           "as in \"300 MPa\"?"}},
         {"a unit forgotten of the first, and in a text",
          material("flow_curve = [[0, \"250\"], [0.1, \"300 N/mm2\"]]"),
-         {"5:19: flow_curve: 250 without a unit is 250 Pa, beside \"300 N/mm2\": is a unit "
-          "missing, "
-          "as in \"250 N/mm2\"?"}},
+         {"5:19: flow_curve: 250 without a unit is 250 Pa, next to \"300 N/mm2\": is a unit "
+          "missing, as in \"250 N/mm2\"?"}},
         {"a unit forgotten in a form",
          material("flow_curve = {A = \"90 MPa\", B = 292, n = 0.31}"),
-         {"5:33: flow_curve: 292 without a unit is 292 Pa, beside \"90 MPa\""}},
+         {"5:33: flow_curve: 292 without a unit is 292 Pa, next to \"90 MPa\""}},
         {"strain in percent",
          material("flow_curve = [[0, \"250 MPa\"], [20, \"300 MPa\"]]"),
-         {"5:32: flow_curve = 20 is out of range: it has to be 0 to 10"}},
+         {"5:32: flow_curve = 20 is out of range: it must be 0 to 10"}},
         {"a curve of another quantity",
          material("flow_curve = [[0, \"250 MPa\"], [0.1, \"3 mm\"]]"),
-         {"5:40: flow_curve: \"3 mm\" is a length; a stress is wanted"}},
+         {"5:40: flow_curve: \"3 mm\" is a length; expected a stress"}},
         {"a form that is none",
          material("flow_curve = {C = 3}"),
          {"5:14: flow_curve is a list of points"}},
@@ -60,7 +62,7 @@ TEST_CASE("a flow curve that is none is refused at its place, with what is wante
          {"5:50: unknown key \"m\" in flow_curve"}},
         {"a form out of range",
          material("flow_curve = {A = \"90 MPa\", B = \"292 MPa\", n = 0.01}"),
-         {"5:48: n = 0.01 is out of range: it has to be 0.1 to 1"}},
+         {"5:48: n = 0.01 is out of range: it must be 0.1 to 1"}},
         {"foam that is told a curve",
          material("elasticity = \"storakers\"\nflow_curve = [[0, 3], [1, 4]]"),
          {"storakers matter does not yield"}},
@@ -146,13 +148,12 @@ TEST_CASE("what a scene says of yielding takes the place of a named material's c
 
     const Scratch scratch;
     SceneReading reading = read_with(scratch, "name = \"drawn\"\nyield_stress = 1e8\n");
-    CHECK(
-        told(reading.mistakes, scratch.folder())
-            .starts_with("s.toml:5:16: warning: yield_stress takes the place of the flow_curve of "
-                         "drawn"));
+    CHECK(told(reading.mistakes, scratch.folder())
+              .starts_with("s.toml:5:16: warning: yield_stress replaces the flow_curve of drawn"));
     reading = read_with(scratch, "name = \"drawn\"\nhardening = 1e8\n");
     CHECK(told(reading.mistakes, scratch.folder())
-              .starts_with("s.toml:5:13: drawn hardens by its flow_curve: say yield_stress"));
+              .starts_with("s.toml:5:13: drawn hardens by its flow_curve: give yield_stress beside "
+                           "hardening, or another flow_curve"));
 }
 
 TEST_CASE("what flows at next to no stress, or at as much as it is stiff, lacks a unit") {

@@ -62,9 +62,9 @@ TEST_CASE("an upright machine's up is settled before it is known what lies on it
     CHECK(words(upright, kMine + "axis = \"y\"\nup = \"z\"\n") == "y z");
     CHECK(words(upright + "up = \"-z\"\n", kMine + "axis = \"y\"\n") == "y -z");
     CHECK(words(upright, kMine + "axis = \"y\"\n") ==
-          "s.toml:7:8: axis = \"y\" points up with the machine mine, whose up is \"y\"; choose "
-          "another, or say up too\n");
+          "s.toml:7:8: axis = \"y\" points up with machine mine, whose up is \"y\"; choose "
+          "another, or also give up\n");
     CHECK(words(upright + "axis = \"y\"\n", kMine) ==
           "machines/mine.toml:3:8: axis = \"y\" points up in an upright machine; choose another, "
-          "or say up = \"z\" too\n");
+          "or also give up = \"z\"\n");
 }

@@ -16,7 +16,7 @@ TEST_CASE("a scene that says nothing has nothing to do") {
 
 TEST_CASE("files that are no text are refused at the byte") {
     CHECK(mistakes_in(std::string("[mesh]\nfi\0le", 12)) ==
-          "s.toml:2:3: byte 9 is 0; this is no text file\n");
+          "s.toml:2:3: byte 9 is 0; this is not a text file\n");
     CHECK(mistakes_in("[mesh]\n# L\xE4nge\n") ==
           "s.toml:2:4: byte 10 (0xE4) is not UTF-8; save the file in that encoding\n");
     CHECK(mistakes_in("# \xED\xA0\x80").find("byte 2 (0xED)") != std::string::npos);  // surrogate
@@ -31,7 +31,7 @@ TEST_CASE("control characters that a scene names are shown, and cut no sentence 
     INFO(text);
     CHECK(text.find("the mesh \"\\x1b[31mX\" does not exist") != std::string::npos);
     CHECK(text.find("unknown unit \"cm\\x00\"") != std::string::npos);
-    CHECK(text.find("a length is wanted (m, cm, ") != std::string::npos);
+    CHECK(text.find("expected a length (m, cm, ") != std::string::npos);
     CHECK(mistakes_in(Parts().text() + "\"\\u009b2J\" = 1\n").find("key \"\\x9b2J\"") !=
           std::string::npos);
 }
@@ -43,9 +43,10 @@ TEST_CASE("scene files that cannot be files are refused without blocking") {
     };
     CHECK(mistakes(scratch.folder() / "no.toml") == "no.toml: the file does not exist\n");
     CHECK(mistakes(scratch.folder()).find("the file is a folder, not a file") != std::string::npos);
-    CHECK(mistakes("/dev/zero") == "/dev/zero: the file is not a plain file\n");
+    CHECK(mistakes("/dev/zero") == "/dev/zero: the file is not a regular file\n");
     REQUIRE(::mkfifo((scratch.folder() / "pipe.toml").c_str(), 0600) == 0);
-    CHECK(mistakes(scratch.folder() / "pipe.toml") == "pipe.toml: the file is not a plain file\n");
+    CHECK(mistakes(scratch.folder() / "pipe.toml") ==
+          "pipe.toml: the file is not a regular file\n");
     scratch.write("large.toml", "");
     std::filesystem::resize_file(scratch.folder() / "large.toml", std::uint64_t{1} << 30);
     CHECK(mistakes(scratch.folder() / "large.toml") ==
@@ -150,10 +151,11 @@ TEST_CASE("overrides are checked like the file, and named as they were given") {
     CHECK(told_of("stage.bned.angle=1").find("did you mean \"bend\"?") != std::string::npos);
     CHECK(told_of("stage.angle=1").find("which stage? Write stage.1.angle, or stage.*.angle") !=
           std::string::npos);
-    CHECK(told_of("frames").find("an override is KEY=VALUE") != std::string::npos);
+    CHECK(told_of("frames").find("write an override as KEY=VALUE, such as stage.1.angle=45 deg") !=
+          std::string::npos);
     CHECK(told_of("frames=3").find("SECTION.KEY") != std::string::npos);
     CHECK(told_of("mold..across=3").find("SECTION.KEY") != std::string::npos);
-    CHECK(told_of("mold.across.x=3").find("\"across\" is a whole number, it has no keys") !=
+    CHECK(told_of("mold.across.x=3").find("\"across\" is a whole number and has no keys") !=
           std::string::npos);
     CHECK(told_of("mould.across=3").find("unknown section [mould], did you mean [mold]?") !=
           std::string::npos);
@@ -163,7 +165,7 @@ TEST_CASE("overrides are checked like the file, and named as they were given") {
 TEST_CASE("an override of one of several that are not there says so") {
     const auto told_of = [&](const std::string& set) { return mistakes_in(Parts().text(), {set}); };
     CHECK(told_of("stage.1.load.1.pressure=1 MPa") ==
-          "--set stage.1.load.1.pressure=1 MPa: there is no load to set anything of\n");
+          "--set stage.1.load.1.pressure=1 MPa: there is no load to override\n");
     CHECK(told_of("probe.*.at=[0,0,0]").find("there is no probe") != std::string::npos);
     CHECK(told_of("stage.1=3").find("Write stage.1.KEY") != std::string::npos);
 }

@@ -28,18 +28,18 @@ TEST_CASE("a material's key that nothing in the scene asks is told") {
          {"5:12: warning: friction has no effect: nothing can touch"}},
         {"no tool that goes by it",
          scene("rubber\"\nfriction = 0.3\n", "bend\"\nfriction = 0.2\n"),
-         {"5:12: warning: friction has no effect: every tool has a friction of its own"}},
+         {"5:12: warning: friction has no effect: every tool has its own friction"}},
         {"at rest",
          scene("rubber\"\nrestitution = 0.3\nstickiness = 3\ndamping_ratio = 0.1\n"
                "static_friction = 0.9\n",
                "bend\"\n"),
-         {"5:15: warning: restitution has no effect where no stage is of motion",
-          "6:14: warning: stickiness has no effect where no stage is of motion",
-          "7:17: warning: damping_ratio has no effect where no stage is of motion",
-          "8:19: warning: static_friction has no effect where no stage is of motion"}},
+         {"5:15: warning: restitution has no effect unless a stage is in motion",
+          "6:14: warning: stickiness has no effect unless a stage is in motion",
+          "7:17: warning: damping_ratio has no effect unless a stage is in motion",
+          "8:19: warning: static_friction has no effect unless a stage is in motion"}},
         {"implicit",
          scene("rubber\"\nrestitution = 0.3\n", "bend\"\nsolver = \"implicit\"\n"),
-         {"5:15: warning: restitution has no effect where no stage is of motion"}},
+         {"5:15: warning: restitution has no effect unless a stage is in motion"}},
         {"in motion, and nothing to meet",
          scene("rubber\"\nrestitution = 0.3\ndamping_ratio = 0.1\n",
                "twist\"\nsolver = \"explicit\"\n"),
@@ -97,11 +97,11 @@ TEST_CASE("a stage's key that its machine or solver does not ask is told") {
     check_all({
         {"no grip",
          scene("rubber\"\n", "bend\"\ngrip_stiffness = 3\n"),
-         {"9:18: warning: grip_stiffness has no effect: the machine bend has no grip"}},
+         {"9:18: warning: grip_stiffness has no effect: machine bend has no grip"}},
         {"no tool",
          scene("rubber\"\n", "twist\"\ncontact_stiffness = 3\n"),
-         {"9:21: warning: contact_stiffness has no effect: nothing can touch, for the machine twist"
-          " has no tool"}},
+         {"9:21: warning: contact_stiffness has no effect: nothing can touch, as machine twist has "
+          "no tool"}},
         {"nothing holds down what would sleep",
          scene("rubber\"\n", "twist\"\nsolver = \"explicit\"\nsleep = false\n"),
          {"10:9: warning: sleep has no effect without gravity"}},
@@ -132,14 +132,14 @@ TEST_CASE("looks of what cannot come about are told") {
                "[render]\ncolor = \"plastic_strain\"\n[output]\n"
                "fields = [\"stress\", \"plastic_strain\"]\n"),
          {"10:9: warning: color has no effect: no material yields",
-          "12:21: warning: fields: plastic_strain tells nothing: no material yields"}},
+          "12:21: warning: fields: plastic_strain shows nothing: no material yields"}},
         {"nothing that could be used",
          scene("rubber\"\n", bend,
                "[render]\ncolor = \"strength_use\"\n[output]\n"
                "fields = [\"yield_use\", \"strength_use\"]\n"),
          {"10:9: warning: color has no effect: no material breaks",
-          "12:11: warning: fields: yield_use tells nothing: no material yields",
-          "12:24: warning: fields: strength_use tells nothing: no material breaks"}},
+          "12:11: warning: fields: yield_use shows nothing: no material yields",
+          "12:24: warning: fields: strength_use shows nothing: no material breaks"}},
         {"a legend of nothing",
          scene("rubber\"\n", bend, "[render]\nlegend = false\n"),
          {"10:10: warning: legend has no effect without color"}},
@@ -173,7 +173,7 @@ TEST_CASE(
     };
     const std::string meshes = std::string(SWAGE_SOURCE_DIR) + "/assets/meshes/";
     CHECK(with_mesh(meshes + "bar.obj")
-              .find("10:16: warning: crease_angle has no effect: the mesh's file says itself which "
+              .find("10:16: warning: crease_angle has no effect: the mesh file itself says which "
                     "edges are sharp") != std::string::npos);
     CHECK(mistakes_in(text).empty());  // no normals, and no solid
     const Scratch scratch;

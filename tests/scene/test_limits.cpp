@@ -39,36 +39,36 @@ TEST_CASE("mistakes in limits are found at their place") {
         {"of no part", limit("force = \"2 kN\"\n"), {"9:1: [[stage.limit]] needs \"part\": "}},
         {"of an unknown part",
          limit("part = \"lefd\"\nforce = \"2 kN\"\n"),
-         {"10:8: the machine bend has no tool or grip \"lefd\", did you mean \"left\"?; it has "
+         {"10:8: machine bend has no tool or grip \"lefd\", did you mean \"left\"?; it has "
           "support, left, right"}},
         {"of both",
          limit("part = \"left\"\nforce = \"2 kN\"\ntorque = \"2 N m\"\n"),
-         {"12:10: a limit is of a force or of a torque: give one of them"}},
+         {"12:10: a limit is a force or a torque: give one of them"}},
         {"of neither", limit("part = \"left\"\n"), {"9:1: [[stage.limit]] needs \"force\": "}},
         {"negative",
          limit("part = \"left\"\nforce = \"-2 kN\"\n"),
-         {"11:9: force = -2 kN is out of range: it has to be more than 0 N"}},
+         {"11:9: force = -2 kN is out of range: it must be more than 0 N"}},
         {"of nothing",
          limit("part = \"left\"\ntorque = 0\n"),
-         {"11:10: torque = 0 N m is out of range: it has to be more than 0 N m"}},
+         {"11:10: torque = 0 N m is out of range: it must be more than 0 N m"}},
         {"of another unit",
          limit("part = \"left\"\nforce = \"2 N m\"\n"),
-         {"11:12: force: \"2 N m\" is a torque; a force is wanted"}},
+         {"11:12: force: \"2 N m\" is a torque; expected a force"}},
         {"torque of what does not turn",
          limit("part = \"support\"\ntorque = \"2 N m\"\n"),
-         {"11:10: support turns about no axis that a torque could be about: limit its force, or "
-          "the torque of left, right"}},
+         {"11:10: support does not rotate, so its torque has no axis: limit its force, or the "
+          "torque of left, right"}},
         {"torque where nothing turns",
          limit("part = \"plate\"\ntorque = \"2 N m\"\n", "press"),
-         {"11:10: plate turns about no axis that a torque could be about: no part of this machine "
-          "does; limit a force"}},
+         {"11:10: plate does not rotate, so its torque has no axis: no part of this machine does; "
+          "limit a force"}},
         {"of a machine that cannot stop",
          limit("part = \"vice\"\nforce = \"2 N\"\n", "hold", "gravity = \"9.81 m/s2\"\n"),
-         {"10:1: no motion of machine hold can stop early: those that can go by the variable "
-          "stop"}},
+         {"10:1: no motion of machine hold can stop early: one that can uses the variable stop"}},
         {"in motion",
          limit("part = \"left\"\nforce = \"2 N\"\n", "bend", "solver = \"explicit\"\n"),
-         {"10:1: a limit is kept where all is at rest: with solver = \"explicit\" forces swing"}},
+         {"10:1: a limit needs equilibria: with solver = \"explicit\" forces oscillate, and no "
+          "machine can stop at one; choose solver = \"quasistatic\""}},
         {"with an unknown key",
          limit("part = \"left\"\nforce = \"2 N\"\naxis = \"x\"\n"),
          {"12:1: unknown key \"axis\" in [[stage.limit]]"}},

@@ -113,7 +113,7 @@ TEST_CASE("mistakes in looks are told at their places") {
     bare.mesh = head;
     bare.material += "look = {roughness = 0.5}\n";
     check_all({
-        {"no table", material("look = \"metal\""), {"5:8: look has to be a table"}},
+        {"no table", material("look = \"metal\""), {"5:8: look must be a table, such as look ="}},
         {"too much",
          material("look = {roughness = 2, metalness = -1}"),
          {"roughness = 2", "metalness = -1"}},
@@ -121,13 +121,15 @@ TEST_CASE("mistakes in looks are told at their places") {
         {"clear metal", material("look = {metalness = 1, clear = 0.5}"), {"metal lets no light"}},
         {"no such key", material("look = {shiny = 1}"), {"unknown key \"shiny\""}},
         {"no colour", bare, {"look needs \"color\""}},
-        {"two looks", both, {"3:8: look = \"material\" and a color"}},
-        {"a material without", none, {"3:8: look = \"material\", but the material says none"}},
+        {"two looks", both, {"3:8: look = \"material\" excludes a color: give one of them"}},
+        {"a material without",
+         none,
+         {"3:8: look = \"material\", but the material has no look: give it one, such as look ="}},
         {"no such look", with(&Parts::mesh, head + "look = \"gold\"\n"), {"3:8: look"}},
         {"of an inset",
          with(&Parts::rest,
               "[[inset]]\nname = \"lead\"\nfrom = [0, 0, 0]\nto = [1, 1, 0.5]\n"
               "look = {roughness = 1}\n"),
-         {"look is the whole body's"}},
+         {"look applies to the whole body: give it in [material]"}},
     });
 }

@@ -142,7 +142,7 @@ TEST_CASE("mistakes in machine files are named at their letter") {
         "1\nat = [0, 0, 0]\n";  // lines 9 to 14
     const Bad bad[] = {
         {"none", kHead + kGrip, {}},
-        {"empty", "", {"m.toml: this machine has no [[tool]], no [[grip]] and no [[blade]]"}},
+        {"empty", "", {"m.toml: this machine has no [[tool]], [[grip]] or [[blade]]"}},
         {"variable",
          kHead + "[[grip]]\nname = \"a\"\nfrom = [0, 0, \"2*raech\"]\nto = [1, 1, 1]\n",
          {"7:18: from: unknown name \"raech\", did you mean \"reach\"?"}},
@@ -155,11 +155,11 @@ TEST_CASE("mistakes in machine files are named at their letter") {
          "[parameter.a]\nquantity = \"length\"\ndefault = \"2*b\"\n[parameter.b]\nquantity = "
          "\"length\"\ndefault = \"a\"\n" +
              kGrip,
-         {"3:14: default: unknown name \"b\": a parameter may use only those above it",
+         {"3:14: default: unknown name \"b\": a parameter can use only those above it",
           "unknown name \"reach\"", "unknown name \"reach\""}},
         {"parameter of itself",
          "[parameter.a]\nquantity = \"length\"\ndefault = 1\nhigh = \"2*a\"\n" + kGrip,
-         {"4:11: high: unknown name \"a\": a parameter may use only those above it",
+         {"4:11: high: unknown name \"a\": a parameter can use only those above it",
           "unknown name \"reach\"", "unknown name \"reach\""}},
         {"time outside a motion",
          kHead + "[[grip]]\nname = \"a\"\nfrom = [0, 0, \"t\"]\nto = [1, 1, \"reach\"]\n",
@@ -169,19 +169,19 @@ TEST_CASE("mistakes in machine files are named at their letter") {
          {"10:15: turn: this bracket is not closed"}},
         {"constant without value",
          kHead + kGrip + "[grip.motion]\nturn = \"1/0\"\n",
-         {"10:9: turn: the expression gives no finite number"}},
+         {"10:9: turn: the expression does not give a finite number"}},
         {"no expression",
          kHead + kGrip + "[grip.motion]\nturn = true\n",
-         {"10:8: turn is true or false; a number or an expression is wanted"}},
+         {"10:8: turn is true or false; expected a number or an expression"}},
         {"two of three",
          kHead + kGrip + "[grip.motion]\nmove = [0, 1]\n",
-         {"10:8: move has to be three numbers or expressions"}},
+         {"10:8: move must be three numbers or expressions"}},
         {"unknown key",
          kHead + kGrip + "[grip.motion]\nmoev = [0, 1, 2]\n",
          {"10:1: unknown key \"moev\" in [grip.motion], did you mean \"move\"?"}},
         {"wrong section",
          kHead + kGrip + "pivot = [0, 1, 2]\n",
-         {"9:1: unknown key \"pivot\" in [[grip]], it belongs in [grip.motion]"}},
+         {"9:1: unknown key \"pivot\" in [[grip]]; it belongs in [grip.motion]"}},
         {"unknown section",
          kHead + kGrip + "[tools]\nx = 1\n",
          {"9:2: unknown key \"tools\" in the machine file, did you mean \"tool\"?"}},
@@ -205,7 +205,7 @@ TEST_CASE("mistakes in machine files are named at their letter") {
          {"5:12: the parameter's name \"frames\" is a key of every [[stage]]"}},
         {"name of the work-piece's",
          kHead + "[parameter.width]\nquantity = \"number\"\ndefault = 3\n" + kGrip,
-         {"5:12: the parameter's name \"width\" is that of the work-piece"}},
+         {"5:12: the parameter's name \"width\" is a variable of the work-piece"}},
         {"unused",
          kHead + "[parameter.idle]\nquantity = \"number\"\ndefault = 3\n" + kGrip,
          {"5:12: warning: no expression uses the parameter \"idle\""}},
@@ -219,18 +219,18 @@ TEST_CASE("mistakes in machine files are named at their letter") {
          kHead + kGrip +
              "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, 0]\n"
              "radius = \"3 - 3\"\n",
-         {"13:10: radius = 0 has to be more than 0"}},
+         {"13:10: radius = 0 must be more than 0"}},
         {"size beyond sense",
          kHead + kGrip +
              "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, \"1e9 m\"]\n"
              "radius = 1e300\n",
          {"12:13: at = 1e+09 m is out of range",
-          "13:10: radius = 1e+300 m is out of range: it has to be -1e+07 m to 1e+07 m"}},
+          "13:10: radius = 1e+300 m is out of range: it must be -1e+07 m to 1e+07 m"}},
         {"size of next to nothing",
          kHead + kGrip +
              "[[tool]]\nname = \"a\"\nshape = \"sphere\"\nat = [0, 0, 1e-320]\n"
              "radius = \"1e-12 m\"\n",
-         {"13:10: radius = 0.001 nm is out of range: it has to be 1 nm to 1e+07 m"}},
+         {"13:10: radius = 0.001 nm is out of range: it must be 1 nm to 1e+07 m"}},
         {"turn beyond sense",
          kHead + kGrip + "[grip.motion]\nturn = \"2*pi*1e7\"\n",
          {"10:8: turn = 3.6e+09 deg is out of range"}},
@@ -259,10 +259,10 @@ TEST_CASE("mistakes in machine files are named at their letter") {
         {"same name", kHead + kGrip + kGrip, {"10:8: two parts are called \"hold\""}},
         {"odd name",
          kHead + "[[grip]]\nname = \"a b\"\nfrom = [0, 0, 0]\nto = [1, 1, \"reach\"]\n",
-         {"6:8: \"a b\" has to be letters, digits and _"}},
+         {"6:8: \"a b\" must be letters, digits and _, beginning with a letter"}},
         {"edge of one point",
          kHead + kGrip + "[[blade]]\nname = \"b\"\nedge = [[0, 0, 0]]\n",
-         {"11:8: edge has to be two points or more"}},
+         {"11:8: edge must be at least two points, each of three numbers"}},
         {"edge without length",
          kHead + kGrip + "[[blade]]\nname = \"b\"\nedge = [[0, 0, 0], [0, 0, 0]]\n",
          {"11:8: edge begins and ends at the same point"}},
@@ -271,7 +271,7 @@ TEST_CASE("mistakes in machine files are named at their letter") {
          {"10:17: holds: the expression ends too early", "9:1: [[check]] needs \"otherwise\""}},
         {"looks",
          kHead + kGrip + tool + "color = [0, 0, 2]\nfinish = \"gold\"\n",
-         {"color = [0, 0, 2]: red, green and blue are each 0 to 1", "finish"}},
+         {"color = [0, 0, 2]: red, green and blue must each be 0 to 1", "finish"}},
         {"unit of another",
          kHead + kGrip + tool + "gap = \"1 s\"\ntouch = [0, 1, 0]\n",
          {"15:10: gap: "}},
@@ -297,10 +297,11 @@ TEST_CASE("mistakes in machine files are named at their letter") {
           "4:8: warning: high = 180 without a unit is 180 rad"}},
         {"a tool's place",
          kHead + "[parameter.a_x]\nquantity = \"length\"\ndefault = \"reach\"\n" + tool,
-         {"9:8: \"a_x\" would be the place of the tool \"a\" and is a parameter"}},
+         {"9:8: \"a_x\" is a parameter, and would also be the position of tool \"a\"; choose "
+          "another name"}},
         {"gravity",
          kHead + "[[grip]]\nname = \"gravity\"\nfrom = [0, 0, 0]\nto = [1, 1, \"reach\"]\n",
-         {"6:8: \"gravity\" is what pulls at everything"}},
+         {"6:8: \"gravity\" is reserved; choose another name"}},
         {"turn without need",
          kHead + kGrip + "[grip.motion]\naxis = [0, 0, 1]\n",
          {"10:8: warning: axis and pivot have no effect without turn"}},
@@ -324,8 +325,8 @@ TEST_CASE("a size or an axis that cannot be read gets no second mistake, about i
     CHECK(told_of("sphere", "radius = \"heigth\"") ==
           "m.toml:13:11: radius: unknown name \"heigth\", did you mean \"height\"?\n");
     CHECK(told_of("box", "size = [1, \"2*heigth\", -1]") ==
-          "m.toml:13:15: size: unknown name \"heigth\", did you mean \"height\"?\n"
-          "m.toml:13:24: size = -1 has to be more than 0\n");
+          "m.toml:13:15: size: unknown name \"heigth\", did you mean \"height\"?\nm.toml:13:24: "
+          "size = -1 must be more than 0\n");
     CHECK(told_of("box", "size = [1, 1, 1]\naxis = [\"heigth\", 0, 0]") ==
           "m.toml:14:10: axis: unknown name \"heigth\", did you mean \"height\"?\n");
     CHECK(told_of("sphere", "radius = 1\naxis = [0, \"1 - 1\", 0]") ==

@@ -15,26 +15,31 @@ TEST_CASE("mistakes in insets are found, and what insets do not go with is refus
     Parts undamped = inset("name = \"lead\"\ndamping_ratio = 0\n" + box);
     undamped.stage = "[[stage]]\nmachine = \"bend\"\nsolver = \"euler\"\n";
     check_all({
-        {"nowhere", inset("name = \"lead\"\n"), {"the mesh of the inset; or a box by from"}},
+        {"nowhere",
+         inset("name = \"lead\"\n"),
+         {"the mesh of the inset; or give a box by from = [0, 0, 0.5] and to = [1, 1, 1], in "
+          "fractions of the work-piece's box"}},
         {"empty",
          inset("name = \"lead\"\nfrom = [0, 0, 0.5]\nto = [1, 1, 0.5]\n"),
          {"15:6: the box is empty: from must be less than to"}},
         {"outside",
          inset("name = \"lead\"\nfrom = [0, 0, 0.5]\nto = [1, 1, 2]\n"),
-         {"15:6: to = [1, 1, 2]: each is a share of the work-piece's box, 0 to 1"}},
+         {"15:6: to = [1, 1, 2]: each must be a fraction of the work-piece's box, 0 to 1"}},
         {"twice",
          inset("name = \"lead\"\nfile = \"bar.obj\"\n" + box),
          {"an inset is a mesh (file) or a box (from, to), not both"}},
         {"of its own restitution",
          inset("name = \"lead\"\nrestitution = 0.3\n" + box),
-         {"14:15: restitution is the whole body's: say it in [material]"}},
+         {"14:15: restitution applies to the whole body: give it in [material]"}},
         {"of its own friction",
          inset("name = \"lead\"\nfriction = 0.3\n" + box),
-         {"14:12: friction is the whole body's: say it in [material]"}},
-        {"in springs", springs, {"springs know one material"}},
+         {"14:12: friction applies to the whole body: give it in [material]"}},
+        {"in springs",
+         springs,
+         {"springs allow only one material: use mechanics = \"cells\" in [material]"}},
         {"undamped",
          undamped,
-         {"where nothing damps: give each [[inset]] a damping_ratio, or use solver"}},
+         {"without damping: give each [[inset]] a damping_ratio, or use solver"}},
     });
 }
 
@@ -46,10 +51,12 @@ TEST_CASE("mistakes in probes are found") {
     CHECK(mistakes_in(probe("name = \"tip\"\n" + at).text()) == "");
     check_all({
         {"nameless", probe(at), {"[[probe]] needs \"name\""}},
-        {"nowhere", probe("name = \"tip\"\n"), {"a place in shares of the body's box"}},
+        {"nowhere",
+         probe("name = \"tip\"\n"),
+         {"a place in fractions of the body's box, such as [1, 0.5, 0.5]"}},
         {"outside",
          probe("name = \"tip\"\nat = [1, 0.5, -1]\n"),
-         {"14:6: at = [1, 0.5, -1]: each is a share of the body's box, 0 to 1"}},
+         {"14:6: at = [1, 0.5, -1]: each must be a fraction of the body's box, 0 to 1"}},
         {"of no body",
          probe("name = \"tip\"\nbody = \"ball\"\n" + at),
          {"14:8: no body is called \"ball\"; there is work-piece"}},
@@ -58,7 +65,7 @@ TEST_CASE("mistakes in probes are found") {
          {"16:8: two parts are called \"tip\""}},
         {"as a tool",
          probe("name = \"support\"\n" + at),
-         {"\"support\" is a part of a machine, whose places stand in the same table"}},
+         {"\"support\" is a part of a machine, listed in the same table: choose another name"}},
     });
 }
 
@@ -78,10 +85,10 @@ TEST_CASE("a block is not molded anew, and no two meshes have one name") {
     CHECK(mistakes_in(folder.text()) == "");
     folder.rest += "[output]\nmeshes_per_frame = true\n";
     check_all({
-        {"block", block, {"fills the box of the mesh, and stage \"1-bend\" would mold the box"}},
+        {"block", block, {"fills the mesh's box, and stage \"1-bend\" would mold the box"}},
         {"folder",
          folder,
-         {"stage \"a\" and stage \"a.obj\" would both be written as a.obj: give one"}},
+         {"stage \"a\" and stage \"a.obj\" would both be written as a.obj: rename one of them"}},
         {"same",
          same,
          {"body \"b-c\" of stage \"a\" and body \"c\" of stage \"a-b\" would both be written "
@@ -96,8 +103,8 @@ TEST_CASE("a table of bodies in motion and a stage's curves have no file in comm
         "[[stage]]\nname = \"a-bodies\"\nmachine = \"bend\"\n";
     check_all({{"bodies",
                 both,
-                {"stage \"a\" and stage \"a-bodies\" would both be written as "
-                 "curves/a-bodies.csv: give one another name"}}});
+                {"stage \"a\" and stage \"a-bodies\" would both be written as curves/a-bodies.csv: "
+                 "rename one of them"}}});
     both.stage.replace(both.stage.find("floor"), 5, "bend");
     both.stage.erase(both.stage.find("gravity"), 15);
     CHECK(mistakes_in(both.text()) == "");
@@ -107,16 +114,16 @@ TEST_CASE("numbers that no scene can mean are refused where they stand, with the
     check_all({
         {"gravity",
          stage("gravity = 1e308"),
-         {"9:11: gravity = 1e+308 m/s2 is out of range: it has to be -1e+09 m/s2 to 1e+09 m/s2"}},
+         {"9:11: gravity = 1e+308 m/s2 is out of range: it must be -1e+09 m/s2 to 1e+09 m/s2"}},
         {"one of three",
          stage("gravity = [0, -9.81, \"1e10 m/s2\"]"),
          {"9:22: gravity = 1e+10 m/s2 is out of range"}},
         {"a far mesh",
          with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nlength = \"1e300 m\"\n"),
-         {"3:10: length = 1e+300 m is out of range: it has to be 1 nm to 1e+07 m"}},
+         {"3:10: length = 1e+300 m is out of range: it must be 1 nm to 1e+07 m"}},
         {"no mesh",
          with(&Parts::mesh, "[mesh]\nfile = \"bar.obj\"\nlength = \"1e-320 m\"\n"),
-         {"nm is out of range: it has to be 1 nm to 1e+07 m"}},
+         {"nm is out of range: it must be 1 nm to 1e+07 m"}},
         {"a parameter",
          stage("angle = \"1e7 turns\""),
          {"9:9: angle = 3.6e+09 deg is out of range"}},
@@ -143,7 +150,7 @@ TEST_CASE("a mesh of no kind that can be read is refused where it is named") {
     INFO(text);
     CHECK(exit_code(mistakes) == ExitCode::mesh);
     CHECK(std::count(text.begin(), text.end(), '\n') == 3);
-    const std::string kinds = "is no kind of mesh that can be read: OBJ, PLY, ";
+    const std::string kinds = "is not a mesh format that can be read: OBJ, PLY, ";
     CHECK(text.find("s.toml:2:8: the mesh \"passwd\" " + kinds) == 0);
     CHECK(text.find("s.toml:7:8: the mesh \"s.toml\" " + kinds) != std::string::npos);
     CHECK(text.find("machines/odd.toml:6:8: the mesh \"../passwd\" " + kinds) != std::string::npos);
@@ -173,7 +180,7 @@ TEST_CASE("a solver that cannot move the scene's matter is refused where it is n
          with(&Parts::stage,
               "[[stage]]\nmachine = \"cut\"\n[[stage]]\nmachine = \"bend\"\nsolver = "
               "\"implicit\"\n"),
-         {"cannot move matter that is cut, as stage \"1-cut\" leaves it"}},
+         {"cannot move cut matter, which stage \"1-cut\" leaves"}},
         {"implicit drag",
          solver("damping_ratio = 0\n", "solver = \"implicit\"\nmedium_density = 1.2\n"),
          {"11:18: warning: medium_density has no effect with solver = \"implicit\""}},
