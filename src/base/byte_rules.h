@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/math.h"
 
 namespace swage {
@@ -67,28 +68,44 @@ void pass(Io& io, std::filesystem::path& path) {
     io(text);
     path = text;
 }
+// One after another: a count that is no truth ends where the bytes do, before it takes much room.
+template <typename Io, typename List>
+void pass_each(Io& io, List& values) {
+    const std::size_t count = io.count(values.size(), 1);
+    for (std::size_t n = 0; n < count; ++n) {
+        if (n == values.size()) values.emplace_back();
+        io(values[n]);
+    }
+    values.resize(count);
+}
 template <typename Io, typename T>
 void pass(Io& io, std::vector<T>& values) {
-    values.resize(io.count(values.size(), Raw<T> ? sizeof(T) : 1));
     if constexpr (Raw<T>) {
+        values.resize(io.count(values.size(), sizeof(T)));
         io.raw(values.data(), values.size() * sizeof(T));
     } else {
-        for (T& value : values) io(value);
+        pass_each(io, values);
     }
 }
 template <typename Io, typename T>
 void pass(Io& io, std::deque<T>& values) {
-    values.resize(io.count(values.size(), 1));
-    for (T& value : values) io(value);
+    pass_each(io, values);
 }
+constexpr std::int64_t kMostRows = std::int64_t(1) << 40;  // or columns, of a matrix
 template <typename Io>
 void pass(Io& io, Eigen::MatrixXd& matrix) {
     std::int64_t rows = matrix.rows(), columns = matrix.cols();
     io(rows, columns);
     std::vector<double> values(matrix.data(), matrix.data() + matrix.size());
     io(values);
-    values.resize(static_cast<std::size_t>(rows * columns));
-    if constexpr (Io::kReads) matrix = Eigen::Map<Eigen::MatrixXd>(values.data(), rows, columns);
+    if constexpr (Io::kReads) {
+        const auto size = static_cast<std::int64_t>(values.size());
+        const bool is_empty = rows == 0 || columns == 0;
+        const bool fits = rows >= 0 && columns >= 0 && rows <= kMostRows && columns <= kMostRows &&
+                          (is_empty ? size == 0 : size % rows == 0 && size / rows == columns);
+        if (!fits) fail(ExitCode::output, "a matrix of the file is damaged");
+        matrix = Eigen::Map<Eigen::MatrixXd>(values.data(), rows, columns);
+    }
 }
 template <typename Io, typename K, typename T>
 void pass(Io& io, std::map<K, T>& values) {
