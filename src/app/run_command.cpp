@@ -86,10 +86,11 @@ void add_run_command(CLI::App& app, Action& chosen) {
         "--fresh", given.fresh,
         "throw away what an earlier run left in the directory, once this one is set up");
     command
-        ->add_flag("--go-on", given.go_on,
-                   "where the run in the directory ended early, and of the scene only stages were "
-                   "changed that come after those that it had finished: keep these, throw away the "
-                   "others")
+        ->add_flag(
+            "--go-on", given.go_on,
+            "where the scene was changed since the run in the directory: keep the first stages, "
+            "up to the last that is the same and finished, and work the others anew. A run "
+            "that was done stands in DIR/replaced until this one is")
         ->excludes(fresh);
     command
         ->add_option("--keep-every", given.keep_every,

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3330'7063'6177'7300;  // "\0swacp03" on a little-endian machine
+constexpr std::uint64_t kMagic = 0x3430'7063'6177'7300;  // "\0swacp04" on a little-endian machine
 
 template <typename Io>
 void visit_json(Io& io, Json& json) {
@@ -57,13 +57,13 @@ void write_checkpoint(const fs::path& file, const StageKeys& keys, const Reached
     write_sealed(file, kMagic, out.bytes());
 }
 
-int stages_kept(const fs::path& file, const StageKeys& keys) {
+bool is_kept(const fs::path& file, const StageKeys& keys, int stages) {
     const std::string bytes = start_of_sealed(file, kMagic, kLongestHead);
     try {
         const auto head = ByteReader(bytes).get<Head>();
-        return is_of(keys, head) ? head.stages : 0;
+        return head.stages == stages && is_of(keys, head);
     } catch (const Error&) {
-        return 0;
+        return false;
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run keeps of itself once a stage is finished, to go on from if it ends early.
+// What a run keeps of itself once a stage is finished, to go on from: where it ends early, or where
+// later stages are changed.
 #pragma once
 
 #include <filesystem>
@@ -39,7 +40,7 @@ void write_checkpoint(const std::filesystem::path& file, const StageKeys& keys,
 std::optional<Reached> read_checkpoint(const std::filesystem::path& file, const StageKeys& keys,
                                        std::string& why);
 
-// How many stages it says to have finished, by these keys; 0: none.
-int stages_kept(const std::filesystem::path& file, const StageKeys& keys);
+// Whether it says to be of so many stages, by these keys.
+bool is_kept(const std::filesystem::path& file, const StageKeys& keys, int stages);
 
 }  // namespace swage

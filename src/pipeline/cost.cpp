@@ -186,9 +186,10 @@ void add_up(RunCost& cost, const SceneSpec& scene, const std::vector<InputMesh>&
     cost.memory_bytes = kProgramBytes + cost.mold.bytes + cost.mold.particles * kBytesPerParticle +
                         vertices * kBytesPerVertex + way +
                         (options.draw ? kDrawingBytes + pixels * 60 : 0);
-    cost.disk_bytes = disk_bytes(scene, input,
-                                 {double(cost.frames), stills, cost.mold.active_cells,
-                                  cost.mold.particles, cost.mold.bytes, vertices});
+    cost.disk_bytes =
+        disk_bytes(scene, input,
+                   {double(cost.frames), stills, cost.mold.active_cells, cost.mold.particles,
+                    cost.mold.bytes, vertices, cost.seconds.most});
     const double drawing = drawing_time(scene.render, stills);
     cost.seconds.add(writing_time(scene, cost.frames, cost.disk_bytes, cost.mold.particles));
     cost.hangs_on = cost.seconds.is_narrow() ? "" : what_time_hangs_on(scene);

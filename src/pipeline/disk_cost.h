@@ -13,11 +13,12 @@ namespace swage {
 // Of all bodies together.
 struct DiskShare {
     double frames, stills, cells, particles;
-    double matter;    // [byte] in memory
-    double vertices;  // of skins
+    double matter;       // [byte] in memory
+    double vertices;     // of skins
+    double seconds = 0;  // of simulation, at the most
 };
 
-// Of a run that ends early, to go on from [byte].
+// What is kept of a run after a stage [byte].
 double checkpoint_bytes(const SceneSpec& scene, const std::vector<InputMesh>& input,
                         const DiskShare& of);
 

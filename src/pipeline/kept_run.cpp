@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/kept_run.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "pipeline/simulate.h"
 
 namespace swage {
 
@@ -12,7 +14,25 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kDamaged = "is damaged";
 constexpr const char* kMotionDamaged = "goes with a motion file that is damaged";
+
+void tell(const fs::path& file, const std::string& why, int stage) {
+    log_warning("{}: {}, so stage {} begins anew", file.string(), why, stage);
+}
+
+// What is whole and of this run may still have been made by somebody.
+bool fits(const Reached& reached, const SceneSpec& scene, int stages) {
+    const Json &matter = reached.matter, &stage = reached.stage;
+    const auto says_frames = [](const Json& one) {
+        const Json frames = one.is_object() ? one.value("frames", Json()) : Json();
+        return frames.is_array() && frames.size() == 2 && frames[1].is_number_integer();
+    };
+    return reached.stages == stages && reached.bodies.size() == scene.body.size() &&
+           matter.is_array() && matter.size() == scene.body.size() && stage.is_array() &&
+           stage.size() == static_cast<std::size_t>(stages) &&
+           std::all_of(stage.begin(), stage.end(), says_frames);
+}
 
 // The file that holds it, if any does.
 std::optional<fs::path> motion_of(const RunDirectory& directory, const MotionMark& mark) {
@@ -23,50 +43,70 @@ std::optional<fs::path> motion_of(const RunDirectory& directory, const MotionMar
 }
 
 // Of the stage after so many, with its motion.
-std::optional<KeptRun> kept_within(const RunDirectory& directory, int stages) {
+std::optional<KeptRun> kept_within(const SceneSpec& scene, const RunDirectory& directory,
+                                   int stages) {
     std::string why;
     std::optional<StageMark> mark =
         read_stage_mark(directory.stage_mark(), directory.stage_keys(), stages, why);
-    if (mark) {
+    if (mark && mark->bodies.size() != scene.body.size()) {
+        why = kDamaged;
+    } else if (mark) {
         if (const auto motion = motion_of(directory, mark->motion)) {
             return KeptRun{std::nullopt, std::move(mark), *motion};
         }
         why = kMotionDamaged;
     }
     // Of a run that is changed it may be of a stage that was.
-    if (!why.empty() && !directory.is_changed()) {
-        log_warning("{}: {}, so stage {} begins anew", directory.stage_mark().string(), why,
-                    stages + 1);
-    }
+    if (!why.empty() && !directory.is_changed()) tell(directory.stage_mark(), why, stages + 1);
     return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<KeptRun> kept_by_earlier_run(const RunDirectory& directory) {
+std::optional<KeptRun> kept_by_earlier_run(const SceneSpec& scene, const RunDirectory& directory) {
     if (directory.is_anew()) return std::nullopt;
+    const auto all = static_cast<int>(directory.stage_keys().size()) - 1;
     std::string why;
-    std::optional<Reached> reached =
-        read_checkpoint(directory.checkpoint(), directory.stage_keys(), why);
-    const auto stages = static_cast<std::size_t>(reached ? reached->stages : 0);
-    if (why.empty() && stages + 1 < directory.stage_keys().size()) {
-        if (auto kept = kept_within(directory, static_cast<int>(stages))) {
-            kept->reached = std::move(reached);
-            return kept;
+    for (int stages = all; stages >= 0; --stages) {
+        std::optional<Reached> reached;
+        if (stages > 0) {
+            const fs::path file = directory.checkpoint(stages);
+            // Of a run that is changed it may be of a stage that was.
+            if (directory.is_changed() && !is_kept(file, directory.stage_keys(), stages)) continue;
+            std::string amiss;
+            reached = read_checkpoint(file, directory.stage_keys(), amiss);
+            if (reached && !fits(*reached, scene, stages)) {
+                amiss = kDamaged;
+            } else if (reached) {
+                const fs::path gone = missing_product(scene, directory, stages);
+                if (!gone.empty())
+                    amiss = fmt::format("goes with {}, which is gone", gone.string());
+            }
+            if (!amiss.empty()) {
+                why = amiss;
+                tell(file, why, stages);
+            }
+            if (!reached || !amiss.empty()) continue;
         }
-    }
-    if (reached) {
+        // What is kept within a stage is of the one after all that were finished.
+        if (why.empty() && stages < all) {
+            if (auto kept = kept_within(scene, directory, stages)) {
+                kept->reached = std::move(reached);
+                return kept;
+            }
+        }
+        if (!reached) break;
         if (const auto motion = motion_of(directory, reached->motion)) {
             return KeptRun{std::move(reached), std::nullopt, *motion};
         }
         why = kMotionDamaged;
+        tell(directory.checkpoint(stages), why, stages);
     }
     if (directory.is_changed()) {
-        fail(ExitCode::foreign, "{}: {}; choose another --out, or --fresh to throw that run away",
-             directory.checkpoint().string(), why);
-    }
-    if (!why.empty()) {
-        log_warning("{}: {}, so the run begins anew", directory.checkpoint().string(), why);
+        fail(ExitCode::foreign,
+             "{}: of what it has kept nothing is whole; choose another --out, or --fresh to throw "
+             "that run away",
+             directory.root().string());
     }
     return std::nullopt;
 }

@@ -7,6 +7,7 @@
 
 #include "pipeline/run_directory.h"
 #include "pipeline/stage_mark.h"
+#include "scene/spec.h"
 
 namespace swage {
 
@@ -17,8 +18,8 @@ struct KeptRun {
     const MotionMark& motion_mark() const { return mark ? mark->motion : reached->motion; }
 };
 
-// If that is whole; what is not is told of. Throws Error(foreign) where a run that is to go on from
-// stages that are the same has none.
-std::optional<KeptRun> kept_by_earlier_run(const RunDirectory& directory);
+// After as many stages as can be; what is not whole is told of. Throws Error(foreign) where a run
+// that is to go on from stages that are the same has none.
+std::optional<KeptRun> kept_by_earlier_run(const SceneSpec& scene, const RunDirectory& directory);
 
 }  // namespace swage

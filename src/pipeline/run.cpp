@@ -25,12 +25,8 @@ FrameRange wanted_frames(const SceneSpec& scene, const RunOptions& options) {
 }
 
 // Throws Error(output) where what is to be gone on from has been damaged.
-bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory& directory) {
-    const Json& state = record.at("state");
-    if ((state != RunState::simulated && state != RunState::complete) ||
-        !std::filesystem::exists(directory.store())) {
-        return false;
-    }
+bool stands(const Json& record, const SceneSpec& scene, const RunDirectory& directory) {
+    if (!is_simulated(record) || !std::filesystem::exists(directory.store())) return false;
     const Json frames = record.value("frames", Json());
     const Json seconds = record.value("seconds", Json::object());
     if (!frames.is_number_integer() || frames < 1 || frames > frame_count(scene) ||
@@ -44,7 +40,8 @@ bool is_simulated(const Json& record, const SceneSpec& scene, const RunDirectory
         log_warning("{}, so the run begins anew", error.what());
         return false;
     }
-    const std::filesystem::path missing = missing_product(scene, directory);
+    const std::filesystem::path missing =
+        missing_product(scene, directory, static_cast<int>(scene.stage.size()));
     if (!missing.empty()) {
         fail(ExitCode::output, "{}: is gone; --fresh makes all of the run anew", missing.string());
     }
@@ -84,7 +81,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
     Json record;
     const std::optional<Json> earlier =
         may_be_done && !directory.is_changed() ? read_record(directory.record()) : std::nullopt;
-    const bool simulated = earlier && is_simulated(*earlier, scene, directory);
+    const bool simulated = earlier && stands(*earlier, scene, directory);
     // What may fail, and is no loss, comes after everything else of the simulation.
     Plots plots = plots_of(scene, directory);
     const auto draw_plots = [&] {
@@ -95,10 +92,11 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
         throw_if_interrupted();
     };
     if (simulated) {
-        directory.remove_checkpoint();
+        forget_what_is_done(directory, scene);
         record = *earlier;
         if (plots.has_undrawn()) draw_plots();
         if (!options.draw || is_drawn(record, files, wanted, scene.render)) {
+            if (record.at("state") == RunState::complete) directory.remove_replaced();
             log_info("{}: {}", directory.root().string(),
                      record.at("state") == RunState::complete
                          ? "already complete"
@@ -152,6 +150,7 @@ Json run_scene(const SceneSpec& scene, const RunOptions& options) {
     draw();
     record["state"] = RunState::complete;
     write_record(directory, record, watch);
+    directory.remove_replaced();
     tell_use();
     log_info("{}: done", directory.root().string());
     return record;

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "base/atomic_file.h"
-#include "base/file_contents.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/folder_lock.h"
 #include "pipeline/interrupt.h"
-#include "pipeline/json.h"
-#include "scene/file_text.h"
+#include "pipeline/run_record.h"
 
 namespace swage {
 
@@ -21,89 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kIdentityName = ".swage-run";
-constexpr std::uintmax_t kLongestRecord = 64 << 20;  // some kB a stage
-
-std::string identity_text(const RunIdentity& identity) {
-    Json json;
-    json["program"] = "swage";
-    json["version"] = identity.version;
-    json["build"] = identity.build;
-    for (const RunInput& input : identity.input) {
-        Json one = {{"role", input.role}, {"file", input.file.string()}, {"hash", input.hash}};
-        if (!input.text.empty()) one["text"] = input.text;
-        json["inputs"].push_back(std::move(one));
-    }
-    return json_text(json);
-}
-
-RunIdentity read_identity(const fs::path& file) {
-    RunIdentity identity;
-    try {
-        const Json json = Json::parse(record_text(file, ExitCode::foreign));
-        identity.version = json.at("version").get<std::string>();
-        identity.build = json.value("build", "unknown");
-        for (const Json& input : json.at("inputs")) {
-            identity.input.push_back(
-                {input.at("role").get<std::string>(), input.at("file").get<std::string>(),
-                 input.at("hash").get<std::string>(), input.value("text", "")});
-        }
-    } catch (const Json::exception&) {
-        fail(ExitCode::foreign,
-             "{}: is damaged, so its run cannot be identified; remove it with its directory, or "
-             "choose another --out",
-             file.string());
-    }
-    return identity;
-}
-
-const RunInput* find_role(const RunIdentity& identity, const std::string& role) {
-    for (const RunInput& input : identity.input) {
-        if (input.role == role) return &input;
-    }
-    return nullptr;
-}
-
-// The lines of one text that another has not, as they are to be told; no blanks, no remarks.
-std::string lines_beside(const std::string& text, const std::string& other) {
-    constexpr std::size_t kTold = 3;
-    const auto said_in = [](const std::string& all) {
-        std::vector<std::string> said;
-        for (const std::string& line : lines_of(all)) {
-            const std::size_t begin = line.find_first_not_of(" \t");
-            if (begin == std::string::npos || line[begin] == '#') continue;
-            said.push_back(line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin));
-        }
-        return said;
-    };
-    std::vector<std::string> there = said_in(other), beside;
-    for (const std::string& line : said_in(text)) {
-        const auto known = std::find(there.begin(), there.end(), line);
-        if (known == there.end()) {
-            beside.push_back(line);
-        } else {
-            there.erase(known);
-        }
-    }
-    if (beside.empty()) return "nothing more";
-    const std::size_t more = beside.size() - std::min(beside.size(), kTold);
-    beside.resize(beside.size() - more);
-    return joined(beside, ", ") + (more > 0 ? fmt::format(" and {} more", more) : "");
-}
-
-std::string difference(const RunInput& now, const RunInput& then) {
-    const auto told = [](const RunInput& of) {
-        return of.file.empty() ? std::string("none") : of.file.string();
-    };
-    if (now.file != then.file) {
-        return fmt::format("{} differs ({} now, {} then)", now.role, told(now), told(then));
-    }
-    if (now.text.empty() || then.text.empty()) {
-        return fmt::format("{} differs: the content of {} has changed", now.role, told(now));
-    }
-    return fmt::format("{} differs: the content of {} has changed (now {}; then {})", now.role,
-                       told(now), lines_beside(now.text, then.text),
-                       lines_beside(then.text, now.text));
-}
 
 void remove_product(const fs::path& product) {
     std::error_code error;
@@ -114,11 +30,28 @@ void remove_product(const fs::path& product) {
 }
 
 // What a run leaves; nothing else in the directory is ever touched.
+constexpr const char* kProducts[] = {"run.json", "film.mp4", "contact.png", "motion.bin",
+                                     "frames",   "meshes",   "curves",      "resume",
+                                     "again",    "usd",      kIdentityName};
 void remove_products(const fs::path& root) {
-    for (const char* name : {"run.json", "film.mp4", "contact.png", "motion.bin", "frames",
-                             "meshes", "curves", "resume", "again", "usd", kIdentityName}) {
-        remove_product(root / name);
+    for (const char* name : kProducts) remove_product(root / name);
+}
+
+// Names for the same bytes, where the file system has them: a run never writes into a file that it
+// has left, but puts another in its place.
+void link_products(const fs::path& root, const fs::path& to) {
+    for (const char* name : kProducts) {
+        if (!fs::exists(root / name)) continue;
+        std::error_code error;
+        using enum fs::copy_options;
+        fs::copy(root / name, to / name, recursive | create_hard_links, error);
+        if (error) fs::copy(root / name, to / name, recursive | overwrite_existing);
     }
+    std::vector<fs::path> locks;  // of who draws there, which hang on the file
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(to)) {
+        if (FolderLock::is_lock(entry.path())) locks.push_back(entry.path());
+    }
+    for (const fs::path& lock : locks) fs::remove(lock);
 }
 
 // But for what the first stages left; the motion file is gone on from, and replaced.
@@ -165,39 +98,6 @@ bool holds_products(const fs::path& root) {
 
 }  // namespace
 
-std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here) {
-    std::vector<std::string> found;
-    if (there.version != here.version) {
-        found.push_back(fmt::format("swage {} made it, this is {}", there.version, here.version));
-    } else if (there.build != here.build) {
-        found.push_back(fmt::format("another build of swage {} made it ({}, this is {})",
-                                    there.version, there.build, here.build));
-    }
-    for (const RunInput& input : here.input) {
-        const RunInput* old = find_role(there, input.role);
-        if (old == nullptr) {
-            found.push_back(fmt::format("{} ({}) is new", input.role, input.file.string()));
-        } else if (old->hash != input.hash) {
-            found.push_back(difference(input, *old));
-        }
-    }
-    for (const RunInput& input : there.input) {
-        if (find_role(here, input.role) == nullptr) {
-            found.push_back(fmt::format("{} ({}) is gone", input.role, input.file.string()));
-        }
-    }
-    return found;
-}
-
-std::string record_text(const fs::path& file, ExitCode code) {
-    std::optional<std::string> text = file_contents(file, kLongestRecord);
-    if (!text) {
-        fail(code, "{}: {}; swage run --fresh throws that run away", file.string(),
-             why_unreadable(file).value_or("is too long to be from swage"));
-    }
-    return std::move(*text);
-}
-
 bool holds_run(const fs::path& folder) {
     std::error_code unknown;
     return fs::exists(folder / kIdentityName, unknown);
@@ -232,38 +132,91 @@ void RunDirectory::claim(const RunIdentity& identity, bool go_on) {
     }
     const std::vector<std::string> found = differences(read_identity(file), identity);
     if (found.empty()) return;
-    const int kept = stages_kept(checkpoint(), stage_keys_);
-    changed_ = go_on && kept > 0;
-    if (changed_) return;
+    const int kept = last_kept(static_cast<int>(stage_keys_.size()) - 1);
+    const std::string change = joined(found, "; ");
+    if (go_on && kept > 0) {
+        change_ = change;
+        return;
+    }
     fail(ExitCode::foreign,
          "{}: belongs to another run: {}{}; choose another --out, or {}--fresh to throw that run "
          "away",
-         root_.string(), joined(found, "; "),
+         root_.string(), change,
          go_on ? "; and it has kept no stage to go on from that is the same" : "",
          kept > 0 ? fmt::format("--go-on to keep its first {}, or ",
                                 counted(std::size_t(kept), "stage", "stages"))
                   : "");
 }
 
+// One that is not done is not worth it.
+void RunDirectory::set_aside() const {
+    const std::optional<Json> there = read_record(record());
+    if (!there || !is_simulated(*there)) return;
+    remove_replaced();
+    const fs::path part = part_of_replaced();
+    try {
+        fs::create_directory(part);
+        link_products(root_, part);
+        fs::rename(part, replaced());
+    } catch (const fs::filesystem_error& error) {
+        std::error_code ignored;
+        fs::remove_all(part, ignored);
+        fail(ExitCode::output, "{}: the run that is there cannot be set aside: {}", root_.string(),
+             error.code().message());
+    }
+    log_info("the run that was there stands in {} until this one is done", replaced().string());
+}
+
 void RunDirectory::begin(const std::vector<fs::path>& kept) {
     has_begun_ = true;
-    if (!anew_ && !changed_) return;
+    if (!anew_ && !is_changed()) return;
     {
         std::optional<FolderLock> drawing;  // of the run, which `swage render` may be at
         if (fs::is_directory(drawn_again(root_))) drawing.emplace(drawn_again(root_));
         if (anew_) {
             remove_products(root_);
+            remove_replaced();
         } else {
+            set_aside();
             remove_later_products(root_, kept);
         }
     }
     write_file_whole(root_ / kIdentityName, identity_text_);
-    anew_ = changed_ = false;
+    anew_ = false;
+    change_.clear();
 }
 
-void RunDirectory::remove_checkpoint() const {
+fs::path RunDirectory::checkpoint(int stages) const {
+    return resume() / fmt::format("after-{}.bin", stages);
+}
+
+int RunDirectory::last_kept(int most) const {
+    while (most > 0 && !is_kept(checkpoint(most), stage_keys_, most)) --most;
+    return most;
+}
+
+void RunDirectory::forget_kept() const {
     std::error_code ignored;
-    fs::remove_all(checkpoint().parent_path(), ignored);
+    fs::remove_all(resume(), ignored);
+}
+
+void RunDirectory::forget_kept_but(int first, int last) const {
+    std::set<fs::path> stay = {stage_mark(), kept_motion()};
+    for (int stages = first; stages <= last; ++stages) stay.insert(checkpoint(stages));
+    std::error_code ignored;
+    std::vector<fs::path> others;
+    for (fs::directory_iterator it(resume(), ignored), end; !ignored && it != end;
+         it.increment(ignored)) {
+        if (!stay.contains(it->path())) others.push_back(it->path());
+    }
+    for (const fs::path& file : others) fs::remove(file, ignored);
+}
+
+// In one step, so that no half of one is taken for a run.
+void RunDirectory::remove_replaced() const {
+    std::error_code ignored;
+    if (holds_run(replaced())) fs::rename(replaced(), part_of_replaced(), ignored);
+    fs::remove_all(part_of_replaced(), ignored);
 }
 
 RunDirectory::~RunDirectory() {

@@ -9,33 +9,12 @@
 #include <vector>
 
 #include "base/error.h"
-#include "pipeline/build_name.h"
 #include "pipeline/folder_lock.h"
 #include "pipeline/made_folder.h"
+#include "pipeline/run_identity.h"
 #include "render/settings.h"
 
 namespace swage {
-
-inline constexpr const char* kVersion = SWAGE_VERSION;
-
-// What makes a run this run: the program, to the build, and the bytes of everything that was read.
-struct RunInput {
-    std::string role;  // "scene", "machine bend", "mesh", ...; unique
-    std::filesystem::path file;
-    std::string hash;
-    std::string text = {};  // of a scene or machine, so that it can be told what was changed in it
-};
-struct RunIdentity {
-    std::string version = kVersion;
-    std::vector<RunInput> input;
-    std::string build = kBuildName;
-    // Of the run up to each stage, from none of them to all, a text that is another where anything
-    // is that what was done until then depends on.
-    std::vector<std::string> stage_key = {};
-};
-
-// One sentence a difference, empty when they are the same run. File names may differ.
-std::vector<std::string> differences(const RunIdentity& there, const RunIdentity& here);
 
 // Whether a run of swage lies in this folder, of whatever scene.
 bool holds_run(const std::filesystem::path& folder);
@@ -46,7 +25,8 @@ class RunDirectory {
     // when it cannot be written, Error(foreign) when it holds anything but this run, or while
     // another process writes in it. `fresh`: whatever run it holds, that is to make room in
     // begin(). One that ended before its first frame always does. `go_on`: one whose first stages
-    // are the same may be there, if it has kept what is to be gone on from.
+    // are the same may be there, if it has kept what is to be gone on from; where it is done it
+    // stays whole until the new one is.
     RunDirectory(const std::filesystem::path& root, const RunIdentity& identity, bool fresh,
                  bool go_on = false);
     // Lets others in. Where no run has begun, neither this one nor another, nothing is left of it.
@@ -58,11 +38,14 @@ class RunDirectory {
     const std::vector<std::string>& stage_keys() const { return stage_keys_; }
     // Whatever run it holds is to make room.
     bool is_anew() const { return anew_; }
-    // Of the run that it holds later stages are others.
-    bool is_changed() const { return changed_; }
+    // Of the run that it holds something else was changed than its first stages; empty: nothing.
+    const std::string& change() const { return change_; }
+    bool is_changed() const { return !change_.empty(); }
     // The run is about to write its first frame: now what makes room for it is removed. `kept`: of
     // a run that is changed the meshes and curves that stay, from its root on and without endings.
     void begin(const std::vector<std::filesystem::path>& kept = {});
+    // The run is done: what it stands in place of goes.
+    void remove_replaced() const;
     static std::filesystem::path record_in(const std::filesystem::path& run) {
         return run / "run.json";
     }
@@ -71,12 +54,19 @@ class RunDirectory {
     }
     std::filesystem::path record() const { return record_in(root_); }
     std::filesystem::path store() const { return store_in(root_); }
-    // Of a run that is not done: what it goes on from, after a stage and within the next, and its
-    // motion file until it ends.
-    std::filesystem::path checkpoint() const { return root_ / "resume" / "checkpoint.bin"; }
-    std::filesystem::path stage_mark() const { return root_ / "resume" / "stage.bin"; }
-    std::filesystem::path kept_motion() const { return root_ / "resume" / "motion.bin"; }
-    void remove_checkpoint() const;
+    // What a run goes on from: after so many stages and, as long as it is not done, within the next
+    // and its motion file.
+    std::filesystem::path resume() const { return root_ / "resume"; }
+    std::filesystem::path checkpoint(int stages) const;
+    std::filesystem::path stage_mark() const { return resume() / "stage.bin"; }
+    std::filesystem::path kept_motion() const { return resume() / "motion.bin"; }
+    // The last by these keys; 0: none.
+    int last_kept(int most) const;
+    void forget_kept() const;
+    void forget_kept_but(int first, int last) const;  // after these numbers of stages
+    // A run that was done, until the one that goes on from its first stages is.
+    std::filesystem::path replaced() const { return root_ / "replaced"; }
+    std::filesystem::path part_of_replaced() const { return root_ / ".replaced.part"; }
     // Where `swage render` draws a run that is not told where.
     static std::filesystem::path drawn_again(const std::filesystem::path& run) {
         return run / "again";
@@ -86,13 +76,15 @@ class RunDirectory {
 
   private:
     void claim(const RunIdentity& identity, bool go_on);
+    void set_aside() const;
     void remove_unbegun();
 
     std::filesystem::path root_;
     MadeFolder folder_;
     std::string identity_text_;
     std::vector<std::string> stage_keys_;
-    bool anew_, changed_ = false, has_begun_ = false;
+    std::string change_;
+    bool anew_, has_begun_ = false;
     std::optional<FolderLock> lock_;
 };
 
@@ -112,9 +104,5 @@ struct DrawnFiles {
     std::filesystem::path film() const { return root / "film.mp4"; }
     std::filesystem::path contact_sheet() const { return root / "contact.png"; }
 };
-
-// All of a small file that a run has left. Throws Error(code) when that is no plain file, cannot be
-// read or is longer than any such file; never waits for what is none.
-std::string record_text(const std::filesystem::path& file, ExitCode code);
 
 }  // namespace swage

@@ -17,11 +17,12 @@
 namespace swage {
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 
 namespace {
 
 constexpr int kRecordFormat = 1;  // more, once a key goes or means something else
-constexpr std::uint64_t kLongestKeptText = 64 << 10;  // of a scene or machine
+constexpr std::uint64_t kLongestKeptText = 64 << 10;  // of a machine
 
 std::string hash_of_mesh(TriMesh mesh) {
     // Files may lie elsewhere; what the textures hold is hashed by itself.
@@ -43,7 +44,7 @@ std::string add_file(RunIdentity& identity, const std::string& kind, const fs::p
     std::string free_role = role;
     for (int n = 2; taken(free_role); ++n) free_role = fmt::format("{} ({})", role, n);
     identity.input.push_back({free_role, file, hash_text(hash_of_file(file))});
-    if (file.extension() == ".toml") {
+    if (file.extension() == ".toml" && role != "scene") {
         identity.input.back().text = file_contents(file, kLongestKeptText).value_or("");
     }
     return free_role;
@@ -90,20 +91,40 @@ std::vector<fs::path> files_of_later_stages(const SceneSpec& scene, std::size_t 
     return files;
 }
 
+// What the scene says that the first stages depend on. How pictures are drawn is none of it; what
+// of that makes frames what they are stands by its meaning.
+std::string said_of_stages(const SceneSpec& scene, std::size_t stages) {
+    std::string all;
+    for (const Said& one : scene.said) {
+        const std::size_t point = one.key.find('.');
+        const std::string section = one.key.substr(0, point);
+        if (section == "render" || section == "output") continue;
+        if (section == "stage" && point != one.key.npos &&
+            std::stoul(one.key.substr(point + 1)) > stages)
+            continue;
+        all += fmt::format("{}={}\n", one.key, one.value);
+    }
+    for (std::size_t s = 0; s < stages; ++s) {
+        all += fmt::format("{:a} s\n", scene.duration_of(scene.stage[s]));
+    }
+    all += scene.output.meshes_per_frame ? "meshes\n" : "";
+    for (const SkinField field : scene.output.fields) all += words_of(field).name + "\n"s;
+    return all;
+}
+
 // `identity`: but for these. What names no file is in what the scene says.
 std::vector<std::string> stage_keys(const SceneSpec& scene, const RunIdentity& identity) {
     std::vector<std::string> keys;
-    std::string said = identity.version + "\n" + identity.build + "\n" + scene.said + "\n";
+    const std::string program = identity.version + "\n" + identity.build + "\n";
     for (std::size_t stages = 0; stages <= scene.stage.size(); ++stages) {
-        if (stages > 0) said += scene.stage[stages - 1].said + "\n";
         const std::vector<fs::path> later = files_of_later_stages(scene, stages);
         std::string read;
         for (const RunInput& input : identity.input) {
-            if (input.role == "scene" || input.role == "--set") continue;
+            if (is_said(input)) continue;
             if (std::find(later.begin(), later.end(), input.file) != later.end()) continue;
             read += input.hash + "\n";
         }
-        keys.push_back(hash_text(hash_of(said + read)));
+        keys.push_back(hash_text(hash_of(program + said_of_stages(scene, stages) + read)));
     }
     return keys;
 }
@@ -116,8 +137,7 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
     std::vector<fs::path> files;
     if (scene.piped) {
         identity.input.push_back(
-            {"scene", scene.file.filename(), hash_text(hash_of(*scene.piped)),
-             scene.piped->size() <= kLongestKeptText ? *scene.piped : std::string()});
+            {"scene", scene.file.filename(), hash_text(hash_of(*scene.piped))});
     } else {
         files = {scene.file};
     }
@@ -140,6 +160,7 @@ RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& in
     }
     identity.input.push_back({"--set", joined(options.overrides, ", "),
                               hash_text(hash_of(joined(options.overrides, "\n")))});
+    identity.said = scene.said;
     identity.stage_key = stage_keys(scene, identity);
     return identity;
 }
@@ -208,6 +229,11 @@ Json seconds_json(const Stopwatch& watch) {
     return json;
 }
 
+bool is_simulated(const Json& record) {
+    const Json& state = record.at("state");
+    return state == RunState::simulated || state == RunState::complete;
+}
+
 Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunIdentity& identity,
                   const std::vector<InputMesh>& input) {
     Json record;
@@ -251,7 +277,8 @@ Json record_of_run(const fs::path& run) {
     std::error_code error;
     if (!fs::exists(run, error)) fail(ExitCode::output, "{}: no such folder", run.string());
     std::optional<Json> record = read_record(RunDirectory::record_in(run));
-    if (!record) fail(ExitCode::output, "{}: is not a finished run of swage", run.string());
+    if (!record || record->at("state") == RunState::begun)
+        fail(ExitCode::output, "{}: is not a finished run of swage", run.string());
     return *std::move(record);
 }
 

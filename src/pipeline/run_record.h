@@ -14,8 +14,8 @@
 
 namespace swage {
 
-// Hashes of every file that was read, of the mesh as it was understood, and of what was set on
-// the command line.
+// What the scene says, hashes of every file that was read, of the mesh as it was understood, and of
+// what was set on the command line.
 RunIdentity identity_of(const SceneSpec& scene, const std::vector<InputMesh>& input,
                         const RunOptions& options);
 
@@ -26,6 +26,9 @@ NLOHMANN_JSON_SERIALIZE_ENUM(RunState, {{RunState::begun, "begun"},
                                         {RunState::complete, "complete"},
                                         {RunState::stopped, "stopped"},
                                         {RunState::interrupted, "interrupted"}})
+
+// Whether all of its stages are done, as it says.
+bool is_simulated(const Json& record);
 
 // The parts of run.json that are known before the first stage.
 Json begin_record(const SceneSpec& scene, const RunOptions& options, const RunIdentity& identity,

@@ -76,25 +76,24 @@ bool keep(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& wa
           Reached& reached) {
     const auto lap = watch.lap("write");
     try {
-        make_folder(directory.checkpoint().parent_path());
+        make_folder(directory.resume());
         recorder.keep(directory.kept_motion());
         reached.motion = recorder.mark();
         reached.skin = recorder.skins();
         reached.seconds = watch.phases();
-        write_checkpoint(directory.checkpoint(), directory.stage_keys(), reached);
+        write_checkpoint(directory.checkpoint(reached.stages), directory.stage_keys(), reached);
         return true;
     } catch (const std::exception& error) {
         const std::optional<Error> failure = failure_of(error);
         if (!failure) throw;
-        log_warning("{}; a run that ends early cannot go on from here", failure->what());
+        log_warning("{}; no run can go on from here", failure->what());
         return false;
     }
 }
 
 }  // namespace
 
-fs::path missing_product(const SceneSpec& scene, const RunDirectory& directory) {
-    const auto stages = static_cast<int>(scene.stage.size());
+fs::path missing_product(const SceneSpec& scene, const RunDirectory& directory, int stages) {
     for (const fs::path& product : products_of_stages(scene, stages)) {
         const bool is_mesh = product.parent_path() == "meshes";
         for (const char* ending : is_mesh ? std::vector{".obj", ".ply"} : std::vector{".csv"}) {
@@ -106,10 +105,17 @@ fs::path missing_product(const SceneSpec& scene, const RunDirectory& directory) 
     return {};
 }
 
+void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene) {
+    if (!scene.output.keep_stages) return directory.forget_kept();
+    std::error_code ignored;
+    fs::remove(directory.stage_mark(), ignored);
+    fs::remove(directory.kept_motion(), ignored);
+}
+
 Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, StartWarnings at_start,
                RunDirectory& directory, Plots& plots, Json& record, Stopwatch& watch,
                std::optional<double> keep_every) {
-    std::optional<KeptRun> kept = kept_by_earlier_run(directory);
+    std::optional<KeptRun> kept = kept_by_earlier_run(scene, directory);
     const MotionMark motion = kept ? kept->motion_mark() : MotionMark{};
     Reached reached;
     if (!kept || !kept->reached || directory.is_changed()) {
@@ -130,7 +136,30 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
                                                 mark ? mark->bodies : reached.bodies,
                                                 mark ? mark->skin : reached.skin)
              : std::make_unique<MotionRecorder>(directory.store(), scene.output.fields);
-    StageKeeper keeper(directory, *recorder, watch, keep_every);
+    int kept_stages = reached.stages;          // that are to be gone on from
+    int kept_frame = recorder->frame_count();  // the last of these
+    if (goes_on_within) {
+        kept_frame = reached.stage.empty() ? 0 : reached.stage.back().at("frames").at(1).get<int>();
+    }
+    if (kept) {
+        record["went_on_from"] = {{"stage", reached.stages + 1},
+                                  {"frame", recorder->frame_count()}};
+    }
+    StageKeeper* keeps = nullptr;
+    const auto add_where_it_goes_on = [&](Json& to) {
+        if (!keeps->frame() && kept_stages == 0) return;
+        to["goes_on_from"] = {{"stage", kept_stages + 1},
+                              {"frame", keeps->frame().value_or(kept_frame)}};
+    };
+    // What stands there if the process is killed.
+    const auto note = [&] {
+        Json now = record;
+        now["stages"] = reached.stage;
+        add_where_it_goes_on(now);
+        write_record(directory, now, watch);
+    };
+    StageKeeper keeper(directory, *recorder, watch, keep_every, note);
+    keeps = &keeper;
 
     DiskReserve reserve;
     bool has_begun = false;
@@ -138,13 +167,18 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         if (std::exchange(has_begun, true)) return;
         // Of the stage that it is within there may be meshes of frames.
         directory.begin(products_of_stages(scene, kept ? reached.stages + goes_on_within : 0));
-        if (!kept) directory.remove_checkpoint();
+        if (kept) {
+            directory.forget_kept_but(1, reached.stages);
+        } else {
+            directory.forget_kept();
+        }
         if (!goes_on_within) keeper.forget();
         plots.forget_from(static_cast<std::size_t>(reached.stages));
         reserve.hold(directory.root(), 2 * json_text(record).size() + kRecordRoom +
                                            kStageRecordRoom * scene.stage.size());
         make_folder(directory.root() / "meshes");
         make_folder(directory.root() / "curves");
+        if (kept || fs::exists(directory.record())) note();
     };
     const auto stages = static_cast<int>(scene.stage.size());
     if (kept) {
@@ -154,11 +188,12 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         record["stages"] = reached.stage;
     }
     if (mark) {
-        log_info("goes on from frame {}, in stage {} of {}", mark->frame, reached.stages + 1,
-                 stages);
+        log_info("goes on from frame {}, in stage {} of {}{}", mark->frame, reached.stages + 1,
+                 stages, directory.is_changed() ? ": " + directory.change() : "");
     } else if (kept) {
-        log_info("goes on after stage {} of {}, frame {}", reached.stages, stages,
-                 recorder->frame_count());
+        log_info("goes on after stage {} of {}, frame {}{}", reached.stages, stages,
+                 recorder->frame_count(),
+                 directory.is_changed() ? ": " + directory.change() : "");
     }
     Progress progress("simulate", frame_count(scene) - 1, std::max(0, recorder->frame_count() - 1));
     // Of what was there before nothing is lost for it.
@@ -166,11 +201,6 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
         return recorder->frame_count() == 0 || (!has_begun && directory.is_changed());
     };
     Ended ended;
-    int kept_stages = reached.stages;          // that are to be gone on from
-    int kept_frame = recorder->frame_count();  // the last of these
-    if (goes_on_within) {
-        kept_frame = reached.stage.empty() ? 0 : reached.stage.back().at("frames").at(1).get<int>();
-    }
     while (reached.stages < stages) {
         const StageSpec& stage = scene.stage[static_cast<std::size_t>(reached.stages)];
         StageMark* const from = std::exchange(mark, nullptr);
@@ -198,12 +228,15 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
             if (is_in_vain() || !ended.stopped) throw;
         }
         if (ended.early()) break;
-        if (++reached.stages == stages) break;
+        if (++reached.stages == stages && !scene.output.keep_stages) break;
         if (keep(directory, *recorder, watch, reached)) {
             kept_stages = reached.stages;
             kept_frame = recorder->frame_count();
             keeper.forget();
+            if (!scene.output.keep_stages) directory.forget_kept_but(kept_stages, kept_stages);
+            note();
         }
+        if (reached.stages == stages) break;
         const auto lap = watch.lap("plot");
         plots.draw();
     }
@@ -222,13 +255,10 @@ Ended simulate(const SceneSpec& scene, const std::vector<InputMesh>& input, Star
                       : ended.stopped   ? RunState::stopped
                                         : RunState::simulated;
     if (ended.stopped) record["stopped"] = ended.stopped->what();
-    if (ended.early() && (keeper.frame() || kept_stages > 0)) {
-        record["goes_on_from"] = {{"stage", kept_stages + 1},
-                                  {"frame", keeper.frame().value_or(kept_frame)}};
-    }
+    if (ended.early()) add_where_it_goes_on(record);
     write_record(directory, record, watch);
     if (!ended.early()) {
-        directory.remove_checkpoint();
+        forget_what_is_done(directory, scene);
     } else if (keeper.frame()) {
         log_info("swage run goes on from frame {}, in stage {} of {}", *keeper.frame(),
                  kept_stages + 1, stages);

@@ -26,8 +26,12 @@ struct Ended {
     bool early() const { return stopped || interrupted; }
 };
 
-// A mesh or a table of a whole simulation that is not there any more; empty: all are.
-std::filesystem::path missing_product(const SceneSpec& scene, const RunDirectory& directory);
+// A mesh or a table of the first stages that is not there any more; empty: all are.
+std::filesystem::path missing_product(const SceneSpec& scene, const RunDirectory& directory,
+                                      int stages);
+
+// What a run that is done leaves to go on from: its stages, unless the scene wants none.
+void forget_what_is_done(const RunDirectory& directory, const SceneSpec& scene);
 
 // The motion file and run.json stand when it returns, and the plots of all stages but the last that
 // it did are tried. `record`: begin_record's. `at_start`: what can be said before anything is

@@ -12,7 +12,6 @@ namespace swage {
 namespace {
 
 constexpr double kTimes = 50;  // what keeping takes, until it is due again: a fiftieth of the time
-constexpr double kLeast = 5;   // [s]; less is soon done again
 
 }  // namespace
 
@@ -25,7 +24,7 @@ void StageKeeper::begin(int stages, std::optional<int> frame, bool can) {
 
 bool StageKeeper::is_due() const {
     const double worked = std::chrono::duration<double>(Clock::now() - since_).count();
-    return can_ && worked >= every_.value_or(std::max(kLeast, kTimes * cost_));
+    return can_ && worked >= every_.value_or(std::max(kLeastKept, kTimes * cost_));
 }
 
 void StageKeeper::keep(int frame, std::string state, const std::vector<WorkPiece>& bodies) {
@@ -44,6 +43,7 @@ void StageKeeper::keep(int frame, std::string state, const std::vector<WorkPiece
                           {}},
                          bodies);
         frame_ = frame;
+        note_();
     } catch (const std::exception& error) {
         const std::optional<Error> failure = failure_of(error);
         if (!failure) throw;

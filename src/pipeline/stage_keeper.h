@@ -5,8 +5,10 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/stopwatch.h"
@@ -16,12 +18,19 @@
 
 namespace swage {
 
+inline constexpr double kLeastKept = 5;  // [s] of work; less is soon done again
+
 class StageKeeper {
   public:
-    // The references must outlive it. `every`: keeps it after so long [s]; none: as above.
+    // The references must outlive it. `every`: keeps it after so long [s]; none: as above. `note`:
+    // called once it was kept.
     StageKeeper(const RunDirectory& directory, MotionRecorder& recorder, Stopwatch& watch,
-                std::optional<double> every)
-        : directory_(directory), recorder_(recorder), watch_(watch), every_(every) {}
+                std::optional<double> every, std::function<void()> note)
+        : directory_(directory),
+          recorder_(recorder),
+          watch_(watch),
+          every_(every),
+          note_(std::move(note)) {}
 
     // One begins after so many, or goes on from this frame. `can`: how it begins is kept too.
     void begin(int stages, std::optional<int> frame, bool can);
@@ -41,6 +50,7 @@ class StageKeeper {
     MotionRecorder& recorder_;
     Stopwatch& watch_;
     std::optional<double> every_;
+    std::function<void()> note_;
     int stages_ = 0;
     bool can_ = false;
     std::optional<int> frame_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/hash.h"
 #include "base/text.h"
 #include "scene/file_text.h"
 #include "scene/syntax.h"
@@ -96,6 +97,76 @@ std::optional<Document> parsed(std::string text, const std::filesystem::path& sh
     }
 }
 
+// A value for comparison; no longer than a hash where it is long.
+std::string value_of(const Node& node, const std::map<const Node*, double>& number) {
+    using Kind = Node::Kind;
+    constexpr std::size_t kLong = 200;
+    const auto known = number.find(&node);
+    if (known != number.end()) return fmt::format("{:a}", known->second);
+    switch (node.kind) {
+        case Kind::truth:
+            return node.truth ? "true" : "false";
+        case Kind::whole:
+        case Kind::real:
+            return fmt::format("{:a}", node.number);
+        case Kind::array: {
+            std::string all;
+            for (const Node& one : node.item) all += value_of(one, number) + ",";
+            return all.size() > kLong ? hash_text(hash_of(all)) : "[" + all + "]";
+        }
+        case Kind::table: {
+            std::string all;
+            for (const Entry& one : node.entry) all += one.key + "=" + value_of(one.value, number);
+            return "{" + all + "}";
+        }
+        default:
+            return node.text.size() > kLong ? hash_text(hash_of(node.text))
+                                            : fmt::format("{}:{}", node.text.size(), node.text);
+    }
+}
+
+std::string shown_value(const Node& node) {
+    using Kind = Node::Kind;
+    constexpr std::size_t kShown = 60;
+    std::string text = node.text;
+    if (node.kind == Kind::truth) text = node.truth ? "true" : "false";
+    if (node.kind == Kind::whole || node.kind == Kind::real) text = fmt::format("{}", node.number);
+    if (node.kind == Kind::array) {
+        for (const Node& one : node.item) {
+            if (text.size() > kShown) break;
+            text += (text.empty() ? "[" : ", ") + shown_value(one);
+        }
+        text += text.empty() ? "[]" : "]";
+    }
+    if (text.size() <= kShown) return text;
+    std::size_t end = kShown;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    return text.substr(0, end) + "...";
+}
+
+void add_said(const Node& node, const std::string& key, const std::map<const Node*, double>& number,
+              std::vector<Said>& all) {
+    const auto below = [&](const std::string& name) {
+        return key.empty() ? name : key + "." + name;
+    };
+    if (node.kind == Node::Kind::table) {
+        for (const Entry& one : node.entry) add_said(one.value, below(one.key), number, all);
+        return;
+    }
+    const bool holds_tables = std::any_of(node.item.begin(), node.item.end(), [](const Node& item) {
+        return item.kind == Node::Kind::table;
+    });
+    if (!holds_tables) {
+        all.push_back({key, value_of(node, number), shown_value(node)});
+        return;
+    }
+    for (std::size_t n = 0; n < node.item.size(); ++n) {
+        const std::string one = below(std::to_string(n + 1));
+        if (node.item[n].entry.empty()) all.push_back({one, "{}", "{}"});
+        add_said(node.item[n], one, number, all);
+    }
+}
+
 }  // namespace
 
 const Entry* Node::find(std::string_view key) const {
@@ -139,23 +210,11 @@ Place place_inside(const Node& node, std::size_t at) {
     return place;
 }
 
-std::string told(const Node& node) {
-    using Kind = Node::Kind;
-    std::string all;
-    if (node.kind == Kind::table) {
-        for (const Entry& one : node.entry) {
-            all += fmt::format("{}:{}={};", one.key.size(), one.key, told(one.value));
-        }
-        return "{" + all + "}";
-    }
-    if (node.kind == Kind::array) {
-        for (const Node& one : node.item) all += told(one) + ",";
-        return "[" + all + "]";
-    }
-    if (node.kind == Kind::truth) return node.truth ? "true" : "false";
-    if (node.kind == Kind::whole || node.kind == Kind::real)
-        return fmt::format("{:a}", node.number);
-    return fmt::format("{}:{}", node.text.size(), node.text);
+std::vector<Said> said_in(const Node& root, const std::map<const Node*, double>& number) {
+    std::vector<Said> all;
+    add_said(root, "", number, all);
+    std::sort(all.begin(), all.end(), [](const Said& a, const Said& b) { return a.key < b.key; });
+    return all;
 }
 
 std::string kind_text(const Node& node) {

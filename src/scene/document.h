@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,8 +59,15 @@ Place place_inside(const Node& text, std::size_t at);
 // "a text", "a whole number", ...
 std::string kind_text(const Node& node);
 
-// All that a tree says, whatever it looks like in the file: the same text for what says the same.
-std::string told(const Node& node);
+// What a tree says at one of its keys.
+struct Said {
+    std::string key;    // "stage.1.angle"
+    std::string value;  // the same for what means the same
+    std::string shown;  // as it stands there, if it is short
+};
+
+// All of it, by key, wherever and in whatever order it stands. `number`: what texts were read as.
+std::vector<Said> said_in(const Node& root, const std::map<const Node*, double>& number);
 
 // The same for rooms below.
 TextPlace text_place(const Place& place);

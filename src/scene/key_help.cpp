@@ -224,7 +224,8 @@ const std::vector<KeyHelp>& scene_key_help() {
         {"[render]", "passes",
          "files beside each still, for compositing, without blending at edges: depth (EXR, metres "
          "along the view), matte (PNG, a colour for each body, tool and the ground, which "
-         "mattes.json names), normal (EXR, along the world's axes), motion (EXR, pixels to the next "
+         "mattes.json names), normal (EXR, along the world's axes), motion (EXR, pixels to the "
+         "next "
          "still, forward, and the one before, backward; y up), piece (PNG, as matte, a colour for "
          "each piece of a body, which pieces.json names); and antialiased as the still is, beauty "
          "(EXR, its light before the tone curve, premultiplied)"},
@@ -279,6 +280,9 @@ const std::vector<KeyHelp>& scene_key_help() {
          "fields of the matter at each vertex of the skin: in meshes/*.ply as properties of these "
          "names (OBJ cannot hold them), in `swage export`, and for `swage render --color`; "
          "stresses in Pa"},
+        {"[output]", "keep_stages",
+         "keep how each stage ends, so that `swage run --go-on` works only those stages anew that "
+         "were changed"},
     };
     return all;
 }

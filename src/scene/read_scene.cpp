@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "base/suggest.h"
 #include "base/text.h"
@@ -111,19 +112,6 @@ void refuse_same_files(TableReader& root, const SceneSpec& scene) {
     }
 }
 
-// Of a scene without mistakes: nothing in it is deep.
-void tell(const Node& root, SceneSpec& scene) {
-    for (const Entry& one : root.entry) {
-        if (one.key != "stage") {
-            scene.said += one.key + "=" + told(one.value) + "\n";
-            continue;
-        }
-        for (std::size_t s = 0; s < scene.stage.size(); ++s) {
-            scene.stage[s].said = told(one.value.item[s]);
-        }
-    }
-}
-
 }  // namespace
 
 void read_scene_document(const Document& document, const AssetPaths& assets, Reading& reading,
@@ -182,6 +170,7 @@ void read_scene_document(const Document& document, const AssetPaths& assets, Rea
     if (scene.render.up == Up::automatic) scene.render.up = up_of(scene.stage);
     output.truth("meshes_per_frame", scene.output.meshes_per_frame);
     read_fields(output, scene.output.fields);
+    output.truth("keep_stages", scene.output.keep_stages);
     add_drawn_field(scene.render, scene.output.fields);
     output.finish();
     refuse_same_files(root, scene);
@@ -201,6 +190,7 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
     if (!is_piped) scene.inputs = {scene.file};
 
     MistakeList mistakes;
+    std::map<const Node*, double> numbers;
     std::optional<Document> document =
         is_piped ? read_piped_document(shown, mistakes) : read_document(file, file, mistakes);
     if (document && is_piped) scene.piped = document->source->text;
@@ -213,10 +203,11 @@ SceneReading read_scene(const fs::path& file, const std::vector<std::string>& ov
         Reading reading(mistakes);
         reading.is_complete = document->is_complete;
         read_scene_document(*document, assets, reading, scene);
+        numbers = std::move(reading.number);
     }
     if (mistakes.is_clean()) {
         warn_of_idle_keys(document->root, scene, mistakes);
-        tell(document->root, scene);
+        scene.said = said_in(document->root, numbers);
         result.scene = std::move(scene);
     }
     result.mistakes = mistakes.take(shown);

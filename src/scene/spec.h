@@ -88,12 +88,12 @@ struct StageSpec {
     double duration = 0;  // [s] of machine time; 0: frames / frame_rate
     bool remold = false;  // mold the deformed mesh anew before this stage
     SimSettings sim;
-    std::string said;  // what the scene says of it (told() in scene/document.h)
 };
 
 struct OutputSpec {
     bool meshes_per_frame = false;
     std::vector<SkinField> fields;  // of the matter, at the skin's vertices
+    bool keep_stages = true;        // each of a run that is done can be gone on from
 };
 
 struct SceneSpec {
@@ -122,7 +122,7 @@ struct SceneSpec {
     }
     RenderSettings render;
     OutputSpec output;
-    std::string said;  // likewise, but of stages
+    std::vector<Said> said;  // all that it says, with what was set on the command line
     // Every file that was read but for the meshes of bodies: the scene, materials, machines, the
     // meshes of tools and insets.
     std::vector<std::filesystem::path> inputs;

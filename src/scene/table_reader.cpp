@@ -154,6 +154,7 @@ bool TableReader::number(const std::string& key, const Node& node, Quantity quan
     if (node.kind == Node::Kind::text) {
         try {
             into = parse_quantity(node.text, quantity);
+            reading_.number[&node] = into;
             if (quantity == Quantity::angle && unit_in(node.text).empty())
                 warn_of_turns(key, node, into);
             return true;

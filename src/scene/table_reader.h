@@ -46,6 +46,7 @@ struct Reading {
     bool is_complete = true;                             // see Document
     std::map<std::string, std::set<std::string>> known;  // section -> keys that were asked for
     std::vector<UnknownKey> unknown;
+    std::map<const Node*, double> number;  // what texts were read as, in SI
     // With `describes`: the forms of all keys by section, both in the order in which they are
     // asked.
     bool describes = false;

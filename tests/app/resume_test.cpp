@@ -18,6 +18,9 @@ using swage::Json;
 
 namespace {
 
+// However slow it is.
+const std::vector<std::string> kAtStagesAlone = {"--keep-every", "1 h"};
+
 // Two stages; what the second is at shows.
 const std::string kTwo = kOutput +
                          "[[stage]]\nmachine = \"bend\"\nangle = \"10 deg\"\nframes = 2\n"
@@ -26,15 +29,16 @@ const std::string kTwo = kOutput +
 // Ends a run of these by a signal in the middle of the second.
 Outcome end_in_second_stage(int signal, const fs::path& scene, const fs::path& out) {
     fs::remove_all(out / "meshes/2-bend");
-    RunningSwage running({"run", scene.string(), "--no-render", "--out", out.string()},
-                         scene.parent_path());
+    std::vector<std::string> words = {"run", scene.string(), "--no-render", "--out", out.string()};
+    words.insert(words.end(), kAtStagesAlone.begin(), kAtStagesAlone.end());
+    RunningSwage running(words, scene.parent_path());
     while (!fs::exists(out / "meshes/2-bend/frame_0006.obj") && running.is_running()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     running.signal(signal);
     Outcome outcome = running.wait();
     CHECK(outcome.code == 128 + signal);
-    REQUIRE(fs::exists(out / "resume/checkpoint.bin"));
+    REQUIRE(fs::exists(out / "resume/after-1.bin"));
     return outcome;
 }
 
@@ -69,13 +73,12 @@ TEST_CASE(
     const Outcome at_once = run(scene, whole);
     INFO(at_once.err);
     REQUIRE(at_once.code == 0);
-    CHECK_FALSE(fs::exists(whole / "resume"));
     const std::uintmax_t size = fs::file_size(whole / "motion.bin");
     for (const double share : {0.5, 0.95}) {
         const fs::path out = scratch.path() / fmt::format("run{}", share);
         {
             const SmallDisk disk(static_cast<std::uintmax_t>(share * double(size)));
-            CHECK(run(scene, out).code == 5);
+            CHECK(run(scene, out, kAtStagesAlone).code == 5);
         }
         check_goes_through(scene, whole, out, "goes on after stage ");
     }
@@ -104,7 +107,7 @@ TEST_CASE("a run that is to be fresh begins anew, and so does one whose checkpoi
     const fs::path scene = put_scene(scratch.path(), kMesh + metal("") + kTwo),
                    whole = scratch.path() / "whole", out = scratch.path() / "run";
     REQUIRE(run(scene, whole).code == 0);
-    const fs::path checkpoint = out / "resume/checkpoint.bin";
+    const fs::path checkpoint = out / "resume/after-1.bin";
     const auto anew = [&](const std::string& told, std::vector<std::string> more = {}) {
         const Outcome outcome = run(scene, out, std::move(more));
         INFO(outcome.err);
@@ -121,22 +124,21 @@ TEST_CASE("a run that is to be fresh begins anew, and so does one whose checkpoi
     std::string bytes = bytes_of(checkpoint);
     bytes[bytes.size() / 2] ^= 1;
     put_text(checkpoint, bytes);
-    anew("checkpoint.bin: is damaged, so the run begins anew");
+    anew("after-1.bin: is damaged, so stage 1 begins anew");
 
     end_in_second_stage(SIGKILL, scene, out);
     bytes = bytes_of(out / "resume/motion.bin");
     bytes[1000] ^= 1;
     put_text(out / "resume/motion.bin", bytes);
-    anew("goes with a motion file that is damaged, so the run begins anew");
+    anew("goes with a motion file that is damaged, so stage 1 begins anew");
 
     // Of another run, in the place of this one's.
     const fs::path other = scratch.path() / "other";
     end_in_second_stage(SIGINT, scene, out);
     put_text(scratch.path() / "softer.toml", kMesh + "[material]\nname = \"tin\"\n" + kMold + kTwo);
     end_in_second_stage(SIGINT, scratch.path() / "softer.toml", other);
-    fs::copy_file(other / "resume/checkpoint.bin", checkpoint,
-                  fs::copy_options::overwrite_existing);
-    anew("belongs to another run or another build of swage, so the run begins anew");
+    fs::copy_file(other / "resume/after-1.bin", checkpoint, fs::copy_options::overwrite_existing);
+    anew("belongs to another run or another build of swage, so stage 1 begins anew");
 }
 
 TEST_CASE("a fresh run that cannot start leaves what another may go on from") {
@@ -161,14 +163,14 @@ TEST_CASE("a run goes on where its checkpoint finds no room") {
     const fs::path whole = scratch.path() / "whole", out = scratch.path() / "run";
     REQUIRE(run(scene, whole).code == 0);
     std::uintmax_t largest = 0;
-    for (const auto& [name, bytes] : files_below(whole)) {
+    for (const auto& [name, bytes] : products(whole)) {
         largest = std::max<std::uintmax_t>(largest, bytes.size());
     }
     const SmallDisk disk(largest);
     const Outcome outcome = run(scene, out);
     INFO(outcome.err);
     CHECK(outcome.code == 0);
-    CHECK(outcome.err.find("a run that ends early cannot go on from here") != std::string::npos);
+    CHECK(outcome.err.find("no run can go on from here") != std::string::npos);
     check_same(whole, out);
 }
 
@@ -256,13 +258,13 @@ TEST_CASE("a machine's file that was changed is told from one that only later st
     {
         RunningSwage running({"run", scene.string(), "--no-render", "--out", out.string()},
                              scratch.path());
-        while (!fs::exists(out / "resume/checkpoint.bin") && running.is_running()) {
+        while (!fs::exists(out / "resume/after-1.bin") && running.is_running()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
         running.signal(SIGKILL);
         const Outcome outcome = running.wait();
         INFO(outcome.err);
-        REQUIRE(fs::exists(out / "resume/checkpoint.bin"));
+        REQUIRE(fs::exists(out / "resume/after-1.bin"));
     }
     machine("one.toml", "0.11");
     CHECK(run(scene, out, {"--go-on"}).code == 8);

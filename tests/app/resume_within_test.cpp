@@ -243,6 +243,11 @@ TEST_CASE("a run that was killed goes on from the last frame that was kept") {
         CHECK(ended.code == 128 + signal);
         CHECK(fs::exists(out / "resume/stage.bin"));
         CHECK((frame == 6 || ended.err.find("goes on from frame ") != std::string::npos));
+        const Json record = Json::parse(bytes_of(out / "run.json"));
+        CHECK(record.at("state") == (signal == SIGKILL ? "begun" : "interrupted"));
+        CHECK(record.at("goes_on_from").at("stage") == 1);
+        CHECK(record.at("goes_on_from").at("frame") >= frame - 1);
+        CHECK(record.contains("went_on_from") == (frame > 6));
     }
     check_goes_through(scene, whole, out, "goes on from frame ");
 }
@@ -258,7 +263,7 @@ TEST_CASE("a stage goes on where what is kept of it finds no room") {
     const fs::path whole = scratch.path() / "whole", out = scratch.path() / "run";
     REQUIRE(run(scene, whole).code == 0);
     std::uintmax_t largest = 0;
-    for (const auto& [name, bytes] : files_below(whole)) {
+    for (const auto& [name, bytes] : products(whole)) {
         largest = std::max<std::uintmax_t>(largest, bytes.size());
     }
     const SmallDisk disk(largest);

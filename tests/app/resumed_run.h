@@ -60,11 +60,13 @@ inline Outcome run(const fs::path& scene, const fs::path& out, std::vector<std::
     return run_swage(more);
 }
 
-// All that a run left, but for what it took.
+// All that a run left, but for what it took, what it went on from, and what others may.
 inline std::map<std::string, std::string> products(const fs::path& folder) {
     std::map<std::string, std::string> files = files_below(folder);
+    std::erase_if(files, [](const auto& file) { return file.first.starts_with("resume/after-"); });
     swage::Json record = swage::Json::parse(files.at("run.json"));
     record["seconds"] = nullptr;
+    record.erase("went_on_from");
     files["run.json"] = record.dump(1);
     return files;
 }

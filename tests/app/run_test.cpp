@@ -132,7 +132,7 @@ TEST_CASE(
     const Outcome other = run_swage({"run", scene.string(), "--out", run.string(), "--no-render",
                                      "--set", "stage.1.angle=5 deg"});
     CHECK(other.code == 8);
-    CHECK(other.err.find("--set") != std::string::npos);
+    CHECK(other.err.find("stage.1.angle is 5 deg now, ") != std::string::npos);
     CHECK(run_swage({"run", scene.string(), "--out", run.string(), "--no-render", "--fresh",
                      "--set", "stage.1.angle=5 deg"})
               .code == 0);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 RunIdentity identity_of(const std::string& scene_hash) {
-    return {kVersion, {{"scene", "a.toml", scene_hash}, {"mesh", "a.obj", "0123"}}};
+    return {kVersion, {{"machine bend", "a.toml", scene_hash}, {"mesh", "a.obj", "0123"}}};
 }
 
 ExitCode code_of(const std::function<void()>& act) {
@@ -83,7 +83,7 @@ TEST_CASE("another run's directory is refused and left as it is") {
         CHECK(error.code() == ExitCode::foreign);
         told = error.what();
     }
-    CHECK(told.find("scene differs") != std::string::npos);
+    CHECK(told.find("machine bend differs") != std::string::npos);
     CHECK(told.find("mesh") == std::string::npos);
     CHECK(fs::exists(root / "run.json"));
     CHECK_FALSE(fs::exists(root / ".swage-lock"));
@@ -240,7 +240,7 @@ TEST_CASE("what differs between two runs is told item by item") {
     CHECK(differences(there, here)[0].find("another build of swage") == 0);
 }
 
-TEST_CASE("of a scene that was edited it is told what it says now and what it said then") {
+TEST_CASE("of a machine that was edited it is told what it says now and what it said then") {
     const Scratch scratch;
     const auto with = [](const std::string& text) {
         RunIdentity identity = identity_of(text);
@@ -262,14 +262,40 @@ TEST_CASE("of a scene that was edited it is told what it says now and what it sa
         return std::string("none");
     };
     CHECK(refusal(with("# two\n  angle = 2\nframes = 3\nframes = 3\n"))
-              .find("scene differs: the content of a.toml has changed (now angle = 2; then angle = "
+              .find("machine bend differs: the content of a.toml has changed (now angle = 2; then "
+                    "angle = "
                     "1);") != std::string::npos);
     CHECK(refusal(with("angle = 1\nframes = 3\n")).find("(now nothing more; then frames = 3);") !=
           std::string::npos);
     CHECK(refusal(with("a = 1\nb = 2\nc = 3\nd = 4\ne = 5\n"))
               .find("(now a = 1, b = 2, c = 3 and 2 more; then ") != std::string::npos);
-    CHECK(refusal(identity_of("2")).find("scene differs: the content of a.toml has changed;") !=
+    CHECK(refusal(identity_of("2"))
+              .find("machine bend differs: the content of a.toml has changed;") !=
           std::string::npos);
+}
+
+TEST_CASE("of a scene it is told which keys say something else now") {
+    RunIdentity there = identity_of("1"), here = identity_of("1");
+    there.input.push_back({"scene", "a.toml", "5"});
+    here.input.push_back({"scene", "b.toml", "6"});
+    there.input.push_back({"--set", "a=1", "7"});
+    there.said = {{"a", "1", "one"}, {"b", "2", "2 cm"}, {"output.keep_stages", "true", "true"}};
+    here.said = {{"a", "1", "1"}, {"b", "2", "20 mm"}};
+    CHECK(differences(there, here).empty());
+    here.said = {{"b", "3", "3 cm"}, {"c", "4", "4"}};
+    CHECK(differences(there, here) == std::vector<std::string>{"a is not there now, one then",
+                                                               "b is 3 cm now, 2 cm then",
+                                                               "c is 4 now, not there then"});
+    const Scratch scratch;
+    {
+        RunDirectory run(scratch.path() / "run", there, false);
+        run.begin();
+        put_text(scratch.path() / "run/run.json", "{}");
+    }
+    CHECK_THROWS_WITH(RunDirectory(scratch.path() / "run", here, false),
+                      Catch::Contains("another run: a is not there now, one then; b is 3 cm now"));
+    for (int n = 0; n < 9; ++n) here.said.push_back({fmt::format("d.{}", n), "", "d"});
+    CHECK(differences(there, here).back() == "and 7 keys more");
 }
 
 TEST_CASE("a directory in which nothing was recorded belongs to nobody") {

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs that are done, of which stages are changed: those before them are not worked again.
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "tests/app/resumed_run.h"
+#include "tests/pipeline/scratch.h"
+
+using namespace resumed;
+using swage::Json;
+
+namespace {
+
+bool says(const Outcome& outcome, const std::string& words) {
+    return outcome.err.find(words) != std::string::npos;
+}
+
+std::string stage(const std::string& machine, const std::string& more) {
+    return "[[stage]]\nmachine = \"" + machine + "\"\n" + more + "\n";
+}
+
+using Stages = std::vector<std::string>;
+std::string text_of(const std::string& head, const Stages& stages) {
+    std::string text = head;
+    for (const std::string& one : stages) text += one;
+    return text;
+}
+
+// A line of three and what others make of each, of the machines that a scene can have.
+struct Line {
+    std::string head;
+    Stages stages, others;
+};
+
+const std::string kFrames = "frames = 3\n";
+const Stages kAtRest = {stage("bend", "angle = \"40 deg\"\n" + kFrames),
+                        stage("cut", "tilt = \"20 deg\"\n" + kFrames),
+                        stage("stretch", "strain = 0.05\n" + kFrames)},
+             kAtRestToo = {stage("bend", "angle = \"30 deg\"\n" + kFrames),
+                           stage("twist", "angle = \"40 deg\"\n" + kFrames),
+                           stage("press", "depth = 0.1\n" + kFrames)};
+Stages molded_anew(Stages stages) {
+    for (std::string& one : stages) one += "remold = true\n";
+    stages.front() = kAtRest.front();
+    return stages;
+}
+
+void check_as_from_nothing(const fs::path& scene, const fs::path& out, const fs::path& scratch) {
+    const fs::path whole = scratch / "whole";
+    fs::remove_all(whole);
+    const Outcome outcome = run(scene, whole);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    check_same(whole, out);
+}
+
+// One run of these, in its folder `run`.
+struct DoneRun {
+    Scratch scratch;
+    std::string head;
+    fs::path scene, out = scratch.path() / "run";
+
+    DoneRun(const std::string& head_, const Stages& stages)
+        : head(head_), scene(put_scene(scratch.path(), text_of(head_, stages))) {
+        const Outcome outcome = run(scene, out);
+        INFO(outcome.err);
+        REQUIRE(outcome.code == 0);
+    }
+    void put(const Stages& stages) const { put_text(scene, text_of(head, stages)); }
+    void check() const { check_as_from_nothing(scene, out, scratch.path()); }
+    Outcome go_on(const std::vector<std::string>& more = {"--go-on"}) const {
+        return run(scene, out, more);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("of a run that is done only what was changed is worked, to the same bytes") {
+    const std::string lead = kMesh + metal("") + kOutput;
+    const auto& [name, line] = GENERATE_COPY(table<std::string, Line>({
+        {"mounted, fields, meshes of frames", {lead, kAtRest, kAtRestToo}},
+        {"springs",
+         {kMesh + metal("mechanics = \"springs\"\n"),
+          kAtRest,
+          {"", stage("twist", "angle = \"5 deg\"\n" + kFrames),
+           stage("stretch", "strain = 0.02\n" + kFrames)}}},
+        {"boundary, molded anew",
+         {kMesh + metal("") + kBoundary, molded_anew(kAtRest), molded_anew(kAtRestToo)}},
+        {"bodies in motion that break",
+         {kBox + falls(4) + kBrittle + kMold +
+              "[[body]]\nname = \"other\"\nfile = \"box.obj\"\nat = [0, \"8 cm\", 0]\n"
+              "velocity = [0, \"-8 m/s\", 0]\nacross = 2\n",
+          {floor(3), stage("cut", "frames = 4\nduration = \"4 ms\""), floor(3)},
+          {floor(4), floor(2), floor(5)}}},
+    }));
+    INFO(name);
+    const DoneRun done(line.head, line.stages);
+    const auto goes_on = [&](const Stages& stages, int kept) {
+        done.put(stages);
+        CHECK(done.go_on({}).code == 8);
+        const Outcome outcome = done.go_on();
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        CHECK(says(outcome,
+                   fmt::format("goes on after stage {} of {}, frame ", kept, stages.size())));
+        done.check();
+        CHECK_FALSE(fs::exists(done.out / "replaced"));
+        CHECK(Json::parse(bytes_of(done.out / "run.json")).at("went_on_from").at("stage") ==
+              kept + 1);
+    };
+    const Stages &a = line.stages, &b = line.others;
+    goes_on({a[0], a[1], b[2]}, 2);
+    goes_on({a[0], b[1], b[2]}, 1);
+    goes_on({a[0], b[1], b[2], a[2]}, 3);
+    goes_on({a[0], b[1]}, 2);
+    goes_on({a[0], b[1], a[2]}, 2);
+}
+
+TEST_CASE("what is drawn may be another with no stage worked, what frames hold may not") {
+    const DoneRun done(kMesh + metal(""), {kAtRest[0], kAtRest[2]});
+    const auto before = products(done.out);
+    const auto with = [&](const std::string& more) {
+        put_text(done.scene, text_of(done.head + more, {kAtRest[0], kAtRest[2]}));
+    };
+    with("[render]\nsize = [64, 64]\nground = false\n");
+    CHECK(says(done.go_on({}), "render.ground is false now, not there then"));
+    CHECK(says(done.go_on(), "goes on after stage 2 of 2, frame 7: render.ground is false"));
+    done.check();
+    for (const char* more :
+         {"[output]\nmeshes_per_frame = true\n", "[output]\nfields = [\"stress\"]\n",
+          "[render]\ncolor = \"stress\"\n", "[render]\nfps = 12\n"}) {
+        with(more);
+        const auto files = files_below(done.out);
+        const Outcome outcome = done.go_on();
+        INFO(more << outcome.err);
+        CHECK(outcome.code == 8);
+        CHECK(says(outcome, "has kept no stage to go on from that is the same"));
+        CHECK(files_below(done.out) == files);
+    }
+}
+
+TEST_CASE("a run that is replaced stays whole until the new one is") {
+    const DoneRun done(kMesh + metal("") + kOutput, kAtRest);
+    const auto before = files_below(done.out);
+    const fs::path replaced = done.out / "replaced";
+    // It cannot be set up: nothing is touched.
+    done.put({kAtRest[0], stage("bend", "radius = \"1 um\"\n")});
+    CHECK(done.go_on().code == 3);
+    CHECK(files_below(done.out) == before);
+    // It ends early, in a stage and after one.
+    const Stages longer = {kAtRest[0], stage("twist", "angle = \"40 deg\"\nframes = 40"),
+                           kAtRest[2]};
+    done.put(longer);
+    const int signal = GENERATE(SIGKILL, SIGINT);
+    const std::vector<std::string> words = {
+        "run",     done.scene.string(), "--no-render", "--out", done.out.string(),
+        "--go-on", "--keep-every",      "0 s"};
+    {
+        RunningSwage running(words, done.scratch.path());
+        while (!fs::exists(done.out / "meshes/2-twist/frame_0012.obj") && running.is_running()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        running.signal(signal);
+        const Outcome outcome = running.wait();
+        INFO(outcome.err);
+        CHECK(outcome.code == 128 + signal);
+        CHECK(says(outcome, "the run that was there stands in " + replaced.string()));
+    }
+    CHECK(files_below(replaced) == before);
+    const Json record = Json::parse(bytes_of(done.out / "run.json"));
+    CHECK(record.at("state") == (signal == SIGINT ? "interrupted" : "begun"));
+    CHECK(record.at("went_on_from") == Json({{"stage", 2}, {"frame", 4}}));
+    CHECK(record.at("goes_on_from").at("stage") == 2);
+    CHECK(record.at("goes_on_from").at("frame") > 4);
+    // Changed once more, it is of one that is not done: what was done stays all the same.
+    done.put({kAtRest[0], kAtRestToo[1], stage("bend", "radius = \"1 um\"\n")});
+    CHECK(done.go_on().code == 3);
+    CHECK(files_below(replaced) == before);
+    done.put(longer);
+    CHECK(done.go_on().code == 0);
+    done.check();
+    CHECK_FALSE(fs::exists(replaced));
+}
+
+TEST_CASE("a run that is asked to be fresh throws away what it replaced, too") {
+    const DoneRun done(kMesh + metal(""), {kAtRest[0], kAtRest[2]});
+    done.put({kAtRest[0], stage("bend", "radius = \"1 um\"\n")});
+    fs::create_directory(done.out / "replaced");
+    fs::copy_file(done.out / ".swage-run", done.out / "replaced/.swage-run");
+    done.put({kAtRest[2]});
+    CHECK(done.go_on({"--fresh"}).code == 0);
+    done.check();
+}
+
+TEST_CASE("what was kept of a stage and is damaged is told, and an earlier one serves") {
+    const DoneRun done(kMesh + metal("") + kOutput, kAtRest);
+    const fs::path copy = done.scratch.path() / "copy";
+    fs::copy(done.out, copy, fs::copy_options::recursive);
+    const auto as_it_was = [&] {
+        fs::remove_all(done.out);
+        fs::copy(copy, done.out, fs::copy_options::recursive);
+    };
+    done.put({kAtRest[0], kAtRest[1], kAtRestToo[2]});
+    const auto serves = [&](int kept, const std::string& told) {
+        const Outcome outcome = done.go_on();
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        CHECK(says(outcome, told));
+        CHECK(says(outcome, fmt::format("goes on after stage {} of 3", kept)));
+        done.check();
+        as_it_was();
+    };
+    const fs::path second = done.out / "resume/after-2.bin";
+    const std::string whole = bytes_of(second);
+    for (const std::size_t at : {whole.size() / 2, whole.size() - 1}) {
+        std::string damaged = whole;
+        damaged[at] ^= 1;
+        put_text(second, damaged);
+        serves(1, "after-2.bin: is damaged, so stage 2 begins anew");
+    }
+    put_text(second, whole.substr(0, whole.size() / 3));
+    serves(1, "after-2.bin: is damaged, so stage 2 begins anew");
+    fs::remove(second);
+    serves(1, "");
+    put_text(second, "of some other time");
+    serves(1, "");
+    fs::copy_file(done.out / "resume/after-1.bin", second, fs::copy_options::overwrite_existing);
+    serves(1, "");
+    fs::remove(done.out / "meshes/2-cut.obj");
+    serves(1, "2-cut.obj, which is gone, so stage 2 begins anew");
+
+    // The motion of the second stage ends early, then that of the first is damaged.
+    std::string motion = bytes_of(done.out / "motion.bin");
+    put_text(done.out / "motion.bin", motion.substr(0, motion.size() / 2));
+    serves(1, "after-2.bin: goes with a motion file that is damaged, so stage 2 begins anew");
+    motion[100] ^= 1;
+    put_text(done.out / "motion.bin", motion);
+    const auto files = files_below(done.out);
+    const Outcome none = done.go_on();
+    INFO(none.err);
+    CHECK(none.code == 8);
+    CHECK(says(none, "of what it has kept nothing is whole; choose another --out, or --fresh"));
+    CHECK(files_below(done.out) == files);
+}
+
+TEST_CASE("a run of which no stage is to be kept leaves none, and is the same run") {
+    const DoneRun done(kMesh + metal("") + "[output]\nkeep_stages = false\n", kAtRest);
+    CHECK_FALSE(fs::exists(done.out / "resume"));
+    CHECK(says(done.go_on({"--set", "output.keep_stages=true"}), "already complete"));
+    done.put({kAtRest[0], kAtRest[1]});
+    CHECK(done.go_on().code == 8);
+}
+
+TEST_CASE("a scene that says the same in other words is the same run, and what differs is told") {
+    const DoneRun done(kMesh + metal(""), {kAtRest[0], kAtRest[2]});
+    const auto is_done = [&](const std::vector<std::string>& more) {
+        const Outcome outcome = done.go_on(more);
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        CHECK(says(outcome, "already complete"));
+    };
+    const std::string kSet = "--set";
+    is_done({kSet, "stage.1.angle=40 degrees"});
+    is_done({kSet, "stage.bend.frames=3", kSet, "stage.2.strain=0.5e-1"});
+    is_done({kSet, "stage.2.strain=0.05", kSet, "stage.1.angle='40 deg'"});
+    put_text(done.scene, "# Of lead.\n[mold]\nacross = 3\n" + kMesh +
+                             "[material]\nname = 'lead'\n[[stage]]\nframes = 3 # few\n"
+                             "angle = \"40 deg\"\nmachine = \"bend\"\n" +
+                             kAtRest[2]);
+    is_done({});
+    const auto differs = [&](const std::vector<std::string>& more, const std::string& told) {
+        const Outcome outcome = done.go_on(more);
+        INFO(outcome.err);
+        CHECK(outcome.code == 8);
+        CHECK(says(outcome, "belongs to another run: " + told));
+    };
+    differs({kSet, "stage.2.strain=0.06", kSet, "mold.across=4"},
+            "mold.across is 4 now, 3 then; stage.2.strain is 0.06 now, 0.05 then; choose");
+    differs({kSet, "stage.1.angle=2 rad"},
+            "stage.1.angle is 2 rad now, 40 deg then; choose another --out, or --fresh");
+    differs({kSet, "material.friction=0.3"},
+            "material.friction is 0.3 now, not there then; choose");
+}
